@@ -1,4 +1,4 @@
-//! Counts the rays that are lost at the edges and vertices of a closed mesh.
+//! Counts the rays that miss a closed mesh at its edges and vertices.
 
 use crate::Options;
 use crate::embree::{Embree, Quality};
@@ -12,10 +12,10 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Targets of the rays.
-const AIMS: [&str; 4] = ["vertices", "edge midpoints", "points of edges", "centroids"];
+/// Points of the triangles at which the rays are aimed.
+const AIMS: [&str; 4] = ["vertices", "edge midpoints", "points on edges", "centroids"];
 
-/// Returns a sphere of 10,242 vertices: an icosahedron subdivided five times.
+/// Returns a sphere with 10,242 vertices: an icosahedron that is subdivided five times.
 fn sphere(center: Vec3, radius: f32) -> Mesh {
     let golden = 0.5 * (1.0 + 5.0_f32.sqrt());
     let mut vertices: Vec<Vec3> = Vec::new();
@@ -58,8 +58,8 @@ fn sphere(center: Vec3, radius: f32) -> Mesh {
     Mesh { name: "sphere".into(), vertices, triangles }
 }
 
-/// Returns ray `i`, aimed at each triangle in turn, and true if it starts inside; otherwise it
-/// starts on the triangle's front side.
+/// Returns ray `i`, which is aimed at one of the triangles, and true if it starts inside the
+/// sphere. Otherwise it starts on the triangle's front side.
 fn ray(mesh: &Mesh, center: Vec3, radius: f32, aim: usize, i: u32) -> (Ray, bool) {
     let [a, b, c] = mesh.corners(i % mesh.triangles.len() as u32);
     let unit = random_2d(4, i, aim as u32, 0, 0).x;
@@ -68,7 +68,7 @@ fn ray(mesh: &Mesh, center: Vec3, radius: f32, aim: usize, i: u32) -> (Ray, bool
     let inside = (i / mesh.triangles.len() as u32).is_multiple_of(2);
     let origin = match inside {
         true => center + 0.5 * radius * cosine(normal, i, 8),
-        // Not so low that rounding of the target lets the ray pass the sphere.
+        // Keep the ray steep enough that it cannot pass the sphere if the target is rounded.
         false => {
             let back = (normal + cosine(normal, i, 9)).normalize();
             goal + radius * (0.5 + 100.0 * random_2d(4, i, aim as u32, 0, 1).x) * back
@@ -77,7 +77,7 @@ fn ray(mesh: &Mesh, center: Vec3, radius: f32, aim: usize, i: u32) -> (Ray, bool
     (Ray::new(origin, goal - origin), inside)
 }
 
-/// Returns the number of lost rays for each target, out of `count`.
+/// Returns the number of rays, out of `count`, that miss the mesh, for each kind of target.
 fn lost(mesh: &Mesh, place: (Vec3, f32), count: u32, closest: impl Fn(&Ray) -> BenchHit + Sync) -> [usize; 4] {
     [0, 1, 2, 3].map(|aim| {
         let is_lost = |i: &u32| closest(&ray(mesh, place.0, place.1, aim, *i).0) == BenchHit::NONE;
@@ -85,13 +85,14 @@ fn lost(mesh: &Mesh, place: (Vec3, f32), count: u32, closest: impl Fn(&Ray) -> B
     })
 }
 
+/// Prints the number of rays that each tracer loses.
 pub fn run(options: &Options, count: u32) -> Result<()> {
     let embree = match &options.embree {
         Some(path) => Some(Arc::new(Embree::load(path, options.threads)?)),
         None => None,
     };
     println!(
-        "Rays lost on the way to the closed sphere of 10,242 vertices, of {count} at each aim, half of them from inside."
+        "Rays that miss a closed sphere of 10,242 vertices, out of {count} for each target, half of them from inside."
     );
     for (center, radius) in [(Vec3::ZERO, 1.0), (Vec3::new(1e6, -1e6, 1e6), 64.0)] {
         let mesh = sphere(center, radius);

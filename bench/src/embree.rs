@@ -1,4 +1,4 @@
-//! Bindings to Embree 4, loaded at run time. Names and layouts are those of `rtcore.h`.
+//! Bindings to Embree 4, which is loaded at run time. Names and layouts follow `rtcore.h`.
 
 use crate::rays::{BenchHit, Mesh};
 use anyhow::{Context, Result, bail};
@@ -12,13 +12,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 
 /// Instructions for installing Embree.
-pub const HOW: &str = "Embree 4 is not found. One way to it:
+pub const HOW: &str = "Embree 4 was not found. To install it, for example:
   pip download embreex --no-deps -d /tmp/embreex && cd /tmp/embreex && unzip -o embreex-*.whl
-and then DURER_EMBREE=/tmp/embreex/embreex.libs (a folder, or the file libembree4*.so itself); Debian's libembree-dev 4 will
-do too. Without it the command runs with --no-embree.";
+and set DURER_EMBREE=/tmp/embreex/embreex.libs (a folder, or the file libembree4*.so itself). Debian's libembree-dev 4 also
+works. Without Embree, pass --no-embree.";
 
+/// Handle of an Embree object: a device, scene, geometry or buffer.
 type Handle = *mut c_void;
 
+/// Embree's `RTCRayHit`: a ray and its hit.
 #[repr(C, align(16))]
 #[derive(Clone, Copy)]
 struct RayHit1 {
@@ -39,7 +41,8 @@ struct RayHit1 {
     padding: [c_uint; 3],
 }
 
-/// Sixteen rays in structure-of-arrays layout; fields in the order of [`RayHit1`].
+/// Embree's `RTCRayHit16`: sixteen rays and hits in structure-of-arrays layout, with the fields of
+/// [`RayHit1`].
 #[repr(C, align(64))]
 struct RayHit16 {
     ray: [[f32; 16]; 12],
@@ -50,6 +53,7 @@ struct RayHit16 {
     inst: [[c_uint; 16]; 2],
 }
 
+/// Embree's `RTCIntersectArguments` and `RTCOccludedArguments`.
 #[repr(C)]
 struct Arguments {
     flags: c_uint,
@@ -65,7 +69,8 @@ const COHERENT: c_uint = 1 << 16;
 
 macro_rules! functions {
     ($($name:ident: fn($($arg:ty),*) $(-> $out:ty)?;)*) => {
-        // Names as in the header.
+        // Use the names of the header.
+        /// Embree's functions, looked up by name in the loaded library.
         #[allow(non_snake_case)]
         struct Functions { $($name: unsafe extern "C" fn($($arg),*) $(-> $out)?,)* }
         impl Functions {
@@ -82,6 +87,7 @@ macro_rules! functions {
     };
 }
 
+/// Callback that Embree calls when it allocates or frees memory.
 type Monitor = unsafe extern "C" fn(Handle, isize, bool) -> bool;
 
 functions! {
@@ -107,9 +113,9 @@ functions! {
     rtcOccluded16: fn(*const c_int, Handle, *mut RayHit16, *const Arguments);
 }
 impl Embree {
-    /// Loads the library.
+    /// Loads the library and creates a device.
     pub fn load(path: &Path, threads: usize) -> Result<Self> {
-        // The task library is beside it under a name chosen by the wheel.
+        // The task library is in the same folder, with a name chosen by the Python wheel.
         let companions: Vec<Library> = siblings(path, "libtbb")
             .iter()
             // SAFETY: loading runs the initialisers of a library that the user chose.
@@ -122,7 +128,7 @@ impl Embree {
         // SAFETY: the configuration is a C string.
         let device = unsafe { (functions.rtcNewDevice)(config.as_ptr()) };
         if device.is_null() {
-            bail!("Embree gives no device");
+            bail!("Embree cannot create a device");
         }
         let memory = Box::new(AtomicI64::new(0));
         // SAFETY: the counter lives as long as the device.
@@ -134,18 +140,18 @@ impl Embree {
 }
 
 unsafe extern "C" fn count_memory(counter: Handle, bytes: isize, _after: bool) -> bool {
-    // SAFETY: the pointer is the counter given at registration.
+    // SAFETY: the pointer is the counter that was passed at registration.
     unsafe { &*(counter as *const AtomicI64) }.fetch_add(bytes as i64, Ordering::Relaxed);
     true
 }
 
-/// The loaded library with one device.
+/// The loaded Embree library and a device, with which scenes for the comparison are built.
 pub struct Embree {
     functions: Functions,
     device: Handle,
     memory: Box<AtomicI64>,
     version: isize,
-    /// Never unloaded: Embree's threads may still run in it.
+    /// Never unloaded, because Embree's threads may still run in it.
     _libraries: ManuallyDrop<(Library, Vec<Library>)>,
 }
 
@@ -154,7 +160,7 @@ unsafe impl Send for Embree {}
 // SAFETY: as above.
 unsafe impl Sync for Embree {}
 
-/// Build quality.
+/// Quality of Embree's BVH builds, `RTCBuildQuality`.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Quality {
     Medium = 1,
@@ -162,11 +168,12 @@ pub enum Quality {
 }
 
 impl Embree {
+    /// Returns the version of the library.
     pub fn version(&self) -> String {
         format!("{}.{}.{}", self.version / 10000, self.version / 100 % 100, self.version % 100)
     }
 
-    /// Builds a scene of one mesh; also returns the seconds of the commit.
+    /// Builds a scene with one mesh. Also returns the time of the commit in seconds.
     pub fn build(self: &Arc<Self>, mesh: &Mesh, quality: Quality, robust: bool) -> (Scene, f64) {
         let f = &self.functions;
         self.commit(quality, robust, |scene| {
@@ -184,7 +191,7 @@ impl Embree {
         })
     }
 
-    /// Builds a scene of instances; also returns the seconds of the commit.
+    /// Builds a scene of instances. Also returns the time of the commit in seconds.
     pub fn build_instances(self: &Arc<Self>, object: &Scene, places: &[DAffine3]) -> (Scene, f64) {
         const INSTANCE: c_int = 121;
         const COLUMNS_OF_3X4: c_int = 0x9234;
@@ -241,11 +248,11 @@ impl Drop for Embree {
     }
 }
 
-/// A committed scene.
+/// A committed Embree scene, ready to be traced.
 pub struct Scene {
     embree: Arc<Embree>,
     scene: Handle,
-    /// Size of the tree in bytes, without vertices and indices.
+    /// Size of the BVH in bytes, without vertices and indices.
     pub bytes: usize,
 }
 
@@ -282,6 +289,7 @@ fn single(ray: &Ray) -> RayHit1 {
 }
 
 impl Scene {
+    /// Returns the closest hit of a ray.
     pub fn closest(&self, ray: &Ray) -> BenchHit {
         let mut query = single(ray);
         // SAFETY: the record matches the header, and is aligned.
@@ -289,6 +297,7 @@ impl Scene {
         if query.geom == NO_GEOMETRY { BenchHit::NONE } else { BenchHit { t: query.tfar, triangle: query.prim } }
     }
 
+    /// Returns true if a ray hits anything.
     pub fn occluded(&self, ray: &Ray) -> bool {
         let mut query = single(ray);
         // SAFETY: a `RayHit1` is longer than the `RTCRay` that is needed.
@@ -296,7 +305,7 @@ impl Scene {
         query.tfar < 0.0
     }
 
-    /// Traces sixteen rays at once, marked as coherent or not.
+    /// Traces rays in packets of sixteen, which are marked as coherent or not.
     pub fn packets(&self, rays: &[Ray], found: &mut [BenchHit], any: bool, coherent: bool) {
         let arguments = Arguments {
             flags: if coherent { COHERENT } else { 0 },
@@ -306,6 +315,7 @@ impl Scene {
             callback: std::ptr::null_mut(),
             min_width_distance_factor: 0.0,
         };
+        /// Validity mask of a packet of sixteen rays, aligned as Embree requires.
         #[repr(align(64))]
         struct Valid([c_int; 16]);
         for (rays, found) in rays.chunks(16).zip(found.chunks_mut(16)) {
@@ -344,7 +354,8 @@ impl Scene {
     }
 }
 
-/// Returns the files beside a library (or in a folder) whose names start with `prefix`.
+/// Returns the files in the folder of a library (or in a folder) whose names start with `prefix`,
+/// sorted.
 fn siblings(path: &Path, prefix: &str) -> Vec<PathBuf> {
     let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new(".")) };
     let mut found: Vec<PathBuf> = std::fs::read_dir(folder)

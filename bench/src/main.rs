@@ -1,4 +1,4 @@
-//! Traces the same rays with Dürer, Embree and other Rust crates.
+//! `cargo xtask bench-rays`: traces the same rays with Dürer, Embree and other Rust crates.
 
 mod edges;
 mod embree;
@@ -11,20 +11,20 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 const USAGE: &str =
-    "cargo xtask bench-rays [OPTIONS]: the very same rays through Dürer, Embree 4, obvhs, bvh and parry3d, alternating.
+    "cargo xtask bench-rays [OPTIONS]: traces the same rays with Dürer, Embree 4, obvhs, bvh and parry3d, in alternation.
 
-  --quick            fewer rays and rounds: under a minute
-  --mesh NAME        only this mesh of ../shared/meshes, or a file; may be repeated
-  --case NAME        only these rays: primary, bounce, shuffled, shadow, ambient; may be repeated
-  --preset NAME      how our tree is built for the rays: fast, balanced, best [best]
-  --threads N        so many threads trace and build [1]
-  --side N           primary rays: N x N, a multiple of 8 [512; quick 256]
-  --edges N          no speed: how many of N rays are lost at vertices, edges and centroids of a closed mesh
-  --arrays FOLDER    no others: the rate of our batches alone, for arrays as crates/durer-py/bench/rays.py writes them
-  --instances N      N instances of each mesh, against Embree's
-  --rounds N         rounds, of which medians are taken [9; quick 5]
-  --no-peers         Embree only
-  --no-embree        without Embree
+  --quick            fewer rays and rounds: takes less than a minute
+  --mesh NAME        only this mesh of ../shared/meshes, or a file; can be given several times
+  --case NAME        only these rays: primary, bounce, shuffled, shadow, ambient; can be given several times
+  --preset NAME      build quality of Dürer's BVH: fast, balanced, best [default: best]
+  --threads N        threads for tracing and building [default: 1]
+  --side N           N x N primary rays; a multiple of 8 [default: 512; 256 with --quick]
+  --edges N          instead of the speed, count the rays, of N, that miss a closed mesh at vertices, edges and centroids
+  --arrays FOLDER    only the speed of Dürer's batches, for arrays written by crates/durer-py/bench/rays.py
+  --instances N      N instances of each mesh, compared with Embree
+  --rounds N         number of rounds, whose medians are printed [default: 9; 5 with --quick]
+  --no-peers         compare only with Embree
+  --no-embree        do not compare with Embree
 
 Examples:
   cargo xtask bench-rays --quick
@@ -33,9 +33,9 @@ Examples:
   cargo xtask bench-rays --edges 10000000 --threads 2
   cargo xtask bench-rays --mesh bunny --instances 64
 
-Meshes are found in ../shared/meshes, or under DURER_CORPUS; Embree where DURER_EMBREE says.";
+Meshes are read from ../shared/meshes or from the folder DURER_CORPUS; DURER_EMBREE is the path of Embree.";
 
-/// Options of the command line.
+/// Command-line options of `cargo xtask bench-rays`.
 pub struct Options {
     pub meshes: Vec<PathBuf>,
     pub cases: Vec<String>,
@@ -82,7 +82,7 @@ fn options(arguments: &[String]) -> Result<Options> {
             "--arrays" => arrays = Some(PathBuf::from(value()?)),
             "--no-peers" => peers = false,
             "--no-embree" => use_embree = false,
-            _ => bail!("`{word}` is no option\n\n{USAGE}"),
+            _ => bail!("unknown option `{word}`\n\n{USAGE}"),
         }
     }
     let corpus = std::env::var_os("DURER_CORPUS").map_or_else(|| PathBuf::from("../shared"), PathBuf::from);

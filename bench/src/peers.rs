@@ -1,4 +1,4 @@
-//! Other Rust crates, each used as its manual shows.
+//! Tracers from other Rust crates, used as their documentation shows.
 
 use crate::rays::{BenchHit, Mesh};
 use bvh::aabb::{Aabb, Bounded};
@@ -11,13 +11,15 @@ use obvhs::cwbvh::{CwBvh, builder::build_cwbvh_from_tris};
 use parry3d::query::RayCast;
 use parry3d::shape::TriMesh;
 
-/// obvhs: an eight-wide compressed tree; triangles in the tree's order.
+/// Mesh in the crate obvhs: an eight-wide compressed BVH, and its triangles in the order of the
+/// leaves.
 pub struct Obvhs {
     tree: CwBvh,
     triangles: Vec<obvhs::triangle::Triangle>,
 }
 
 impl Obvhs {
+    /// Builds the BVH of a mesh.
     pub fn build(mesh: &Mesh) -> Self {
         let corner = |i: u32| Vec3A::from(mesh.vertices[i as usize].to_array());
         let triangles: Vec<_> = mesh
@@ -35,6 +37,7 @@ impl Obvhs {
         obvhs::ray::Ray::new(origin, dir, ray.t_min, ray.t_max)
     }
 
+    /// Returns the closest hit of a ray.
     pub fn closest(&self, ray: &Ray) -> BenchHit {
         let mut hit = obvhs::ray::RayHit::none();
         match self.tree.ray_traverse(Self::ray(ray), &mut hit, |ray, id| self.triangles[id].intersect(ray)) {
@@ -43,17 +46,20 @@ impl Obvhs {
         }
     }
 
+    /// Returns true if a ray hits anything.
     pub fn occluded(&self, ray: &Ray) -> bool {
         !self.tree.ray_traverse_miss(Self::ray(ray), |ray, id| self.triangles[id].intersect(ray))
     }
 }
 
-/// bvh: a binary tree that returns candidates, nearest boxes first.
+/// Mesh in the crate bvh: a binary BVH that returns candidate triangles, those in the nearest boxes
+/// first.
 pub struct BvhCrate {
     tree: bvh::bvh::Bvh<f32, 3>,
     triangles: Vec<Corners>,
 }
 
+/// Triangle of a mesh as the crate bvh needs it, with the index of its leaf.
 struct Corners {
     points: [Point3<f32>; 3],
     number: u32,
@@ -76,6 +82,7 @@ impl BHShape<f32, 3> for Corners {
 }
 
 impl BvhCrate {
+    /// Builds the BVH of a mesh.
     pub fn build(mesh: &Mesh) -> Self {
         let point = |v: Vec3| Point3::new(v.x, v.y, v.z);
         let mut triangles: Vec<Corners> = (0..mesh.triangles.len() as u32)
@@ -89,13 +96,14 @@ impl BvhCrate {
         bvh::ray::Ray::new(Point3::new(o.x, o.y, o.z), Vector3::new(d.x, d.y, d.z))
     }
 
-    /// Tests both sides, because the crate's test is one-sided.
+    /// Returns the distance to a triangle. Tests both sides, because the crate's test is one-sided.
     fn test(query: &bvh::ray::Ray<f32, 3>, [a, b, c]: &[Point3<f32>; 3]) -> f32 {
         query.intersects_triangle(a, b, c).distance.min(query.intersects_triangle(a, c, b).distance)
     }
 
+    /// Returns the closest hit of a ray.
     pub fn closest(&self, ray: &Ray) -> BenchHit {
-        // The crate normalises directions.
+        // The crate normalises ray directions.
         let (query, unit) = (Self::ray(ray), ray.dir.length());
         let mut best = BenchHit { t: ray.t_max * unit, triangle: u32::MAX };
         for candidate in self.tree.nearest_traverse_iterator(&query, &self.triangles) {
@@ -110,16 +118,18 @@ impl BvhCrate {
         if best.triangle == u32::MAX { BenchHit::NONE } else { BenchHit { t: best.t / unit, ..best } }
     }
 
+    /// Returns true if a ray hits anything.
     pub fn occluded(&self, ray: &Ray) -> bool {
         let (query, t_max) = (Self::ray(ray), ray.t_max * ray.dir.length());
         self.tree.traverse_iterator(&query, &self.triangles).any(|c| Self::test(&query, &c.points) < t_max)
     }
 }
 
-/// parry3d: a mesh of a physics library.
+/// Mesh in the crate parry3d, a library for collision detection.
 pub struct Parry(TriMesh);
 
 impl Parry {
+    /// Builds the mesh and its BVH.
     pub fn build(mesh: &Mesh) -> Self {
         let vertices = mesh.vertices.iter().map(|v| parry3d::math::Vector::new(v.x, v.y, v.z)).collect();
         Parry(TriMesh::new(vertices, mesh.triangles.clone()).expect("the mesh has triangles"))
@@ -129,16 +139,18 @@ impl Parry {
         let vector = |v: Vec3| parry3d::math::Vector::new(v.x, v.y, v.z);
         let query = parry3d::query::Ray::new(vector(ray.origin), vector(ray.dir));
         let hit = self.0.cast_local_ray_and_get_normal(&query, ray.t_max, true)?;
-        // Face indices from `count` on are hits from behind.
+        // Indices from `count` on are triangles that are hit from behind.
         let count = self.0.indices().len() as u32;
         let parry3d::shape::FeatureId::Face(face) = hit.feature else { return None };
         Some(BenchHit { t: hit.time_of_impact, triangle: face % count })
     }
 
+    /// Returns the closest hit of a ray.
     pub fn closest(&self, ray: &Ray) -> BenchHit {
         self.cast(ray).unwrap_or(BenchHit::NONE)
     }
 
+    /// Returns true if a ray hits anything.
     pub fn occluded(&self, ray: &Ray) -> bool {
         let vector = |v: Vec3| parry3d::math::Vector::new(v.x, v.y, v.z);
         let query = parry3d::query::Ray::new(vector(ray.origin), vector(ray.dir));

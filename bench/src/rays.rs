@@ -1,4 +1,4 @@
-//! Meshes and rays, identical for every tracer.
+//! Meshes and rays, which are identical for all tracers.
 
 use anyhow::{Context, Result};
 use durer::bvh::TriangleHit;
@@ -8,7 +8,7 @@ use durer::math::{Aabb, Ray, Vec3};
 use durer::sampler::random_2d;
 use std::path::Path;
 
-/// A hit, reduced to what is compared.
+/// Distance and triangle of a hit, as compared between tracers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BenchHit {
     pub t: f32,
@@ -22,9 +22,11 @@ impl From<Option<TriangleHit>> for BenchHit {
 }
 
 impl BenchHit {
+    /// A miss.
     pub const NONE: BenchHit = BenchHit { t: f32::INFINITY, triangle: u32::MAX };
 }
 
+/// Triangle mesh that every tracer builds its BVH from.
 pub struct Mesh {
     pub name: String,
     pub vertices: Vec<Vec3>,
@@ -32,39 +34,42 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Reads a mesh file.
     pub fn read(path: &Path) -> Result<Self> {
         let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
         let mut diagnostics = Diagnostics::default();
         let data = read_mesh(&bytes, 0, &path.to_string_lossy(), &mut diagnostics);
-        let data = data.with_context(|| format!("{} is no mesh", path.display()))?;
+        let data = data.with_context(|| format!("{} is not a mesh", path.display()))?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         Ok(Mesh { name, vertices: data.positions, triangles: data.triangles })
     }
 
+    /// Returns the bounds of the triangles.
     pub fn bounds(&self) -> Aabb {
         Aabb::around(self.triangles.iter().flatten().map(|&i| self.vertices[i as usize]))
     }
 
+    /// Returns the vertices of a triangle.
     pub fn corners(&self, triangle: u32) -> [Vec3; 3] {
         self.triangles[triangle as usize].map(|i| self.vertices[i as usize])
     }
 }
 
-/// Rays of one kind, and true if any hit will do.
+/// Rays of one kind to be timed; `any` is true if they need any hit instead of the closest.
 pub struct Case {
     pub name: &'static str,
     pub any: bool,
-    /// True if neighbours in the list are neighbours in space.
+    /// True if consecutive rays are close to each other in space.
     pub coherent: bool,
     pub rays: Vec<Ray>,
 }
 
-/// Returns true if the mesh is seen from inside.
+/// Returns true if the mesh is a room that is seen from inside.
 fn is_hall(mesh: &Mesh) -> bool {
     ["hall", "kitchen"].contains(&mesh.name.as_str())
 }
 
-/// Camera rays: from outside for objects, from the middle for halls.
+/// Returns camera rays: from outside for objects, from the middle for rooms.
 fn primary(mesh: &Mesh, side: u32) -> Vec<Ray> {
     let bounds = mesh.bounds();
     let hall = is_hall(mesh);
@@ -78,7 +83,7 @@ fn primary(mesh: &Mesh, side: u32) -> Vec<Ray> {
     };
     let right = forward.cross(Vec3::Y).normalize();
     let up = right.cross(forward);
-    // Tiles of 8 x 8 pixels, as in renderers; sixteen consecutive rays are a block of 4 x 4.
+    // Use tiles of 8 x 8 pixels, as renderers do. Sixteen consecutive rays are a block of 4 x 4.
     let order = |i: u32| {
         let (tile, within) = (i / 64, i % 64);
         let (block, pixel) = (within / 16, within % 16);
@@ -97,7 +102,7 @@ fn primary(mesh: &Mesh, side: u32) -> Vec<Ray> {
         .collect()
 }
 
-/// Samples a cosine-distributed direction around a normal.
+/// Returns a direction around a normal, with a pdf proportional to the cosine.
 pub fn cosine(n: Vec3, i: u32, dimension: u32) -> Vec3 {
     let u = random_2d(2, i, 0, 0, dimension);
     let z = 2.0 * u.x - 1.0;
@@ -107,13 +112,13 @@ pub fn cosine(n: Vec3, i: u32, dimension: u32) -> Vec3 {
     (n + 0.999 * on_sphere).normalize()
 }
 
-/// Generates every kind of rays through a mesh, with `side`^2 primary rays; `closest` finds their
+/// Generates rays of every kind for a mesh, with `side`^2 primary rays. `closest` returns their
 /// hits.
 pub fn cases(mesh: &Mesh, side: u32, closest: impl Fn(&Ray) -> BenchHit) -> Vec<Case> {
     let size = mesh.bounds().size().length();
     let first = primary(mesh, side);
     let (mut bounces, mut shadows, mut occlusions) = (Vec::new(), Vec::new(), Vec::new());
-    // Above objects; in halls between floor and ceiling.
+    // The light is above objects, or between floor and ceiling in rooms.
     let hall = is_hall(mesh);
     let away = if hall { 0.3 * mesh.bounds().size() } else { Vec3::splat(size) };
     let light = mesh.bounds().center() + away * Vec3::new(0.32, 0.81, 0.47);

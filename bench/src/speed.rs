@@ -1,4 +1,4 @@
-//! Ray tracing speed: tables of medians and ratios.
+//! Measures ray tracing speed and prints medians and ratios.
 
 use crate::Options;
 use crate::embree::{Embree, Quality, Scene};
@@ -14,22 +14,23 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// A tracer; one call traces all rays, so that no dispatch happens per ray.
+/// Function that traces all rays in one call, so that there is no dynamic dispatch per ray.
 type Trace<'a> = Box<dyn Fn(&[Ray], &mut [BenchHit]) + Sync + 'a>;
 
+/// A tracer to be timed, with its name in the output.
 struct Tracer<'a> {
     name: &'static str,
     trace: Trace<'a>,
 }
 
-/// Traces each ray with a function.
+/// Traces rays one by one with a function.
 fn each(rays: &[Ray], found: &mut [BenchHit], trace: impl Fn(&Ray) -> BenchHit) {
     for (ray, found) in rays.iter().zip(found) {
         *found = trace(ray);
     }
 }
 
-/// Converts an occlusion result to a `BenchHit`.
+/// Converts the result of an occlusion test to a `BenchHit`.
 fn hit(occluded: bool) -> BenchHit {
     if occluded { BenchHit { t: 0.0, triangle: 0 } } else { BenchHit::NONE }
 }
@@ -45,7 +46,7 @@ macro_rules! single {
     }};
 }
 
-/// Our tree, with the interface of the others.
+/// Dürer's BVH of one mesh, with the interface of the other tracers.
 struct OurTree(TriangleBvh);
 
 impl OurTree {
@@ -72,11 +73,11 @@ impl OurTree {
     }
 }
 
-/// Measures the seconds for all rays on `threads` threads.
+/// Returns the seconds that a tracer needs for all rays on `threads` threads.
 fn time(tracer: &Tracer, rays: &[Ray], found: &mut [BenchHit], threads: usize) -> f64 {
     let clock = Instant::now();
     if threads == 1 {
-        // Thread CPU time excludes other processes.
+        // The CPU time of a thread excludes other processes.
         let start = thread_seconds();
         (tracer.trace)(rays, found);
         return thread_seconds() - start;
@@ -112,12 +113,13 @@ fn median(values: &mut [f64]) -> f64 {
     values[values.len() / 2]
 }
 
-/// Counts results that differ by more than rounding.
+/// Counts the hits that differ by more than rounding.
 fn differences(a: &[BenchHit], b: &[BenchHit]) -> usize {
     let same = |a: &BenchHit, b: &BenchHit| a.t == b.t || (a.t - b.t).abs() <= 1e-3 * a.t.abs();
     a.iter().zip(b).filter(|(a, b)| !same(a, b)).count()
 }
 
+/// Times all tracers on the selected meshes and prints the results.
 pub fn run(options: &Options) -> Result<()> {
     let embree = match &options.embree {
         Some(path) => Some(Arc::new(Embree::load(path, options.threads)?)),
@@ -126,7 +128,7 @@ pub fn run(options: &Options) -> Result<()> {
     let version = embree.as_ref().map_or("none".into(), |embree| embree.version());
     println!("Embree {version}; Dürer's SIMD {}; threads {}", SimdLevel::chosen().name(), options.threads);
     println!(
-        "Millions of rays a second, medians of {} rounds; a ratio is Dürer's to the better of Embree's.\n",
+        "Millions of rays per second, medians of {} rounds. A ratio compares Dürer with the faster of Embree's qualities.\n",
         options.rounds
     );
     let mut ratios = Vec::new();
@@ -141,7 +143,7 @@ pub fn run(options: &Options) -> Result<()> {
         let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
         let logarithms: f32 = ratios.iter().map(|&ratio| fp::ln(ratio as f32)).sum();
         let mean = fp::exp(logarithms / ratios.len() as f32);
-        println!("least ratio of {} cases of single rays: {least:.2}", ratios.len());
+        println!("lowest ratio of {} cases of single rays: {least:.2}", ratios.len());
         println!("geometric mean of the ratios of single rays: {mean:.3}");
     }
     Ok(())
@@ -153,8 +155,8 @@ fn numbers<T>(path: &Path, number: impl Fn([u8; 4]) -> T) -> Result<Vec<T>> {
     Ok(bytes.as_chunks().0.iter().map(|&bytes| number(bytes)).collect())
 }
 
-/// Prints millions of rays per second through our batches, for a mesh and rays written by another
-/// program, to measure the overhead of that program's interface.
+/// Prints the speed of Dürer's batch interface, in millions of rays per second, for a mesh and rays
+/// written by another program. Comparing it with that program gives the overhead of its interface.
 pub fn arrays(folder: &Path, options: &Options) -> Result<()> {
     let floats = |name: &str| numbers(&folder.join(name), f32::from_le_bytes);
     let points =
@@ -205,7 +207,7 @@ fn one_mesh(mesh: &Mesh, options: &Options, embree: Option<&Arc<Embree>>, ratios
     println!();
 }
 
-/// Measures instances of one mesh, each with its own rotation and scale.
+/// Compares instances of one mesh, each with its own rotation and scale.
 fn instances(mesh: &Mesh, count: u32, options: &Options, embree: Option<&Arc<Embree>>, ratios: &mut Vec<f64>) {
     println!("{} instances of {}: {} triangles", count, mesh.name, mesh.triangles.len());
     let places = places(mesh, count);
@@ -238,7 +240,8 @@ fn instances(mesh: &Mesh, count: u32, options: &Options, embree: Option<&Arc<Emb
     println!();
 }
 
-/// Our instances with the interface of the others, and the number of triangles of each.
+/// Dürer's BVH over instances with the interface of the other tracers, and the number of triangles
+/// of an instance.
 struct OurInstances(InstanceBvh, u32);
 
 impl OurInstances {
@@ -253,7 +256,7 @@ impl OurInstances {
     }
 }
 
-/// Returns transforms in a cube of cells, each about as large as the mesh.
+/// Returns transforms to the cells of a cube. Each cell is about as large as the mesh.
 fn places(mesh: &Mesh, count: u32) -> Vec<DAffine3> {
     let side = (1..).find(|side| side * side * side >= count).expect("some cube is large enough");
     let (center, size) = (mesh.bounds().center().as_dvec3(), f64::from(mesh.bounds().size().max_element()));
@@ -262,7 +265,7 @@ fn places(mesh: &Mesh, count: u32) -> Vec<DAffine3> {
         let random = |dimension: u32| random_2d(5, i, 0, 0, dimension).as_dvec2();
         let (turns, stretch) = (6.0 * random(0), 0.6 + 0.6 * random(1));
         let mut matrix = DMat3::from_rotation_y(turns.x) * DMat3::from_rotation_x(turns.y);
-        // Stretch along one axis, and shear.
+        // Stretch along one axis and shear.
         matrix *= DMat3::from_diagonal(DVec3::new(stretch.x, stretch.y, 0.9));
         matrix.y_axis += 0.3 * random(2).x * matrix.x_axis;
         DAffine3 { matrix3: matrix, translation: size * cell - matrix * center }
@@ -270,7 +273,7 @@ fn places(mesh: &Mesh, count: u32) -> Vec<DAffine3> {
     (0..count).map(place).collect()
 }
 
-/// Returns the instances as one mesh, from which rays are generated.
+/// Returns all instances as a single mesh, for which rays are generated.
 fn flattened(mesh: &Mesh, places: &[DAffine3]) -> Mesh {
     let place =
         |place: &DAffine3| mesh.vertices.iter().map(|v| place.transform_point3(v.as_dvec3()).as_vec3()).collect();
@@ -291,7 +294,7 @@ fn one_case(
     let mut seconds = vec![Vec::new(); tracers.len()];
     for round in 0..options.rounds {
         for (i, tracer) in tracers.iter().enumerate() {
-            // The other crates are slow and only for orientation.
+            // Run the other crates only twice: they are slow and serve only for orientation.
             if round >= 2 && !tracer.name.starts_with(['D', 'E']) {
                 continue;
             }
@@ -315,16 +318,17 @@ fn one_case(
     if let (Some(packets), Some(batch)) = (rate("Embree 16-wide"), rate("Dürer batch")) {
         print!(", batch to packets {:.2}", batch / packets);
     }
-    print!(" | nodes {:.1}, tests {:.1} a ray", per_ray(counts.nodes), per_ray(counts.tests));
+    print!(" | nodes {:.1}, tests {:.1} per ray", per_ray(counts.nodes), per_ray(counts.tests));
     let differ: Vec<String> = (1..tracers.len())
         .map(|i| (tracers[i].name, differences(&found[0], &found[i])))
         .filter(|(_, n)| *n > 0)
         .map(|(name, n)| format!("{name} {n}"))
         .collect();
-    println!("{}{}", if differ.is_empty() { "" } else { " | answers that differ: " }, differ.join(", "));
+    println!("{}{}", if differ.is_empty() { "" } else { " | results that differ: " }, differ.join(", "));
 }
 
-/// Builds with Embree's two qualities and our three presets, alternating.
+/// Times builds with two qualities of Embree and three presets of Dürer, in alternation. Returns
+/// the scenes of Embree.
 fn builds(mesh: &Mesh, embree: &Arc<Embree>, rounds: usize) -> [Scene; 2] {
     let mut scenes = None;
     let mut seconds = vec![Vec::new(); 5];
@@ -350,6 +354,6 @@ fn builds(mesh: &Mesh, embree: &Arc<Embree>, rounds: usize) -> [Scene; 2] {
     for ((name, _), (tree, time)) in BuildQuality::NAMES.iter().zip(trees.iter().zip(times.drain(2..))) {
         print!("; ours {name} {time:.1} ms, {:.0} B, cost {:.1}", of(tree.memory_usage()), tree.sah_cost());
     }
-    println!(" (bytes a triangle)");
+    println!(" (bytes per triangle)");
     scenes
 }

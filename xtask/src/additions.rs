@@ -1,13 +1,13 @@
-//! `cargo xtask additions`: measures the effort of adding a feature of each kind. Adds the features
-//! to a copy of the sources, builds it and uses them.
+//! `cargo xtask additions`: measures how much must be changed to add a feature of each kind. Adds
+//! features to a copy of the sources, builds the copy and uses them.
 
 use crate::root;
 use anyhow::{Context, Result, bail, ensure};
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
-/// A new feature: its kind, file and content, and its entries in existing lists. An entry has a
-/// file, the text to insert before, and the text to insert.
+/// A feature that `cargo xtask additions` adds: its kind, its file, and its entries in existing
+/// lists. An entry consists of the list's file, the text to insert before, and the text to insert.
 struct Addition {
     kind: &'static str,
     file: &'static str,
@@ -119,7 +119,7 @@ const ADDITIONS: &[Addition] = &[
     },
 ];
 
-/// A scene with the new features.
+/// A scene that uses the new features.
 const SCENE: &str = "ObliqueCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 size 4 slant 0.3 }
 Lights { GlowLight { position 2 3 4 color 1 1 1 } }
 Materials {
@@ -130,6 +130,7 @@ Materials {
 Group { MaterialIndex 2 Octahedron { center 0 0 0 radius 1.5 } }
 ";
 
+/// Runs `cargo xtask additions`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let only = match arguments {
         [] => "",
@@ -137,7 +138,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         _ => bail!("cargo xtask additions [--only TEXT]"),
     };
     let root = root()?;
-    // Built in a separate folder, so that it does not replace our program.
+    // Build in a separate folder, so that the real program is not replaced.
     let (copy, built) = (root.join("target/additions"), root.join("target/additions-built"));
     let _ = std::fs::remove_dir_all(&copy);
     std::fs::create_dir_all(&copy)?;
@@ -190,7 +191,7 @@ fn add(crates: &Path, addition: &Addition) -> Result<()> {
     Ok(())
 }
 
-/// Uses the new features.
+/// Runs commands that use the new features.
 fn used(durer: &Path, folder: &Path) -> Result<()> {
     std::fs::write(folder.join("scene.txt"), SCENE)?;
     std::fs::write(folder.join("a.balls"), "0 0 0 1\n2 0 0 0.5\n")?;

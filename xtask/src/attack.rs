@@ -1,5 +1,5 @@
-//! `cargo xtask attack`: tests the program with hostile input. Each kind of attack is a subcommand,
-//! which counts its trials and failures.
+//! `cargo xtask attack`: tests the program with hostile input. Each kind of attack counts its
+//! trials and its failures.
 
 mod far;
 mod growth;
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// A kind of attack, with its default number of trials and a description of what is counted.
+/// A kind of attack, with its default number of trials and a description of what a trial is.
 struct Kind {
     name: &'static str,
     count: u64,
@@ -24,33 +24,34 @@ struct Kind {
 
 const KINDS: [Kind; 7] = [
     Kind { name: "names", count: 2000, of: "names that lead out of a folder", run: names::run },
-    Kind { name: "templates", count: 10_000, of: "names in each job file", run: templates },
-    Kind { name: "growth", count: 200, of: "small files of large things", run: growth::run },
+    Kind { name: "templates", count: 10_000, of: "hostile names in job files", run: templates },
+    Kind { name: "growth", count: 200, of: "small files that describe huge data", run: growth::run },
     Kind { name: "signals", count: 100, of: "signals during all commands", run: signals::run },
     Kind { name: "far", count: 500, of: "closed rooms far from the origin", run: far::run },
     Kind { name: "kills", count: 100, of: "kills during renders", run: kills },
     Kind { name: "mutated", count: 20_000, of: "mutated files", run: mutated::run },
 ];
 
-/// Settings of an attack.
+/// Settings of one attack: the program, a temporary folder, the number of trials and the seed.
 struct Attack {
     durer: PathBuf,
     folder: tempfile::TempDir,
     count: u64,
     seed: u64,
-    /// Extension of the files that `mutated` uses; empty for all.
+    /// Extension of the files that the attack `mutated` uses; empty for all extensions.
     only: String,
 }
 
-/// Result of an attack.
+/// Result of one attack: the number of trials and the failures.
 struct Outcome {
     tried: u64,
-    /// One line per failure.
+    /// Descriptions of the failures, one line each.
     fallen: Vec<String>,
     /// Text to append to the summary.
     note: String,
 }
 
+/// Runs `cargo xtask attack`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     if arguments.first().is_some_and(|word| word == mutated::WORKER) {
         return mutated::work(&arguments[1..]);
@@ -63,7 +64,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let kinds: Vec<&Kind> =
         KINDS.iter().filter(|kind| requested.is_none_or(|requested| requested == kind.name)).collect();
     if kinds.is_empty() {
-        bail!("there is no such attack; these are: {}", KINDS.map(|kind| kind.name).join(", "));
+        bail!("unknown attack; known attacks: {}", KINDS.map(|kind| kind.name).join(", "));
     }
     let (durer, seed) = (durer()?, number("--seed")?.unwrap_or(1));
     let only = crate::value(arguments, "--only").cloned().unwrap_or_default();
@@ -75,7 +76,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         let attack = Attack { durer: durer.clone(), folder, count, seed, only: only.clone() };
         let found = (kind.run)(&attack).with_context(|| kind.name)?;
         let (tried, fell, seconds) = (found.tried, found.fallen.len(), start.elapsed().as_secs_f64());
-        println!("{:<10}{tried:>9} {}: {fell} fell, {seconds:.0} s{}", kind.name, kind.of, found.note);
+        println!("{:<10}{tried:>9} {}: {fell} failed, {seconds:.0} s{}", kind.name, kind.of, found.note);
         found.fallen.iter().take(20).for_each(|line| println!("    {line}"));
         fallen += fell;
     }
@@ -93,12 +94,13 @@ impl Attack {
         Ok(std::fs::write(path, content)?)
     }
 
-    /// Returns a random number less than `below`, deterministic for each `number` and `place`.
+    /// Returns a random number below `below`, which depends only on the seed, `number` and `place`.
     fn random(&self, number: u64, place: u32, below: u64) -> usize {
         (hash(self.seed, number as u32, place, (number >> 32) as u32, 0) % below.max(1)) as usize
     }
 
-    /// Runs the program in the folder with limits of address space (KiB) and time (seconds).
+    /// Runs the program in the attack's folder with limits for address space (KiB) and time
+    /// (seconds).
     fn limited(&self, arguments: &[&str], space: u64, seconds: u64) -> Result<Output> {
         let limit = format!("ulimit -v {space}; exec timeout -s KILL {seconds} \"$0\" \"$@\"");
         let mut command = Command::new("bash");
@@ -108,20 +110,21 @@ impl Attack {
     }
 }
 
-/// Returns the reason if a run crashed or did not end by itself; `None` for a picture or an error.
+/// Returns the reason if a run crashed or did not end by itself; `None` if it ended with a picture
+/// or an error.
 fn broken(output: &Output) -> Option<String> {
     let messages = String::from_utf8_lossy(&output.stderr);
     let last = messages.lines().last().unwrap_or_default();
     match output.status.code() {
         Some(0..=2) if !messages.contains("panicked") => None,
         // `timeout -s KILL` exits with 137.
-        Some(137) => Some("no end".into()),
+        Some(137) => Some("did not end".into()),
         Some(code) => Some(format!("exit code {code}: {last}")),
         None => Some(format!("{}: {last}", output.status)),
     }
 }
 
-/// Runs the property tests of job files, with the requested number of names.
+/// Runs the property tests of job files with the requested number of names.
 fn templates(attack: &Attack) -> Result<Outcome> {
     let rounds = attack.count.div_ceil(2000).to_string();
     let mut command = Command::new(crate::cargo());
@@ -142,7 +145,7 @@ fn kills(attack: &Attack) -> Result<Outcome> {
     })
 }
 
-/// Waits for a child process for at most `most`, then kills it and returns `None`.
+/// Waits at most `most` for a child process. Otherwise kills it and returns `None`.
 fn wait_for(child: &mut std::process::Child, most: Duration) -> Result<Option<Duration>> {
     let start = Instant::now();
     while start.elapsed() < most {
@@ -156,7 +159,7 @@ fn wait_for(child: &mut std::process::Child, most: Duration) -> Result<Option<Du
     Ok(None)
 }
 
-/// Returns the inputs of earlier attacks, if they are available.
+/// Returns inputs of earlier attacks, if they are available.
 fn inputs() -> Vec<PathBuf> {
     let folder = crate::corpus().join("faults/attack");
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
@@ -165,7 +168,7 @@ fn inputs() -> Vec<PathBuf> {
     paths
 }
 
-/// Returns the name of a file.
+/// Returns the name of a file, without its folder.
 fn name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }

@@ -1,4 +1,5 @@
-//! Compares the speed of reading mesh files with other crates, on the same files.
+//! `cargo xtask bench-files`: compares the speed of reading mesh files with other crates, on the
+//! same files.
 
 use anyhow::{Context, Result, bail};
 use durer::diag::{Diagnostics, Files};
@@ -12,6 +13,7 @@ use std::process::{Command, ExitCode};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+/// Runs `cargo xtask bench-files`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let number = |name: &str, usual: u32| crate::value(arguments, name).map_or(Ok(usual), |text| text.parse());
     let (millions, runs) = (number("--triangles", 8)?, number("--runs", 3)?);
@@ -78,8 +80,8 @@ fn read(path: &Path, bytes: &Arc<[u8]>) -> Result<usize> {
     Ok(loaded.scene.assets.meshes.values().map(|mesh| mesh.triangles.len()).sum())
 }
 
-/// Writes a hilly square in all formats, with `millions` million triangles, or a tenth of that in
-/// text formats and STL.
+/// Writes a hilly square in all formats and returns the paths. It has `millions` million triangles;
+/// in text formats and STL only a tenth of that.
 fn written(folder: &Path, millions: u32) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for (extension, share) in [("ply", 1.0), ("glb", 1.0), ("stl", 0.1), ("obj", 0.1)] {

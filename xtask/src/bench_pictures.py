@@ -1,12 +1,12 @@
-"""Compares whole pictures by Dürer and by POV-Ray 3.7: the same scenes and number of samples, in
-turns.
+"""Compares the time and memory of renders by Dürer and POV-Ray 3.7, with the same scenes and
+numbers of samples, in turns.
 
     python3 bench_pictures.py DURER DRAGON.ply [--runs 3] [--threads 2] [--side 512] [--only TEXT]
 
-Ours has 16 samples a pixel and the default filter. POV-Ray renders four times the width and
-height without anti-aliasing: the same rays through the same scene, at its lowest cost. Memory is
-measured on pictures of equal size with one sample. The means of small pictures in linear light
-verify that both show the same.
+Dürer uses 16 samples per pixel and the default filter. POV-Ray renders four times the width and
+height without anti-aliasing, which traces as many rays at its lowest cost. Memory is measured on
+pictures of equal size with one sample. The means of small pictures in linear light check that both
+programs show the same.
 """
 
 import argparse
@@ -28,13 +28,13 @@ def words(values):
 
 
 def vector(values):
-    """POV-Ray's axes are left-handed: negate z."""
+    """Formats a vector for POV-Ray, whose axes are left-handed: z is negated."""
     x, y, z = values
     return f"<{x:.6g},{y:.6g},{-z:.6g}>"
 
 
 class Scene:
-    """A scene for both programs."""
+    """A scene for both programs: text for Dürer, and text for POV-Ray."""
 
     def __init__(self, name, eye, direction, angle, background, ambient, bounces=8, options=()):
         self.name, self.bounces, self.options = name, bounces, list(options)
@@ -55,8 +55,8 @@ class Scene:
         self.theirs.append(f"light_source {{ {vector(place)} rgb <{','.join(map(str, color))}> }}")
 
     def material(self, diffuse, specular=0.0, exponent=1, mirror=0.0, glass=None):
-        """Returns its index, and POV-Ray's text. The highlight is Blinn's with strength
-        `specular`; POV-Ray's roughness is 1 / exponent."""
+        """Adds a material and returns its index and POV-Ray's text. The highlight is Blinn's with
+        strength `specular`; POV-Ray's roughness is 1 / exponent."""
         text = f"PhongMaterial {{ diffuseColor {words(diffuse)} specularColor {words([specular] * 3)} exponent {exponent}"
         color, finish = ",".join(map(str, diffuse)), f"ambient 1 diffuse 1 specular {specular} roughness {1 / exponent:.6g}"
         if glass is not None:
@@ -70,7 +70,7 @@ class Scene:
         return len(self.materials) - 1, theirs
 
     def put(self, material, ours, theirs):
-        """Adds an object; `theirs` is its POV-Ray text without the last brace."""
+        """Adds an object; `theirs` is its text for POV-Ray without the last brace."""
         self.objects.append(f"MaterialIndex {material[0]} {ours}")
         self.theirs.append(f"{theirs} {material[1]} }}")
 
@@ -119,7 +119,7 @@ def hall(_):
 
 
 def read_ply(path):
-    """Reads corners and triangles of a binary file of floats and triangles."""
+    """Reads vertices and triangles from a binary PLY file of floats and triangles."""
     data = pathlib.Path(path).read_bytes()
     head, body = data.split(b"end_header\n", 1)
     counts = {line.split()[1]: int(line.split()[2]) for line in head.split(b"\n") if line.startswith(b"element")}
@@ -198,11 +198,11 @@ SCENES = [sphere, whitted, hall, dragon, gear, height_field, glass_balls]
 
 
 def run(command, folder, peak=False):
-    """Returns CPU seconds, wall seconds and, if wanted, peak bytes of a command."""
+    """Runs a command. Returns CPU seconds, wall-clock seconds and, if `peak`, peak memory in bytes."""
     start, most = os.times().elapsed, 0
     with open(folder / "errors.txt", "w+b") as errors:
         process = subprocess.Popen([str(c) for c in command], cwd=folder, stdout=subprocess.DEVNULL, stderr=errors)
-        # wait4's peak memory would include this process before exec.
+        # The peak memory from wait4 would include this process before exec.
         while peak and (os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT)) is None:
             try:
                 status = pathlib.Path(f"/proc/{process.pid}/status").read_text()
@@ -230,7 +230,7 @@ def theirs(side, threads, picture):
 
 
 def mean(path):
-    """Returns the mean of a PPM in linear light."""
+    """Returns the mean of a PPM file in linear light."""
     data = path.read_bytes()
     fields, at = [], 0
     while len(fields) < 4:

@@ -1,8 +1,9 @@
-//! Compares whole pictures with POV-Ray: see `bench_pictures.py`.
+//! `cargo xtask bench-pictures`: compares complete renders with POV-Ray, using `bench_pictures.py`.
 
 use anyhow::Result;
 use std::process::{Command, ExitCode};
 
+/// Runs `cargo xtask bench-pictures`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let program = crate::build::durer()?;
     let script = crate::root()?.join("xtask/src/bench_pictures.py");

@@ -1,9 +1,10 @@
-//! `cargo xtask bench-rays`: runs a separate workspace, so that the crates we compare with are only
-//! compiled for it.
+//! `cargo xtask bench-rays`: runs the separate workspace `bench`, so that the crates for comparison
+//! are compiled only for it.
 
 use crate::root;
 use std::process::{Command, ExitCode};
 
+/// Runs `cargo xtask bench-rays`.
 pub fn run(arguments: &[String]) -> anyhow::Result<ExitCode> {
     let mut command = Command::new(crate::cargo());
     command.args(["run", "--release", "--quiet", "--manifest-path"]).arg(root()?.join("bench/Cargo.toml")).arg("--");

@@ -1,5 +1,5 @@
-//! Compares Benedikt Bitterli's scenes, read from pbrt files, with the pictures of his own
-//! renderer, Tungsten: the table in docs/models.md.
+//! `cargo xtask bitterli`: renders Benedikt Bitterli's scenes from pbrt files, compares them with
+//! pictures by his renderer Tungsten, and writes the table in docs/models.md.
 
 use anyhow::{Context, Result, bail};
 use durer::diag::{Diagnostics, Files, Severity};
@@ -14,19 +14,20 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Default number of samples per pixel. A pixel covers 4 x 4 pixels of the reference.
+/// Default number of samples per pixel, and size of the block of reference pixels that a pixel
+/// covers.
 const SAMPLES: u32 = 256;
 const STEP: u32 = 4;
 
-/// Maximum deviation of the mean, and maximum FLIP at equal exposure.
+/// Maximum relative deviation of the mean, and maximum FLIP at equal exposure.
 const MAX_OFF: f64 = 0.02;
 const MAX_FLIP: f64 = 0.08;
 
-/// Scenes whose file specifies a different depth than Tungsten used: the number of scattering
-/// events after the first hit. With 0, the walls and floor of veach-mis agree to a thousandth.
+/// Scenes whose file specifies another depth than Tungsten used, with the number of scattering
+/// events after the first hit. With 0, the walls and the floor of veach-mis agree to a thousandth.
 const BOUNCES: [(&str, u32); 2] = [("cornell-box", 62), ("veach-mis", 0)];
 
-/// Scenes whose pbrt file requests photons: photons per sample, and the radius in the file.
+/// Scenes whose pbrt file requests photon mapping: photons per sample, and the radius in the file.
 const PHOTONS: [(&str, u32, f32); 1] = [("water-caustic", 200_000, 0.01)];
 
 /// Known causes of differences from Tungsten.
@@ -42,17 +43,18 @@ const CAUSES: [(&str, &str); 3] = [
 const BEGIN: &str = "<!-- made by cargo xtask bitterli -->\n";
 const END: &str = "<!-- end -->\n";
 
-/// A scene and its comparison.
+/// A scene of the table in docs/models.md and how its render compares with Tungsten's picture.
 struct Row {
     name: String,
     size: (u32, u32),
-    /// Ratio of mean luminances, and FLIP and HDR-FLIP after dividing by it.
+    /// Ratio of the mean luminances, and FLIP and HDR-FLIP after dividing by this ratio.
     ratio: f64,
     flip: f64,
     hdr_flip: f64,
     bounces: u32,
 }
 
+/// Runs `cargo xtask bitterli`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let samples = crate::value(arguments, "--samples").map_or(Ok(SAMPLES), |number| number.parse())?;
     let (only, keep) = (crate::value(arguments, "--only"), crate::value(arguments, "--keep").map(PathBuf::from));
@@ -135,7 +137,7 @@ fn compared(folder: &Path, samples: u32, keep: Option<&Path>) -> Result<Row> {
     part.render(&world, &Control::default(), &mut |_, _| {})?;
     let rendered = part.pictures()?;
     let ours = &rendered.layers.first().context("a picture")?.image;
-    // Exclude pixels that are infinite in the reference, such as bright emitters, from both.
+    // Exclude pixels that are infinite in the reference, such as bright emitters, from both means.
     let seen = |image: &Image| {
         let pixel = |(&own, other): (&Vec3, &Vec3)| if other.is_finite() { own } else { Vec3::ZERO };
         Image { pixels: image.pixels.iter().zip(&whole.pixels).map(pixel).collect(), ..image.clone() }
@@ -159,7 +161,7 @@ fn compared(folder: &Path, samples: u32, keep: Option<&Path>) -> Result<Row> {
     Ok(Row { name, size: (reference.width, reference.height), ratio, flip, hdr_flip, bounces })
 }
 
-/// Wraps an image as a picture in linear light.
+/// Converts an image to a picture in linear light.
 fn light(image: &Image) -> Picture {
     Picture { image: image.clone(), scale: Scale::Linear }
 }

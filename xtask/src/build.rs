@@ -4,8 +4,8 @@ use anyhow::{Result, bail};
 use std::path::PathBuf;
 use std::process::Command;
 
-/// Builds `durer` in release mode and returns its path. `DURER_EXE` names an existing build
-/// instead.
+/// Builds `durer` in release mode and returns its path. If the variable `DURER_EXE` is set, returns
+/// that path instead.
 pub fn durer() -> Result<PathBuf> {
     if let Some(built) = std::env::var_os("DURER_EXE") {
         return Ok(PathBuf::from(built).canonicalize()?);

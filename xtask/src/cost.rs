@@ -1,5 +1,5 @@
-//! Measures the cost of determinism: exact sums against floating point, threads, and the latency of
-//! cancelling a render.
+//! `cargo xtask cost`: measures the cost of determinism (exact sums compared with floating point),
+//! the speedup by a second thread, and the latency of cancelling a render.
 
 use anyhow::{Result, bail};
 use durer::compile::AccelKind;
@@ -17,6 +17,7 @@ use std::time::{Duration, Instant};
 
 const SCENES: [&str; 3] = ["sphere", "whitted", "melencolia"];
 
+/// Runs `cargo xtask cost`.
 pub fn run(_: &[String]) -> Result<ExitCode> {
     for name in SCENES {
         let world = world(name)?;
@@ -49,7 +50,7 @@ const SAMPLES: u32 = 16;
 /// Luminance weights of Rec. 709.
 const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
-/// Sums of a pixel as in the film, but in floating point.
+/// Sums of a pixel's samples as in the film, but in floating point, for comparing the speed.
 #[derive(Clone, Default)]
 struct Plain {
     color: Vec3,
@@ -77,13 +78,13 @@ impl Plain {
     }
 }
 
-/// Returns the times of the same samples summed exactly and summed as `f32`. Each is the minimum
-/// over alternating runs, because disturbances outlast a single run.
+/// Returns the times for the same samples with exact sums and with `f32` sums. Each time is the
+/// minimum over alternating runs, because disturbances last longer than a single run.
 fn film(world: &World) -> [Duration; 2] {
     let job = Job { width: SIDE, height: SIDE, ..Job::default() };
     let whitted = Whitted { world, settings: job.settings, cancel: None };
     let (raster, warp) = (raster(world, SIDE, SIDE), Filter::default().sampler());
-    // Opaque to the compiler, so both versions call the same code.
+    // Hide the function from the compiler, so that both versions call the same code.
     let sample: &dyn Fn(u32, u32, u32) -> (Vec3, f32) = &|x, y, s| {
         let (offset, weight) = warp.sample(Sampler::Sobol.pixel_position(0, x, y, s, SAMPLES));
         let place = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) + offset;
@@ -125,8 +126,8 @@ fn large() -> Job {
 }
 
 /// Returns the minimum times of a render on one thread, of a render on two threads, and of two
-/// simultaneous renders on one thread each. The last shows what the processors achieve together, as
-/// they can be two hyperthreads of one core.
+/// simultaneous renders on one thread each. The last one shows how much both processors can do
+/// together, because they may be two hyperthreads of the same core.
 fn threaded(world: &World) -> [Duration; 3] {
     let render = |threads| {
         let control = Control { threads: Some(threads), ..Control::default() };

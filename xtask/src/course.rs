@@ -1,4 +1,4 @@
-//! Compares our pictures with the official ones.
+//! `cargo xtask course`: compares our pictures with the official pictures of the course.
 
 mod faults;
 
@@ -8,26 +8,27 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
-/// Largest difference in a channel that counts as rounding.
+/// Maximum difference in a channel that counts as rounding.
 const ROUNDING: u8 = 2;
-/// Number of renders of pictures with random samples, to estimate their variation.
+/// Number of renders with different seeds, which show the variation of pictures with random
+/// samples.
 const SEEDS: u64 = 8;
 
-/// A row of the reference list.
+/// A row of the list of official pictures: how the picture was rendered and how to compare it.
 #[derive(Clone, Debug)]
 pub struct Row {
     picture: String,
-    /// Year of the scenes, also the name of their folder.
+    /// Year of the scene, which is also the name of its folder.
     pub dialect: String,
     shows: String,
     compare: String,
-    /// Official program.
+    /// Official program that rendered the picture.
     pub program: String,
-    /// Its arguments; empty if unknown.
+    /// Arguments of the program; empty if unknown.
     pub arguments: String,
 }
 
-/// Result of a comparison.
+/// Result of comparing one of our pictures with the official one.
 struct Finding {
     /// Percentage of pixels that differ by more than rounding, or another measure.
     share: f64,
@@ -36,6 +37,7 @@ struct Finding {
     remark: String,
 }
 
+/// Result of a comparison: passed, failed, or to be judged by eye.
 #[derive(PartialEq)]
 enum Verdict {
     Pass,
@@ -43,10 +45,10 @@ enum Verdict {
     Look,
 }
 
-/// A row that differs from the official picture, and the reason.
+/// An official picture that differs from ours for a known reason.
 struct Reason {
     picture: &'static str,
-    /// Percentage of differing pixels that the cause explains. A larger percentage has another
+    /// Percentage of differing pixels that this reason explains. A larger percentage has another
     /// cause.
     most: f64,
     words: &'static str,
@@ -56,14 +58,14 @@ const fn reason(picture: &'static str, most: f64, words: &'static str) -> Reason
     Reason { picture, most, words }
 }
 
-/// Rows with known differences. None of them counts as passed.
+/// Pictures with known differences. They do not count as passed.
 const REASONS: &[Reason] = &[reason(
     "output7_02e.png",
     0.17,
     "at the horizon, fields are far smaller than a pixel, so rounding of the old program decides",
 )];
 
-/// Pictures that were rendered from an edited scene, each with the old and new text.
+/// Pictures that were rendered from an edited scene, with the old and the new text of each edit.
 const AMENDED: &[(&str, &[(&str, &str)])] = &[
     // Recovered from the picture: 5 of its 40,000 pixels differ.
     (
@@ -74,10 +76,12 @@ const AMENDED: &[(&str, &[(&str, &str)])] = &[
             ("size 5", "size 5.00053"),
         ],
     ),
-    // The two materials of the board are swapped, but not in output7_04a, which has the same scene.
+    // The two materials of the board are exchanged here, but not in output7_04a, which uses the
+    // same scene.
     ("output6_18a.png", &[("materialIndex 3\n\tmaterialIndex 6", "materialIndex 6\n\tmaterialIndex 3")]),
 ];
 
+/// Runs `cargo xtask course`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let value = |name| crate::value(arguments, name);
     let guess = arguments.iter().any(|a| a == "--guess");
@@ -159,13 +163,13 @@ pub fn rows(course: &Path) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// Paths, and the outputs so far.
+/// State of the comparison: paths, options, and the pictures rendered so far.
 struct Bench {
     durer: PathBuf,
     course: PathBuf,
     out: PathBuf,
     guess: bool,
-    /// Output folders, by program, arguments and seed.
+    /// Folders with our pictures, by dialect, program, arguments and seed.
     made: HashMap<String, PathBuf>,
 }
 
@@ -196,7 +200,7 @@ impl Bench {
         Ok(Finding { share, largest, verdict, remark: String::new() })
     }
 
-    /// Returns our picture for a row, rendered once for each set of arguments and seed.
+    /// Returns our picture for a row. Each combination of arguments and seed is rendered only once.
     fn picture(&mut self, row: &Row, seed: u64) -> Result<Image8> {
         let key = format!("{} {} {} {seed}", row.dialect, row.program, row.arguments);
         let folder = match self.made.get(&key) {
@@ -257,7 +261,8 @@ impl Bench {
         text.contains("transparentColor") || text.contains("refractionIndex")
     }
 
-    /// Compares mean and spread: the reference should look like another seed of our renders.
+    /// Compares mean and spread: the official picture should look like one of our pictures with
+    /// another seed.
     fn compare_random(&mut self, row: &Row, reference: &Image8, share: f64, largest: u8) -> Result<Finding> {
         let ours: Vec<Image8> = (0..SEEDS).map(|seed| self.picture(row, seed)).collect::<Result<_>>()?;
         let n = SEEDS as f64;
@@ -265,8 +270,8 @@ impl Bench {
         let values: Vec<Vec<f64>> = ours.iter().map(channels).collect();
         let theirs = channels(reference);
         let mean_of = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
-        // Distance of each picture from the mean of the others, computed equally for our pictures
-        // and the reference.
+        // Compute the distance of each picture from the mean of the others, in the same way for our
+        // pictures and the official one.
         let sums: Vec<f64> = (0..theirs.len()).map(|i| values.iter().map(|v| v[i]).sum()).collect();
         let spread = |picture: &[f64], others: &dyn Fn(usize) -> f64| {
             (picture.iter().enumerate().map(|(i, v)| square(v - others(i))).sum::<f64>() / picture.len() as f64).sqrt()
@@ -280,8 +285,8 @@ impl Bench {
         let own_spread = mean_of(&own);
         let spread_deviation = (own.iter().map(|s| square(s - own_spread)).sum::<f64>() / (n - 1.0)).sqrt();
         let spread_difference = reference_spread - own_spread;
-        // Four standard deviations, plus the largest effect of truncation to integer grey levels,
-        // which is zero for most pixels.
+        // Allow four standard deviations, plus the maximum effect of truncation to integer grey
+        // levels, which is zero for most pixels.
         let chance = 4.0 * (1.0 + 1.0 / n).sqrt();
         let mean_equal = mean_difference.abs() <= chance * deviation + 0.1;
         let spread_equal = spread_difference.abs() <= chance * spread_deviation + 0.1;
@@ -298,7 +303,7 @@ impl Bench {
         let name = row.picture.trim_start_matches("reference/").replace('/', "_");
         let shown = [ours, reference].map(|image| image.pixels.iter().map(|p| p.map(f32::from)).collect::<Vec<_>>());
         let mut pixels = Vec::new();
-        // Our picture, the official one, and eight times the difference, side by side.
+        // Write our picture, the official one, and eight times the difference, side by side.
         let width = ours.width as usize;
         for y in 0..ours.height as usize {
             for part in 0..3 {
@@ -327,7 +332,7 @@ fn square(x: f64) -> f64 {
     x * x
 }
 
-/// Returns the output files among arguments: the option and the index of its file.
+/// Iterates over the output files among the arguments: the option and the index of the file.
 pub fn files<'a>(words: &'a [&'a str]) -> impl Iterator<Item = (&'a str, usize)> {
     const OUTPUTS: [(&str, usize); 5] =
         [("-output", 1), ("-depth", 3), ("-normals", 1), ("-render_samples", 1), ("-render_filter", 1)];
@@ -337,7 +342,7 @@ pub fn files<'a>(words: &'a [&'a str]) -> impl Iterator<Item = (&'a str, usize)>
         .filter_map(|(i, word)| OUTPUTS.iter().find(|(name, _)| name == word).map(|(name, offset)| (*name, i + offset)))
 }
 
-/// Returns the name of the file that a row's picture is compared with.
+/// Returns the name of the output file that the row's picture is compared with.
 fn output_name(row: &Row) -> Result<String> {
     let option = match row.shows.as_str() {
         "color" => "-output",
@@ -357,7 +362,7 @@ fn read(path: &Path) -> Result<Image8> {
     Ok(read8(&bytes, &path.to_string_lossy())?)
 }
 
-/// Returns the percentage of pixels beyond rounding, and the largest difference.
+/// Returns the percentage of pixels that differ by more than rounding, and the largest difference.
 fn difference(a: &Image8, b: &Image8) -> (f64, u8) {
     let of_pixel = |(p, q): (&[u8; 3], &[u8; 3])| (0..3).map(|c| p[c].abs_diff(q[c])).max().unwrap_or(0);
     let differences: Vec<u8> = a.pixels.iter().zip(&b.pixels).map(of_pixel).collect();
@@ -365,8 +370,8 @@ fn difference(a: &Image8, b: &Image8) -> (f64, u8) {
     (100.0 * beyond as f64 / differences.len().max(1) as f64, differences.into_iter().max().unwrap_or(0))
 }
 
-/// Checks that the same pixels show something other than the background, which is the most common
-/// colour on the border.
+/// Checks that both pictures differ from the background at the same pixels. The background is the
+/// most common colour on the border.
 fn compare_silhouettes(ours: &Image8, reference: &Image8, largest: u8) -> Finding {
     let background = |image: &Image8| {
         let (w, h) = (image.width as usize, image.height as usize);

@@ -1,4 +1,5 @@
-//! Checks explanations of random pixels of all scenes against the pictures.
+//! `cargo xtask explain`: checks explanations of random pixels of all scenes against the rendered
+//! pictures.
 
 use anyhow::{Context, Result};
 use durer::diag::{Diagnostics, Files};
@@ -13,18 +14,18 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-/// Number of timed explanations per scene, and number of slowest scenes to report.
+/// Number of timed explanations per scene, and number of slowest scenes that are printed.
 const TIMED: u32 = 5;
 const SLOWEST: usize = 5;
 
-/// A scene compiled in one dialect.
+/// A scene compiled in one dialect, whose explanations are checked.
 struct DialectScene {
     name: String,
     world: World,
     settings: WhittedOptions,
 }
 
-/// Results of a scene.
+/// Result of checking the explanations of one scene.
 struct SceneResult {
     name: String,
     differences: Vec<String>,
@@ -32,6 +33,7 @@ struct SceneResult {
     slowest: Duration,
 }
 
+/// Runs `cargo xtask explain`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let value = |name| crate::value(arguments, name);
     let pixels: usize = value("--pixels").map_or(Ok(100_000), |text| text.parse()).context("--pixels: a number")?;
@@ -45,7 +47,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         false => println!("the course is missing: testing only our own scenes"),
     }
     scenes.retain(|path| only.is_none_or(|only| path.to_string_lossy().contains(only.as_str())));
-    // Use all scenes twice: without quirks, and with the quirks of their year's program.
+    // Use each scene twice: without quirks, and with the quirks of its year's program.
     let ways: Vec<(&PathBuf, bool)> = scenes.iter().flat_map(|scene| [(scene, false), (scene, true)]).collect();
     let pool = rayon::ThreadPoolBuilder::new().stack_size(64 << 20).build()?;
     let read = || ways.par_iter().map(|(scene, official)| read(scene, *official, &course)).collect::<Result<Vec<_>>>();
@@ -61,14 +63,14 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     println!("{} readings of {} files (some are not scenes)", found.len(), scenes.len());
     println!("{explained} pixels explained with {} samplers: {differ} differ", SAMPLINGS.len());
     found.sort_by_key(|found| std::cmp::Reverse(found.slowest));
-    println!("slowest explanations (16 samples a pixel, 512x512):");
+    println!("slowest explanations (16 samples per pixel, 512x512):");
     for SceneResult { name, slowest, .. } in found.iter().take(SLOWEST) {
         println!("{:>8.2} ms  {name}", slowest.as_secs_f64() * 1e3);
     }
     Ok(if differ == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Collects files that may be scenes, recursively.
+/// Collects files that may be scenes, in a folder and below.
 fn collect(folder: &Path, scenes: &mut Vec<PathBuf>) -> Result<()> {
     let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
     paths.sort();
@@ -108,7 +110,7 @@ impl DialectScene {
     }
 }
 
-/// Returns a scene's settings, with shadows and at least some levels of secondary rays.
+/// Returns the options of a scene, with shadows and at least some levels of secondary rays.
 fn settings(loaded: &LoadedScene) -> WhittedOptions {
     WhittedOptions {
         bounces: loaded.rules.bounces.max(4),

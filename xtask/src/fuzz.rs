@@ -1,4 +1,5 @@
-//! Fuzzes the readers and the tracer with random bytes and scenes, in parallel: see `fuzz/`.
+//! `cargo xtask fuzz`: fuzzes the readers and the tracer with random bytes and scenes, in parallel.
+//! The targets are in `fuzz/`.
 
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
@@ -6,7 +7,7 @@ use std::process::{Command, ExitCode, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// Fuzz targets, and extensions of their seed files.
+/// Fuzz targets, with the extensions of their seed files.
 const TARGETS: [(&str, &[&str]); 22] = [
     ("scene", &["txt"]),
     ("obj", &["obj"]),
@@ -20,7 +21,7 @@ const TARGETS: [(&str, &[&str]); 22] = [
     ("hdr", &["hdr"]),
     ("ktx2", &["ktx2"]),
     ("stl", &["stl"]),
-    // Includes Draco and meshopt.
+    // Also covers Draco and meshopt.
     ("gltf", &["gltf", "glb"]),
     ("json", &["json"]),
     ("pbrt", &["pbrt"]),
@@ -33,11 +34,12 @@ const TARGETS: [(&str, &[&str]); 22] = [
     ("ways", &[]),
 ];
 
-/// Limits: bytes per input, MiB of memory, seconds per input.
+/// Limits: bytes per input, MiB of memory, and seconds per input.
 const MAX_BYTES: u64 = 16 << 10;
 const MAX_MEMORY: u32 = 2048;
 const MAX_SECONDS: u32 = 20;
 
+/// Runs `cargo xtask fuzz`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let minutes: f64 = crate::value(arguments, "--minutes").map_or("10", String::as_str).parse()?;
     let only = crate::value(arguments, "--only").map_or("", String::as_str);
@@ -72,7 +74,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(if found.into_inner() == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Runs a target; returns true if it found nothing.
+/// Runs a target. Returns true if it found no failure.
 fn is_clean(fuzz: &Path, scratch: &Path, name: &str, endings: &[&str], minutes: f64) -> Result<bool> {
     let (corpus, seeds) = (fuzz.join("corpus").join(name), scratch.join(name).join("seeds"));
     std::fs::create_dir_all(&corpus)?;
@@ -107,8 +109,8 @@ fn is_clean(fuzz: &Path, scratch: &Path, name: &str, endings: &[&str], minutes: 
 /// Returns the CPU time of finished child processes in hours; `None` except on Linux.
 fn hours_of_children() -> Option<f64> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // The name in parentheses may contain spaces. After it come the fields from the third; 16 and
-    // 17 are in 1/100 s.
+    // The name in parentheses can contain spaces. The fields after it start with the third; fields
+    // 16 and 17 are in 1/100 s.
     let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
     let ticks = |number: usize| fields.get(number - 3)?.parse::<f64>().ok();
     Some((ticks(16)? + ticks(17)?) / 100.0 / 3600.0)
@@ -116,13 +118,13 @@ fn hours_of_children() -> Option<f64> {
 
 fn cargo_fuzz(fuzz: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new("cargo");
-    // The cargo that started this process uses another toolchain and must not select the compiler.
+    // The cargo that started this process uses another toolchain, and must not select the compiler.
     command.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO").args(["+nightly", "fuzz"]).args(arguments);
     command.current_dir(fuzz.join(".."));
     command
 }
 
-/// Reports missing tools with installation instructions.
+/// Fails with installation instructions if a tool is missing.
 fn what_is_missing() -> Result<()> {
     let there = |arguments: &[&str]| {
         let mut command = Command::new("cargo");
@@ -140,7 +142,7 @@ fn what_is_missing() -> Result<()> {
     Ok(())
 }
 
-/// Copies small seed files from the repository's scenes, and from the corpus if it exists.
+/// Copies small files as seeds, from the scenes of the repository and from the corpus if it exists.
 fn collect_seeds(folder: &Path, endings: &[&str]) -> Result<()> {
     std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let mut found = Vec::new();
@@ -153,7 +155,7 @@ fn collect_seeds(folder: &Path, endings: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// Collects small files with certain extensions, recursively.
+/// Collects small files with the given extensions, in a folder and below.
 fn files(folder: &Path, endings: &[&str], depth: usize, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();

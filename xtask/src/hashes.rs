@@ -1,8 +1,8 @@
-//! `cargo xtask hashes`: prints hashes of the pictures and messages for the scenes, the course and
+//! `cargo xtask hashes`: prints hashes of the pictures and messages for all scenes, the course and
 //! the sample files, one per line, for later comparison. A refactoring must not change any line.
 //!
-//! A line is a kind, a path (with options, or the name of a picture), and the hash, with tabs
-//! between them:
+//! A line consists of a kind, a path (with options, or with the name of a picture) and the hash,
+//! separated by tabs:
 //!
 //! | kind | hash of |
 //! | --- | --- |
@@ -31,11 +31,12 @@ use std::time::{Duration, Instant};
 /// Number of cases that run at the same time, each with one thread.
 const WORKERS: usize = 2;
 
-/// Time limit of a case, many times that of the slowest, because the machine can be busy.
+/// Time limit of a case. It is many times that of the slowest case, because the machine can be
+/// busy.
 const LIMIT: Duration = Duration::from_secs(240);
 
-/// Memory limit of a case. A share of the machine's memory would reject different files on each
-/// machine.
+/// Memory limit of a case. If it depended on the machine's memory, each machine would reject
+/// different files.
 const MEMORY: &str = "4G";
 
 /// Extensions of scenes and models, in lower case.
@@ -45,8 +46,8 @@ const ENDINGS: [&str; 11] = ["3mf", "glb", "gltf", "obj", "pbrt", "ply", "rad", 
 const RENDER: &str = "render --hash --threads 1 --no-checkpoint -o @p.pfm";
 const PROGRAM: &str = "course --threads 1";
 
-/// Options for each of our scenes: first all pictures with few samples, then the other integrators
-/// and samplers at lower resolution.
+/// Options for our own scenes: first all pictures with few samples, then the other integrators and
+/// samplers at a lower resolution.
 const OURS: [&str; 6] = [
     "--size 64x48 --samples 4 --show color,depth,normals,geometric-normals,position,uv,barycentric,albedo,object,\
      material,luminance,illuminance,sample-count,variance",
@@ -57,32 +58,33 @@ const OURS: [&str; 6] = [
     "--size 16x12 --samples 16 --integrator path --adaptive --accel grid",
 ];
 
-/// Options for each file of other programs.
+/// Options for the files of other programs.
 const THEIRS: &str = "--size 32x24 --samples 2";
 
-/// Options for the course's scenes without a reference picture.
+/// Options for course scenes without a reference picture.
 const COURSE: &str = "-size 48 48 -output @color.tga -depth 0 20 @depth.tga -normals @normals.tga";
 
-/// Folders with meshes for course scenes that lack their own.
+/// Folders with meshes, for course scenes without their own.
 const MESHES: &str = "--assets course/scenes/f04 --assets course/scenes/f16";
 
-/// Separator between the name of a case and the name of one of its pictures.
+/// Separator between the name of a case and the name of its picture.
 const PICTURE: &str = ": ";
 
-/// Value of each line by kind and path: the hash, or the text of an error.
+/// Value of each line, by kind and path: the hash, or the text of an error.
 type Lines = BTreeMap<(String, String), String>;
 
-/// One run of the program.
+/// One run of the program whose outputs are hashed.
 struct Case {
     kind: Kind,
-    /// The path on its lines.
+    /// Path on the lines of this case.
     name: String,
-    /// Working directory, so that messages have relative paths.
+    /// Working directory, chosen so that messages have relative paths.
     folder: PathBuf,
-    /// Arguments; a word after [`OUTPUT`] is an output file.
+    /// Arguments. A word that begins with [`OUTPUT`] is an output file.
     arguments: Vec<String>,
 }
 
+/// Command that a case runs, which determines the outputs to hash.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     /// `durer render`.
@@ -97,18 +99,19 @@ enum Kind {
     Check,
 }
 
-/// Prefix of the name of an output file.
+/// Prefix of the names of output files in arguments.
 const OUTPUT: &str = "@";
 
-/// Outcome of a run.
+/// Exit code and output of a finished run of the program.
 struct RunOutcome {
-    /// The exit code; `None` after a signal.
+    /// Exit code; `None` if a signal ended the program.
     code: Option<i32>,
     late: bool,
     out: Vec<u8>,
     errors: Vec<u8>,
 }
 
+/// Runs `cargo xtask hashes`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let value = |name| crate::value(arguments, name);
     let only = value("--only");
@@ -159,7 +162,7 @@ fn cases(only: Option<&String>) -> Result<Vec<Case>> {
     let corpus = crate::corpus().canonicalize().context("the sample files are missing; set DURER_CORPUS")?;
     course(&corpus, &mut cases)?;
     for folder in ["samples", "meshes"] {
-        // Text files in these folders are licences and tables.
+        // In these folders, text files are licences and tables.
         for file in below(&corpus, folder, true)?.iter().filter(|file| !file.ends_with(".txt")) {
             cases.push(Case::new(Kind::Film, file.clone(), &corpus, &format!("{RENDER} {THEIRS}"), Some(file)));
             cases.push(converted(&corpus, file, "json", ""));
@@ -169,7 +172,7 @@ fn cases(only: Option<&String>) -> Result<Vec<Case>> {
     Ok(cases)
 }
 
-/// Adds the runs of a scene that do not render.
+/// Adds the cases of a scene that do not render.
 fn read_only(folder: &Path, file: &str, assets: &str, cases: &mut Vec<Case>) {
     cases.extend(["json", "txt", "glb"].map(|ending| converted(folder, file, ending, assets)));
     let case = |kind, words| Case::new(kind, file.into(), folder, &format!("{words} {assets}"), Some(file));
@@ -182,7 +185,7 @@ fn converted(folder: &Path, file: &str, ending: &str, assets: &str) -> Case {
     Case::new(Kind::Converted, format!("{file} as {ending}"), folder, &words, Some(file))
 }
 
-/// Adds the runs with reference pictures, then the other scenes.
+/// Adds the cases with reference pictures, then those of the other course scenes.
 fn course(corpus: &Path, cases: &mut Vec<Case>) -> Result<()> {
     let mut runs = BTreeSet::new();
     for row in crate::course::rows(&corpus.join("course"))? {
@@ -207,7 +210,7 @@ fn course(corpus: &Path, cases: &mut Vec<Case>) -> Result<()> {
         read_only(corpus, file, MESHES, cases);
         if !known.contains(file) {
             let dialect = file.split('/').nth(2).context("a scene without a folder")?;
-            // The meshes of 2003 are among those of 2004.
+            // The meshes of 2003 are in the folder of 2004.
             let meshes = if dialect == "f03" { "f04" } else { dialect };
             let words = format!("{PROGRAM} --dialect {dialect} --assets course/scenes/{meshes} {COURSE} -input");
             cases.push(Case::new(Kind::Course, format!("{dialect} {file}"), corpus, &words, Some(file)));
@@ -216,7 +219,8 @@ fn course(corpus: &Path, cases: &mut Vec<Case>) -> Result<()> {
     Ok(())
 }
 
-/// Returns the scenes and models in a folder, as sorted paths from `root`; recursively if `deep`.
+/// Returns the scenes and models in a folder as sorted paths relative to `root`. Includes
+/// subfolders if `deep` is true.
 fn below(root: &Path, folder: &str, deep: bool) -> Result<Vec<String>> {
     let mut found = Vec::new();
     for entry in fs::read_dir(root.join(folder)).with_context(|| folder.to_string())? {
@@ -237,7 +241,7 @@ fn below(root: &Path, folder: &str, deep: bool) -> Result<Vec<String>> {
     Ok(found)
 }
 
-/// Runs all cases.
+/// Runs all cases and returns their lines.
 fn all(durer: &Path, cases: &[Case]) -> Result<Lines> {
     let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let lines = Mutex::new(Lines::new());
@@ -276,7 +280,7 @@ impl Case {
         Case { kind, name, folder: folder.into(), arguments }
     }
 
-    /// Runs the case; returns kind, path and value of each line.
+    /// Runs the case. Returns kind, path and value of each line.
     fn lines(&self, durer: &Path) -> Result<Vec<(&'static str, String, String)>> {
         let place = tempfile::tempdir()?;
         let files = place.path().join("files");
@@ -305,7 +309,7 @@ impl Case {
         };
         let (out, errors) = (plain(&ended.out), plain(&ended.errors));
         if let Kind::Info | Kind::Check = self.kind {
-            // Memory sizes depend on internal structures, which can change.
+            // Memory sizes depend on internal data structures, which may change.
             let lines = out.lines().filter(|line| !line.starts_with("memory "));
             let messages = format!("{code}\n{}\n{errors}", lines.collect::<Vec<_>>().join("\n"));
             return Ok(vec![line(kind, Digest::of(messages.as_bytes()).to_string())]);
@@ -320,14 +324,14 @@ impl Case {
         let mut written = Vec::new();
         hashed(&files, "", &mut written)?;
         match self.kind {
-            // One line for all files of a scene.
+            // Print one line for all files of a scene.
             Kind::Converted => {
                 written.sort();
                 lines.push(line(kind, Digest::of(format!("{written:?}").as_bytes()).to_string()));
             }
             Kind::Film => {
                 lines.push(line(kind, out.lines().last().unwrap_or_default().into()));
-                // `p.pfm` alone, or `p.depth.pfm` among several.
+                // The output is `p.pfm`, or files such as `p.depth.pfm` if there are several.
                 lines.extend(written.into_iter().map(|(name, digest)| {
                     match name.strip_prefix("p.").and_then(|name| name.strip_suffix(".pfm")) {
                         None => line("pixels", digest),
@@ -345,7 +349,7 @@ impl Case {
 }
 
 impl Kind {
-    /// Returns the kind as the first word of a line.
+    /// Returns the first word of the kind's lines.
     fn word(self) -> &'static str {
         match self {
             Kind::Film => "film",
@@ -371,7 +375,7 @@ fn hashed(folder: &Path, path: &str, found: &mut Vec<(String, String)>) -> Resul
     Ok(())
 }
 
-/// Runs a command with its output in files; kills it after the time limit.
+/// Runs a command with its output redirected to files, and kills it after the time limit.
 fn ended(command: &mut Command, place: &Path) -> Result<RunOutcome> {
     let [out, errors] = ["out", "errors"].map(|name| place.join(name));
     let mut child = command.stdin(Stdio::null()).stdout(File::create(&out)?).stderr(File::create(&errors)?).spawn()?;
@@ -395,7 +399,7 @@ fn written(lines: &Lines) -> String {
     lines.iter().map(|((kind, path), value)| format!("{kind}\t{path}\t{value}\n")).collect()
 }
 
-/// Parses lines that [`written`] wrote; `None` for other text.
+/// Parses lines written by [`written`]; `None` for any other text.
 fn parsed(text: &str) -> Option<Lines> {
     let line = |line: &str| {
         let (kind, rest) = line.split_once('\t')?;
@@ -405,7 +409,7 @@ fn parsed(text: &str) -> Option<Lines> {
     text.lines().map(line).collect()
 }
 
-/// Returns the lines that are missing on one side or differ.
+/// Returns the lines that differ or that only one side has.
 fn differences(old: &Lines, new: &Lines) -> Vec<String> {
     let keys: BTreeSet<_> = old.keys().chain(new.keys()).collect();
     let absent = "absent".to_string();

@@ -1,10 +1,10 @@
-//! Runs tests of the suite with far more iterations than in CI.
+//! `cargo xtask long`: runs tests of the suite with many more iterations than in CI.
 
 use anyhow::{Result, bail};
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
-/// A test by package and name, and the factor for its iterations.
+/// Tests, each with package, name, and the factor for its number of iterations.
 const TESTS: [(&str, &str, u32); 4] = [
     // 10^9 lanes.
     ("durer-bvh", "lanes::tests::every_level_gives_the_same_bits", 1_000),
@@ -16,6 +16,7 @@ const TESTS: [(&str, &str, u32); 4] = [
     ("durer", "shape::tests::leaving::rays_do_not_hit_the_surface_that_they_leave", 100),
 ];
 
+/// Runs `cargo xtask long`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let value = |name| crate::value(arguments, name);
     let only = value("--only").map_or("", String::as_str);

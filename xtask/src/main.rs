@@ -1,4 +1,4 @@
-//! Commands for developers of Dürer.
+//! Commands for the development of Dürer.
 
 mod additions;
 mod attack;
@@ -116,7 +116,7 @@ fn main() -> anyhow::Result<ExitCode> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let help = arguments.iter().any(|argument| argument == "--help");
     match arguments.first().map(String::as_str) {
-        // It has its own help.
+        // This command has its own help.
         Some("bench-rays") => bench_rays::run(&arguments[1..]),
         Some(_) if help => {
             println!("{USAGE}");
@@ -153,7 +153,7 @@ fn main() -> anyhow::Result<ExitCode> {
     }
 }
 
-/// Compiles a scene in our language.
+/// Compiles a scene in Dürer's own dialect.
 fn world(name: &str, text: &str) -> anyhow::Result<World> {
     let options = LoadOptions::default();
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
@@ -162,26 +162,27 @@ fn world(name: &str, text: &str) -> anyhow::Result<World> {
     world.with_context(|| format!("{name}: {diagnostics:?}"))
 }
 
-/// Returns the value of an option.
+/// Returns the value of an option on the command line.
 fn value<'a>(arguments: &'a [String], name: &str) -> Option<&'a String> {
     arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1))
 }
 
-/// Returns the folder of data outside the repository.
+/// Returns the folder with data outside the repository.
 fn corpus() -> PathBuf {
     std::env::var_os("DURER_CORPUS").map_or_else(|| PathBuf::from("../shared"), PathBuf::from)
 }
 
-/// Returns the `cargo` that runs this program.
+/// Returns the path of the `cargo` that runs this program.
 fn cargo() -> OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 
-/// Returns the repository: `DURER_ROOT`, or the source folder of this build.
+/// Returns the root of the repository: `DURER_ROOT`, or the folder from which this program was
+/// built.
 fn root() -> anyhow::Result<PathBuf> {
     let built = || Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     std::env::var_os("DURER_ROOT")
         .map_or_else(built, PathBuf::from)
         .canonicalize()
-        .context("the repository is not there")
+        .context("the repository was not found")
 }

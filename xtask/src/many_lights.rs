@@ -1,8 +1,8 @@
-//! Many lights: compares the cost of rendering a room with a hundred thousand lights to one with
-//! ten lights, at equal error.
+//! Compares the cost of rendering a room with a hundred thousand lights to that with ten lights, at
+//! equal error.
 //!
-//! The lights have the same total area and power in both rooms and are outside the picture. Visible
-//! emitters far smaller than a pixel would dominate the noise, regardless of light sampling.
+//! In both rooms the lights have the same total area and power, and they are outside the picture.
+//! Visible emitters far smaller than a pixel would dominate the noise, whatever the light sampling.
 
 use anyhow::{Context, Result};
 use durer::film::Filter;
@@ -16,23 +16,23 @@ use std::fmt::Write as _;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Largest acceptable ratio of costs.
+/// Maximum acceptable ratio of the costs.
 const MOST: f64 = 2.0;
 
-/// Number of random placements in each room, because the noise of ten lights depends on their
-/// positions.
+/// Number of random placements of the lights in each room, because the noise of ten lights depends
+/// on their positions.
 const PLACINGS: u64 = 4;
 
-/// Number of pictures per placement, with different seeds.
+/// Number of pictures per placement, each with another seed.
 const RUNS: u64 = 3;
 
-/// Rooms of the corpus, with the bounds of their interiors.
+/// Rooms of the corpus, with the bounds of the space inside.
 const ROOMS: [(&str, [f64; 3], [f64; 3]); 2] = [
     ("kitchen.ply", [-1.930758, -0.034231, -2.479913], [3.614574, 2.523191, 2.593479]),
     ("hall.ply", [-3.535412, -2.480083, -24.03392], [48.30188, 16.92997, 24.325836]),
 ];
 
-/// Builds a room with square lights that face down, in the upper middle.
+/// Builds a room with square lights in its upper middle that face down.
 fn room((name, low, high): (&str, [f64; 3], [f64; 3]), lights: u32, placing: u64) -> Result<World> {
     let at = |axis: usize, share: f64| low[axis] + share * (high[axis] - low[axis]);
     let size = |axis: usize| high[axis] - low[axis];
@@ -54,12 +54,13 @@ fn room((name, low, high): (&str, [f64; 3], [f64; 3]), lights: u32, placing: u64
         writeln!(text, "Rectangle {{ corner {x} {y} {z} edge0 {side} 0 0 edge1 0 0 {side} }}")?;
     }
     text += "}\n";
-    // Resolve the mesh relative to the corpus.
+    // Resolve the path of the mesh relative to the corpus.
     let path = crate::corpus().join("meshes/room.txt");
     crate::world(path.to_str().context("the path of the corpus is not Unicode")?, &text)
 }
 
-/// Pictures of the lower part of a room, and the minimum render time.
+/// Renders of one room with different seeds, and the minimum render time, from which the cost
+/// follows.
 struct RoomResult {
     world: World,
     seconds: f64,
@@ -69,7 +70,7 @@ struct RoomResult {
 impl RoomResult {
     fn new(world: World) -> Result<Self> {
         let found = RoomResult { world, seconds: f64::INFINITY, pictures: Vec::new() };
-        // Warm up one-time initialisation.
+        // Render once before timing, because of one-time initialisation.
         found.picture(0, 1)?;
         Ok(found)
     }
@@ -100,8 +101,8 @@ impl RoomResult {
         Ok(())
     }
 
-    /// Returns the relative error of a picture from pairs of pictures, whose difference has twice
-    /// the variance; and the cost: seconds times squared error.
+    /// Returns the relative error of a picture, and the cost (seconds times squared error). The
+    /// error is computed from pairs of pictures, whose difference has twice the variance.
     fn cost(&self) -> (f64, f64) {
         let (mut squares, mut pairs, mut sum, mut count) = (0.0, 0.0, 0.0, 0.0);
         for (i, a) in self.pictures.iter().enumerate() {
@@ -119,6 +120,7 @@ impl RoomResult {
     }
 }
 
+/// Measures the cost for each room and prints the ratio.
 pub fn run() -> Result<ExitCode> {
     let mut all_hold = true;
     for given in ROOMS {
@@ -126,7 +128,7 @@ pub fn run() -> Result<ExitCode> {
         for placing in 0..PLACINGS {
             let found = |lights| RoomResult::new(room(given, lights, placing)?);
             let (mut few, mut many) = (found(10)?, found(100_000)?);
-            // Alternate, so that both see the same machine load.
+            // Alternate between both rooms, so that they see the same machine load.
             for seed in 1..=RUNS {
                 few.run(seed)?;
                 many.run(seed)?;

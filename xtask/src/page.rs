@@ -1,4 +1,4 @@
-//! Builds the page of `durer live`, also as static files over WebAssembly.
+//! Builds the web page of `durer live`, also as static files over WebAssembly.
 
 use crate::{cargo, root, value};
 use anyhow::{Context, Result, bail};
@@ -8,7 +8,7 @@ use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
-/// Builds the page into `web/dist`; with `--check`, compares the result with `web/dist` instead.
+/// Builds the page into `web/dist`. With `--check`, only checks that `web/dist` is up to date.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let web = root()?.join("web");
     if arguments.iter().any(|argument| argument == "--measure") {
@@ -35,8 +35,9 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::FAILURE)
 }
 
-/// Measures the page in Chromium, for a small and a large scene: pictures per second, and time to
-/// the first picture. Then tests 10,000 random edits, memory over 1,000 edits, and hostile clients.
+/// Tests the page in Chromium with a small and a large scene. Measures frames per second and the
+/// time to the first picture, then tests 10,000 random edits, memory over 1,000 edits, and hostile
+/// clients.
 fn measure(web: &Path) -> Result<ExitCode> {
     let root = root()?;
     let durer = crate::build::durer()?;
@@ -71,7 +72,8 @@ fn install(web: &Path) -> Result<()> {
     if web.join("node_modules/vite").exists() {
         return Ok(());
     }
-    // Not `npm ci`: the lock file lists an optional Windows package that some registries lack.
+    // `npm ci` does not work: the lock file lists an optional Windows package that some registries
+    // lack.
     call(Command::new("npm").args(["install", "--no-audit", "--no-fund"]).current_dir(web))
 }
 
@@ -81,7 +83,7 @@ fn build(web: &Path, into: &Path) -> Result<()> {
     call(Command::new("npx").args(["vite", "build", "--emptyOutDir", "--outDir"]).arg(into).current_dir(web))
 }
 
-/// Returns the names and bytes of the files in a folder.
+/// Returns the names and contents of the files in a folder.
 fn files(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
     let mut all = BTreeMap::new();
     for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {
@@ -92,10 +94,10 @@ fn files(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
 }
 
 /// SIMD levels of the WebAssembly library, with their target features. The worker loads the first
-/// that the browser supports.
+/// level that the browser supports.
 const LEVELS: [(&str, &str); 2] = [("simd128", "+simd128"), ("scalar", "-simd128")];
 
-/// Builds the WebAssembly library at a SIMD level.
+/// Builds the WebAssembly library for a SIMD level.
 fn module(root: &Path, level: &str, feature: &str, folder: &Path) -> Result<()> {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
     let target = target.join("playground").join(level);
@@ -126,10 +128,10 @@ fn module(root: &Path, level: &str, feature: &str, folder: &Path) -> Result<()> 
     )
 }
 
-/// Writes the page, the WebAssembly library, and the script that caches both for offline use.
+/// Writes the page, the WebAssembly library, and the script that caches them for offline use.
 pub fn playground(arguments: &[String]) -> Result<ExitCode> {
     let root = root()?;
-    let folder = PathBuf::from(value(arguments, "-o").context("say where it goes: -o FOLDER")?);
+    let folder = PathBuf::from(value(arguments, "-o").context("the output folder is missing: pass -o FOLDER")?);
     for (level, feature) in LEVELS {
         module(&root, level, feature, &folder.join("wasm").join(level))?;
     }

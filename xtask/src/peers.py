@@ -1,10 +1,10 @@
-"""Compares equal scenes by Dürer and by Mitsuba 3, pixel by pixel.
+"""Compares renders of equal scenes by Dürer and Mitsuba 3, pixel by pixel.
 
     python peers.py DURER [--samples 1024] [--only TEXT]
 
-Both render each scene 32 times with different seeds. For each channel of each pixel, Welch's
-t-test checks if the means may be equal; with Sidak's correction for the number of pixels, at
-least 99.75 % of them must (the criterion of Mitsuba's own image tests). The means of the whole
+Both render each scene 32 times with different seeds. For each channel of each pixel, Welch's t-test
+checks whether the means can be equal. With Sidak's correction for the number of pixels, at least
+99.75 % of them must be (the criterion of Mitsuba's own image tests). The means of the whole
 pictures must agree within 0.2 % and three standard errors.
 """
 
@@ -29,7 +29,7 @@ def rgb(color):
 
 
 class Scene:
-    """A scene for both: Mitsuba's dictionary, and our text."""
+    """A scene for both programs: Mitsuba's dictionary, and the text of Dürer's scene file."""
 
     def __init__(self, name, bounces=6, volumes=False, eye=(0, 0, 3.9), direction=(0, 0, -1), fov=39):
         self.name, self.bounces = name, bounces
@@ -108,7 +108,7 @@ def glass(ior=1.5, rest=""):
 
 
 def medium(extinction, albedo, g=0.0):
-    """Returns our and their text. Extinction is per unit of length, equal for all colours."""
+    """Returns a medium for Dürer and for Mitsuba. Extinction is per unit, equal for all colours."""
     left = float(np.exp(-extinction))
     scatter = [extinction * a for a in albedo]
     ours = (f"transmissionDepth 1 transmissionColor {left:.8g} {left:.8g} {left:.8g} transmissionScatter {words(scatter)} "
@@ -162,7 +162,7 @@ def scenes():
     s.sphere((0, 3, 1), 0.8, None, (5, 4, 4))
     yield s
     s = outside("a point light")
-    # Ours is the radiance of a white surface: irradiance over pi.
+    # Dürer's colour is the radiance of a white surface, which is irradiance over pi.
     s.lights.append("PointLight { position 1 3 2 color 6 5 4 attenuation 0 0 1 }")
     s.theirs["l"] = {"type": "point", "position": [1, 3, 2], "intensity": rgb([np.pi * c for c in (6, 5, 4)])}
     yield s
@@ -193,7 +193,7 @@ def scenes():
         yield s
     inside, theirs = medium(4.0, (0.9, 0.85, 0.7))
     s = sky(outside("milky glass", volumes=True))
-    # Transmission does not count as a bounce in ours: both continue until the light is gone.
+    # Dürer does not count transmission as a bounce, so both limits are too high to have an effect.
     s.bounces, s.theirs["integrator"]["max_depth"] = 100, 400
     s.sphere((0.7, 0, 0), 0.6, glass(1.5, inside), medium=theirs)
     yield s
@@ -227,12 +227,12 @@ def compare(program, scene, samples, folder):
     theirs = [np.array(mi.render(loaded, spp=each, seed=seed)).astype(float) for seed in range(RUNS)]
     ours, theirs = np.array(ours), np.array(theirs)
     square = (ours.var(0, ddof=1) + theirs.var(0, ddof=1)) / RUNS
-    # Without randomness there is only rounding.
+    # Pixels without randomness differ only by rounding.
     t2 = (ours.mean(0) - theirs.mean(0)) ** 2 / np.maximum(square, (1e-4 * theirs.mean(0)) ** 2 + 1e-12)
     freedom = 2 * (RUNS - 1)
-    # Student's t as a normal deviate: Wallace 1959.
+    # Convert Student's t to a normal deviate: Wallace 1959.
     z = np.sqrt(freedom * np.log1p(t2 / freedom)) * (8 * freedom + 1) / (8 * freedom + 3)
-    # Two-sided 1 - (1 - 0.01)^(1 / n) for n pixels: Sidak.
+    # Sidak's correction for n pixels, two-sided: 1 - (1 - 0.01)^(1 / n).
     alpha = 1 - (1 - 0.01) ** (1 / SIZE**2)
     limit = deviate(alpha / 2)
     accepted = (z < limit).mean()
@@ -260,7 +260,7 @@ def main():
     arguments.add_argument("--samples", type=int, default=1024)
     arguments.add_argument("--only", default="")
     given = arguments.parse_args()
-    # The variant that needs no compiler.
+    # This variant needs no compiler.
     mi.set_variant("scalar_rgb")
     global T
     T = mi.ScalarTransform4f
@@ -268,7 +268,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         chosen = [scene for scene in scenes() if given.only in scene.name]
         good = [compare(given.program, scene, given.samples, pathlib.Path(folder)) for scene in chosen]
-    print(f"\n{sum(good)} of {len(good)} scenes agree; {given.samples} samples a pixel of each, Mitsuba {mi.__version__}, {mi.variant()}.")
+    print(f"\n{sum(good)} of {len(good)} scenes agree; {given.samples} samples per pixel each, Mitsuba {mi.__version__}, {mi.variant()}.")
     raise SystemExit(0 if all(good) else 1)
 
 

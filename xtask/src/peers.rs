@@ -1,14 +1,16 @@
-//! Compares equal scenes in Dürer and Mitsuba 3. `peers.py` compares pictures, `peers_time.py`
-//! times, and `peers_direct.py` times of direct light, also with Blender's Cycles.
+//! `cargo xtask peers`: compares Dürer with Mitsuba 3 on equal scenes. `peers.py` compares
+//! pictures, `peers_time.py` render times, and `peers_direct.py` the cost of direct light, also
+//! with Blender's Cycles.
 
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// Versions used for the figures in docs/validation.md.
+/// Versions with which the figures in docs/validation.md were measured.
 const MITSUBA: &str = "mitsuba==3.9.1";
 const BLENDER: &str = "bpy==5.0.1";
 
+/// Runs `cargo xtask peers`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let (mut python, mut script, mut rest) = (None, "peers.py", Vec::new());
     let mut given = arguments.iter();
@@ -34,7 +36,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Creates a Python environment with Mitsuba, and with Blender if it supports this Python version.
+/// Creates a Python environment with Mitsuba and, if it supports this Python version, Blender.
 fn environment(folder: &Path, blender: bool) -> Result<PathBuf> {
     let python = folder.join("bin/python");
     if !python.exists() {

@@ -1,17 +1,18 @@
-"""Cost of direct light from point lights: Dürer's `whitted`, Mitsuba 3's `direct` and Blender's
-Cycles on equal scenes.
+"""Compares the cost of direct light from point lights: Dürer's `whitted`, Mitsuba 3's `direct` and
+Blender's Cycles on equal scenes.
 
     python peers_direct.py DURER MESHES [--side 512] [--samples 16] [--runs 3] [--threads 2] [--only
     TEXT]
 
-The programs render each scene in turns, with the same camera, filter and number of samples, one hit
-deep with its lights. Time is CPU time of all threads: ours minus a picture of one sample, which
-covers reading and building; theirs after a first picture, which compiles or builds, Cycles' minus
-one sample. Figures use the minimum time of the runs. The means verify that all show the same. With
-two lights, ours samples both at each hit and theirs one: their samples are cheaper, and noisy.
+The programs render each scene in turn, with the same camera, filter and number of samples, one hit
+deep with its lights. Time is the CPU time of all threads: for Dürer minus that of a picture with
+one sample, which covers reading and building; for Mitsuba after a first picture, which compiles;
+for Cycles minus one sample. Figures use the minimum time of the runs. The means check that all show
+the same. With two lights, Dürer samples both at each hit and the others one: their samples are
+cheaper, but noisy.
 
-Cycles is skipped if Blender (`bpy` of the package index) is missing, and for scenes with
-spheres, which it only knows as meshes.
+Cycles is skipped if Blender (the package `bpy`) is missing, and for scenes with spheres, which it
+supports only as meshes.
 """
 
 import json
@@ -23,7 +24,7 @@ import time
 
 
 def cycles(path):
-    """Runs in its own process: renders the scene of a file, prints the times, and saves the
+    """Runs in a process of its own: renders the scene in a file, prints the times, and saves the
     picture."""
     import bpy
     import mathutils
@@ -33,7 +34,7 @@ def cycles(path):
     scene = bpy.context.scene
     collection = scene.collection.objects
     for number, (position, color) in enumerate(given["lamps"]):
-        # In watts: a white surface at distance 1 that faces the light shows the light's colour.
+        # In watts, so that a white surface at distance 1 that faces the light has the light's colour.
         lamp = bpy.data.lights.new(f"lamp{number}", "POINT")
         lamp.energy, lamp.color, lamp.shadow_soft_size, lamp.use_soft_falloff = 4 * math.pi**2, color, 0, False
         place = bpy.data.objects.new(f"lamp{number}", lamp)

@@ -1,17 +1,17 @@
-"""Time to equal noise: Dürer and Mitsuba 3 (`llvm_ad_rgb`) on equal scenes.
+"""Compares the time to equal noise of Dürer and Mitsuba 3 (`llvm_ad_rgb`) on equal scenes.
 
     python peers_time.py DURER MESHES [--side 256] [--samples 64] [--runs 5] [--threads 2] [--only
     TEXT]
 
-Both render each scene in turns, with the same camera, filter, depth and number of samples, and
+Both render each scene in turn, with the same camera, filter, depth and number of samples, and
 different seeds. The mean squared error of a program is half the mean squared difference over pairs
-of its n pictures: this needs no reference, which could favour one. The error falls as one over the
-time, so the time to equal error is time times error. Time is CPU time of all threads: ours minus a
-picture of one sample, which covers reading and building; theirs after a first picture, which
-compiles. Figures use the minimum time of the runs.
+of its n pictures. This needs no reference picture, which could favour one program. The error falls
+as one over the time, so the time to equal error is time times error. Time is the CPU time of all
+threads: for Dürer minus that of a picture with one sample, which covers reading and building; for
+Mitsuba after a first picture, which compiles. Figures use the minimum time of the runs.
 
-The row below each scene is ours with `--adaptive`: as many samples on average, more where the
-picture is noisier. Mitsuba has no such mode, so that row shows the benefit of the mode, not a
+The row below each scene is Dürer with `--adaptive`: as many samples on average, but more where the
+picture is noisier. Mitsuba has no such mode, so the row shows the benefit of the mode and is not a
 comparison of equal work; its column of means shows any bias.
 """
 
@@ -25,8 +25,8 @@ import subprocess
 import tempfile
 import time
 
-# Dr.Jit needs an LLVM. Rust's compiler has one that supports newer processors than an older
-# system's.
+# Dr.Jit needs LLVM. The LLVM of Rust's compiler may support newer processors than that of the
+# system.
 if "DRJIT_LIBLLVM_PATH" not in os.environ:
     home = subprocess.run(["rustc", "--print", "sysroot"], capture_output=True, text=True).stdout.strip()
     os.environ.update({"DRJIT_LIBLLVM_PATH": found for found in glob.glob(f"{home}/lib/libLLVM.so*")[:1]})
@@ -39,7 +39,7 @@ from peers import Scene, lamp, matte, pfm, rgb
 
 
 def read_ply(path):
-    """Reads the triangles of a mesh as corner positions."""
+    """Reads a mesh and returns the vertex positions of each triangle."""
     with open(path, "rb") as file:
         head = b""
         while not head.endswith(b"end_header\n"):
@@ -50,7 +50,7 @@ def read_ply(path):
 
 
 def write_ply(path, corners):
-    """Writes a mesh of triangles without shared vertices, so that both shade it flat."""
+    """Writes a mesh without shared vertices, so that both programs shade it flat."""
     faces = np.arange(3 * len(corners), dtype="<i4").reshape(-1, 3)
     rows = np.zeros(len(corners), dtype=[("n", "u1"), ("i", "<i4", 3)])
     rows["n"], rows["i"] = 3, faces
@@ -79,7 +79,7 @@ def scenes(meshes, folder):
     cornell.sphere((0.45, -0.6, -0.3), 0.4, matte((0.8, 0.6, 0.2)))
     yield cornell
 
-    # A dim sky with a bright patch; its centre is towards -z in ours, and towards +z in theirs.
+    # A dim sky with a bright patch; its centre is towards -z in Dürer, and towards +z in Mitsuba.
     sky = np.full((128, 256, 3), (0.3, 0.4, 0.6))
     sky[20:30, 40:56] = (60, 50, 40)
     write_pfm(folder / "sky.pfm", sky)
@@ -115,8 +115,8 @@ def scenes(meshes, folder):
     random = np.random.default_rng(1)
     count = 100_000
     centers = random.uniform((-8, 3, -8), (8, 5, 8), (count, 3))
-    # They face down, above the visible part: lights far smaller than a pixel would dominate the
-    # noise.
+    # The lights face down, above the visible part. Visible lights far smaller than a pixel would
+    # dominate the noise.
     corner = 0.004 * np.array(((0, 0, 0), (1, 0, 0), (0, 0, 1)))
     write_ply(folder / "lamps.ply", centers[:, None, :] + corner)
     many = Scene("100,000 small lights", 8, eye=(0, 2.5, 9), direction=(0, -0.5, -1), fov=50)
@@ -128,12 +128,12 @@ def scenes(meshes, folder):
 
 
 def error(pictures):
-    """Returns the mean squared error of one picture, from pairs."""
+    """Returns the mean squared error of one picture, estimated from pairs of pictures."""
     return np.mean([((a - b) ** 2).mean() / 2 for a, b in itertools.combinations(pictures, 2)])
 
 
 def spent(work):
-    """Returns the result of work and its CPU time, including child processes."""
+    """Returns the result of `work` and its CPU time, including child processes."""
     def now():
         return time.process_time() + sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
     start = now()
@@ -176,7 +176,7 @@ def race(given, scene, folder):
 
 
 def begun(**numbers):
-    """Parses the options, integers with their defaults; initialises Mitsuba."""
+    """Parses the options (`numbers` are integers with their defaults) and initialises Mitsuba."""
     arguments = argparse.ArgumentParser()
     arguments.add_argument("program")
     arguments.add_argument("meshes", type=pathlib.Path)

@@ -1,7 +1,8 @@
-//! `cargo xtask prose`: finds sentences that an engineer of the field would not write.
+//! `cargo xtask prose`: finds unusual words and phrases in comments, messages and documents.
 //!
-//! Reads comments, messages (string literals of several words) and documents, joins their lines,
-//! and searches for the words of `xtask/prose.txt`. Also limits comments to 100 columns.
+//! Reads comments, messages (string literals of several words) and documents, joins the lines of
+//! each paragraph, and searches for the phrases of `xtask/prose.txt`. Also checks that comments
+//! have at most 100 columns.
 
 use anyhow::{Context, Result};
 use std::collections::BTreeMap;
@@ -10,23 +11,23 @@ use std::process::ExitCode;
 
 /// Maximum number of columns of a comment.
 const MAX_COLUMNS: usize = 100;
-/// Marks a line of code that keeps a listed word.
+/// Marker for a line of code in which listed words are allowed.
 const KEEP: &str = "// prose: keep";
 
-/// A word or phrase to avoid.
+/// A phrase to avoid, from `xtask/prose.txt`, and what to write instead.
 struct Rule {
     phrase: String,
     instead: String,
-    /// True if it only applies to the start of doc comments.
+    /// True if the phrase is only forbidden at the start of a doc comment.
     begin: bool,
 }
 
-/// Text between blank lines, with the line of each of its bytes.
+/// A paragraph of a comment or document, joined to one line so that phrases can be searched.
 struct Paragraph {
     text: String,
-    /// Byte offset where each line starts, with its number.
+    /// Byte offset at which each line starts, and the number of the line.
     lines: Vec<(usize, usize)>,
-    /// True if it starts a doc comment.
+    /// True if the paragraph is the start of a doc comment.
     begins: bool,
 }
 
@@ -36,7 +37,7 @@ impl Paragraph {
     }
 }
 
-/// Prints findings and counts; fails if there is any.
+/// Prints findings and counts. Fails if there are any findings.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let root = crate::root()?;
     let list = std::fs::read_to_string(root.join("xtask/prose.txt"))?;
@@ -73,7 +74,7 @@ fn rules(list: &str) -> Result<Vec<Rule>> {
             "[phrase]" => begin = Some(false),
             _ => {
                 let (phrase, instead) = line.split_once('|').context("a row is `phrase | instead`")?;
-                let begin = begin.context("a row stands below [begin] or [phrase]")?;
+                let begin = begin.context("a row must be below [begin] or [phrase]")?;
                 rules.push(Rule { phrase: phrase.trim().to_lowercase(), instead: instead.trim().into(), begin });
             }
         }
@@ -81,7 +82,8 @@ fn rules(list: &str) -> Result<Vec<Rule>> {
     Ok(rules)
 }
 
-/// Returns Rust sources and documents, sorted. Excludes word lists and third-party texts.
+/// Returns the paths of Rust sources and documents, sorted. Excludes word lists and third-party
+/// texts.
 fn sources(root: &Path) -> Result<Vec<PathBuf>> {
     let (mut all, mut folders) = (Vec::new(), vec![root.to_path_buf()]);
     while let Some(folder) = folders.pop() {
@@ -99,7 +101,7 @@ fn sources(root: &Path) -> Result<Vec<PathBuf>> {
     Ok(all)
 }
 
-/// Returns line, message and rule of the findings in a file.
+/// Returns the findings in a file: line, message and rule.
 fn found(text: &str, is_document: bool, rules: &[Rule]) -> Vec<(usize, String, String)> {
     let mut all = Vec::new();
     for (number, line) in text.lines().enumerate() {
@@ -130,7 +132,7 @@ fn found(text: &str, is_document: bool, rules: &[Rule]) -> Vec<(usize, String, S
     all
 }
 
-/// Returns the byte offsets at which a rule matches whole words of a lower-case text.
+/// Returns the byte offsets at which a rule matches whole words in a lower-case text.
 fn places(lower: &str, rule: &Rule, begins: bool) -> Vec<usize> {
     let (phrase, open) = rule.phrase.strip_suffix('*').map_or((rule.phrase.as_str(), false), |phrase| (phrase, true));
     let is_word = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
@@ -158,10 +160,10 @@ fn document(text: &str) -> Vec<Paragraph> {
     all
 }
 
-/// Returns comments and messages of Rust code.
+/// Returns the comments and messages of Rust code as paragraphs.
 fn code(text: &str) -> Vec<Paragraph> {
     let mut all: Vec<Paragraph> = Vec::new();
-    // `None` if the line before is not a comment; otherwise true for a doc comment.
+    // `None` if the previous line is not a comment; otherwise true for a doc comment.
     let mut before = None;
     for (number, line) in text.lines().enumerate() {
         let trimmed = line.trim_start();
@@ -204,7 +206,7 @@ impl Paragraph {
     }
 }
 
-/// Replaces code spans and format placeholders by a mark.
+/// Replaces code spans and format placeholders with a mark.
 fn without_code(line: &str) -> String {
     let text: String = line.split('`').enumerate().map(|(i, part)| if i % 2 == 0 { part } else { "§" }).collect();
     let mut parts = text.split('{');
@@ -215,7 +217,7 @@ fn without_code(line: &str) -> String {
     })
 }
 
-/// Returns the contents of the string literals that start or continue on a line, judged by the line
+/// Returns the contents of the string literals that start or continue on a line, based on this line
 /// alone.
 fn literals(line: &str) -> Vec<String> {
     let (mut all, mut current, mut escaped) = (Vec::new(), None::<String>, false);
@@ -228,7 +230,7 @@ fn literals(line: &str) -> Vec<String> {
         }
         escaped = c == '\\' && !escaped;
     }
-    // If a literal continues on the next line, use its first line.
+    // If a literal continues on the next line, keep the part on this line.
     all.extend(current);
     all
 }

@@ -1,4 +1,5 @@
-//! Contact sheets: models rendered with default options, beside their reference pictures.
+//! `cargo xtask sheet`: renders models with default options and writes contact sheets with their
+//! reference pictures.
 
 use anyhow::{Context, Result, bail};
 use durer::diag::{Diagnostics, Files};
@@ -19,6 +20,7 @@ const DOWN: u32 = 5;
 
 const ENDINGS: [&str; 6] = ["glb", "gltf", "obj", "ply", "stl", "3mf"];
 
+/// Runs `cargo xtask sheet`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let samples = crate::value(arguments, "--samples").map_or(Ok(32), |number| number.parse())?;
     let only = crate::value(arguments, "--only");
@@ -62,7 +64,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Collects the models in a folder recursively.
+/// Collects the models in a folder and below.
 fn below(folder: &Path, found: &mut Vec<PathBuf>) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
@@ -77,7 +79,7 @@ fn below(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Returns the screenshot of a Khronos sample model.
+/// Returns the path of the screenshot of a Khronos sample model.
 fn screenshot(path: &Path) -> Option<PathBuf> {
     let folder = path.parent()?.parent()?.join("screenshot");
     ["screenshot.png", "screenshot.jpg"].iter().map(|name| folder.join(name)).find(|path| path.is_file())
@@ -101,7 +103,7 @@ fn rendered(path: &Path, samples: u32, front: bool) -> Result<Image> {
     Ok(Image::clone(&part.pictures()?.layers.first().context("a picture")?.image))
 }
 
-/// Resizes a picture of any size by averaging, on grey.
+/// Scales a picture to the size of a cell by averaging, on a grey background.
 fn within(image: &Image) -> Result<Image> {
     let scale = image.width.max(image.height) as f32 / SIDE as f32;
     let (left, top) =

@@ -1,6 +1,6 @@
 //! `cargo xtask soak`: renders random scenes and files of all formats with all integrators, in one
-//! process and as commands. Checks that repeated work has the same hash, memory does not grow, and
-//! no handle leaks.
+//! process and with the command. Checks that repeated jobs have the same hash, that memory does not
+//! grow, and that no handles leak.
 
 use anyhow::{Context, Result, bail, ensure};
 use durer::describe::DescribedList;
@@ -14,21 +14,23 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::time::{Duration, Instant};
 
-/// Fraction of the time after which memory must not grow, and maximum growth in bytes.
+/// Fraction of the time after which memory must not grow any more, and the growth in bytes that is
+/// allowed.
 const WARM: f64 = 0.3;
 const SLACK: u64 = 96 << 20;
-/// Number of rounds between renders that are repeated with the command.
+/// One in this many rounds is also rendered with the command.
 const COMMANDS: u64 = 25;
-/// Maximum file size in bytes; larger files take too long.
+/// Maximum size of a file in bytes, because larger files take too long.
 const MAX_BYTES: u64 = 256 << 10;
 const MEMORY: u64 = 1 << 30;
 
-/// Scene to render: a random one, or a file.
+/// A scene to render in the soak test: randomly generated from a key, or read from a file.
 enum Scene {
     Random(u64),
     File(PathBuf),
 }
 
+/// Runs `cargo xtask soak`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let number = |name: &str, usual: f64| -> Result<f64> {
         crate::value(arguments, name)
@@ -45,7 +47,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let mut warm: Option<Usage> = None;
     let mut most = Usage::default();
     while start.elapsed() < time {
-        // Half of the keys repeat an earlier one, from a sliding window.
+        // Half of the rounds repeat an earlier job from a sliding window.
         let random = |place: u32, below: u64| hash(seed, rounds as u32, place, 0, 0) % below.max(1);
         let newest = 1 + rounds / 2;
         let key = if random(0, 2) == 0 { newest } else { newest.saturating_sub(random(1, 200)) };
@@ -65,7 +67,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
                 again += 1;
                 ensure!(
                     *before == found,
-                    "another hash of {} under {options:?}: {before:?}, {found:?}",
+                    "the hash of {} with {options:?} changed: {before:?}, {found:?}",
                     path.display()
                 );
             }
@@ -76,7 +78,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
             let own = command(&durer, &path, &options, folder.path())?;
             ensure!(
                 own == found,
-                "the command has another hash of {} under {options:?}: {own}, {found}",
+                "the command gives a different hash for {} with {options:?}: {own}, {found}",
                 path.display()
             );
         }
@@ -107,7 +109,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Returns small scenes and models of the repository.
+/// Returns the small scenes and models of the repository.
 fn files() -> Result<Vec<PathBuf>> {
     let (mut found, mut folders) = (Vec::new(), vec![crate::root()?.join("scenes")]);
     while let Some(folder) = folders.pop() {
@@ -129,7 +131,7 @@ fn files() -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Returns the file of a scene. Random scenes are written to `folder`.
+/// Returns the path of a scene. A random scene is written to `folder`.
 fn written(scene: &Scene, seed: u64, folder: &Path) -> Result<PathBuf> {
     Ok(match scene {
         Scene::File(path) => path.clone(),
@@ -143,7 +145,7 @@ fn written(scene: &Scene, seed: u64, folder: &Path) -> Result<PathBuf> {
     })
 }
 
-/// Renders a file in this process and returns the film's hash; `None` if the file is rejected.
+/// Renders a file in this process and returns the hash of the film; `None` if the file is rejected.
 fn rendered(path: &Path, options: &[(&str, &str)]) -> Result<Option<String>> {
     let load_options = LoadOptions { memory: Some(MEMORY), ..LoadOptions::default() };
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
@@ -159,7 +161,7 @@ fn rendered(path: &Path, options: &[(&str, &str)]) -> Result<Option<String>> {
     Ok(Some(part.hash().to_string()))
 }
 
-/// Renders a file with the `durer` command and returns the film's hash.
+/// Renders a file with the `durer` command and returns the hash of the film.
 fn command(durer: &Path, path: &Path, options: &[(&str, &str)], folder: &Path) -> Result<String> {
     let mut command = Command::new(durer);
     command.arg("render").arg(path).args(["--hash", "--quiet", "--no-checkpoint", "--memory", "1G", "-o"]);
@@ -173,7 +175,7 @@ fn command(durer: &Path, path: &Path, options: &[(&str, &str)], folder: &Path) -
     hash.with_context(|| format!("{}: {}", path.display(), String::from_utf8_lossy(&output.stderr)))
 }
 
-/// Resource usage of the process; zeros except on Linux.
+/// Memory and open handles of this process; zero except on Linux.
 #[derive(Clone, Copy, Default)]
 struct Usage {
     bytes: u64,

@@ -1,5 +1,5 @@
-//! Tests solids at full length: a million points against the Boolean of the parts, and the cost of
-//! rays.
+//! `cargo xtask solids`: tests a million points in solids against the Boolean of the parts, and
+//! measures the cost of rays.
 
 use anyhow::{Context, Result};
 use durer::bvh::{TraversalCounter, TraversalStats};
@@ -17,16 +17,17 @@ use std::time::{Duration, Instant};
 
 const POINTS: usize = 1_000_000;
 const RAYS: u32 = 200_000;
-/// Number of alternating runs; times are their minimum.
+/// Number of alternating runs. Times are minima over these runs.
 const TURNS: usize = 7;
 
+/// Runs `cargo xtask solids`.
 pub fn run() -> Result<ExitCode> {
     let status = Command::new("cargo")
         .args(["test", "--release", "--quiet", "-p", "durer", "--lib", "solids_have_the_points", "--", "--nocapture"])
         .env("DURER_SOLID_POINTS", POINTS.to_string())
         .status()
         .context("cannot run cargo")?;
-    println!("{:52} {:>8} {:>12} {:>12}", "a thousand spheres, random rays", "objects", "ns a ray", "tests a ray");
+    println!("{:52} {:>8} {:>12} {:>12}", "a thousand spheres, random rays", "objects", "ns per ray", "tests per ray");
     for (name, radius) in [("apart from each other", 0.3), ("touching: one tree of a thousand parts", 0.6)] {
         let plain = world("Group", radius)?;
         let merged = world("Merge", radius)?;
@@ -54,12 +55,12 @@ pub fn run() -> Result<ExitCode> {
     Ok(if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Returns a random number from 0 to 1.
+/// Returns a random number between 0 and 1.
 fn random(i: u32, dimension: u32) -> f32 {
     (hash(0, i, dimension, 0, 0) >> 40) as f32 / (1u64 << 24) as f32
 }
 
-/// Returns spheres on a jittered lattice of 10 x 10 x 10.
+/// Returns spheres on a jittered lattice of 10 x 10 x 10 points.
 fn balls(radius: f32) -> String {
     let ball = |i: u32| {
         let [x, y, z] = [i % 10, i / 10 % 10, i / 100].map(|k| k as f32);
@@ -87,7 +88,7 @@ fn compiled(body: &str) -> Result<World> {
     compile(&scene, Dialect::Durer.rules(), AccelKind::Bvh, resources, &mut diagnostics).context("no world")
 }
 
-/// Returns a ray between two random points in and around the lattice.
+/// Returns a ray between two random points in or near the lattice.
 fn ray(i: u32) -> Ray {
     let place = |first: u32| Vec3::new(random(i, first), random(i, first + 1), random(i, first + 2)) * 16.0 - 3.0;
     let origin = place(3);

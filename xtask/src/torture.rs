@@ -1,5 +1,5 @@
-//! Tests robustness: programs that are killed while they render and save, full disks, and read-only
-//! folders.
+//! `cargo xtask torture`: tests programs that are killed while they render and save, full disks,
+//! and read-only folders.
 
 use crate::build::durer;
 use anyhow::{Context, Result, bail, ensure};
@@ -11,9 +11,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Output, Stdio};
 use std::time::Instant;
 
-/// Options of the program that is killed.
+/// Options of the render that is killed.
 const WORK: &str = "--size 160x120 --samples 64 --checkpoint-every 10ms --threads 2 --quiet --resume --hash";
 
+/// Runs `cargo xtask torture`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let number = |name: &str, usual: u64| -> Result<u64> {
         crate::value(arguments, name)
@@ -27,6 +28,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// Program, scene and temporary folder of the torture tests.
 struct Bench {
     durer: PathBuf,
     scene: PathBuf,
@@ -62,14 +64,14 @@ fn last_line(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).lines().last().unwrap_or_default().to_string()
 }
 
-/// Kills renders of a program in a folder; see [`kills`].
+/// Runs the kill test of [`kills`] with a program in a folder.
 pub fn kills_in(durer: &Path, folder: &Path, count: u64, seed: u64) -> Result<()> {
     let scene = crate::root()?.join("scenes/whitted.txt");
     kills(&Bench { durer: durer.into(), scene, folder: folder.into() }, count, seed)
 }
 
-/// Starts the program again and again and kills it at random times, `kills` times in all. The final
-/// film must be the same as without kills.
+/// Starts the program repeatedly and kills it at random times, until there were `kills` kills. The
+/// final film must be the same as without kills.
 fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
     let (calm, wild) = (bench.place("calm")?.join("p.exr"), bench.place("wild")?.join("p.exr"));
     let start = Instant::now();
@@ -79,7 +81,7 @@ fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
     let (mut killed, mut finished, mut litter, mut parts) = (0, 0, 0, 0);
     while killed < kills {
         let mut child = bench.render(WORK, &wild).spawn()?;
-        // Some kills are during start-up, most during rendering, and some during saving.
+        // Some kills happen during start-up, most during rendering, and some during saving.
         let share = (hash(seed, killed as u32, finished, 0, 0) >> 11) as f64 / (1_u64 << 53) as f64;
         std::thread::sleep(usual.mul_f64(share * 0.4));
         child.kill()?;
@@ -95,9 +97,9 @@ fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
         for name in names(wild.parent().context("a folder")?)? {
             let path = wild.with_file_name(&name);
             match name.as_str() {
-                "p.exr" => drop(read(&fs::read(path)?, &name).with_context(|| format!("torn: {name}"))?),
+                "p.exr" => drop(read(&fs::read(path)?, &name).with_context(|| format!("damaged: {name}"))?),
                 "p.exr.part" => {
-                    PartialRender::read(&fs::read(path)?).with_context(|| format!("torn: {name}"))?;
+                    PartialRender::read(&fs::read(path)?).with_context(|| format!("damaged: {name}"))?;
                     parts += 1;
                 }
                 _ => litter += 1,
@@ -108,15 +110,15 @@ fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
     ensure!(last_line(&output) == expected, "the final hash differs");
     ensure!(fs::read(&wild)? == fs::read(&calm)?, "the final file differs");
     let left = names(wild.parent().context("a folder")?)?;
-    ensure!(left == ["p.exr"], "litter: {left:?}");
+    ensure!(left == ["p.exr"], "files left over: {left:?}");
     println!(
-        "{killed} kills: {parts} checkpoints met, none torn; {finished} runs ended in between, all with one hash; \
-         temporary files seen {litter}, 0 left at the end"
+        "{killed} kills: {parts} checkpoints read, none damaged; {finished} runs finished, all with the same hash; \
+         {litter} temporary files seen, 0 left at the end"
     );
     Ok(())
 }
 
-/// Tests every writer on a disk with space for only some bytes, and on a read-only disk.
+/// Tests every image writer on a disk with space for only some bytes, and on a read-only disk.
 fn full_disks(bench: &Bench, offsets: u64) -> Result<()> {
     let mut writers: Vec<(String, String)> =
         FORMATS.iter().map(|format| (format!("p.{}", format.extensions[0]), "--size 48x36".into())).collect();
@@ -130,17 +132,17 @@ fn full_disks(bench: &Bench, offsets: u64) -> Result<()> {
             let place = bench.place("limited")?;
             let path = place.join(name);
             fs::write(&path, "old")?;
-            // With SIGXFSZ ignored, a write beyond the limit returns an error, as on a full disk.
+            // With SIGXFSZ ignored, a write beyond the limit fails as on a full disk.
             let inner = bench.render(&format!("{options} --quiet"), &path);
             let mut command = Command::new("sh");
             command.args(["-c", "trap '' XFSZ; exec prlimit --fsize=\"$0\" \"$@\"", &limit.to_string()]);
             let output = command.arg(inner.get_program()).args(inner.get_args()).output()?;
             refused(&output, "cannot write", name, limit)?;
             ensure!(fs::read(&path)? == b"old", "{name}: the old file is not intact at {limit}");
-            ensure!(names(&place)? == [name.clone()], "{name}: litter at {limit}: {:?}", names(&place)?);
+            ensure!(names(&place)? == [name.clone()], "{name}: files left over at {limit}: {:?}", names(&place)?);
             fs::remove_file(path)?;
         }
-        // Fewer free pages in each try, and never enough for the file.
+        // Each try has fewer free pages, and never enough for the file.
         let small =
             tiny_disk(bench, name, options, "head -c \"$FILL\" /dev/zero > filler", size.div_ceil(PAGE).min(10))?;
         let read_only = tiny_disk(bench, name, options, "mount -o remount,ro .", 1)?;
@@ -152,8 +154,8 @@ fn full_disks(bench: &Bench, offsets: u64) -> Result<()> {
 /// Block size of the test disk in bytes.
 const PAGE: u64 = 4096;
 
-/// Renders to a separate small disk after the command `spoil`. Returns the number of tries, or 0 if
-/// disks cannot be mounted.
+/// Renders to a small separate disk, after the shell command `spoil`. Returns the number of tries,
+/// or 0 if disks cannot be mounted.
 fn tiny_disk(bench: &Bench, name: &str, options: &str, spoil: &str, tries: u64) -> Result<u64> {
     const SCRIPT: &str = "mount -t tmpfs -o size=64k tmpfs \"$0\" || exit 99; cd \"$0\"; echo old > \"$NAME\"
         eval \"$SPOIL\" 2> /dev/null; \"$@\" 2>&1; code=$?
@@ -163,14 +165,14 @@ fn tiny_disk(bench: &Bench, name: &str, options: &str, spoil: &str, tries: u64) 
         let inner = bench.render(&format!("{options} --quiet --threads 1"), &place.join(name));
         let mut command = Command::new("unshare");
         command.args(["-Urm", "sh", "-c", SCRIPT]).arg(&place).arg(inner.get_program()).args(inner.get_args());
-        // The old file occupies one of the sixteen pages.
+        // The old file occupies one of the sixteen pages of the disk.
         let fill = (15 - i) * PAGE;
         let output = command.env("NAME", name).env("SPOIL", spoil).env("FILL", fill.to_string()).output()?;
         match output.status.code() {
-            // This user may not mount disks.
+            // This user is not allowed to mount disks.
             Some(99) | None => return Ok(0),
             Some(98) => bail!("{name}: the old file is not intact"),
-            Some(97) => bail!("{name}: litter"),
+            Some(97) => bail!("{name}: files left over"),
             _ => refused(&output, "cannot write", name, fill)?,
         }
     }

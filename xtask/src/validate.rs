@@ -1,4 +1,5 @@
-//! Compares light with known answers, in tables for lighting engineers: docs/validation.md.
+//! `cargo xtask validate`: compares light with known answers, and writes the tables in
+//! docs/validation.md.
 
 mod cases;
 mod measure;
@@ -11,7 +12,7 @@ use std::process::ExitCode;
 /// Default number of samples per case.
 const SAMPLES: u32 = 1 << 18;
 
-/// A table that is being written, and the number of its wrong rows.
+/// Text of docs/validation.md while it is written, and the number of wrong rows.
 #[derive(Default)]
 struct Table {
     text: String,
@@ -34,6 +35,7 @@ impl Table {
     }
 }
 
+/// Runs `cargo xtask validate`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let samples = match arguments {
         [] => SAMPLES,

@@ -1,11 +1,11 @@
-//! Runs `durer verify` on all scenes.
+//! `cargo xtask verify`: runs `durer verify` on all scenes.
 
 use crate::build::durer;
 use anyhow::{Context, Result};
 use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
-/// Samplers and stopping rules; scenes use them in turns.
+/// Options with different samplers and stopping rules, which the scenes use in turn.
 const JOBS: [&str; 6] = [
     "--show color,depth,normals,albedo,sample-count,variance",
     "--samples 40 --noise-threshold 0.03",
@@ -15,6 +15,7 @@ const JOBS: [&str; 6] = [
     "--filter mitchell --samples 13",
 ];
 
+/// Runs `cargo xtask verify`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let value = |name| crate::value(arguments, name);
     let (trials, only) = (value("--trials").map_or("500", String::as_str), value("--only"));

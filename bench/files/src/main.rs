@@ -1,4 +1,5 @@
-//! Reads mesh files from memory with other crates; started by `cargo xtask bench-files`.
+//! Measures how fast other crates read mesh files from memory. It is started by `cargo xtask
+//! bench-files`.
 
 use std::time::{Duration, Instant};
 

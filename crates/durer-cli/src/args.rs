@@ -1,4 +1,4 @@
-//! The command line.
+//! The definition of the command line and its subcommands.
 
 use crate::check::CheckArgs;
 use crate::compare::CompareArgs;
@@ -33,6 +33,7 @@ pub struct Cli {
     pub command: Command,
 }
 
+// The subcommands of `durer`. A doc comment here would replace the description of the program.
 #[derive(Subcommand)]
 pub enum Command {
     Render(Box<RenderCommand>),

@@ -16,17 +16,17 @@ use std::time::{Duration, Instant};
 /// Time before the first save, unless `--checkpoint-every` is shorter.
 const SHORT: Duration = Duration::from_secs(1);
 
-/// Estimated bytes saved per second, before the first save is measured.
+/// Estimated bytes saved per second, used until the first save is measured.
 const SAVED_PER_SECOND: u64 = 200_000_000;
 
-/// Saves unfinished work and previews.
+/// Saves unfinished work and previews while a long picture is rendered, and restores saved work.
 pub struct Autosave {
     /// File of the saved work.
     place: Option<Destination>,
-    /// True if the user asked for the saved work itself; false if it is only kept until the picture
-    /// is written.
+    /// True if the saved work is an output that the user asked for. Otherwise it is kept only until
+    /// the picture is written.
     wanted: bool,
-    /// Earlier work to continue.
+    /// Earlier work to continue, if any.
     saved: Cell<Option<Box<PartialRender>>>,
     resume: bool,
     restart: bool,
@@ -54,7 +54,7 @@ impl Autosave {
             _ => (lengthened(output, ".part"), "--checkpoint (default PICTURE.part)"),
         };
         let wanted = work.shard.is_some() || work.checkpoint.is_some();
-        // A stream has no folder for a checkpoint.
+        // A stream has no folder in which to put a checkpoint.
         let beside_stream = !wanted && (output.starts_with("/dev") || output.starts_with("/proc"));
         let place = match work.no_checkpoint || beside_stream {
             true => None,
@@ -95,7 +95,7 @@ impl Autosave {
         })
     }
 
-    /// Returns the saved part if it continues this work, otherwise `fresh`.
+    /// Returns the saved work if it belongs to this render, otherwise `fresh`.
     pub fn begin(&self, fresh: PartialRender) -> Result<PartialRender, Failure> {
         let (Some(saved), Some(place)) = (self.saved.take(), &self.place) else { return Ok(fresh) };
         let name = place.path().display();
@@ -129,7 +129,7 @@ impl Autosave {
         }
     }
 
-    /// Returns true if the remaining work takes longer than saving.
+    /// Returns true if the remaining work probably takes longer than saving.
     fn is_worth_saving(&self, part: &PartialRender) -> bool {
         let (all, done) = part.work();
         let left = self.start.elapsed().as_secs_f64() * all.saturating_sub(done) as f64 / done.max(1) as f64;
@@ -144,7 +144,7 @@ impl Autosave {
         }
     }
 
-    /// Saves a part file that the user asked for.
+    /// Writes the finished part file of `--shard`.
     pub fn save(&self, part: &PartialRender) -> Result<(), Failure> {
         let Some(place) = &self.place else { return Ok(()) };
         progress::saving();
@@ -153,7 +153,8 @@ impl Autosave {
         Ok(())
     }
 
-    /// Called after the picture is saved. Removes saved work that is no longer needed.
+    /// Removes saved work that is no longer needed, after the picture was written. Keeps unfinished
+    /// work if the user asked for it.
     pub fn done(&self, part: &PartialRender, finished: bool) {
         let Some(place) = &self.place else { return };
         if !finished && (self.wanted || self.resume) {
@@ -164,13 +165,13 @@ impl Autosave {
             || self.is_ours.get()
             || read_part(place.path()).is_ok_and(|old| part.same_work(&old).is_ok())
         {
-            // Remove only work of this picture, or work that `--restart` discards. If that fails,
-            // the useless file does no harm.
+            // Remove only work on this picture, or work that `--restart` discards. If that fails,
+            // the file is useless but harmless.
             let _ = std::fs::remove_file(place.path());
         }
     }
 
-    /// Saves the work so far. Returns the names of the files written.
+    /// Saves the work so far. Returns the names of the written files.
     pub fn after_interrupt(&self, part: &PartialRender) -> Vec<String> {
         let due = |place: &&Destination| part.work().1 > 0 && !place.is_stream();
         let Some(place) = self.place.as_ref().filter(due) else { return Vec::new() };
@@ -184,7 +185,7 @@ impl Autosave {
         }
     }
 
-    /// Saves the work after a panic, and describes how to reproduce it.
+    /// Saves the work after a panic and returns a failure that says how to reproduce the panic.
     pub fn after_panic(&self, part: &PartialRender, panicked: &Panicked, command: &str) -> Failure {
         let saved = self.after_interrupt(part);
         let kept = if saved.is_empty() { String::new() } else { format!("\nthe work so far is in {}", saved.join("")) };
@@ -192,8 +193,8 @@ impl Autosave {
     }
 }
 
-/// Reads earlier work to continue. Refuses to replace a file that is not a part, and unfinished
-/// work without `--resume` or `--restart`.
+/// Reads earlier work to continue. Fails if the file is not a part file, or if it holds unfinished
+/// work and neither `--resume` nor `--restart` is given.
 fn what_was_saved(args: &RenderArgs, path: &Path) -> Result<Option<Box<PartialRender>>, Failure> {
     let name = path.display();
     if !path.exists() {
@@ -226,7 +227,7 @@ fn percent(part: &PartialRender) -> u64 {
     100 * done / all.max(1)
 }
 
-/// Checks that a part file can be written here: the file does not exist, is empty, or is a part
+/// Checks that a part file can be written here: the file must not exist, or be empty or a part
 /// file.
 fn check_is_part(path: &Path) -> Result<(), String> {
     let start = match start_of(path) {
@@ -241,7 +242,7 @@ fn check_is_part(path: &Path) -> Result<(), String> {
     }
 }
 
-/// Saves a part, replacing only a part.
+/// Writes a part file. Replaces only part files.
 fn save_part(place: &Destination, part: &PartialRender) -> Result<(), String> {
     if !place.is_stream() {
         check_is_part(place.path())?;
@@ -249,7 +250,7 @@ fn save_part(place: &Destination, part: &PartialRender) -> Result<(), String> {
     save_all(&[(place, part)]).map_err(|error| error.to_string())
 }
 
-/// Reads a part.
+/// Reads a part file.
 pub fn read_part(path: &Path) -> Result<PartialRender, Failure> {
     read_part_of(path)?.map_err(|error| bad(format!("`{}` cannot be used: {error}", path.display())))
 }

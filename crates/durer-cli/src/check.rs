@@ -23,6 +23,7 @@ use change::Change;
 use checked_scene::{CheckedScene, look};
 pub use render_review::{after_course, after_render, looks};
 
+/// Runs `durer check`. Fails with exit code 1 if there are warnings or errors.
 pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     if args.codes {
         let width = CHECKS.iter().map(|check| check.code.len()).max().unwrap_or_default();
@@ -90,7 +91,7 @@ fn one(path: &Path, args: &CheckArgs) -> Result<(CheckedScene, Vec<Change>), Fai
     Ok((checked, changes))
 }
 
-/// Describes what edits do to the text.
+/// Describes the changes that edits make to the text.
 fn does(edits: &[Edit]) -> String {
     let one = |edit: &Edit| match edit.text.trim() {
         "" => "removes it".to_string(),

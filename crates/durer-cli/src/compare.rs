@@ -27,8 +27,8 @@ use pixel_hit::pixel_hits;
 use stage::{Stage, stage};
 use std::path::{Path, PathBuf};
 
-/// Runs the comparison. Every failure has the exit code of bad input, because 1 means that pictures
-/// differ.
+/// Runs `durer compare`. Failures have the exit code of invalid input, because 1 means that
+/// pictures differ.
 pub fn run(args: &CompareArgs) -> Result<(), Failure> {
     work(args).map_err(|failure| match failure {
         Failure::Other(error) => Failure::Input(Some(error.to_string())),
@@ -92,7 +92,7 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
     }
 }
 
-/// Finds the scene's objects where pictures differ, and the mistakes that explain the difference.
+/// Traces the scene where pictures differ, and finds the mistakes that explain the difference.
 fn explain(args: &CompareArgs, all: &mut [ComparedPair], memory: u64, guard: &mut Guard) -> Result<(), Failure> {
     if args.scene.is_none() {
         return Ok(());
@@ -101,7 +101,7 @@ fn explain(args: &CompareArgs, all: &mut [ComparedPair], memory: u64, guard: &mu
     for compared in all {
         let (Outcome::Compared(found), Some(picture)) = (&compared.outcome, &compared.pair.picture) else { continue };
         let [reference, test] = read_both([&compared.pair.reference, picture], memory).map_err(bad)?;
-        // Find the stage once per reference: all pictures of a class share it.
+        // Open the scene once per reference, because all pictures of a class share it.
         if stages.iter().all(|(path, _)| *path != compared.pair.reference) {
             stages.truncate(16);
             stages.insert(0, (compared.pair.reference.clone(), stage(args, &compared.pair, &reference, guard)?));
@@ -117,7 +117,7 @@ fn explain(args: &CompareArgs, all: &mut [ComparedPair], memory: u64, guard: &mu
     Ok(())
 }
 
-/// Compares one pair.
+/// Compares one pair of pictures. `page` is true if a report needs their pixels.
 fn one(pair: Pair, options: &Options, memory: u64, page: bool) -> ComparedPair {
     let Some(path) = &pair.picture else {
         return ComparedPair::new(pair, Outcome::Missing, None);

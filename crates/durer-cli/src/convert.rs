@@ -36,6 +36,7 @@ pub struct ConvertArgs {
     pub to: Option<String>,
 }
 
+/// Runs `durer convert`.
 pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let mut guard = Guard::default();
     guard.reads(&args.scene)?;
@@ -56,14 +57,14 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         return Err(bad(format!("{message}, a model as .gltf or .glb, its meshes as .ply, .obj or .stl")));
     }
     let as_scene = scene_format_for(&name).filter(|format| format.write.is_some() && args.to.is_none());
-    // Write the model only: the renderer adds a missing camera and lights later.
+    // Write only the model: the renderer adds a missing camera and lights later.
     options.scene_defaults.bare = as_scene.is_some();
-    // A camera in a file has no image size, so frame it for a square picture.
+    // A camera in a file has no image size, so frame the model for a square picture.
     options.scene_defaults.aspect = Some(1.0);
     let loaded = load(&args.scene, &options, &mut files, &mut diagnostics).map_err(report::unreadable)?;
     report::print(&files, &diagnostics, false);
     let loaded = loaded.ok_or(Failure::Input(None))?;
-    // Protect the files that the written text would name.
+    // Do not overwrite the files that the converted scene refers to.
     loaded.named_files().iter().try_for_each(|path| guard.reads(path))?;
     if as_scene.is_some() {
         let mut found = Diagnostics::default();
@@ -91,7 +92,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     if !loaded.scene.assets.has_loose() {
         return output::save(&[(&place, text(&loaded.scene))], false);
     }
-    // A text scene refers to files, so write those of a model into a folder named after the output.
+    // A text scene refers to files, so write those of a model to a folder named after the output.
     let stem = args.output.file_stem().unwrap_or_default().to_string_lossy();
     let folder = plain(&stem);
     if folder == name {
@@ -114,12 +115,12 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     output::save(&places.iter().zip(contents).collect::<Vec<_>>(), false)
 }
 
-/// Returns true if files with this extension can be read but not written.
+/// Returns true if files with this name can be read but not written.
 fn is_only_read(name: &str) -> bool {
     mesh_format_for(name).is_none() && scene_format_for(name).is_some_and(|format| format.write.is_none())
 }
 
-/// Returns the render options that a file requests, if any.
+/// Returns the render options that a file contains, if any.
 fn requested_picture(render_defaults: &RenderDefaults) -> Option<String> {
     let size = render_defaults.size.map(|(width, height)| format!("--size {width}x{height}"));
     let crop = render_defaults.crop.map(|(left, top, width, height)| format!("--crop {left},{top},{width}x{height}"));

@@ -1,4 +1,4 @@
-//! `durer course`: accepts the command lines of the course's programs from any year.
+//! `durer course`: accepts the command lines of the course's programs.
 
 mod options;
 mod year;
@@ -45,9 +45,10 @@ pub struct CourseArgs {
     pub arguments: Vec<String>,
 }
 
-/// Memory limit; the old programs have no option for it.
+/// Memory limit. The course's programs have no option for it.
 const MEMORY: Memory = Memory::Percent(80.0);
 
+/// Runs `durer course`. `program_name` is the official program that is emulated, if any.
 pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Result<(), Failure> {
     if arguments.is_empty() || arguments.iter().any(|a| a == "--help" || a == "-h" || a == "-help") {
         usage();
@@ -69,7 +70,7 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     for zoom in [zooms.0, zooms.1].into_iter().flatten() {
         diagrams::check(&job, zoom).map_err(failed)?;
     }
-    // The picture of the grid replaces the colour picture.
+    // The picture of the grid is written instead of the colour picture.
     let grid_wanted = job.color && parsed.has("-visualize_grid");
     let job = Job { color: job.color && !grid_wanted, ..job };
     let (rendered, grid, diagrams) = progress::watch(&control, quiet, || {
@@ -80,7 +81,7 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
         Ok((rendered, grid.map(|image| Layer::color("color", image)), [samples, filter]))
     })
     .map_err(failed)?;
-    // The interrupt can arrive after the work is done; honour it anyway.
+    // If the interrupt arrives after the work is done, it still ends the program.
     if control.cancel.load(Relaxed) {
         return Err(failed(RenderError::Cancelled));
     }
@@ -142,7 +143,7 @@ fn load_options(arguments: &Arguments, program_name: Option<&'static Program>) -
     })
 }
 
-/// Files to write, in the order of the pictures.
+/// Files that `durer course` writes, in the order of the pictures.
 struct Outputs(Vec<(Destination, &'static Format)>);
 
 impl Outputs {
@@ -166,8 +167,8 @@ impl Outputs {
     }
 }
 
-/// Returns the format for a name. Names without an extension are TGA, as in the old programs; with
-/// the dialect f12a4, every name except .bmp is TGA.
+/// Returns the format for a file name. As in the course's programs, names without an extension are
+/// TGA; in the dialect f12a4, so is every name that does not end in .bmp.
 fn course_format(name: &str, requested: Option<Dialect>) -> Result<&'static Format, Failure> {
     let nameless = Path::new(name).extension().is_none();
     let is_tga = nameless || requested == Some(Dialect::F12a4) && !name.ends_with(".bmp");
@@ -177,7 +178,8 @@ fn course_format(name: &str, requested: Option<Dialect>) -> Result<&'static Form
 fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> {
     let rules = &compiled.loaded.rules;
     let size = arguments.numbers::<u32>("-size", 2)?;
-    // A camera with a fixed aspect ratio determines the size. The old programs have no such camera.
+    // A camera with a fixed aspect ratio determines the size. The course's programs have no such
+    // camera.
     let natural = || Raster::natural_size(compiled.world.camera().proportions(), rules.size);
     let (width, height) = size.map_or_else(natural, |size| (size[0], size[1]));
     if width == 0 || height == 0 {
@@ -197,8 +199,8 @@ fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> 
     if depth_range.is_some_and(|(min, max)| !(min.is_finite() && max.is_finite() && (min != max || clamped))) {
         return Err(bad("-depth needs two different numbers"));
     }
-    // With an empty range the old program divides zero by zero and writes black, as if all depths
-    // were beyond the range.
+    // For an empty range the course's program divides zero by zero and writes black, as if all
+    // depths were beyond the range.
     let depth_range = depth_range.map(|range| if range.0 == range.1 { (-2.0, -1.0) } else { range });
     let bounces = arguments.number("-bounces")?.unwrap_or(rules.bounces);
     if bounces > WhittedOptions::MAX_BOUNCES {
@@ -230,12 +232,13 @@ fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> 
     })
 }
 
-/// Size of the picture that the 2012 program writes with only one of `-jitter` and `-filter`.
+/// Unusual picture size that the 2012 program writes if only one of `-jitter` and `-filter` is
+/// given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum OddSize {
-    /// Every sub-pixel, three by three per pixel.
+    /// Three times as wide and high: every sub-pixel is a pixel.
     Threefold,
-    /// The mean of each three by three pixels.
+    /// A third as wide and high: each pixel is the mean of 3 by 3 pixels.
     Third,
 }
 
@@ -248,7 +251,7 @@ fn odd_size(arguments: &Arguments, compiled: &CompiledInput) -> Option<OddSize> 
     }
 }
 
-/// Averages blocks of three by three pixels.
+/// Averages blocks of 3 by 3 pixels.
 fn third(layer: &mut Layer) -> Result<(), Failure> {
     let &Image { width, height, ref pixels } = &*layer.image;
     let pixels = average_3x3(pixels, width, height);
@@ -260,7 +263,7 @@ fn third(layer: &mut Layer) -> Result<(), Failure> {
 fn sampling(arguments: &Arguments, dialect: Dialect) -> Result<Sampling, Failure> {
     let (jitter, blur) = (arguments.has("-jitter"), arguments.has("-filter"));
     if jitter || blur {
-        // The programs of 2016 and later accept both options without effect.
+        // The programs of 2016 and later accept both options but ignore them.
         let ignored = matches!(dialect, Dialect::F16 | Dialect::F23);
         return Ok(if ignored { Sampling::Center } else { Sampling::Course2012 { jitter, blur } });
     }
@@ -306,7 +309,7 @@ fn threads(arguments: &Arguments) -> Result<Option<usize>, Failure> {
     Ok(threads)
 }
 
-/// Prints the output of `-stats`.
+/// Prints the output of the option `-stats`.
 fn stats(compiled: &CompiledInput, control: &Control) {
     let rays = control.rays.load(Relaxed);
     say(&format!("objects {}, rays {rays}", compiled.world.objects().len()));

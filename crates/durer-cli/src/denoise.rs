@@ -9,7 +9,7 @@ use durer::diag::Diagnostic;
 use durer::image::Layer;
 use durer::render::NoisyPicture;
 
-/// Choice of denoiser.
+/// Denoiser selected with `--denoise`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Denoiser {
     /// Open Image Denoise if it is found, otherwise the built-in denoiser.
@@ -24,7 +24,7 @@ pub enum Denoiser {
 impl Denoiser {
     const NAMES: [&'static str; 3] = ["auto", "oidn", "own"];
 
-    /// Returns a parser of denoiser names.
+    /// Returns a parser for the names of denoisers.
     pub fn parser() -> impl TypedValueParser<Value = Denoiser> {
         PossibleValuesParser::new(Denoiser::NAMES).map(|name| match name.as_str() {
             "oidn" => Denoiser::Oidn,
@@ -33,7 +33,7 @@ impl Denoiser {
         })
     }
 
-    /// Denoises a picture.
+    /// Denoises a colour picture and returns it as a layer.
     pub fn clean(self, noisy: NoisyPicture, threads: Option<usize>, quiet: bool) -> Result<Layer, Failure> {
         if self == Denoiser::Own {
             return Ok(noisy.denoised());
@@ -51,6 +51,6 @@ impl Denoiser {
     }
 }
 
-/// Advice on installing the library.
+/// Advice on how to install Open Image Denoise.
 const HOW: &str = "to install Open Image Denoise, run `pip install pyoidn` and set OIDN_DIR to its folder \
                    `pyoidn/oidn`, or to any other folder with the library; `--denoise=own` needs no library";

@@ -1,4 +1,4 @@
-//! Diagrams of the sampling.
+//! Diagrams of sample positions and filter weights.
 
 use durer::film::course::{CourseFilter, diagram};
 use durer::image::{Image, Layer};
@@ -6,7 +6,7 @@ use durer::math::Vec2;
 use durer::render::{Control, Job, RenderError, Rendered, Sampling};
 use durer::world::World;
 
-/// Adds the requested diagrams of samples and filter.
+/// Renders the requested diagrams and adds them to the pictures.
 pub fn add(
     shows: &[String],
     zoom: u32,
@@ -27,13 +27,13 @@ pub fn add(
     Ok(())
 }
 
-/// Renders the sample positions as a layer.
+/// Renders a diagram of the sample positions.
 pub fn samples_layer(world: &World, job: &Job, control: &Control, zoom: u32) -> Result<Layer, RenderError> {
     let stored = durer::render::sample_diagram(world, job, control)?;
     layer("samples", diagram::samples(&stored, zoom))
 }
 
-/// Renders the filter's weights as a layer.
+/// Renders a diagram of the filter weights.
 pub fn filter_layer(job: &Job, zoom: u32) -> Result<Layer, RenderError> {
     let made = match job.sampling {
         Sampling::Course2004 { filter, .. } => {
@@ -50,7 +50,7 @@ pub fn filter_layer(job: &Job, zoom: u32) -> Result<Layer, RenderError> {
     layer("filter", made)
 }
 
-/// Rejects a diagram that would be too large.
+/// Fails if a diagram would be too large.
 pub fn check(job: &Job, zoom: u32) -> Result<(), RenderError> {
     let side = |pixels: u32| pixels.saturating_mul(zoom).saturating_add(1);
     let (width, height) = (side(job.width), side(job.height));

@@ -1,4 +1,4 @@
-//! Options of the conversion to 8-bit pictures.
+//! Options for the conversion to 8-bit pictures.
 
 use crate::failure::{Failure, bad};
 use clap::Args;
@@ -37,7 +37,7 @@ pub struct ExposureArgs {
 }
 
 impl ExposureArgs {
-    /// Returns the factor that the options apply to radiance.
+    /// Returns the factor by which radiance is multiplied.
     pub fn factor(&self) -> Result<f32, Failure> {
         let stops = self.exposure;
         if !(stops.is_finite() && stops.abs() <= 60.0) {
@@ -53,7 +53,7 @@ impl ExposureArgs {
     }
 }
 
-/// Returns a camera's pixel value for 1 cd/m², where 1 is white.
+/// Returns the pixel value that a camera records for 1 cd/m², relative to white.
 ///
 /// Source: Lagarde and de Rousiers, *Moving Frostbite to Physically Based Rendering*, SIGGRAPH 2014
 /// course, section 5.1.2. White is 78 / (0.65 S) N² / t, from ISO 12232 and a lens that transmits
@@ -76,7 +76,7 @@ fn seconds(text: &str) -> Result<f32, String> {
 }
 
 impl DisplayArgs {
-    /// Returns the display conversion.
+    /// Returns exposure, tone mapping curve and transfer curve.
     pub fn display(&self) -> Result<Display, Failure> {
         let exposure = self.exposure.factor()?;
         Ok(Display { exposure, tone: Tone::from_name(&self.tone).unwrap_or_default(), transfer: self.transfer() })

@@ -1,4 +1,4 @@
-//! `durer explain`: explains a pixel's colour.
+//! `durer explain`: explains the colour of a pixel.
 
 mod page;
 
@@ -68,8 +68,8 @@ pub struct ExplainArgs {
     pub html: Option<PathBuf>,
 }
 
-/// Splits the numbers of a quoted `--ray` into separate words: clap would take `-1 0 0` for an
-/// option.
+/// Splits the numbers of a quoted `--ray` into separate words, because clap would treat `-1 0 0` as
+/// an option.
 pub fn apart(words: Vec<OsString>) -> Vec<OsString> {
     let mut all: Vec<OsString> = Vec::with_capacity(words.len());
     for word in words {
@@ -83,6 +83,7 @@ pub fn apart(words: Vec<OsString>) -> Vec<OsString> {
     all
 }
 
+/// Runs `durer explain`.
 pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     if args.render.work.time.is_some() {
         return Err(bad(
@@ -102,7 +103,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     };
     let subject = subject(args, &compiled, &job, picture.as_ref(), counts.as_ref())?;
     let names = Names { files: &compiled.files, scene: &compiled.loaded.scene, world: &compiled.world };
-    // Show one tree: all trees of a pixel would hide each other.
+    // Show a single tree: the rays of all samples of a pixel would hide each other.
     let sample = match &subject {
         Subject::Pixel(pixel) => match (args.sample, args.worst) {
             (Some(sample), _) => sample as usize,
@@ -137,7 +138,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Renders the whole picture, and counts the samples of each pixel if they are adaptive.
+/// Renders the whole picture; with adaptive sampling, also returns the number of samples per pixel.
 fn picture(args: &ExplainArgs, compiled: &CompiledInput, job: &Job) -> Result<(Option<Image>, Option<Image>), Failure> {
     let counts = if job.adaptive { Aov::from_name("sample-count") } else { None };
     let job = Job { crop: None, color: true, aovs: counts.into_iter().collect(), ..job.clone() };
@@ -179,7 +180,7 @@ fn subject(
         return Err(bad(format!("pixel {x},{y} is outside the picture of {} x {} pixels", job.width, job.height)));
     }
     let world = &compiled.world;
-    // Adaptive sampling of a crop gives other counts than the whole picture.
+    // With adaptive sampling, a crop has different sample counts from the whole picture.
     let samples = counted(counts.filter(|_| job.crop.is_none()), pixel);
     let explanation = explain_of(world, job, pixel, samples).map_err(failed)?;
     if let Some(sample) = args.sample.filter(|&sample| sample as usize >= explanation.samples.len()) {
@@ -189,13 +190,13 @@ fn subject(
     Ok(Subject::Pixel(explanation))
 }
 
-/// Returns the number of samples of a pixel, if it is known.
+/// Returns the sample count of a pixel, if it is known.
 fn counted(counts: Option<&Image>, (x, y): (u32, u32)) -> Option<u32> {
     counts.map(|counts| at(counts, x, y).x as u32)
 }
 
-/// Returns the brightest firefly: among the pixels that differ most from their neighbours, the one
-/// to which a single sample adds most.
+/// Returns the brightest firefly: of the pixels that differ most from their neighbours, the one
+/// with the largest contribution of a single sample.
 fn worst(compiled: &CompiledInput, job: &Job, picture: &Image, counts: Option<&Image>) -> Result<Explanation, Failure> {
     const CANDIDATES: usize = 256;
     let places = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));
@@ -206,7 +207,7 @@ fn worst(compiled: &CompiledInput, job: &Job, picture: &Image, counts: Option<&I
     for (_, (x, y)) in odd {
         let samples = counted(counts, (x, y));
         let explanation = explain_of(&compiled.world, job, (x, y), samples).map_err(failed)?;
-        // The border of a visible light is bright too, but not a firefly.
+        // Pixels at the edge of a visible light are bright too, but not fireflies.
         let standing_out = if explanation.outlier().is_some() { 1.0 } else { 1e-6 };
         let adds = explanation.brightest().map_or(0.0, |(_, adds)| standing_out * adds);
         if best.as_ref().is_none_or(|(most, _)| adds > *most) {
@@ -220,7 +221,7 @@ fn at(picture: &Image, x: u32, y: u32) -> Color {
     picture.get(x, y).unwrap_or(Vec3::ZERO)
 }
 
-/// Returns the distance of a pixel's luminance from the median of its neighbours.
+/// Returns the absolute difference between a pixel's luminance and the median of its neighbours.
 fn oddness(picture: &Image, x: u32, y: u32) -> f64 {
     let mut around: Vec<f64> = (0..9)
         .filter(|&i| i != 4)
@@ -232,7 +233,7 @@ fn oddness(picture: &Image, x: u32, y: u32) -> f64 {
     (luminance_of(at(picture, x, y)) - middle).abs()
 }
 
-/// Returns the pixel with the greatest value, the first in reading order.
+/// Returns the pixel with the greatest value; of equal ones, the first in reading order.
 fn most(picture: &Image, value: impl Fn(u32, u32) -> f64) -> (u32, u32) {
     let places = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));
     let mut best = ((0, 0), f64::NEG_INFINITY);
@@ -255,7 +256,7 @@ fn percentage(share: f32) -> String {
     }
 }
 
-/// Formats a line with its contribution in front.
+/// Formats a line of an explanation, preceded by its contribution.
 pub fn shown(line: &TextLine, colored: bool, transfer: Transfer) -> String {
     let indent = "  ".repeat(line.depth);
     let text = match line.adds {
@@ -268,7 +269,7 @@ pub fn shown(line: &TextLine, colored: bool, transfer: Transfer) -> String {
     };
     match (colored, line.adds) {
         (false, _) => format!("{indent}{text}"),
-        // Dim terms that add nothing, and remarks.
+        // Dim remarks and terms that contribute nothing.
         (true, adds) if line.depth > 0 && adds.is_none_or(|adds| adds.is(0.0)) => {
             format!("{indent}\x1b[2m{text}\x1b[0m")
         }

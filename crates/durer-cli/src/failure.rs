@@ -6,24 +6,24 @@ use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
 /// Exit code for an invalid scene, option or other input.
 const BAD_INPUT: u8 = 2;
-/// Exit code of `durer compare` if pictures differ. `cmp` and `diff` also use 1 for differences and
-/// 2 for errors.
+/// Exit code of `durer compare` if pictures differ. As with `cmp` and `diff`, 1 means differences
+/// and 2 means errors.
 const DIFFERENT: u8 = 1;
-/// Exit code of `durer check` for findings.
+/// Exit code of `durer check` if it reports warnings or errors.
 const FOUND: u8 = 1;
 
 /// Number of the last signal; 2 is Ctrl-C.
 static SIGNAL: AtomicU8 = AtomicU8::new(2);
 
-/// Records the signal that interrupted the work. The exit code is 128 plus its number, as in
-/// shells: 130 for Ctrl-C.
+/// Records the signal that interrupted the work. As in shells, the exit code is 128 plus its
+/// number: 130 for Ctrl-C.
 pub fn interrupted_by(signal: u8) {
     SIGNAL.store(signal, Relaxed);
 }
 
-/// Failure of a command.
+/// Reason why a command fails, which determines its message and its exit code.
 pub enum Failure {
-    /// Invalid input; diagnostics were printed, or the message says why.
+    /// Invalid input: diagnostics were already printed, or the message says why.
     Input(Option<String>),
     /// Any other error.
     Other(anyhow::Error),

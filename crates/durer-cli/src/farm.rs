@@ -1,4 +1,4 @@
-//! `durer farm`: job files for existing render farms, based on `--shard` and `durer merge`.
+//! `durer farm`: prints job files for render farms, based on `--shard` and `durer merge`.
 
 mod quote;
 
@@ -45,17 +45,18 @@ pub struct FarmArgs {
     pub options: Vec<String>,
 }
 
-/// Prints the job file.
+/// Runs `durer farm`: prints the job file.
 pub fn run(args: &FarmArgs) -> Result<(), Failure> {
     check_options(&args.options)?;
     say(job_file(args)?.trim_end());
     Ok(())
 }
 
-/// Maximum length of a job name in characters. Kubernetes allows 63, including the index.
+/// Maximum length of a job name in characters. Kubernetes allows 63, including the index of the
+/// task.
 const LONGEST_NAME: usize = 52;
 
-/// Returns the name of a job: letters, digits and dashes.
+/// Returns the name of a job, with letters, digits and dashes only.
 fn job_name(stem: &str) -> String {
     let allowed = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
     let name: String = stem.trim_matches(|c: char| !c.is_ascii_alphanumeric()).chars().map(allowed).collect();
@@ -63,7 +64,7 @@ fn job_name(stem: &str) -> String {
     format!("durer-{name}").trim_end_matches('-').into()
 }
 
-/// Fills in the template.
+/// Returns the template with the values of the job filled in.
 fn job_file(args: &FarmArgs) -> Result<String, Failure> {
     let text =
         |path: &std::path::Path| path.to_str().map(String::from).ok_or_else(|| bad(format!("{path:?} is not UTF-8")));
@@ -86,7 +87,7 @@ fn job_file(args: &FarmArgs) -> Result<String, Failure> {
     let Some(tasks) = numbers.count().checked_mul(shards) else {
         return Err(bad(format!("{} frames of {shards} shards are too many tasks", numbers.count())));
     };
-    // A frame as command-line words, and as an expression of the template's language.
+    // The animation as command-line words, and as an expression in the template's language.
     let (moving, words) = match moves {
         MotionSource::Turntable(count) => {
             (format!("--turntable {count} "), format!(r#", "--turned", str(360 * frame / {count})"#))
@@ -114,9 +115,9 @@ fn job_file(args: &FarmArgs) -> Result<String, Failure> {
     Ok(filled(&chosen(template, is_animation), &values))
 }
 
-/// Checks the render options.
+/// Checks that the options are valid for `durer render`.
 fn check_options(options: &[String]) -> Result<(), Failure> {
-    // A shard needs an output, which the template names.
+    // A shard needs an output, which the template adds.
     let words = ["render", "scene", "--output", "picture.png"].into_iter().chain(options.iter().map(String::as_str));
     let matches = RenderCommand::augment_args(clap::Command::new("render")).try_get_matches_from(words);
     match matches.and_then(|matches| RenderCommand::from_arg_matches(&matches)) {
@@ -132,8 +133,8 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
     }
 }
 
-/// Removes the lines for the other kind of job. Lines that begin with `@frames` are for animations,
-/// lines that begin with `@still` for single pictures.
+/// Keeps the lines for this kind of job. Lines that begin with `@frames` are for animations, lines
+/// that begin with `@still` for single pictures.
 fn chosen(template: &str, frames: bool) -> String {
     let (here, there) = if frames { ("@frames", "@still") } else { ("@still", "@frames") };
     let lines = template.lines().filter(|line| !line.starts_with(there));
@@ -144,7 +145,8 @@ fn chosen(template: &str, frames: bool) -> String {
         .collect()
 }
 
-/// Replaces each `@KEY@` of a template by its value, in one pass, so values are not expanded again.
+/// Replaces each `@KEY@` in a template by its value, in one pass, so that values are not expanded
+/// again.
 fn filled(template: &str, values: &[(&str, String)]) -> String {
     let (mut made, mut rest) = (String::new(), template);
     while let Some((before, after)) = rest.split_once('@') {

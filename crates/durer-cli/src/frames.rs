@@ -1,4 +1,4 @@
-//! `--frames` and `--turntable`: the pictures of an animation, one file each.
+//! `--frames` and `--turntable`: renders the pictures of an animation, one file each.
 
 use crate::failure::{Failure, bad};
 use crate::options::RenderArgs;
@@ -25,7 +25,7 @@ pub struct FramesArgs {
     pub turntable: Option<u16>,
 }
 
-/// A range of frames: first, last and step.
+/// Range of frame numbers given with `--frames`: first, last and step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frames {
     pub first: u32,
@@ -49,10 +49,12 @@ const MOST: u32 = 9_999_999;
 const WANTED: &str = "expected frames from 0 to 9999999 in ascending order, for example 7, 1-100 or 0-90:10";
 
 impl Frames {
+    /// Iterates over the frame numbers.
     pub fn numbers(self) -> impl Iterator<Item = u32> {
         (self.first..=self.last).step_by(self.step as usize)
     }
 
+    /// Returns the number of frames.
     pub fn count(self) -> u32 {
         (self.last - self.first) / self.step + 1
     }
@@ -64,14 +66,14 @@ fn rate(text: &str) -> Result<f64, String> {
     rate.ok_or("expected a number above 0".into())
 }
 
-/// Source of movement between frames.
+/// Source of the change between the frames of an animation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MotionSource {
-    /// One rotation around the model in this many frames.
+    /// The camera rotates once around the model in this many frames.
     Turntable(u16),
-    /// Frame numbers in place of `%d`.
+    /// The frame number replaces `%d` in file names.
     Names,
-    /// The model's animation, at this many frames per second.
+    /// The model's own animation plays at this many frames per second.
     Time(f64),
 }
 
@@ -81,8 +83,8 @@ impl FramesArgs {
         self.frames.is_some() || self.turntable.is_some()
     }
 
-    /// Returns the requested frames and what moves. `names` may contain placeholders for the
-    /// number.
+    /// Returns the requested frames and what changes between them; `None` if no animation is
+    /// requested. `names` are texts that can contain a placeholder for the frame number.
     ///
     /// # Errors
     /// Fails if all frames would be equal.
@@ -105,7 +107,7 @@ impl FramesArgs {
     }
 }
 
-/// Finds `%d` or `%04d` in a name: start, end, and number of digits.
+/// Finds the first `%d` or `%04d` in a name. Returns start, end, and number of digits.
 pub fn place(name: &str) -> Option<(usize, usize, usize)> {
     name.match_indices('%').find_map(|(from, _)| {
         let digits: String = name[from + 1..].chars().take_while(char::is_ascii_digit).collect();
@@ -123,7 +125,7 @@ pub fn numbered(name: &str, frame: u32) -> String {
     }
 }
 
-/// Returns the pattern of the frames' files: `picture.png` becomes `picture.%04d.png`.
+/// Returns the file name pattern of an animation: `picture.png` becomes `picture.%04d.png`.
 pub fn pattern(path: &str) -> String {
     if place(path).is_some() {
         return path.into();
@@ -146,7 +148,7 @@ pub fn run(args: &mut RenderArgs, frames: Frames, moves: MotionSource) -> Result
     let (scene, output) = (utf8(&args.scene)?, pattern(&utf8(&output_of(args))?));
     let (camera, view_file) =
         (scene_defaults.camera.clone(), scene_defaults.view_file.as_deref().map(utf8).transpose()?);
-    // Read meshes and images shared between frames only once.
+    // Read meshes and images that frames share only once.
     let kept = Arc::new(AssetCache::default());
     for frame in frames.numbers() {
         (args.scene, args.output) = (numbered(&scene, frame).into(), Some(numbered(&output, frame).into()));

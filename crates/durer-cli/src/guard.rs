@@ -1,7 +1,9 @@
-//! Inputs and outputs of a run: no file may be both, and no output may be named twice.
+//! Tracks the input and output files of a run: no file can be both, and no output can be named
+//! twice.
 //!
 //! Every file that the user names is registered here, and [`crate::output`] writes only registered
-//! files. Files are compared by identity, so different names and links of one file are recognised.
+//! files. Files are compared by identity, so that different names of and links to the same file are
+//! recognised.
 
 use crate::failure::{Failure, bad};
 use durer::image::Destination;
@@ -9,26 +11,26 @@ use durer::render::PartialRender;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// Files of one run.
+/// Input and output files of one run, registered to prevent that an input is overwritten.
 #[derive(Default)]
 pub struct Guard {
     inputs: Vec<NamedFile>,
     outputs: Vec<NamedFile>,
 }
 
-/// A file, the option that names it, and its identity.
+/// A registered file, the option that names it, and its identity.
 struct NamedFile {
     what: &'static str,
     path: PathBuf,
     identity: Identity,
 }
 
-/// Identity of a file, which all its names share.
+/// Identity of a file, by which different names of the same file are recognised.
 #[derive(PartialEq)]
 struct Identity {
-    /// Canonical path; for a file that does not exist yet, within its canonical folder.
+    /// Canonical path. For a file that does not exist yet, its name in the canonical folder.
     name: Option<PathBuf>,
-    /// Device and inode number, which hard links share.
+    /// Device and inode number, which are equal for hard links.
     inode: Option<(u64, u64)>,
 }
 
@@ -37,7 +39,7 @@ impl Identity {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let within = || Some(folder.canonicalize().ok()?.join(path.file_name()?));
         let name = path.canonicalize().ok().or_else(within);
-        // These file systems usually ignore case.
+        // File systems on these platforms usually ignore case.
         let same_case = cfg!(any(windows, target_os = "macos"));
         let name = name.map(|name| if same_case { name.to_string_lossy().to_lowercase().into() } else { name });
         Identity { name, inode: inode(path) }
@@ -60,7 +62,7 @@ fn inode(_: &Path) -> Option<(u64, u64)> {
 }
 
 impl Guard {
-    /// Registers an input. Fails if it is also an output.
+    /// Registers an input. Fails if the file is also an output.
     pub fn reads(&mut self, path: &Path) -> Result<(), Failure> {
         let input = NamedFile { what: "", path: path.into(), identity: Identity::of(path) };
         if let Some(output) = self.outputs.iter().find(|output| output.identity.is_same(&input.identity)) {
@@ -70,8 +72,8 @@ impl Guard {
         Ok(())
     }
 
-    /// Registers an output for the option `what`. Fails if the file cannot be written, is an input,
-    /// is another output, or holds saved work.
+    /// Registers an output for the option `what`. Fails if the file cannot be written, is an input
+    /// or another output, or holds saved work.
     pub fn writes(&mut self, what: &'static str, path: &Path) -> Result<Destination, Failure> {
         let place = self.saves(what, path)?;
         match is_saved_work(path) {
@@ -83,7 +85,7 @@ impl Guard {
         }
     }
 
-    /// Registers an output for saved work, which may replace saved work.
+    /// Registers an output for saved work, which can replace older saved work.
     pub fn saves(&mut self, what: &'static str, path: &Path) -> Result<Destination, Failure> {
         self.claim(what, path)?;
         let own = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|own| path == Path::new(own));
@@ -93,14 +95,14 @@ impl Guard {
         Ok(Destination::new(path)?)
     }
 
-    /// Registers a file that is only removed, or replaced under another claim.
+    /// Registers a file that is removed, or written through another registration.
     pub fn claim(&mut self, what: &'static str, path: &Path) -> Result<(), Failure> {
         let output = NamedFile { what, path: path.into(), identity: Identity::of(path) };
         let same = |other: &&NamedFile| other.identity.is_same(&output.identity);
         if let Some(input) = self.inputs.iter().find(same) {
             return Err(both(&output, input));
         }
-        // Devices and pipes can be written twice.
+        // Devices and pipes can be named twice.
         let file = !path.exists() || path.is_file();
         if let Some(other) = self.outputs.iter().find(same).filter(|_| file) {
             let (what, first) = (output.what, other.what);
@@ -114,7 +116,7 @@ impl Guard {
     }
 }
 
-/// Returns true if a file holds a part of a picture.
+/// Returns true if a file is a part file.
 fn is_saved_work(path: &Path) -> bool {
     // Opening a FIFO would block.
     path.is_file() && start_of(path).is_ok_and(|start| start == PartialRender::MAGIC)

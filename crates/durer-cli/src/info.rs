@@ -28,6 +28,7 @@ pub struct InfoArgs {
     pub json: bool,
 }
 
+/// Runs `durer info`.
 pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let compiled = open(&args.scene, &load_options(&args.reading), args.json, &mut Guard::default())?;
     let (loaded, world) = (&compiled.loaded, &compiled.world);
@@ -137,7 +138,7 @@ fn value(value: &durer::describe::Value) -> String {
     }
 }
 
-/// Contents of a world.
+/// Numbers of objects and triangles in a world, for the summary of `durer info`.
 #[derive(Default)]
 struct WorldCounts {
     shapes: BTreeMap<&'static str, usize>,
@@ -146,13 +147,13 @@ struct WorldCounts {
     bytes: usize,
     picture_bytes: usize,
     tree_bytes: usize,
-    /// Sum over meshes of tree cost times number of triangles.
+    /// Sum over meshes of the BVH cost times the number of triangles.
     costs: f64,
     object_cost: Option<f64>,
 }
 
 impl WorldCounts {
-    /// Counts a mesh. The memory of a shared mesh counts once.
+    /// Adds a mesh. Memory that several objects share is counted once.
     fn mesh(&mut self, tree: &Arc<MeshTree>, seen: &mut Vec<*const MeshTree>) {
         self.triangles += tree.mesh.len();
         if !seen.contains(&Arc::as_ptr(tree)) {
@@ -164,7 +165,7 @@ impl WorldCounts {
         }
     }
 
-    /// Returns the expected cost of a random ray in a mesh's tree, averaged over triangles.
+    /// Returns the expected cost of a random ray in the BVH of a mesh, averaged over triangles.
     fn tree_cost(&self) -> Option<f64> {
         let cost = self.costs / self.distinct_triangles as f64;
         cost.is_finite().then_some(cost)

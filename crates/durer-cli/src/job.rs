@@ -1,4 +1,4 @@
-//! Conversion of options to a job.
+//! Converts command-line options to a render job.
 
 use crate::failure::{Failure, bad};
 use crate::options::{JobArgs, SceneArgs, ViewArgs};
@@ -11,14 +11,14 @@ use durer::job::{RenderJob, View};
 use durer::render::{Job, Sampling};
 use durer::world::World;
 
-/// Returns the job for the options; without a view, the colour of the whole picture. `timed` is
-/// true if a time limit ends it.
+/// Returns the job for the options. Without `view`, it renders the whole colour picture. `timed` is
+/// true if a time limit ends the render.
 pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &LoadedScene, timed: bool) -> Result<Job, Failure> {
     let view = view.map(|view| View { crop: view.crop, show: view.show.clone() });
     args.options.resolve(&loaded.job_context(timed), view.as_ref()).map_err(bad)
 }
 
-/// Warns if the camera leaves part of the picture empty, or its lens is not sampled.
+/// Warns if the camera leaves part of the picture empty, or if depth of field needs more samples.
 pub fn warn(job: &Job, world: &World) {
     let camera = world.camera();
     let (columns, rows) = durer::render::raster(world, job.width, job.height).empty();
@@ -38,8 +38,8 @@ pub fn warn(job: &Job, world: &World) {
     }
 }
 
-/// Returns the options that reproduce a job, without its size: those that differ from the scene's
-/// defaults.
+/// Returns the command-line options that reproduce a job, except its size. Options that equal the
+/// scene's defaults are omitted.
 pub fn spelled(reading: &SceneArgs, job: &Job, loaded: &LoadedScene) -> String {
     let requested = loaded.guess.is_none();
     let mut words: Vec<String> = Vec::new();

@@ -1,4 +1,4 @@
-//! Pictures larger than memory, rendered while they are written.
+//! Renders pictures that are larger than memory while they are written.
 
 use crate::failure::{Failure, bad, failed};
 use crate::options::RenderArgs;
@@ -14,12 +14,12 @@ use std::cell::RefCell;
 use std::io::{self, Write};
 use std::sync::Arc;
 
-/// Returns true if a picture exceeds the memory limit or the largest size held in memory.
+/// Returns true if a picture exceeds the memory limit, or the maximum size of pictures in memory.
 pub fn is_large(job: &Job, needed: u64, memory: Option<u64>) -> bool {
     job.window().pixels() > MAX_PIXELS || memory.is_some_and(|memory| needed > memory)
 }
 
-/// Divides a large picture into bands, or reports why that is impossible.
+/// Divides a large picture into bands. Fails with the reason if that is not possible.
 pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>) -> Result<Bands, Failure> {
     let refuse = |why: &str| Err(failed(RenderError::Bands(why.into())));
     let (work, window) = (&args.work, job.window());
@@ -42,7 +42,7 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
             return refuse(&format!("{option} needs the full picture in memory"));
         }
     }
-    // The scene's size is not known yet: reserve half of the memory for it.
+    // The scene's size is not known yet, so reserve half of the memory for it.
     Bands::new(job, memory.map_or(u64::MAX, |memory| memory / 2)).map_err(|error| match (error, memory) {
         (RenderError::Memory { needed, .. }, Some(allowed)) => {
             failed(RenderError::Memory { needed: needed.saturating_mul(2), allowed })
@@ -51,10 +51,10 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
     })
 }
 
-/// Statistics and hash of a written picture, or the error.
+/// Statistics and hash of a written picture, or an error.
 type WriteResult = Result<(Statistics, Option<Digest>), BandsError>;
 
-/// A picture that is rendered while it is written.
+/// Source of a large picture's file content: renders the picture in bands while it is written.
 struct Large<'a> {
     bands: &'a Bands,
     world: &'a World,

@@ -1,4 +1,4 @@
-//! `durer lesson`: writes a lesson about a scene.
+//! `durer lesson`: writes a lesson about a scene to a folder.
 
 mod folder;
 mod markdown;
@@ -61,8 +61,9 @@ pub struct LessonArgs {
     pub quiet: bool,
 }
 
-/// Default length of the longer side in pixels.
+/// Default length of the longer side of the pictures, in pixels.
 const SIDE: u32 = 256;
+/// Runs `durer lesson`.
 pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     if args.scene.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("md")) {
         return crate::live::lesson(&args.scene);
@@ -89,7 +90,7 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     let scene = args.scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut lesson = Lesson { scene, steps: Vec::new(), pictures: Vec::new(), transfer };
     let names: Vec<String> = TOPICS.iter().map(|topic| topic.title.to_string()).collect();
-    // Nothing is written yet, so Ctrl-C can end the program here.
+    // Nothing has been written yet, so Ctrl-C can end the program here.
     let made = progress::each(&names, TOPICS.iter().collect(), args.quiet, |topic| {
         let steps = teacher.steps(topic, &control).map_err(failed)?;
         steps.into_iter().try_for_each(|step| lesson.add(step))
@@ -104,7 +105,7 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns the files of the folder by name.
+/// Returns the names and contents of the files to write.
 fn files(lesson: Lesson) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let mut files = vec![(PAGE.to_string(), page::page(&lesson).into_bytes())];
     files.push((TEXT.to_string(), markdown::text(&lesson).into_bytes()));

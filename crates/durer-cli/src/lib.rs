@@ -1,4 +1,4 @@
-//! The `durer` command: a thin shell over the library.
+//! The `durer` command-line program, a thin layer over the library.
 
 mod args;
 mod autosave;
@@ -51,8 +51,8 @@ use std::path::Path;
 pub use terminal::look_at_standard_output;
 
 /// Executes a command line, whose first word is the program's name, and returns the exit code.
-/// Handles signals. `end` ends the process immediately with an exit code: after a second Ctrl-C, or
-/// if standard output cannot be written to.
+/// Handles signals. `end` is called to end the process at once with an exit code: after a second
+/// Ctrl-C, or if standard output cannot be written to.
 pub fn run(words: Vec<OsString>, end: terminal::ExitFn) -> u8 {
     terminal::set_end(end);
     progress::hear_interrupts();
@@ -60,7 +60,7 @@ pub fn run(words: Vec<OsString>, end: terminal::ExitFn) -> u8 {
         return bad(error.to_string()).report();
     }
     durer::threads::prepare();
-    // Under the name of an official program, `durer` acts as that program.
+    // If `durer` is started under the name of an official program, it emulates that program.
     let name = words.first().cloned().unwrap_or_default();
     let name = Path::new(&name).file_stem().unwrap_or_default().to_string_lossy();
     let result = match course::program(&name) {

@@ -1,4 +1,4 @@
-//! `durer live`: a scene in the browser.
+//! `durer live`: shows a scene in the browser.
 
 use crate::failure::{Failure, bad};
 use crate::terminal::say;
@@ -26,12 +26,13 @@ pub struct LiveArgs {
     pub open: bool,
 }
 
+/// Runs `durer live`.
 pub fn run(args: &LiveArgs) -> Result<(), Failure> {
     readable(&args.scene)?;
     serve(Start { file: Some(args.scene.clone()), lesson: None }, args.port, args.open)
 }
 
-/// Fails if a file cannot be opened.
+/// Fails if a file cannot be opened as a scene.
 fn readable(path: &Path) -> Result<(), Failure> {
     // Opening a pipe would block.
     let compiled = match std::fs::metadata(path) {
@@ -42,7 +43,7 @@ fn readable(path: &Path) -> Result<(), Failure> {
     compiled.map_err(|error| bad(format!("{}: {error}", path.display())))
 }
 
-/// Serves a teacher's lesson.
+/// Serves a lesson that a teacher wrote in Markdown.
 pub fn lesson(path: &Path) -> Result<(), Failure> {
     readable(path)?;
     serve(Start { file: None, lesson: Some(path.to_path_buf()) }, 0, false)

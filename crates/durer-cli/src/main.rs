@@ -1,8 +1,8 @@
-//! The `durer` command.
+//! Entry point of the `durer` program.
 
 use std::process::ExitCode;
 
-/// Runs before Rust's runtime, which replaces a closed standard output by a device that discards
+/// Runs before Rust's runtime, which replaces a closed standard output with a device that discards
 /// everything.
 #[cfg(unix)]
 #[ctor::ctor(unsafe)]
@@ -13,7 +13,7 @@ fn before_main() {
 fn main() -> ExitCode {
     let print = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
-        // Panics of decoders become errors.
+        // Do not print panics of image decoders, which become errors.
         if !durer::panics::are_expected() {
             print(panic);
         }

@@ -1,4 +1,4 @@
-//! Dialects, shell completions and manual pages.
+//! Prints the dialects, shell completions and the manual page.
 
 use crate::args::Cli;
 use crate::failure::Failure;

@@ -1,4 +1,4 @@
-//! `durer measure`: illuminance and irradiance at points.
+//! `durer measure`: computes illuminance and irradiance at points.
 
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
@@ -63,7 +63,7 @@ pub struct MeasureArgs {
     pub seed: u64,
 }
 
-/// A grid of points.
+/// Grid of measuring points on a parallelogram, given with `--grid`.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid {
     corner: Vec3,
@@ -71,7 +71,7 @@ pub struct Grid {
     counts: [u32; 2],
 }
 
-/// Maximum number of points.
+/// Maximum number of measuring points.
 const MAX_POINTS: usize = 1 << 20;
 
 fn vector(text: &str) -> Result<Vec3, String> {
@@ -98,7 +98,7 @@ impl Grid {
     }
 }
 
-/// Sums of the samples at a point.
+/// Sums over the samples at one measuring point, for mean and standard error.
 #[derive(Clone, Default)]
 struct Sums {
     light: [f64; 3],
@@ -114,9 +114,9 @@ impl Sums {
         self.squares += brightness * brightness;
     }
 
-    /// Returns the mean per channel, the mean of the luminous quantity, and its standard error.
-    /// `rare` is the largest value of a light that only BSDF sampling finds. One more such sample
-    /// would raise the mean by `rare` over the number of samples, so the error includes that
+    /// Returns the mean irradiance per channel, the mean illuminance, and the standard error of the
+    /// latter. `rare` is the largest value of a light that only BSDF sampling finds. One more such
+    /// sample would raise the mean by `rare` over the number of samples, so the error includes that
     /// amount.
     fn mean(&self, samples: u32, rare: f64) -> ([f64; 3], f64, f64) {
         let n = f64::from(samples);
@@ -127,7 +127,7 @@ impl Sums {
     }
 }
 
-/// Returns the first point that has no surface just below or above it along its normal.
+/// Returns the first point that is not on a surface: a short ray along its normal hits nothing.
 fn in_the_air(world: &World, places: &[(Vec3, Vec3)]) -> Option<Vec3> {
     let bounds = world.bounds();
     let size = (bounds.max - bounds.min).length();
@@ -143,6 +143,7 @@ fn vector_of(v: Vec3) -> String {
     format!("{},{},{}", v.x, v.y, v.z)
 }
 
+/// Runs `durer measure`.
 pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let mut options = load_options(&args.reading);
     // Measure only the scene's own light.

@@ -37,6 +37,7 @@ pub struct MergeArgs {
     pub quiet: bool,
 }
 
+/// Runs `durer merge`.
 pub fn run(args: &MergeArgs) -> Result<(), Failure> {
     let mut guard = Guard::default();
     let read = |path: &PathBuf| {

@@ -1,4 +1,4 @@
-//! Reading and compiling a scene, with its diagnostics printed.
+//! Reads and compiles scenes, and prints their diagnostics.
 
 use crate::failure::Failure;
 use crate::guard::Guard;
@@ -10,16 +10,16 @@ use durer::world::World;
 use durer::{LoadOptions, LoadedScene, load};
 use std::path::Path;
 
-/// A compiled scene.
+/// A scene that was read and compiled from the command line, with the files that it came from.
 pub struct CompiledInput {
     pub loaded: LoadedScene,
     pub world: World,
     pub files: Files,
-    /// Diagnostics, already printed.
+    /// Diagnostics of the reader and the compiler, which were already printed.
     pub diagnostics: Diagnostics,
 }
 
-/// A scene that was read but not compiled. Compiling it prints the diagnostics.
+/// A scene that was read but not compiled yet. Its diagnostics are printed when it is compiled.
 pub struct ParsedInput {
     pub loaded: LoadedScene,
     files: Files,
@@ -27,7 +27,7 @@ pub struct ParsedInput {
     quiet: bool,
 }
 
-/// Reads a scene.
+/// Reads a scene without compiling it.
 pub fn read(path: &Path, options: &LoadOptions, quiet: bool, guard: &mut Guard) -> Result<ParsedInput, Failure> {
     guard.reads(path)?;
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
@@ -41,7 +41,7 @@ pub fn read(path: &Path, options: &LoadOptions, quiet: bool, guard: &mut Guard) 
 }
 
 impl ParsedInput {
-    /// Returns the scene with its compile warnings suppressed.
+    /// Suppresses all diagnostics except errors.
     pub fn quiet(self) -> Self {
         ParsedInput { quiet: true, ..self }
     }
@@ -61,7 +61,7 @@ pub fn open(path: &Path, options: &LoadOptions, quiet: bool, guard: &mut Guard) 
     read(path, options, quiet, guard)?.compile(options, guard)
 }
 
-/// Returns true if a scene can be read and compiled; prints nothing.
+/// Returns true if a scene can be read and compiled. Prints nothing.
 pub fn readable(path: &Path, options: &LoadOptions) -> bool {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let loaded = load(path, options, &mut files, &mut diagnostics);

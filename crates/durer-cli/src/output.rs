@@ -1,4 +1,4 @@
-//! Writing pictures to files.
+//! Writes pictures to files.
 
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
@@ -12,12 +12,13 @@ use std::cell::RefCell;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Returns the format for a picture's name.
+/// Returns the image format for a file name.
 pub fn format(path: &Path) -> Result<&'static Format, Failure> {
     format_for(path).map_err(|error| bad(error.to_string()))
 }
 
-/// Returns the layers for a format: values for floating point, pictures for 8 bits.
+/// Returns the layers to write in a format: values for floating-point formats, displayed pictures
+/// for 8-bit formats.
 fn layers<'r>(rendered: &'r Rendered, format: &Format) -> &'r [Layer] {
     match format.depth {
         Depth::Float => &rendered.layers,
@@ -25,17 +26,17 @@ fn layers<'r>(rendered: &'r Rendered, format: &Format) -> &'r [Layer] {
     }
 }
 
-/// Output files of a render.
+/// Output files of a render, one for all pictures or one for each.
 pub struct Target {
     format: &'static Format,
-    /// File of each picture by name; a file without a name holds all pictures. Diagrams have their
-    /// own files, because their sizes differ.
+    /// Files, each with the name of its picture; a file without a name holds all pictures. Diagrams
+    /// have their own files, because their sizes differ.
     files: Vec<(Option<String>, Destination)>,
 }
 
 impl Target {
-    /// Prepares the files of the named pictures. Reports before the render what would prevent
-    /// writing.
+    /// Prepares the files for the named pictures. Fails before the render if a file could not be
+    /// written.
     pub fn new(path: &Path, names: &[&str], guard: &mut Guard) -> Result<Self, Failure> {
         let format = format(path)?;
         let diagram = names.iter().any(|name| DIAGRAMS.contains(name));
@@ -57,8 +58,8 @@ impl Target {
         }
     }
 
-    /// Saves the colours of a part row by row, without a whole picture in memory. Returns
-    /// statistics of the colours, or `None` if the file needs more than that.
+    /// Saves the colours of a part file row by row, without holding the whole picture. Returns a
+    /// scan of the colours, or `None` if the file needs more than colours.
     pub fn save_colors(
         &self,
         part: &PartialRender,
@@ -75,12 +76,12 @@ impl Target {
         Ok(Some(colors.looks.into_inner()))
     }
 
-    /// Checks that the format supports this size.
+    /// Checks that the formats support a picture size.
     pub fn check_size(&self, width: u32, height: u32) -> Result<(), Failure> {
         self.format.check_size(width, height).map_err(|error| bad(error.to_string()))
     }
 
-    /// Encodes the pictures for their files.
+    /// Encodes the pictures as the contents of their files.
     pub fn files(&self, rendered: &Rendered, display: Display) -> Result<Vec<(&Destination, Vec<u8>)>, Failure> {
         let layers = layers(rendered, self.format);
         let own = |name: &str| layers.iter().position(|layer| layer.name == name).map(|i| &layers[i..=i]);
@@ -95,12 +96,12 @@ impl Target {
     }
 }
 
-/// Colours of a part, encoded while they are written.
+/// Source of a file's content: colours of a part file, encoded while they are written.
 struct Colors<'a> {
     part: &'a PartialRender,
     format: &'static Format,
     display: Display,
-    /// Statistics of the colours.
+    /// Scan of the written colours.
     looks: RefCell<PictureScan>,
 }
 
@@ -124,7 +125,7 @@ pub fn encode(
     attributes: &[(&'static str, String)],
 ) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
-    // Errors such as an unsupported size are the user's input.
+    // Errors such as an unsupported size are due to the user's input.
     let options = WriteOptions { display: display.into(), attributes };
     format.write(layers, &options, &mut bytes).map_err(|error| bad(error.to_string()))?;
     Ok(bytes)
@@ -143,8 +144,8 @@ pub fn save(files: &[(&Destination, Vec<u8>)], quiet: bool) -> Result<(), Failur
     Ok(())
 }
 
-/// Prints the name of a written file. Streams are not mentioned: the picture may be on standard
-/// output.
+/// Prints the name of a written file. Streams are not mentioned, because the picture may be on
+/// standard output.
 pub fn wrote(place: &Destination, quiet: bool) {
     if !quiet && !place.is_stream() {
         say(&format!("wrote {}", place.path().display()));

@@ -1,5 +1,5 @@
 "use strict";
-// What all pages share.
+// Shared by all pages.
 const data = @DATA@;
 const make = (tag, parent, text, className) => {
   const element = document.createElement(tag);
@@ -8,7 +8,7 @@ const make = (tag, parent, text, className) => {
   parent?.append(element);
   return element;
 };
-// What is clicked can be reached by keys as well.
+// Makes an element that reacts to clicks work with the keyboard too.
 const press = (element, act) => {
   element.tabIndex = 0;
   if (!["BUTTON", "SUMMARY", "A"].includes(element.tagName)) element.setAttribute("role", "button");

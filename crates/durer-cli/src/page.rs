@@ -1,4 +1,4 @@
-//! Common parts of HTML pages: pictures and data in one file, no network.
+//! Common parts of the HTML pages, which contain pictures and data and need no network.
 
 use crate::failure::Failure;
 use crate::output::{encode, format};
@@ -22,9 +22,9 @@ pub fn uri(png: &[u8]) -> String {
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
 
-/// Fills a template's `@STYLE@`, `@SCRIPT@` and `@DATA@`.
+/// Fills in the placeholders `@STYLE@`, `@SCRIPT@` and `@DATA@` of a template.
 pub fn with_data(page: &str, data: &Value) -> String {
     let page = page.replacen("@STYLE@", STYLE, 1).replacen("@SCRIPT@", SCRIPT, 1);
-    // Escape `<`, so that the data cannot end the script.
+    // Escape `<`, so that the data cannot end the script element.
     page.replacen("@DATA@", &data.to_string().replace('<', "\\u003c"), 1)
 }

@@ -1,4 +1,4 @@
-//! `durer photo`: cameras and points from photographs.
+//! `durer photo`: computes cameras and points from photographs.
 
 mod args;
 mod camera;
@@ -18,6 +18,7 @@ use args::PhotoCommand;
 use inputs::read;
 use results::{Results, report};
 
+/// Runs the subcommands of `durer photo`.
 pub fn run(args: &PhotoArgs) -> Result<(), Failure> {
     match &args.command {
         PhotoCommand::Match(args) => matching::run(args),

@@ -1,4 +1,4 @@
-//! One picture, from the scene file to the written files.
+//! Renders one picture, from the scene file to the written files.
 
 use crate::autosave::Autosave;
 use crate::failure::{Failure, bad, failed};
@@ -20,25 +20,25 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
-/// State shared between a render and `--watch`.
+/// State shared between a render and the thread that watches files for `--watch`.
 #[derive(Default)]
 pub struct WatchState {
     /// Files that the scene refers to, without the scene file itself.
     pub files: Mutex<Vec<PathBuf>>,
     /// True if a file has been saved since the render began.
     pub stale: AtomicBool,
-    /// Data kept from earlier renders.
+    /// Meshes and images kept from earlier renders.
     pub cache: Option<Arc<AssetCache>>,
     control: Mutex<Option<Arc<Control>>>,
 }
 
 impl WatchState {
-    /// Keeps the scene's data from one picture to the next.
+    /// Creates a state that keeps meshes and images from one picture to the next.
     pub fn keeping(cache: &Arc<AssetCache>) -> Self {
         WatchState { cache: Some(Arc::clone(cache)), ..WatchState::default() }
     }
 
-    /// Cancels the render.
+    /// Marks the render as outdated and cancels it.
     pub fn cancel(&self) {
         self.stale.store(true, Relaxed);
         if let Ok(Some(control)) = self.control.lock().as_deref() {
@@ -46,7 +46,7 @@ impl WatchState {
         }
     }
 
-    /// Registers the render that begins, so that it can be cancelled.
+    /// Registers a render, so that it can be cancelled.
     fn begins(&self, control: &Arc<Control>) {
         if let Ok(mut place) = self.control.lock() {
             *place = Some(Arc::clone(control));
@@ -57,20 +57,20 @@ impl WatchState {
     }
 }
 
-/// A pixel, or one of its samples, to print instead of writing a picture.
+/// A pixel, or one of its samples, whose colour `--pixel` prints instead of writing a picture.
 #[derive(Clone, Copy, Default)]
 pub struct Pixel {
     pub place: (u32, u32),
     pub sample: Option<u32>,
 }
 
-/// Returns the file of the picture.
+/// Returns the file of the picture: that of `--output` or the default.
 pub fn output_of(args: &RenderArgs) -> PathBuf {
     let default_name = || lengthened(Path::new(args.scene.file_stem().unwrap_or_default()), ".png");
     args.output.clone().unwrap_or_else(default_name)
 }
 
-/// Renders a scene.
+/// Renders a scene and writes its pictures.
 pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Result<(), Failure> {
     let shard = match args.work.shard {
         Some(shard) if args.work.shard_by == "samples" => Shard { by: ShardBy::Samples, ..shard },
@@ -102,13 +102,13 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Re
     let bands = match &target {
         Some(target) if large::is_large(&job, needed, memory) => Some(large::bands(args, &job, target, memory)?),
         target => {
-            // Report an invalid size as such, regardless of the memory limit.
+            // Report an invalid size as such, whatever the memory limit is.
             checked_count(window.width, window.height).map_err(|error| bad(error.to_string()))?;
             target.as_ref().map_or(Ok(()), |target| target.check_size(window.width, window.height))?;
             None
         }
     };
-    // The film's memory is not available to the scene.
+    // Memory used by the film is not available to the scene.
     needed = bands.as_ref().map_or(needed, Bands::bytes_needed);
     options.memory = memory.map(|memory| memory.saturating_sub(needed));
     if let Some(allowed) = memory.filter(|&memory| needed > memory) {
@@ -201,7 +201,7 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Re
     Ok(())
 }
 
-/// Returns every picture of a part, including diagrams, error bounds and the denoised picture.
+/// Returns every picture of a part file, including diagrams, error bounds and the denoised picture.
 fn pictures(
     args: &RenderArgs,
     world: &World,
@@ -227,7 +227,7 @@ fn pictures(
     Ok(rendered)
 }
 
-/// Returns the pictures to show, without duplicates.
+/// Returns the names of the pictures to show, without duplicates.
 fn shows(args: &RenderArgs) -> Result<Vec<&str>, Failure> {
     let names: Vec<&str> = args.view.show.iter().map(String::as_str).collect();
     match (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
@@ -236,8 +236,8 @@ fn shows(args: &RenderArgs) -> Result<Vec<&str>, Failure> {
     }
 }
 
-/// Saves the work after Ctrl-C. Writes the picture only if every pixel has a sample: it may replace
-/// a better one.
+/// Saves the work after Ctrl-C. Writes the picture only if every pixel has a sample, because it
+/// could replace a better one.
 fn stopped(args: &RenderArgs, part: &PartialRender, autosave: &Autosave, target: Option<&Target>) -> Failure {
     let mut written = autosave.after_interrupt(part);
     if let Some(target) = target.filter(|_| part.is_whole()) {
@@ -254,7 +254,7 @@ fn stopped(args: &RenderArgs, part: &PartialRender, autosave: &Autosave, target:
     })
 }
 
-/// Returns the command that reproduces a sample: this command line with the sample added.
+/// Returns a command that reproduces a panic: this command line with the pixel and sample added.
 fn replaying(panicked: &Panicked) -> String {
     let words = std::env::args().chain(["--pixel".into(), format!("{},{}", panicked.x, panicked.y)]);
     let sample = panicked.sample.map(|sample| ["--sample".to_string(), sample.to_string()]);

@@ -1,4 +1,4 @@
-//! Progress bars, and handling of Ctrl-C and other signals.
+//! Shows progress bars and handles Ctrl-C and other signals.
 
 use crate::failure::{Failure, interrupted_by};
 use durer::render::{Control, RenderError};
@@ -9,33 +9,33 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
-/// Reaction to a signal that ends the program.
+/// Phase of the program, which determines how it reacts to a signal such as Ctrl-C.
 enum Phase {
     /// Before anything is written: the signal ends the program.
     Harmless,
-    /// The work is done: the signal ends the program.
+    /// The program waits for changes: the signal ends it without an error.
     Idle,
     /// The signal cancels the render; a second one ends the program.
     Rendering(Arc<Control>),
-    /// The signal waits until the files are complete; a second one ends the program. True after the
-    /// first.
+    /// The signal takes effect when the files are complete; a second one ends the program. The flag
+    /// is true after the first signal.
     Saving(bool),
 }
 
-/// Signals within this interval count as one: some programs send a signal both to the process and
-/// to its group.
+/// Signals within this interval count as one, because some programs send a signal to both the
+/// process and its group.
 const SAME: Duration = Duration::from_millis(500);
 
-/// Current phase. The lock is held during changes, so that no save begins while the program ends.
+/// Current phase. It is locked while it changes, so that no save starts while the program ends.
 static PHASE: Mutex<Phase> = Mutex::new(Phase::Harmless);
-/// Time of the last signal, without repeats within [`SAME`].
+/// Time of the last signal. Repeats within [`SAME`] do not count.
 static LAST: Mutex<Option<Instant>> = Mutex::new(None);
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Handles a signal.
+/// Reacts to a signal according to the current phase.
 fn interrupt(signal: u8) {
     let (mut last, mut phase) = (locked(&LAST), locked(&PHASE));
     if last.is_some_and(|last| last.elapsed() < SAME) {
@@ -59,7 +59,8 @@ fn interrupt(signal: u8) {
 #[cfg(unix)]
 pub fn hear_interrupts() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
-    // With SIGXFSZ handled, exceeding the file size limit is a write error that names the file.
+    // With SIGXFSZ handled, exceeding the file size limit becomes a write error that names the
+    // file.
     let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
     let ignored = ignored_signals();
     let heard = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(move |signal| ignored >> (signal - 1) & 1 == 0);
@@ -69,44 +70,45 @@ pub fn hear_interrupts() {
         let _ = ready.send(());
         signals.iter_mut().flat_map(|signals| signals.forever()).for_each(|signal| interrupt(signal as u8));
     });
-    // Wait until the thread listens; before that, signals end the program.
+    // Wait until the thread listens. Until then, signals end the program.
     if listener.is_ok() {
         let _ = wait.recv();
     }
 }
 
-/// Returns a bit for each signal that the parent process set to be ignored, as `nohup` does.
+/// Returns a mask of the signals that the parent process set to be ignored, for example with
+/// `nohup`.
 #[cfg(unix)]
 fn ignored_signals() -> u64 {
-    // Without /proc, no signal counts as ignored.
+    // If /proc is missing, assume that no signal is ignored.
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
-/// Handles Ctrl-C, Ctrl-Break and the other console events. When the window is closed, the system
-/// ends the program regardless; only earlier saves remain.
+/// Starts to handle Ctrl-C, Ctrl-Break and the other console events. If the window is closed, the
+/// system ends the program anyway, and only earlier saves remain.
 #[cfg(not(unix))]
 pub fn hear_interrupts() {
     let _ = ctrlc::set_handler(|| interrupt(2));
 }
 
-/// Enters the idle state, in which the program waits for changes.
+/// Enters the phase in which the program waits for changes.
 pub fn idle() {
     *locked(&PHASE) = Phase::Idle;
 }
 
-/// Leaves the idle state.
+/// Leaves the phase in which the program waits for changes.
 pub fn busy() {
     *locked(&PHASE) = Phase::Harmless;
 }
 
-/// Enters the saving state.
+/// Enters the phase in which files are written.
 pub fn saving() {
     *locked(&PHASE) = Phase::Saving(false);
 }
 
-/// Runs a render with a progress bar (on a terminal) and Ctrl-C handling.
+/// Runs a render with a progress bar on a terminal. Ctrl-C cancels it.
 pub fn watch<T>(
     control: &Arc<Control>,
     quiet: bool,
@@ -118,16 +120,16 @@ pub fn watch<T>(
     result
 }
 
-/// Runs work with a progress bar (on a terminal). Nothing needs to be saved, so signals end the
-/// program at once.
+/// Runs work with a progress bar on a terminal. Unlike in [`watch`], signals end the program at
+/// once, because nothing needs to be saved.
 pub fn show<T>(control: &Control, quiet: bool, work: impl FnOnce() -> T) -> T {
     if !quiet && std::io::stderr().is_terminal() { with_bar(control, work) } else { work() }
 }
 
-/// Child process that ends with this one.
+/// Child process that is ended together with this program.
 static CHILD: Mutex<Option<Child>> = Mutex::new(None);
 
-/// Runs a command to its end and returns its output. Signals that end the program end it too.
+/// Runs a command and returns its output. A signal that ends this program ends the command too.
 pub fn run_child(command: &mut Command) -> std::io::Result<Output> {
     let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
     *locked(&CHILD) = Some(child);
@@ -145,7 +147,7 @@ pub fn run_child(command: &mut Command) -> std::io::Result<Output> {
 /// Ends the program and its child process.
 fn end(code: u8) {
     if let Some(child) = locked(&CHILD).as_mut() {
-        // The child may have ended already.
+        // Ignore errors: the child may have ended already.
         let _ = child.kill();
     }
     crate::terminal::end(code)
@@ -159,7 +161,7 @@ fn with_bar<T>(control: &Control, render: impl FnOnce() -> T) -> T {
             let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
             let start = Instant::now();
-            // The sender is dropped when the render ends.
+            // Waiting ends when the sender is dropped at the end of the render.
             while wait.recv_timeout(Duration::from_millis(100)) == Err(mpsc::RecvTimeoutError::Timeout) {
                 if bar.is_hidden() && start.elapsed() > Duration::from_millis(500) {
                     bar.set_draw_target(ProgressDrawTarget::stderr());
@@ -171,7 +173,7 @@ fn with_bar<T>(control: &Control, render: impl FnOnce() -> T) -> T {
             }
             bar.finish_and_clear();
         };
-        // Without a thread for the bar, show none.
+        // If no thread can be started, show no bar.
         let _ = std::thread::Builder::new().spawn_scoped(scope, show);
         let result = render();
         drop(finished);
@@ -179,14 +181,14 @@ fn with_bar<T>(control: &Control, render: impl FnOnce() -> T) -> T {
     })
 }
 
-/// Processes a list item by item, with a progress line on a terminal.
+/// Processes items one after the other, with a progress line on a terminal.
 pub fn each<T, R>(names: &[String], items: Vec<T>, quiet: bool, mut work: impl FnMut(T) -> R) -> Vec<R> {
     let bar = ProgressBar::with_draw_target(Some(items.len() as u64), ProgressDrawTarget::hidden());
     let style = ProgressStyle::with_template("{bar:40} {pos} of {len}  {elapsed}  {msg}");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     if !quiet && std::io::stderr().is_terminal() {
         bar.set_draw_target(ProgressDrawTarget::stderr());
-        // The ticker needs a thread, and panics if there is none.
+        // The ticker panics if it cannot start a thread.
         if std::thread::Builder::new().spawn(|| {}).is_ok() {
             bar.enable_steady_tick(Duration::from_millis(200));
         }
@@ -202,7 +204,7 @@ pub fn each<T, R>(names: &[String], items: Vec<T>, quiet: bool, mut work: impl F
     done
 }
 
-/// Runs `work` with a progress bar from 0 to 1, on a terminal, if it takes long.
+/// Runs `work`, and shows its progress from 0 to 1 on a terminal if it takes long.
 pub fn shares<R>(name: &'static str, work: impl FnOnce(&(dyn Fn(f64) + Sync)) -> R) -> R {
     let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::hidden());
     let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {elapsed}");

@@ -1,4 +1,4 @@
-//! `durer render`: one picture, an animation, or repeated renders with `--watch`.
+//! `durer render`: renders one picture, an animation, or a picture again and again with `--watch`.
 
 use crate::failure::{Failure, bad};
 use crate::frames::FramesArgs;
@@ -48,6 +48,7 @@ pub struct RenderCommand {
     pub sample: Option<u32>,
 }
 
+/// Runs `durer render`.
 pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
     let (args, scene_defaults) = (&command.render, &command.render.reading.scene_defaults);
     let view = scene_defaults.view_file.as_deref().unwrap_or(Path::new("")).to_string_lossy();
@@ -63,7 +64,7 @@ pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
             frames::run(&mut command.render, frames, moves)
         }
         (None, true) => {
-            // Every change starts a new picture.
+            // Each change starts a new picture, so save no unfinished work.
             command.render.work.no_checkpoint = true;
             watching::run(&command.render)
         }

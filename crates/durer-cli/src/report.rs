@@ -1,4 +1,4 @@
-//! Diagnostics on the terminal.
+//! Prints diagnostics on the terminal.
 
 use crate::failure::Failure;
 use crate::terminal::complain;
@@ -15,7 +15,7 @@ use durer::world::{Material, World};
 use std::io::IsTerminal;
 use std::ops::Range;
 
-/// Prints diagnostics to standard error: all, or only errors.
+/// Prints diagnostics to standard error: all of them, or only errors.
 pub fn print(files: &Files, diagnostics: &Diagnostics, errors_only: bool) {
     let wanted: Vec<&Diagnostic> =
         diagnostics.iter().filter(|d| !errors_only || d.severity == Severity::Error).collect();
@@ -30,7 +30,7 @@ pub fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
 
-/// Enables colours on terminals.
+/// Returns whether to print colours to a stream: only if it is a terminal.
 pub fn colors(stream: &impl IsTerminal) -> ColorChoice {
     if stream.is_terminal() { ColorChoice::Auto } else { ColorChoice::Never }
 }
@@ -43,7 +43,7 @@ pub fn print_to(stream: StandardStream, files: &Files, wanted: &[&Diagnostic]) {
     let mut shown = SimpleFiles::new();
     for file in 0.. {
         let (Some(name), Some(bytes)) = (files.name(file), files.bytes(file)) else { break };
-        // Files without a diagnostic need no text.
+        // Leave out the text of files without a diagnostic.
         let used = wanted.iter().any(|d| spans(d).any(|span| span.file == file));
         shown.add(name.to_string(), if used { text(bytes) } else { String::new() });
     }
@@ -54,7 +54,7 @@ pub fn print_to(stream: StandardStream, files: &Files, wanted: &[&Diagnostic]) {
     }
 }
 
-/// Prints a note in one line.
+/// Prints a note on one line.
 pub fn note(diagnostic: &Diagnostic) {
     complain(&format!("note: {}", diagnostic.message));
 }
@@ -71,8 +71,8 @@ pub fn rejected(statistics: &Statistics, world: Option<&World>, quiet: bool) {
     }
 }
 
-/// Describes the light or material that yields infinite or NaN radiance under the rules of old
-/// programs.
+/// Describes the light or material that gives infinite or NaN radiance under the rules of the
+/// course's programs.
 fn cause(world: &World) -> Option<String> {
     let divides = |light: &Light| match light {
         Light::Point(emitter) => emitter.attenuation == Some(Vec3::ZERO),
@@ -90,12 +90,12 @@ fn cause(world: &World) -> Option<String> {
         Material::Solid(..) => false,
     };
     if let Some(number) = world.materials().iter().position(below) {
-        return Some(format!("the shininess of material {number} is below 0, and its highlight grows without end"));
+        return Some(format!("the shininess of material {number} is below 0, so its highlight has no upper bound"));
     }
     let highlights = |material: &Material| matches!(material, Material::Phong(phong) if phong.highlight.is_some());
     let has_highlight = |number: u32| world.materials().get(number as usize).is_some_and(highlights);
     let is_long = world.objects().iter().any(|object| object.normal_length > 1.0 && has_highlight(object.material));
-    is_long.then(|| "the normal of a plane is longer than 1, and its highlight exceeds all numbers".into())
+    is_long.then(|| "the normal of a plane is longer than 1, so its highlight overflows".into())
 }
 
 /// Returns the failure for an unreadable scene file.
@@ -108,7 +108,7 @@ fn spans(diagnostic: &Diagnostic) -> impl Iterator<Item = Span> {
 }
 
 /// Returns a file's bytes as text of the same length, so that offsets stay valid. Control
-/// characters are replaced, so that they cannot control the terminal.
+/// characters are replaced, because they could control the terminal.
 fn text(bytes: &[u8]) -> String {
     let harmless = |c: char| match c {
         '\n' | '\t' => c.to_string(),
@@ -122,14 +122,15 @@ fn text(bytes: &[u8]) -> String {
     }
 }
 
-/// Files cut to the text around a span, because a line can have many megabytes.
+/// View of the files of a diagnostic that shows only the text around its span, because lines can be
+/// megabytes long.
 struct Excerpt<'f> {
     files: &'f SimpleFiles<String, String>,
     around: Option<Span>,
 }
 
 impl Excerpt<'_> {
-    /// Bytes of a line shown before and after the span.
+    /// Number of bytes of a line shown before and after the start of the span.
     const BEFORE: usize = 80;
     const AFTER: usize = 120;
 }

@@ -1,4 +1,4 @@
-//! Options for models: files that contain objects but no complete scene.
+//! Options for models: files with objects but without a complete scene.
 
 use clap::{Args, ValueEnum};
 use durer::options::doc;
@@ -32,6 +32,7 @@ pub struct SceneDefaultsArgs {
     pub at: Option<f32>,
 }
 
+/// Axis of a model that points up, given with `--up`.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum Up {
     X,
@@ -39,6 +40,7 @@ pub enum Up {
     Z,
 }
 
+/// View of a model, given with `--view`.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum From {
     /// From the front, slightly from the right and above, in perspective
@@ -53,6 +55,7 @@ pub enum From {
     Iso,
 }
 
+/// Lights that are added to a model, given with `--studio`.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum Light {
     /// No lights and no ground
@@ -74,7 +77,7 @@ fn degrees(text: &str) -> Result<f32, String> {
 }
 
 impl SceneDefaultsArgs {
-    /// Converts the options for the library.
+    /// Converts the options to those of the library.
     pub fn scene_defaults(&self) -> SceneDefaults {
         SceneDefaults {
             up: self.up.map(|up| match up {

@@ -1,4 +1,4 @@
-//! `--stats`: time and rays of a picture.
+//! `--stats`: prints times and ray counts of a render.
 
 use crate::failure::{Failure, failed};
 use crate::terminal::complain;
@@ -6,10 +6,10 @@ use durer::render::{PartialRender, Profile, profile};
 use durer::world::World;
 use std::time::{Duration, Instant};
 
-/// Number of samples rendered again for the measurement.
+/// Number of samples that are rendered again for the measurement.
 const SAMPLES: u64 = 4096;
 
-/// Times of the stages of a render.
+/// Stopwatch for the stages of a render, such as reading and rendering.
 pub struct Stages {
     last: Instant,
     done: Vec<(&'static str, Duration)>,
@@ -21,13 +21,13 @@ impl Stages {
         Stages { last: Instant::now(), done: Vec::new() }
     }
 
-    /// Ends a stage and starts the next.
+    /// Ends the current stage, which gets this name, and starts the next.
     pub fn ends(&mut self, name: &'static str) {
         self.done.push((name, self.last.elapsed()));
         self.last = Instant::now();
     }
 
-    /// Prints the stages, and the rays of a part.
+    /// Prints the times of the stages and the ray counts of a finished part.
     pub fn report(&self, world: &World, part: &PartialRender) -> Result<(), Failure> {
         complain("time");
         for (name, time) in &self.done {

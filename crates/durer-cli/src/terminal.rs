@@ -1,10 +1,10 @@
-//! Lines on standard output and standard error.
+//! Prints lines on standard output and standard error.
 
 use std::io::{ErrorKind, Write};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// Exit code of failures other than invalid input, including those of standard output.
+/// Exit code of failures other than invalid input, including failures to write to standard output.
 pub const OTHER_FAILURE: u8 = 1;
 
 /// True if the program was started without a standard output.
@@ -13,7 +13,7 @@ static CLOSED: AtomicBool = AtomicBool::new(false);
 /// Function that ends the program with an exit code.
 pub type ExitFn = fn(u8) -> !;
 
-/// Function that ends the program early.
+/// Function that ends the program early. See [`set_end`].
 static END: OnceLock<ExitFn> = OnceLock::new();
 
 /// Sets the function that ends the program; only the first call counts.
@@ -21,7 +21,7 @@ pub fn set_end(end: ExitFn) {
     let _ = END.set(end);
 }
 
-/// Ends the program.
+/// Ends the program with an exit code.
 ///
 /// # Panics
 ///
@@ -33,7 +33,7 @@ pub fn end(code: u8) -> ! {
     }
 }
 
-/// Records whether there is a standard output.
+/// Records whether the program was started with a standard output.
 #[cfg(unix)]
 pub fn look_at_standard_output() {
     CLOSED.store(rustix::io::fcntl_getfd(rustix::stdio::stdout()).is_err(), Relaxed);
@@ -44,7 +44,8 @@ pub fn has_standard_output() -> bool {
     !CLOSED.load(Relaxed)
 }
 
-/// Prints a line on standard output. A closed pipe is not an error: the reader has read enough.
+/// Prints a line on standard output. A closed pipe is not an error, because the reader has what it
+/// needs.
 pub fn say(line: &str) {
     let written = match has_standard_output() {
         true => writeln!(std::io::stdout(), "{line}"),
@@ -59,7 +60,7 @@ pub fn say(line: &str) {
     }
 }
 
-/// Prints a line on standard error. Errors are ignored: they could not be reported.
+/// Prints a line on standard error. Errors are ignored, because there is nowhere to report them.
 pub fn complain(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }

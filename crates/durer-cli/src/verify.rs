@@ -1,4 +1,4 @@
-//! `durer verify`: checks that a render is deterministic.
+//! `durer verify`: checks that renders are deterministic.
 
 use crate::failure::Failure;
 use crate::guard::Guard;
@@ -43,12 +43,12 @@ pub struct VerifyArgs {
     pub quiet: bool,
 }
 
-/// Acceleration structures to try.
+/// Acceleration structures to render with.
 const STRUCTURES: [(&str, AccelKind); 3] =
     [("bvh", AccelKind::Bvh), ("grid", AccelKind::Grid(None)), ("none", AccelKind::None)];
 
-/// Returns the available SIMD levels by their names in `DURER_SIMD`. A process chooses its level
-/// once. If the variable is set, as in child processes, there is only that level.
+/// Returns the available SIMD levels, with their names for `DURER_SIMD`. A process chooses its
+/// level only once, so if the variable is set, as in child processes, there is only that level.
 fn simd_levels() -> Vec<&'static str> {
     match std::env::var_os("DURER_SIMD") {
         Some(_) => vec![SimdLevel::chosen().name()],
@@ -59,6 +59,7 @@ fn simd_levels() -> Vec<&'static str> {
 /// Default size of the pictures.
 const SIZE: (u32, u32) = (64, 48);
 
+/// Runs `durer verify`.
 pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let mut worlds: Vec<(&str, World)> = Vec::new();
     let mut wanted = None;
@@ -67,11 +68,11 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
         options.accel = accel;
         let (width, height) = args.job.options.given_size().unwrap_or(SIZE);
         options.scene_defaults.aspect = Some(width as f32 / height as f32);
-        // Print diagnostics only for the first structure.
+        // Print diagnostics only for the first acceleration structure.
         let compiled = open(&args.scene, &options, args.quiet || !worlds.is_empty(), &mut Guard::default())?;
         let mut job = job::job(&args.job, Some(&args.view), &compiled.loaded, false)?;
         (job.width, job.height) = (width, height);
-        // The cost depends on the structure.
+        // The cost picture depends on the acceleration structure.
         job.aovs.retain(|aov| aov.name != "cost");
         if ["samples", "noise-threshold"].iter().all(|name| args.job.options.get(name).is_none()) {
             job.sampling = job.sampling.with_samples(if job.adaptive { LEAST_ADAPTIVE } else { 8 });

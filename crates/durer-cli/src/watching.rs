@@ -14,17 +14,17 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
-/// Interval between checks of the files; short, because the user waits for the picture.
+/// Interval between checks of the files; short, because the user is waiting for the picture.
 const LOOK: Duration = Duration::from_millis(10);
-/// Time for which files must stay unchanged, because programs save in several steps.
+/// Time for which files must stay unchanged, because some programs save in several steps.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// Returns the current stamps of the files.
+/// Returns the current time stamps of the files.
 fn stamp(files: &[PathBuf]) -> Vec<Option<Stamp>> {
     files.iter().map(|path| stamp_of(path)).collect()
 }
 
-/// Renders until Ctrl-C. Errors in the scene are printed, and the loop waits until a file changes.
+/// Renders until Ctrl-C. If the scene has errors, prints them and waits until a file changes.
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let named = [&args.reading.scene_defaults.view_file, &args.reading.scene_defaults.environment];
     let always: Vec<PathBuf> =
@@ -39,7 +39,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         match result {
             Ok(()) => {}
             Err(Failure::Interrupted(_)) if stale => {}
-            // Only errors in files can be fixed by saving them.
+            // Only errors in files can be fixed by saving a file.
             Err(failure @ Failure::Input(_)) => {
                 failure.report();
             }
@@ -76,7 +76,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
 }
 
-/// Waits until files stay unchanged, but at most 40 pauses.
+/// Waits until the files stay unchanged for [`PAUSE`], but at most 40 times as long.
 fn settle(files: &[PathBuf]) {
     let mut last = stamp(files);
     for _ in 0..40 {
@@ -89,7 +89,7 @@ fn settle(files: &[PathBuf]) {
     }
 }
 
-/// Runs `work` and cancels it when a file is saved.
+/// Runs `work`, and cancels it if a file is saved.
 fn while_watching<R>(files: &[PathBuf], before: &[Option<Stamp>], watched: &WatchState, work: impl FnOnce() -> R) -> R {
     let (finished, wait) = mpsc::channel::<()>();
     std::thread::scope(|scope| {
@@ -101,7 +101,7 @@ fn while_watching<R>(files: &[PathBuf], before: &[Option<Stamp>], watched: &Watc
                 }
             }
         };
-        // If no thread can be started, the work runs to its end.
+        // If no thread can be started, the work runs to completion.
         let _ = std::thread::Builder::new().spawn_scoped(scope, look);
         let result = work();
         drop(finished);

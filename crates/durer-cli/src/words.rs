@@ -1,4 +1,4 @@
-//! `durer words`: the language reference in the terminal.
+//! `durer words`: prints the language reference.
 
 use crate::failure::{Failure, bad};
 use crate::terminal::say;
@@ -16,6 +16,7 @@ pub struct WordsArgs {
     pub dialect: Option<String>,
 }
 
+/// Runs `durer words`.
 pub fn run(args: &WordsArgs) -> Result<(), Failure> {
     let dialect = args.dialect.as_deref().map(named).transpose()?;
     let has = |set| dialect.is_none_or(|dialect: Dialect| dialect.is_in(set));

@@ -1,4 +1,4 @@
-//! Runs every command of the README and the book, at a small size.
+//! Runs every command in the README and the book at a small size.
 //!
 //! docs/lecture.md has its own test.
 
@@ -7,7 +7,7 @@ mod common;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Option values replaced to keep the test short.
+/// Option values that are replaced to keep the test short.
 const SMALLER: [(&str, &str); 3] = [("--size", "40x30"), ("--samples", "4"), ("--pixel", "20,15")];
 
 fn root() -> PathBuf {
@@ -27,7 +27,7 @@ fn pages() -> Vec<String> {
 }
 
 /// Returns the commands of a page in order: lines of code that begin with `cargo durer` or `durer`.
-/// Later commands may use the files of earlier ones.
+/// Commands can use the files of earlier ones.
 fn commands(page: &str) -> Vec<String> {
     let text = std::fs::read_to_string(root().join(page)).unwrap();
     let lines = text.lines().filter_map(|line| line.strip_prefix("    "));
@@ -39,7 +39,8 @@ fn commands(page: &str) -> Vec<String> {
         .collect()
 }
 
-/// Files that pages refer to but do not create. `scene.txt` and `model.glb` are made from a scene.
+/// Files that pages refer to but do not create. `scene.txt` and `model.glb` are generated from a
+/// scene.
 const STAND_INS: [(&str, &str); 4] = [
     (
         "scene.xml",
@@ -68,7 +69,7 @@ fn smaller(command: &str) -> String {
 #[cfg(unix)]
 fn every_command_of_the_book_runs() {
     let durer = |folder: &Path, line: &str| {
-        // A shell expands file name patterns.
+        // Expand file name patterns, as a shell does.
         let line = format!("{} {line}", env!("CARGO_BIN_EXE_durer"));
         Command::new("sh").args(["-c", &line]).current_dir(folder).output().unwrap()
     };

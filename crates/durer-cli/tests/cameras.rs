@@ -1,10 +1,10 @@
-//! Cameras on the command line: picture shapes, alpha, invalid values.
+//! Cameras on the command line: aspect ratios, alpha, and invalid values.
 
 mod common;
 
 use common::{SCENE, TestFolder};
 
-/// Returns the common scene with another camera.
+/// Returns the shared test scene with another camera.
 fn seen_by(camera: &str) -> String {
     let (_, rest) = SCENE.split_once('\n').unwrap();
     format!("# ours\n{camera}\n{rest}")
@@ -44,14 +44,15 @@ fn pixels_outside_the_camera_are_transparent_with_any_sampling() {
         let at = |x: usize, y: usize| pixels[y * 40 + x];
         assert_eq!([at(0, 0), at(39, 0), at(0, 39), at(39, 39)], [[0; 4]; 4], "{way}");
         assert_eq!([at(20, 20)[3], at(20, 1)[3], at(38, 20)[3]], [255; 3], "{way}");
-        // The rim is antialiased with several samples per pixel.
+        // With several samples per pixel, the rim is antialiased.
         let partly = pixels.iter().filter(|p| ![0, 255].contains(&p[3])).count();
         assert_eq!(partly > 20, way.contains("jitter") || way == "--samples 16", "{way}: {partly}");
         // Area of the disc in pixels.
         let area: f64 = pixels.iter().map(|p| f64::from(p[3]) / 255.0).sum();
         assert!((area / (400.0 * std::f64::consts::PI) - 1.0).abs() < 0.02, "{way}: {area}");
     }
-    // Formats without alpha show black there; a fully covered picture has no alpha.
+    // Formats without alpha show black outside the image circle. A fully covered picture has no
+    // alpha.
     place.expect_exit(0, "render eye.txt --size 40x40 -o eye.ppm");
     assert_eq!(place.image8("eye.ppm").pixels[0], [0; 3]);
     place.expect_exit(0, "render eye.txt --size 40x40 -o inside.tga --crop 10,10,20x20");
@@ -77,7 +78,7 @@ fn pictures_have_the_aspect_ratio_of_their_cameras() {
         let (width, height) = size;
         assert!(output.contains(&format!("picture    {width}x{height} by default")), "{camera}: {output}");
     }
-    // With another aspect ratio the image stays whole, and a warning reports the empty pixels.
+    // With another aspect ratio the image is not distorted, and a warning reports the empty pixels.
     place.put("sphere.txt", seen_by(&format!("EquirectangularCamera {{ {POSE} }}")));
     let output = place.expect_exit(0, "render sphere.txt -o a.tga --size 40x40 --samples 1").err;
     assert!(output.contains("20 rows of 40x40 stay empty") && output.contains("--size 56x28"), "{output}");
@@ -102,7 +103,7 @@ fn lens_pictures_are_identical_in_crops_and_on_any_number_of_threads() {
             assert_eq!(part.get(x, y), whole.get(x + 7, y + 9), "{way} {x},{y}");
         }
     }
-    // One sample passes through the centre of the lens, as if there were no aperture.
+    // A single sample passes through the centre of the lens, so everything is in focus.
     let output = place.expect_exit(0, "render lens.txt -o one.pfm --size 40x40 --samples 1").err;
     assert!(output.contains("everything is in focus"), "{output}");
     place.expect_exit(0, "render sharp.txt -o sharp.pfm --size 40x40 --samples 1");
@@ -134,7 +135,7 @@ fn invalid_cameras_are_refused() {
     refused("ProjectiveCamera {width 9 height 9}", &["has no `matrix`"]);
     refused("FishEyeCamera {@}", &["did you mean `FisheyeCamera`?"]);
     refused("FisheyeCamera {@} FisheyeCamera {@ walls 3}", &["no field `walls`"]);
-    // The words are extensions of the language, so --strict rejects them.
+    // These keywords are extensions of the language, so --strict rejects them.
     place.put("ours.txt", seen_by(&format!("FisheyeCamera {{ {POSE} }}")).replace("# ours\n", ""));
     place.refused(2, "render ours.txt -o p.png --strict", &["`FisheyeCamera` is a Dürer extension"]);
     place.refused(2, "render ours.txt -o p.png --strict --dialect f04", &["`FisheyeCamera`"]);

@@ -1,5 +1,5 @@
-//! `durer check`, cause by cause: the smallest change of a valid scene that triggers a finding, and
-//! the nearest change that does not.
+//! Tests `durer check` cause by cause, with a small change of a valid scene that triggers a
+//! finding, and a similar change that does not.
 
 mod common;
 
@@ -10,15 +10,16 @@ use std::path::Path;
 
 const CAUSES: &str = include_str!("causes.txt");
 
+/// Expected result of `durer check` for a case in causes.txt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
-    /// A base scene or a near miss: no warning.
+    /// No warning: a base scene or a near miss.
     Sound,
     /// The first finding has the expected code.
     Broken,
 }
 
-/// A scene and its options.
+/// A scene of causes.txt with its options and the expected result of `durer check`.
 struct Case {
     line: String,
     kind: Kind,
@@ -27,7 +28,7 @@ struct Case {
     text: String,
 }
 
-/// Adds options; if an option is given twice, the last one counts.
+/// Joins options. If an option is given twice, only the last one is kept.
 fn joined(options: &str, more: &str) -> Vec<String> {
     let mut all: Vec<String> = options.split_whitespace().map(String::from).collect();
     for word in more.split_whitespace().filter(|word| word.starts_with("--")) {
@@ -74,7 +75,7 @@ fn cases() -> Vec<Case> {
     cases
 }
 
-/// A cube of quads, a cube of triangles, and a picture of hills.
+/// Writes a cube of quads, a cube of triangles, and a height map of hills.
 fn put_files(place: &TestFolder) {
     let corners = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
     let faces = [[1, 4, 3, 2], [5, 6, 7, 8], [1, 2, 6, 5], [2, 3, 7, 6], [3, 4, 8, 7], [4, 1, 5, 8]];
@@ -104,7 +105,7 @@ fn each_cause_is_reported_first_and_its_near_miss_is_not() {
     put_files(&place);
     let cases = cases();
     let (mut wrong, mut text) = (Vec::new(), BTreeSet::new());
-    // Check scenes with equal options in one run.
+    // Check scenes with the same options in one run.
     let mut of_options: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (number, case) in cases.iter().enumerate() {
         place.put(&format!("{number}.txt"), &case.text);
@@ -134,7 +135,7 @@ fn each_cause_is_reported_first_and_its_near_miss_is_not() {
     assert!(cases.len() > 100 && text.len() > 50, "{} cases of {} causes", cases.len(), text.len());
 }
 
-/// Every code has a scene, here or in its own file.
+/// Checks that every code has a scene, here or in its own file.
 #[test]
 fn every_cause_has_a_scene() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/broken");

@@ -1,4 +1,4 @@
-//! `durer check` on scenes broken by hand.
+//! Tests `durer check` on scenes that were broken by hand.
 
 mod common;
 
@@ -7,8 +7,8 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Returns the folder and names of the broken scenes. A name begins with the code of the finding:
-/// `camera-away.backwards.txt`.
+/// Returns the folder and the names of the broken scenes. A name begins with the code of the
+/// expected finding, for example `camera-away.backwards.txt`.
 fn broken() -> (PathBuf, Vec<String>) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/broken");
     let entries = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -22,7 +22,7 @@ fn code(name: &str) -> &str {
     name.split('.').next().unwrap()
 }
 
-/// Returns a folder with the broken scenes and their meshes, and the scenes' names.
+/// Returns a folder with the broken scenes and their meshes, and the names of the scenes.
 fn with_broken() -> (TestFolder, Vec<String>) {
     let (folder, names) = broken();
     let place = TestFolder::new();
@@ -56,7 +56,7 @@ fn cause_is_among_the_first_two() {
             wrong.push(format!("{name}: {codes:?}"));
         }
         for finding in scene["findings"].as_array().unwrap() {
-            // Each span is within an existing file.
+            // Each span must be within an existing file.
             let span = &finding["place"];
             if !span.is_null() {
                 let bytes = place.bytes(span["file"].as_str().unwrap());
@@ -113,7 +113,7 @@ fn mechanical_faults_are_fixed() {
         assert_eq!(place.bytes(name), before, "{name} itself was changed");
         let scene = &json(&output)["scenes"][0];
         let mended = scene["mended"].as_array().unwrap();
-        // A second run does not report repaired findings either.
+        // Repaired findings are not reported in a second run either.
         let again = place.run("check mended.txt --json");
         assert_eq!(again.code, output.code, "{name}\n{}", output.out);
         let found = codes(&json(&again)["scenes"][0]);
@@ -190,7 +190,7 @@ Group { numObjects 1 MaterialIndex 0 Triangle { vertex0 -1 0 0 vertex1 0 1 0 ver
 ",
     );
     place.expect_exit(0, "check back.txt");
-    // The course's programs leave back faces black, so here the triangle is at fault.
+    // The course's programs do not shade back faces, so here the triangle is wrong.
     let output = place.expect_exit(1, "check back.txt --dialect f04");
     assert!(output.out.contains("[seen-from-behind]") && output.out.contains("its back stays black"), "{}", output.out);
     place.expect_exit(0, "check back.txt --dialect f04 --fix -o front.txt");
@@ -231,7 +231,7 @@ fn faulty_picture_is_reported_after_the_render() {
 
     let course = |scene: &str| place.expect_exit(0, &format!("course -input {scene} -output p.tga -size 30 30")).err;
     assert!(!course("scene.txt").contains("the picture"));
-    // Students judge brightness themselves; report only a picture of one colour.
+    // Students judge brightness themselves, so report only pictures of a single colour.
     assert!(!course("color-range.light.txt").contains("the picture"));
     assert!(course("camera-away.point.txt").contains("[camera-away]"));
 }

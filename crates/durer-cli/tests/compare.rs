@@ -1,4 +1,5 @@
-//! `durer compare`: measures, exit codes, folders, heat maps, and the report in a real browser.
+//! Tests `durer compare`: metrics, exit codes, folders, heat maps, and the report in a real
+//! browser.
 
 mod common;
 
@@ -72,11 +73,11 @@ fn regions_name_the_hit_objects() {
         assert!(!regions.is_empty());
         for region in regions {
             let (there, worst) = (&region["there"], &region["worst"]);
-            // The plane receives shadows.
+            // The plane has a shadow.
             assert!(there["hit"]["object"].as_str().unwrap().starts_with("Plane "), "{there}");
             assert_eq!(there["hit"]["normal"], serde_json::json!([0.0, 1.0, 0.0]));
             let command = there["command"].as_str().unwrap().strip_prefix("durer ").unwrap();
-            // The command lists every option of the reference, also inferred ones.
+            // The command contains every option of the reference, including inferred ones.
             let options = format!("--pixel {},{} --size 60x50 --samples 1", worst[0], worst[1]);
             assert!(command.ends_with(&options), "{command}");
             place.expect_exit(0, command);
@@ -183,7 +184,7 @@ fn folders_of_pictures_and_of_students() {
             ["1", "0", "1", "0"].map(String::from).to_vec(),
         )
     );
-    // An unreadable picture does not stop the others.
+    // An unreadable picture does not affect the others.
     place.put("class/bob/deep.png", "");
     place.put("class/ada/one.ppm", "P6 9 9");
     let output = place.expect_exit(2, "compare ref class --report class.html");
@@ -207,7 +208,7 @@ fn heat_map_is_black_where_nothing_differs() {
     assert!(heat.pixels[60 * 50 - 1][0] > 200);
 }
 
-/// Mistakes of students, applied to the course's pictures.
+/// Finds mistakes of students in pictures of the course.
 #[test]
 fn mistakes_in_real_pictures_are_named() {
     let Some(course) = corpus() else { return };
@@ -216,7 +217,7 @@ fn mistakes_in_real_pictures_are_named() {
         let path = course.join("reference").join(name);
         let a = read8(&std::fs::read(&path).unwrap(), name).unwrap();
         let (width, height) = (a.width, a.height);
-        // Change one pixel in twenty, without a pattern.
+        // Change one in twenty pixels, without a pattern.
         let speckle = |x: u32, y: u32| {
             let mixed = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(13);
             ((mixed ^ mixed >> 15).wrapping_mul(0xc2b2_ae35) >> 16).is_multiple_of(20)
@@ -242,7 +243,7 @@ fn mistakes_in_real_pictures_are_named() {
     }
 }
 
-/// Students often trace rays through pixel corners instead of centres.
+/// Students often trace rays through the corners of pixels instead of their centres.
 #[test]
 fn border_pixels_and_missing_shadows_are_recognised() {
     let place = TestFolder::new();
@@ -265,7 +266,7 @@ fn border_pixels_and_missing_shadows_are_recognised() {
     assert!(tried("border").contains("on the picture's border"), "{}", tried("border"));
 }
 
-/// Clicks through the page and records what it shows.
+/// Script that clicks through the page and records what it shows.
 const CLICKS: &str = r##"
 const look = () => [getComputedStyle($("over")).visibility, getComputedStyle($("over")).clipPath, getComputedStyle($("over")).mixBlendMode].join(" ");
 const choose = mode => { document.querySelector(`button[data-mode=${mode}]`).click(); see(`${mode}: ${look()}`); };
@@ -286,7 +287,7 @@ window.dispatchEvent(new KeyboardEvent("keydown", { key: "2" }));
 setTimeout(() => { see(`blinked ${getComputedStyle($("over")).visibility}`); done(); }, 700);
 "##;
 
-/// A class: the page groups equal mistakes, and the table can be saved.
+/// The report of a class groups equal mistakes, and its table can be saved.
 #[test]
 fn class_report_is_a_matrix_of_students_and_pictures() {
     let place = TestFolder::new();
@@ -364,8 +365,8 @@ Group {
 }
 ";
 
-/// Path-traced pictures are compared within their noise, and errors of other dialects are not
-/// printed.
+/// Differences within the noise of path-traced pictures are recognised, and errors from trying
+/// other dialects are not printed.
 #[test]
 fn pictures_of_paths_are_judged_against_their_noise() {
     let place = TestFolder::new();
@@ -391,8 +392,8 @@ fn pictures_of_paths_are_judged_against_their_noise() {
         let text = text(name);
         assert_eq!(text["named"][0]["mistakes"][0]["name"], "path-depth", "{text:#}");
     }
-    // A reference of another scene is reported as such. The fraction of differing pixels is
-    // compared with noise.
+    // The reference of another scene is reported as such, because more of its pixels differ than
+    // noise explains.
     place.put(
         "other.txt",
         ROOM.replace("baseColor 0.7 0.2 0.1", "baseColor 0.1 0.7 0.2").replace("0.6 2 radius", "1.6 2 radius"),

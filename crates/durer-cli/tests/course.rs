@@ -1,10 +1,10 @@
-//! `durer course`: the command lines of the course's programs.
+//! Tests `durer course` with command lines of the course's programs.
 
 mod common;
 
 use common::{SCENE, TestFolder};
 
-/// Returns a scene that every year except 2003 and 2020 reads.
+/// Returns a scene that can be read in every year except 2003 and 2020.
 fn plain() -> String {
     SCENE.replace("reflectiveColor 0.5 0.5 0.5", "")
 }
@@ -64,7 +64,8 @@ fn grid_picture_replaces_the_colour_picture() {
     place.expect_exit(0, "course -input scene.txt -size 60 60 -output b.tga -visualize_grid");
     place.expect_exit(0, "course -input scene.txt -size 60 60 -output c.tga");
     let pictures = ["a.tga", "b.tga", "c.tga"].map(|name| place.bytes(name));
-    // Without a number of cells, the grid chooses one: here a single cell, as in the first run.
+    // Without a number of cells the program chooses one. Here it is a single cell, as in the first
+    // run.
     assert!(pictures[0] == pictures[1] && pictures[1] != pictures[2]);
     assert!(place.bytes("d.tga") != pictures[0]);
 }
@@ -72,7 +73,7 @@ fn grid_picture_replaces_the_colour_picture() {
 #[test]
 fn values_are_truncated_without_a_curve() {
     let place = TestFolder::new();
-    // Corners see the sky, 0.2 0.1 0.5, and the depth there is black.
+    // In the corners the sky is visible (0.2 0.1 0.5), and the depth is black.
     place.expect_exit(0, "course -input scene.txt --dialect f04 -output o.tga -depth 5 10 d.tga -normals n.tga");
     let image = place.image8("o.tga");
     assert_eq!((image.width, image.height, image.pixels[0]), (100, 100, [51, 25, 127]));
@@ -148,7 +149,7 @@ fn f12a4_writes_tga_unless_the_name_ends_in_bmp() {
         assert_eq!(is_bmp, name == "o.bmp", "{name}");
         assert_eq!(durer::image::read8(&place.bytes(name), "o.tga").unwrap().width, 4);
     }
-    // Without that year's dialect, names have their plain meaning.
+    // In other dialects, names have their usual meaning.
     place.expect_exit(0, "course -input plain.txt -size 4 4 -output p.png");
     assert!(place.bytes("p.png").starts_with(b"\x89PNG"));
 }
@@ -182,7 +183,7 @@ Scene { Node { Component<Light> { type directional direction 0 0 -1 color 1 1 1 
         let mut command = std::process::Command::new(place.path(name));
         let output = command.args(["-input", scene, "-output", "o.bmp"]).current_dir(place.path("")).output().unwrap();
         let err = String::from_utf8_lossy(&output.stderr);
-        // A known program needs no guess of the dialect.
+        // If the program is known, the dialect is not guessed.
         assert!(output.status.success() && err.is_empty(), "{name}: {err}");
         assert_eq!(place.image8("o.bmp").width, side, "{name}");
     }
@@ -201,7 +202,8 @@ fn files_are_found_from_the_current_folder_and_beside_the_scene() {
             let arguments = format!("course --dialect {dialect} -input scenes/mesh.txt -size 4 4 -output o.bmp");
             let output = place.run(&arguments);
             println!("{mesh} {dialect}: {:?}", output.code);
-            // 2004 and 2012 look in the current folder; all look beside the scene.
+            // The programs of 2004 and 2012 search the current folder; all programs search the
+            // scene's folder.
             assert!(
                 output.code == Some(0) || (dialect == "f16" && folder.is_empty()),
                 "{mesh} {dialect}: {}",
@@ -218,7 +220,7 @@ fn options_of_another_year_do_not_change_the_guess() {
     let place = TestFolder::new();
     let shiny = plain().replace("diffuseColor 0.8", "specularColor 0.9 0.9 0.9 shininess 20 diffuseColor 0.8");
     place.put("shiny.txt", shiny);
-    // Depth greys and highlights differ between the years.
+    // Depth values and highlights differ between the years.
     for (options, dialect, expected) in [
         ("-output o.bmp", "f12a4", false),
         ("-output o.bmp -shadows", "f12a5", true),
@@ -240,7 +242,7 @@ fn options_of_another_year_do_not_change_the_guess() {
 fn guess_is_reported_only_where_it_changed_the_picture() {
     let place = TestFolder::new();
     place.put("matte.txt", plain().replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8"));
-    // At this size the years 2012 and 2016 render pictures that look the same.
+    // At this size, the pictures of 2012 and 2016 look the same.
     let output = place.expect_exit(0, "course -input matte.txt -size 20 20 -output o.png");
     assert!(!output.err.contains("read as"), "{}", output.err);
     let official = place.expect_exit(0, "course --dialect f16 -input matte.txt -size 20 20 -output f.png");
@@ -253,7 +255,7 @@ fn year_whose_picture_has_nan_samples_is_not_guessed() {
     let light = |falloff: &str| format!("PointLight {{ position 2 4 3 color 0.9 0.9 0.8 {falloff} }}");
     let sun = "DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 }";
     let shiny = plain().replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8");
-    // In 2016 both lights divide by zero.
+    // In 2016, both lights cause a division by zero.
     place.put("none.txt", shiny.replace(sun, &light("")));
     place.put("zero.txt", shiny.replace(sun, &light("falloff 0")));
     for (scene, options, year) in [
@@ -286,8 +288,8 @@ fn output_name_alone_does_not_decide_the_year() {
     let place = TestFolder::new();
     let light = "PointLight { position 2 4 3 color 0.9 0.9 0.8 }";
     let lit = plain().replace("DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 }", light);
-    // In 2016 this light would divide by zero. The scene has another keyword that identifies the
-    // year.
+    // In 2016, this light would cause a division by zero. But another keyword in the scene
+    // identifies the year.
     place.put("bulb.txt", lit.replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8"));
     let picture = |ending: &str| {
         let output = place.expect_exit(0, &format!("course -input bulb.txt -size 9 9 -output o.{ending}"));

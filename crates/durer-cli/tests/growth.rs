@@ -1,5 +1,5 @@
-//! Small files and options that describe huge data. The size is computed before memory is
-//! allocated, and oversized input is rejected with an error instead of an abort.
+//! Tests small files and options that describe huge data. The program must compute the size before
+//! it allocates memory, and reject oversized input with an error instead of aborting.
 #![cfg(target_os = "linux")]
 
 mod common;
@@ -54,7 +54,7 @@ fn what_doubles_forty_times_in_a_mitsuba_scene_is_refused() {
         let two = |i: usize| group(i, &instance(i - 1).repeat(2));
         place.put(file, doubled(&group(0, inner), two, &instance(40)));
         refused(&place, &render(file), "error");
-        // Fewer levels, within the depth limit.
+        // Fewer levels, which are within the depth limit.
         let shallow = (1..=25).map(two).collect::<String>();
         let scene = format!("<scene version=\"3.0.0\">{}{shallow}{}</scene>", group(0, inner), instance(25));
         place.put(file, scene);
@@ -70,7 +70,7 @@ fn what_doubles_forty_times_in_a_mitsuba_scene_is_refused() {
         place.put(file, doubled(first, both, shown));
         refused(&place, &render(file), "this material is too large: it consists of more than 4096 materials");
     }
-    // Copies of a material that is just below the size limit.
+    // Many copies of a material that is just below the size limit.
     let mut copies = String::from("<scene version=\"3.0.0\"><bsdf type=\"diffuse\" id=\"b0\"/>\n");
     for i in 1..=11 {
         let part = format!(r#"<ref id="b{}"/>"#, i - 1);
@@ -95,7 +95,7 @@ fn names_that_double_in_the_scene_language_are_refused() {
     }
 }
 
-/// Returns a glTF file whose nodes share a mesh. With `copies` above 0, each node has that many
+/// Returns a glTF file whose nodes share a mesh. If `copies` is above 0, each node has that many
 /// instances.
 fn gltf(nodes: usize, primitives: usize, copies: usize) -> String {
     // The buffer contains only three vertices and the instance translations.
@@ -198,8 +198,8 @@ fn photographs_take_the_memory_that_their_heads_announce() {
     ] {
         for kind in [0xc0, 0xc1, 0xc2] {
             place.put("p.jpg", jpeg(kind, size, factors));
-            // The address space suffices for the program and `--memory`, but not for the decoded
-            // picture.
+            // The address space is sufficient for the program and for `--memory`, but not for the
+            // decoded picture.
             let script = "ulimit -v 500000; export RAYON_NUM_THREADS=2; \
                 timeout 60 $DURER render texture.txt --dialect durer --size 8x8 --samples 1 -q --restart -o o.png \
                 --threads 2 --memory 16M";

@@ -1,4 +1,4 @@
-//! Ctrl-C: exit code 130 without delay, and the work so far is saved.
+//! Tests Ctrl-C: the program exits with code 130 without delay, and the work so far is saved.
 #![cfg(unix)]
 
 mod common;
@@ -7,7 +7,7 @@ use common::TestFolder;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// Time limit for busy machines; an idle machine takes 0.2 s.
+/// Time limit on a busy machine. An idle machine takes 0.2 s.
 const SOON: Duration = Duration::from_secs(8);
 
 #[test]
@@ -25,7 +25,7 @@ fn rendering_stops_soon_and_leaves_no_empty_files() {
     ] {
         let (output, latency) = place.interrupted(&format!("render {options} -o old.png"), Duration::from_millis(400));
         assert_eq!((output.code, output.out.as_str()), (Some(130), ""), "{options}: {}", output.err);
-        // If a few blocks of pixels are done, they are saved.
+        // The work is saved if at least a few blocks of pixels are done.
         let part = place.path("old.png.part");
         let text = output.err.lines().last().unwrap_or_default();
         assert!(text == "interrupted; nothing was written" || text.contains("old.png.part (--resume"), "{text}");
@@ -48,7 +48,7 @@ fn finished_work_is_saved_on_interrupt() {
         "scene.txt --sampler uniform --samples 100 --size 1000x1000",
         "scene.txt --sampler uniform --samples 16 --size 300x300 --filter gaussian --filter-radius 60",
         "scene.txt --jitter --size 3500x3500",
-        // Saving time is proportional to the work done.
+        // The time to save is proportional to the work done.
         "scene.txt --size 3000x3000 --samples 64",
     ] {
         place.put("old.png", "an old picture");
@@ -85,7 +85,7 @@ fn reading_stops_on_interrupt() {
         common::SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file large.obj }"),
     );
     for command in ["render large.txt -o p.png", "info large.txt", "course -input large.txt -output p.tga"] {
-        // Late enough for a busy machine to have started.
+        // Late enough that the program has started even on a busy machine.
         let (output, latency) = place.interrupted(command, Duration::from_millis(250));
         assert!(
             output.code == Some(130) && output.out.is_empty() && latency < SOON,
@@ -109,8 +109,8 @@ fn interrupt_leaves_a_complete_file_or_none() {
             Some(0) => assert_eq!(place.image8("p.png").width, 300),
             // The signal may have arrived after the work was done.
             Some(130) => assert!(!place.path("p.png").exists() || place.image8("p.png").width == 300),
-            // Before the handler is installed, the system ends the program; after the program has
-            // ended, nothing happens.
+            // Before the handler is installed, the system ends the program. After the program has
+            // ended, the signal has no effect.
             other => assert!(other.is_none(), "{other:?} after {after} ms"),
         }
         assert!(place.names().iter().all(|name| !name.ends_with(".tmp")));
@@ -158,7 +158,7 @@ fn watch_renders_saved_changes_until_ctrl_c() {
     let picture = || std::fs::read(place.path("a.png")).unwrap_or_default();
     wait(&|| !picture().is_empty());
     let mut before = picture();
-    // An error waits for the file to be fixed.
+    // After an error, the program waits until the file is fixed.
     for text in [scene.replace("0.8 0.3 0.2", "0.1 0.3 0.9"), scene.replace("radius 1", "radius x"), scene.clone()] {
         std::thread::sleep(Duration::from_millis(400));
         place.put("scene.txt", &text);
@@ -175,7 +175,7 @@ fn watch_renders_saved_changes_until_ctrl_c() {
     assert!(!place.path("a.png.part").exists());
 }
 
-/// A grid of triangles, as an OBJ file.
+/// Returns a grid of triangles as an OBJ file.
 fn mesh(side: usize) -> String {
     let mut mesh = String::new();
     for i in 0..side * side {
@@ -199,7 +199,7 @@ fn noise(side: usize, seed: u32) -> Vec<u8> {
     bytes
 }
 
-/// Returns a bundle adjustment problem with cameras that see random points.
+/// Returns a bundle adjustment problem in which the cameras see random points.
 fn problem(cameras: usize, points: usize) -> String {
     let number = |i: usize| ((i * 7919) % 1000) as f64 / 500.0 - 1.0;
     let mut text = format!("{cameras} {points} {}\n", cameras * points);
@@ -273,8 +273,7 @@ fn a_verification_leaves_no_process_behind() {
         found.out.trim().parse::<u32>().unwrap_or(0)
     };
     let line = format!("verify {} --trials 3 --size 300x300 --samples 64", place.path("scene.txt").display());
-    // Stop it while the program itself renders, and while a child process renders at another SIMD
-    // level.
+    // Stop it while the program renders, and while a child process renders at another SIMD level.
     for after in [300, 2000, 6000] {
         let _ = place.signalled(&line, Duration::from_millis(after), &["TERM"]);
         std::thread::sleep(Duration::from_millis(200));

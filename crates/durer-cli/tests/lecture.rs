@@ -1,5 +1,5 @@
-//! docs/lecture.md and the lesson's steps: their references to the source exist, and their commands
-//! reproduce the pictures.
+//! Tests docs/lecture.md and the topics of the lesson: their references to the source code exist,
+//! and their commands reproduce the pictures.
 
 mod common;
 
@@ -72,14 +72,14 @@ fn commands_reproduce_the_pictures() {
         let run = Command::new(common::durer()).current_dir(root()).args(arguments).output().unwrap();
         assert!(run.status.success(), "{command}\n{}", String::from_utf8_lossy(&run.stderr));
         let (made, kept) = (std::fs::read(made).unwrap(), std::fs::read(root().join(picture)).unwrap());
-        // The cost picture changes with every improvement of the tree, so it can be outdated.
+        // The cost picture changes whenever the BVH is improved, so it may be out of date.
         let older = command.contains("--show cost");
         assert!(
             older || made == kept,
             "{picture} differs from the output of its command; the guide says how to render the pictures again"
         );
     };
-    // Run two at a time: small renders leave threads idle.
+    // Run two commands at a time, because small renders leave threads idle.
     std::thread::scope(|scope| {
         for turn in 0..2 {
             let (commands, check) = (&commands, &check);

@@ -1,4 +1,4 @@
-//! `durer lesson`: the folder, and the page in a real browser.
+//! Tests `durer lesson`: the folder, and the page in a real browser.
 
 mod common;
 
@@ -21,7 +21,7 @@ fn lesson_folder_has_page_text_and_pictures() {
     let output = place.expect_exit(0, &format!("lesson scene.txt -o out {SMALL}"));
     assert!(output.out.starts_with("wrote out/index.html, lesson.md and "), "{}", output.out);
     let (text, files) = (String::from_utf8(place.bytes("out/lesson.md")).unwrap(), names(&place.path("out")));
-    // The folder has exactly the files that the text links to.
+    // The folder contains exactly the files that the text links to.
     let shown = |name: &str| text.contains(&format!("]({name})")) || name == "lesson.md";
     assert!(files.iter().all(|name| shown(name)), "{files:?}");
     assert_eq!(
@@ -30,7 +30,7 @@ fn lesson_folder_has_page_text_and_pictures() {
     );
     assert!(text.contains("> scene.txt cannot show this: no glass is visible in it"), "{text}");
     assert!(text.contains("`crates/durer-render/src/integrator/whitted/secondary.rs`: `fn refract`"));
-    // The last picture equals that of `render`.
+    // The last picture is the same as that of `render`.
     place.expect_exit(0, &format!("render scene.txt -o p.png -q {SMALL}"));
     let last = files.iter().rfind(|name| name.ends_with("-supersampling.png")).unwrap();
     assert_eq!(place.bytes(&format!("out/{last}")), place.bytes("p.png"));
@@ -47,7 +47,7 @@ fn only_files_of_an_earlier_lesson_are_replaced() {
     place.put("out/notes.txt", "mine");
     place.expect_exit(0, &format!("lesson scene.txt -o out -q {SMALL}"));
     let first = names(&place.path("out"));
-    // Another scene has other steps; stale files are removed, and foreign files stay.
+    // Another scene has other steps: stale files are removed, and other files are kept.
     place.put("dull.txt", common::SCENE.replace("reflectiveColor 0.5 0.5 0.5", ""));
     place.expect_exit(0, &format!("lesson dull.txt -o out -q {SMALL}"));
     place.expect_exit(0, &format!("lesson dull.txt -o fresh -q {SMALL}"));
@@ -57,7 +57,7 @@ fn only_files_of_an_earlier_lesson_are_replaced() {
     assert_ne!(first, fresh);
     assert_eq!(names(&place.path("out")), fresh);
     assert_eq!(place.bytes("out/notes.txt"), b"mine");
-    // A foreign file with a lesson's file name stops the lesson.
+    // If another file has the name of a lesson's file, nothing is written.
     std::fs::create_dir(place.path("site")).unwrap();
     place.put("site/index.html", "my own page");
     let output = place.expect_exit(2, &format!("lesson scene.txt -o site -q {SMALL}"));
@@ -92,7 +92,7 @@ fn invalid_arguments_leave_no_files() {
     }
 }
 
-/// Moves the slider and drags across the picture.
+/// Script that moves the slider and drags across the picture.
 const CLICKS: &str = r##"
 see(`steps ${document.querySelectorAll("section").length - 1} links ${document.querySelectorAll("nav a").length}`);
 const images = [...document.querySelectorAll("img")];
@@ -120,7 +120,8 @@ setTimeout(() => {
 #[test]
 fn page_works_in_a_browser_without_network() {
     let place = TestFolder::new();
-    // A name that would end the script or link to a file to remove, if it were not escaped.
+    // If this name were not escaped, it would end the script, or link to a file that would be
+    // removed.
     let scene = "<b>](a).txt";
     place.put(scene, common::SCENE);
     place.expect_exit(0, &format!("lesson {scene} -o out -q {SMALL}"));

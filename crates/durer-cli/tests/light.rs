@@ -1,10 +1,10 @@
-//! Path tracing on the command line: pictures, photometry, exposure, checks.
+//! Tests path tracing on the command line: pictures, photometry, exposure, and checks.
 
 mod common;
 
 use common::TestFolder;
 
-/// A diffuse floor under a light with measured intensities, with an emissive ball.
+/// A diffuse floor and an emissive ball under a light with measured intensities.
 const LIT: &str = "PerspectiveCamera { center 0 2 6 direction 0 -0.3 -1 up 0 1 0 angle 40 }
 Background { color 0 0 0 }
 Lights { PhotometricLight { position 0 2 0 file lamp.ies } }
@@ -14,7 +14,7 @@ Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere {
   MaterialIndex 2 Sphere { center -1 0.3 0.5 radius 0.3 } }
 ";
 
-/// 1000 candela straight down, with a cosine falloff.
+/// An IES profile: 1000 candela straight down, falling off with the cosine.
 const LIGHT: &str = "IESNA:LM-63-1995\nTILT=NONE\n1 -1 1 4 1 1 2 0 0 0\n1 1 60\n0 30 60 90\n0\n1000 866.025 500 0\n";
 
 fn lit() -> TestFolder {
@@ -28,15 +28,15 @@ fn lit() -> TestFolder {
 fn photometric_light_has_its_specified_illuminance() {
     let place = lit();
     place.put("open.txt", LIT.replace("emissionLuminance 20", ""));
-    // Beside the ball: E = I cos / d^2 with I = 1000 cos.
+    // Point beside the ball: E = I cos / d^2 with I = 1000 cos.
     let output =
         place.expect_exit(0, "measure open.txt --at 0,0,0 --grid 0,0,0:-1,0,0:0,0,1:1x1 --samples 64 --bounces 0");
     let rows: Vec<Vec<f64>> =
         output.out.lines().skip(1).map(|row| row.split(',').map(|word| word.parse().unwrap()).collect()).collect();
     assert!(output.out.starts_with("x,y,z,nx,ny,nz,illuminance,illuminance_error,"));
     assert!((rows[0][6] - 250.0).abs() < 0.1, "{rows:?}");
-    // At (-0.5, 0, 0.5), 19.4712 degrees from straight down: candela are linear between 0 and 30
-    // degrees.
+    // Point at (-0.5, 0, 0.5), 19.4712 degrees from straight down. Candela values are interpolated
+    // linearly between 0 and 30 degrees.
     let candela = 1000.0 - (1000.0 - 866.025) * 19.4712 / 30.0;
     let expected = candela * (4.0_f64 / 4.5).sqrt() / 4.5;
     assert!((rows[1][6] / expected - 1.0).abs() < 1e-4 && rows[1][4] == 1.0, "{rows:?}");
@@ -63,7 +63,7 @@ Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Box { mi
     let (mean, error) = lux("--integrator photons --samples 32 --photons 20000 --photon-radius 0.2");
     let expected = 25.0 * 0.96 / 1.04;
     assert!((mean - expected).abs() < 3.0 * error + 0.02 * expected, "{mean} ± {error}, not {expected}");
-    // Path tracing cannot find a point light behind glass.
+    // Path tracing cannot reach a point light behind glass.
     assert_eq!(lux("--samples 32").0, 0.0);
     assert!(place.expect_exit(2, "measure pane.txt --at 0,0,0 --integrator ao").err.contains("path or photons"));
 }
@@ -122,7 +122,7 @@ fn invalid_photometric_files_names_and_dark_scenes_are_reported() {
     let dark = LIT.replace("PhotometricLight { position 0 2 0 file lamp.ies }", "").replace("emissionLuminance 20", "");
     place.put("dark.txt", &dark);
     assert!(place.expect_exit(1, "check dark.txt").out.contains("no-emitter"));
-    // The message uses the words of the file's format.
+    // The message uses the terms of the file's format.
     let scene =
         "<scene version='3.0.0'><sensor type='perspective'/><emitter type='projector'/><shape type='sphere'/></scene>";
     place.put("dark.xml", scene);
@@ -153,7 +153,7 @@ fn invalid_photometric_files_names_and_dark_scenes_are_reported() {
     assert!(!place.expect_exit(0, "check bulb.txt --integrator photons").out.contains("lamp-in-glass"));
 }
 
-/// A light over a floor, with a ball of glass between.
+/// A ball of glass between a light and a floor.
 const CAUSTIC: &str = "PerspectiveCamera { center 0 2 6 direction 0 -0.25 -1 up 0 1 0 angle 30 }
 Background { color 0 0 0 }
 Lights { PointLight { position 0.5 4 0 color 9 9 9 falloff 1 } }
@@ -181,7 +181,7 @@ fn photons_spectra_and_fog_are_deterministic() {
         let output = place.expect_exit(0, &format!("verify {scene} {options} --size 20x16 --samples 5 --trials 4"));
         assert!(output.out.contains("same") || output.out.contains("one hash"), "{} {}", output.out, output.err);
     }
-    // Photons carry light that paths do not find.
+    // Photons carry light that paths cannot find.
     let mean = |options: &str| {
         place.expect_exit(0, &format!("render scene.txt {options} --size 24x18 --samples 16 -o p.pfm -q --restart"));
         let bytes = std::fs::read(place.path("p.pfm")).unwrap();
@@ -238,7 +238,7 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc 
     let write = |base, emitter, sky| place.put("s.txt", scene(base, emitter, sky));
     place.put("paints.csv", "nm,grey,red\n400,0.5,0.1\n580,0.5,0.1\n600,0.5,0.8\n");
     place.put("bulb.csv", "400 0\n700 3\n");
-    // The illuminance does not depend on the colour: E = pi L r^2 / (r^2 + d^2).
+    // The illuminance does not depend on the hue: E = pi L r^2 / (r^2 + d^2).
     for emitter in
         ["", "emissionSpectrum A", "emissionSpectrum F11", "emissionSpectrum 2700K", "emissionSpectrum bulb.csv"]
     {
@@ -250,7 +250,7 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc 
             assert!((lux / (20.0 * std::f64::consts::PI) - 1.0).abs() < 0.01, "{emitter} {color}: {row}");
         }
     }
-    // A small area light and point lights with equal power and spectrum show a paint in the same
+    // A small area light and point lights with the same power and spectrum give a paint the same
     // colour.
     let shown = |lights: &str, objects: &str| -> Vec<f64> {
         place.put(
@@ -321,8 +321,8 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         };
         ["0,1,0", "1,0,0", "-1,0,0", "0,0,1", "0,0,-1"].map(at).to_vec()
     };
-    // Reda and Andreas, 2003: in Colorado, the sun's elevation is 39.872 degrees and its azimuth
-    // 194.340.
+    // Reda and Andreas, 2003: for this place in Colorado the sun's elevation is 39.872 degrees and
+    // its azimuth 194.340.
     let written = lux("sun -0.190061 0.641085 0.743564");
     assert!(written[3] > written[2] && written[2] > written[1] && written[1] > 0.0, "{written:?}");
     for sky in [
@@ -334,7 +334,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         let near = found.iter().zip(&written).all(|(a, b)| (a / b - 1.0).abs() < 2e-3);
         assert!(near, "{sky}: {found:?}, not {written:?}");
     }
-    // At midnight, a warning is printed and the picture is dark.
+    // At midnight the picture is dark, and a warning is printed.
     assert_eq!(lux("latitude 39.742476 longitude -105.1786 date 2003 10 17 time 7 0 0")[0], 0.0);
     assert_eq!(lux("cieSky 12 sunAltitude -20 sunAzimuth 0")[0], 0.0);
     lux("latitude 39.742476 longitude -105.1786 date 2003 10 17 time 7 0 0");
@@ -358,16 +358,16 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         row.split(',').nth(6).unwrap().parse().unwrap()
     };
     for (light, expected) in [
-        // E = I / d². For a flux, I = flux / 4 pi, regardless of the hue.
+        // E = I / d². If a flux is given, I = flux / 4 pi, independent of the hue.
         ("PointLight { position 0 2 0 color 1 1 1 candela 800 }", 200.0),
         ("PointLight { position 0 2 0 color 0.9 0.5 0.1 lumens 800 }", 800.0 / (4.0 * pi) / 4.0),
         ("SpotLight { position 0 2 0 direction 0 -1 0 color 2 2 2 angle 40 candela 800 }", 200.0),
-        // The flux fills the cone of 60 degrees on either side: 2 pi (1 - 1/2).
+        // The flux fills a cone of 60 degrees around the axis: 2 pi (1 - 1/2).
         (
             "SpotLight { position 0 2 0 direction 0 -1 0 color 1 0 0 angle 60 innerAngle 60 lumens 800 }",
             800.0 / pi / 4.0,
         ),
-        // The intensity fades with s² to the axis; the mean of s² is a third.
+        // The intensity is proportional to s², which is 1 on the axis; the mean of s² is a third.
         ("SpotLight { position 0 2 0 direction 0 -1 0 color 1 1 1 angle 60 lumens 800 }", 800.0 / (pi / 3.0) / 4.0),
         (
             "SpotLight { position 0 2 0 direction 0 -1 0 color 1 1 1 angle 60 fade smooth lumens 800 }",
@@ -410,7 +410,7 @@ Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } } Group { MaterialIndex
         );
         *std::fs::read(place.path("p.ppm")).unwrap().last().unwrap()
     };
-    // White is 1.2 · 100 / S · N² / t: for ISO 100, 1/125 s and f/8 it is 9600 cd/m².
+    // White is 1.2 · 100 / S · N² / t, which is 9600 cd/m² for ISO 100, 1/125 s and f/8.
     assert_eq!(pixel("--shutter 1/125 --f-number 8"), (0.4f64 * 255.0).round() as u8);
     assert_eq!(pixel("--shutter 0.008 --f-number 8 --iso 200"), (0.8f64 * 255.0).round() as u8);
     assert_eq!(pixel("--shutter 1/250 --f-number 8 --iso 100 --exposure 1"), (0.4f64 * 255.0).round() as u8);
@@ -451,7 +451,7 @@ fn radiance_scenes_are_measured_in_lux_from_above() {
     // A dark model gets no studio lights.
     assert_eq!(rows("measure dark.rad --at 0,0,0 --samples 64")[0][6], 0.0);
     assert!(rows("measure dark.rad --at 0,0,0 --samples 64 --studio soft")[0][6] > 0.1);
-    // Photons are stored on surfaces.
+    // Photons are only stored on surfaces.
     let mirror = "void light l 0 0 3 100 100 100\nl sphere s 0 0 4 0 0 2 .05\nvoid mirror m 0 0 3 .9 .9 .9
 m polygon p 0 0 12 2 -9 -9 2 9 -9 2 9 9 2 -9 9\nvoid plastic w 0 0 5 .5 .5 .5 0 0\nw polygon f 0 0 12 -9 -9 0 9 -9 0 9 9 0 -9 9 0\n";
     place.put("mirror.rad", mirror);

@@ -1,4 +1,4 @@
-//! Models on the command line: rendering, info, conversion, and errors with their place.
+//! Tests models on the command line: rendering, info, conversion, and errors with their position.
 
 mod common;
 
@@ -68,7 +68,7 @@ fn crop_of_a_file_is_rendered() {
     let part = picture("part.pbrt");
     assert_eq!((part.width, part.height), (15, 12));
     assert!(part == picture("whole.pbrt --crop 5,3,15x12"));
-    // Options override that.
+    // Options override the file.
     assert!(picture("part.pbrt --crop 0,0,30x20") == picture("whole.pbrt"));
     assert_eq!(picture("part.pbrt --size 60x40").width, 60);
 }
@@ -160,7 +160,7 @@ fn frames_are_times_cameras_and_files() {
     let place = TestFolder::new();
     place.put("a.stl", STL);
     let hash = |words: &str| place.expect_exit(0, &format!("render {words} {SMALL} --hash -q")).out;
-    // A turntable frame equals the same frame rendered alone, and the view with `--turned`.
+    // A frame of a turntable is the same if rendered alone, or with `--turned`.
     let all = hash("a.stl -o a.png --turntable 3");
     let alone: String = (0..3).map(|i| hash(&format!("a.stl -o a.png --turntable 3 --frames {i}"))).collect();
     let turned: String = [0, 120, 240].map(|angle| hash(&format!("a.stl -o a.png --turned {angle}"))).concat();
@@ -179,7 +179,7 @@ fn frames_are_times_cameras_and_files() {
         hash("a.xml -o a.png --camera %d --frames 0-1"),
         hash("a.xml -o a.png --camera 0") + &hash("a.xml -o a.png --camera 1")
     );
-    // Shards of frames, as on farms.
+    // Shards of frames, as rendered on farms.
     for shard in [1, 2] {
         hash(&format!("walk.%02d.txt --frames 8-9 --shard {shard}/2 -o %d.{shard}.part"));
     }
@@ -204,7 +204,7 @@ fn turntable_rotates_and_fit_moves_the_camera() {
     assert!(!place.path("a.0004.png").exists() && !place.path("a.png").exists());
     place.refused(2, "render a.stl -o a.png --turntable 0", &["--turntable"]);
     place.refused(2, "render a.stl -o a.png --turntable 4 --preview b.png", &["apply to one picture"]);
-    // With --fit, a camera that looked past the model shows it.
+    // With --fit, a camera that pointed past the model shows the model.
     place.put("a.rad", RAD);
     place.put("a.vf", "VIEW= -vp 0 -900 900 -vd 0 -1 -.1 -vh 40 -vv 30\n");
     let hash = |more: &str| {
@@ -222,9 +222,9 @@ fn environment_lights_a_model() {
     place.expect_exit(0, "render sky.txt -o sky.hdr --size 64x32 --samples 1 -q");
     let hash = |more: &str| place.expect_exit(0, &format!("render a.stl -o a.png {SMALL} --hash -q {more}")).out;
     assert_ne!(hash("--environment sky.hdr"), hash(""));
-    // The environment's orientation matters.
+    // The up axis determines the orientation of the environment.
     assert_ne!(hash("--environment sky.hdr --up y"), hash("--environment sky.hdr --up z"));
-    // A black environment is valid, but reported.
+    // A black environment is valid, but a note reports it.
     place.put("black.pfm", b"PF\n1 1\n-1\n\0\0\0\0\0\0\0\0\0\0\0\0".as_slice());
     let dark =
         place.expect_exit(0, &format!("render a.stl -o dark.pfm {SMALL} --environment black.pfm --integrator path"));

@@ -1,5 +1,5 @@
-//! File names in inputs: files outside the folder, pipes and devices are never read and never
-//! block.
+//! Tests file names in inputs: files outside the folder, pipes and devices must not be read and
+//! must not block.
 #![cfg(unix)]
 
 mod common;
@@ -26,7 +26,7 @@ fn fifo(place: &TestFolder, name: &str) {
     assert!(Command::new("mkfifo").arg(place.path(name)).status().unwrap().success());
 }
 
-/// Runs a command, which must end within ten seconds.
+/// Runs a command that must end within ten seconds.
 fn ends(place: &TestFolder, line: &str) -> ProgramOutput {
     let output = place.shell(&format!("timeout 10 $DURER {line}"));
     assert_ne!(output.code, Some(124), "{line} does not end");
@@ -81,7 +81,7 @@ fn folders_of_photographs_and_cameras_lead_nowhere_else() {
     for path in ["secret.png", "photos/a.png", "photos/b.png"] {
         picture(&place, path);
     }
-    // Point tables in a folder, and a tracks file beside a reconstruction.
+    // Tables of points in a folder, and a file of tracks next to a reconstruction.
     colmap(&place, "solved", ["a.png", "b.png"]);
     std::fs::rename(place.path("solved/points3D.txt"), place.path("points")).unwrap();
     for (target, words) in [("../points", "outside the folder `solved`"), ("/dev/zero", "outside the folder `solved`")]
@@ -96,7 +96,7 @@ fn folders_of_photographs_and_cameras_lead_nowhere_else() {
     place.put("sfm/reconstruction.json", "[]");
     symlink("../points", place.path("sfm/tracks.csv")).unwrap();
     refused(&place, "photo convert sfm/reconstruction.json", "outside the folder `sfm`");
-    // A Bundler file has no photograph sizes, so the photographs are read.
+    // A Bundler file does not contain the sizes of the photographs, so the photographs are read.
     let bundle = "# Bundle file v0.3\n2 0\n30 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 0\n30 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0\n";
     place.put("two.out", bundle);
     place.expect_exit(0, "photo convert two.out --pictures photos -o two.gltf -q");
@@ -135,7 +135,7 @@ fn pipes_and_devices_that_are_named_are_refused() {
         refused(&place, line, "is not a regular file");
     }
     refused(&place, "live pipe.txt", "not a file");
-    // A folder of pictures can contain any kind of file.
+    // A folder of pictures can contain files of any kind.
     std::fs::create_dir(place.path("one")).unwrap();
     std::fs::create_dir(place.path("two")).unwrap();
     picture(&place, "one/a.png");

@@ -1,4 +1,4 @@
-//! Partial work: shards and merging, checkpoints and resuming, single pixels, limits.
+//! Tests partial work: shards and merging, checkpoints and resuming, single pixels, and limits.
 
 mod common;
 
@@ -28,12 +28,12 @@ fn shards_merge_to_the_bytes_of_one_run() {
         place.refused(2, "merge 1.part 2.part 3.part 2.part -o m.exr", &["`2.part` and `2.part` overlap"]);
         place.refused(2, "merge 1.part 2.part 3.part -o m.xyz", &["m.xyz"]);
     }
-    // Separate pictures go into separate files, named by the job stored in the parts.
+    // The job in the parts says that pictures go to separate files.
     place.expect_exit(0, "merge 1.part 2.part 3.part -o m.png --quiet");
     place.expect_exit(0, &format!("{SMALL} -o w.png"));
     assert!(place.bytes("m.depth.png") == place.bytes("w.depth.png"));
     assert!(place.bytes("m.color.png") == place.bytes("w.color.png"));
-    // Parts of another picture, and files that are not parts.
+    // Merging fails for parts of another picture and for files that are not parts.
     place.expect_exit(0, &format!("{SMALL} --seed 7 --shard 2/3 --shard-by samples -o other.part"));
     place.refused(2, "merge 1.part other.part 3.part -o m.exr", &["other.part", "`seed` is 7"]);
     let bytes = place.bytes("2.part");
@@ -56,7 +56,7 @@ fn stopped_work_is_resumed() {
     let hash = last_line(&place.expect_exit(0, &format!("{work} -o calm.png")).out);
     place.expect_exit(0, &format!("{work} --time-limit 30ms --checkpoint c.part -o p.png"));
     assert!(place.path("c.part").exists(), "it cannot have been finished in 30 ms");
-    // Saved work of a different job is rejected and stays.
+    // Saved work of another job is rejected and kept.
     let other = |options: &str, words: &[&str]| {
         place.refused(2, &format!("{work} --resume --checkpoint c.part -o p.png {options}"), words);
     };
@@ -128,7 +128,7 @@ fn stopping_rules_and_limits() {
     place.refused(2, &format!("{large} -o p.png --preview q.png"), &["bands of rows", "--preview"]);
     place.refused(2, &format!("{large} -o p.part --shard 1/2"), &["needs about", "100 MiB", "--memory"]);
     place.refused(2, "render scene.txt --size 4294967295x4 --memory 100M", &["needs about", "100 MiB", "--memory"]);
-    // A picture in bands equals one rendered at once.
+    // A picture that is rendered in bands is equal to one rendered at once.
     let size = "--size 700x500 --samples 2 --hash";
     let [bands, whole] = ["--memory 12M", ""].map(|memory| {
         let name = if memory.is_empty() { "w.ppm" } else { "b.ppm" };

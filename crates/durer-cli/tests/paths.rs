@@ -1,10 +1,10 @@
-//! Path tracing on the command line: error bounds, light sampling strategies, denoisers.
+//! Tests path tracing on the command line: error bounds, light sampling strategies, and denoisers.
 
 mod common;
 
 use common::TestFolder;
 
-/// A light over a floor, with a ball of glass between.
+/// A ball of glass between a light and a floor.
 const GLASS: &str = "PerspectiveCamera { center 0 2 6 direction 0 -0.25 -1 up 0 1 0 angle 30 }
 Background { color 0.1 0.1 0.1 }
 Materials {
@@ -36,7 +36,7 @@ fn error_bounds_do_not_change_the_hash() {
     place.expect_exit(0, &format!("{render} --show error -o e.pfm"));
     let errors = place.image("e.pfm");
     assert!(errors.pixels.iter().all(|error| error.x.is_finite() && error.x >= 0.0));
-    // It equals the error in `durer explain` for the pixel.
+    // The bound is equal to the one that `durer explain` prints for the pixel.
     let explain = "explain glass.txt --integrator photons --photons 500 --size 16x12 --samples 8 --pixel 8,8";
     let output: serde_json::Value =
         serde_json::from_str(&place.expect_exit(0, &format!("{explain} --json")).out).unwrap();
@@ -61,7 +61,7 @@ fn light_sampling_strategies_differ_in_noise_only() {
             let pixels = place.image(name).pixels;
             pixels.iter().map(|pixel| f64::from(pixel.x)).sum::<f64>() / pixels.len() as f64
         };
-        // Mean and variance over the pixels.
+        // Mean and variance over all pixels.
         (mean(&format!("{way}.luminance.pfm")), mean(&format!("{way}.variance.pfm")) / (16.0 * 12.0))
     };
     let (both, lights, bsdf) = (render("both"), render("lights"), render("bsdf"));
@@ -76,7 +76,7 @@ fn light_sampling_strategies_differ_in_noise_only() {
 #[test]
 fn denoiser_is_chosen_or_install_hint_is_printed() {
     let place = place();
-    // A file with the library's name that is not a library.
+    // Create a file with the name of the library that is not a library.
     for name in ["libOpenImageDenoise.so.2", "libOpenImageDenoise.2.dylib", "OpenImageDenoise.dll"] {
         place.put(name, "no library");
     }

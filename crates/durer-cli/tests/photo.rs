@@ -1,5 +1,5 @@
-//! `durer photo`: photographs rendered by Dürer, for which the truth is known, and files that are
-//! not photographs.
+//! Tests `durer photo` with photographs rendered by Dürer, for which the correct result is known,
+//! and with files that are not photographs.
 
 mod common;
 
@@ -15,13 +15,13 @@ use std::path::Path;
 /// Width, height and focal length of the photographs, in pixels.
 const SIZE: [u32; 2] = [400, 300];
 const FOCAL: f64 = 410.0;
-/// Length of the scene.
+/// Length of the scene in world units.
 const LENGTH: f64 = 8.0;
 
-/// Photographs rendered by Dürer.
+/// Folder of photographs rendered by Dürer.
 const PHOTOGRAPHS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/photographs");
 
-/// Boxes and walls with a noise texture in uniform light.
+/// Boxes and walls with a noise texture, in uniform light.
 const SCENE: &str = "
 Background { color 0.1 0.1 0.1 ambientLight 1 1 1 }
 Materials { numMaterials 3
@@ -39,7 +39,7 @@ Group { numObjects 8
   MaterialIndex 1 Box { min -2.8 0 -1.9 max -1.8 1.5 -1 } }
 ";
 
-/// Twenty cameras in two rows on an arc.
+/// Returns twenty cameras in two rows on an arc.
 fn cameras() -> Vec<Pose> {
     let camera = |i: usize| {
         let (angle, height) = ((f64::from(i as u32 % 10) - 4.5) * 0.11, if i < 10 { 1.4 } else { 2.6 });
@@ -49,8 +49,8 @@ fn cameras() -> Vec<Pose> {
     (0..20).map(camera).collect()
 }
 
-/// Returns the errors of a solution after a similarity alignment: the largest distance of a camera,
-/// and the largest angle in degrees.
+/// Returns the errors of a solution after alignment by a similarity transform: largest distance of
+/// a camera, and largest angle in degrees.
 fn differences(all: &Reconstruction, truth: &[Pose]) -> (f64, f64) {
     let found: Vec<Pose> = all.views.iter().map(|view| view.pose.unwrap()).collect();
     let there = aligned(&found, truth).unwrap();
@@ -143,8 +143,8 @@ fn results_are_independent_of_threads() {
     assert_eq!(place.bytes("1.out"), place.bytes("5.out"));
 }
 
-/// Returns a JPEG whose EXIF has a focal length in millimetres and a sensor resolution in pixels
-/// per inch.
+/// Returns a JPEG whose EXIF data contain a focal length in millimetres and a sensor resolution in
+/// pixels per inch.
 fn with_exif(jpeg: &[u8], millimetres: [u32; 2], pixels: [u32; 2]) -> Vec<u8> {
     let entry = |tag: u16, kind: u16, value: u32| {
         [&tag.to_be_bytes()[..], &kind.to_be_bytes(), &1_u32.to_be_bytes(), &value.to_be_bytes()].concat()
@@ -164,8 +164,8 @@ fn implausible_exif_is_reported_and_wrong_exif_is_corrected() {
     std::fs::create_dir(place.path("photos")).unwrap();
     let photographs = (0..6).map(|i| (i, std::fs::read(Path::new(PHOTOGRAPHS).join(format!("{i}.jpg"))).unwrap()));
     for (i, jpeg) in photographs {
-        // A focal length of 330 pixels is true and 660 is possible. One is too long for any lens,
-        // and one divides by zero.
+        // 330 pixels is the true focal length, and 660 pixels is possible. One value is too long
+        // for any lens, and one causes a division by zero.
         let (millimetres, pixels) = match i {
             0 => ([5, 1], [1_000_000_000, 1]),
             1 => ([5, 0], [1000, 1]),
@@ -184,7 +184,7 @@ fn implausible_exif_is_reported_and_wrong_exif_is_corrected() {
     }
 }
 
-/// Returns a PNG of noise that depends on the seed.
+/// Returns a PNG with noise that depends on the seed.
 fn noise(seed: u64) -> Vec<u8> {
     let mut random = durer_photo::random::Random::new(seed);
     let picture = image::GrayImage::from_fn(160, 120, |_, _| image::Luma([random.bits() as u8]));
@@ -211,19 +211,19 @@ fn unsuitable_photographs_are_refused() {
     place.put("photos/b.png", noise(2));
     place.put("photos/b.jpg", "no picture");
     refused(&["b.jpg: this is neither a JPEG nor a PNG"]);
-    // A decoder would fill missing parts with grey.
+    // A decoder would fill in missing parts with grey.
     let jpeg = std::fs::read(Path::new(PHOTOGRAPHS).join("0.jpg")).unwrap();
     place.put("photos/b.jpg", &jpeg[..jpeg.len() / 2]);
     refused(&["b.jpg: cannot be read as a picture: the JPEG is truncated"]);
     std::fs::remove_file(place.path("photos/b.jpg")).unwrap();
-    // Folders do not count as photographs.
+    // A folder does not count as a photograph.
     std::fs::create_dir(place.path("photos/folder.jpg")).unwrap();
     refused(&["no two photographs show the same objects"]);
     assert!(!place.path("m.json").exists());
     false_matches_are_refused(&place);
 }
 
-/// Twenty thousand random correspondences of eight photographs.
+/// Matches of eight photographs with twenty thousand random correspondences must be rejected.
 fn false_matches_are_refused(place: &TestFolder) {
     let mut random = durer_photo::random::Random::new(7);
     let picture = |i: usize| {
@@ -306,7 +306,8 @@ fn broken_files_are_refused_with_their_place() {
         place.put(file, content);
         place.refused(2, command, words);
     }
-    // Pixels counted from the bottom fit no camera, although a camera can see a few of them.
+    // If pixels are counted from the bottom, no camera fits, although a camera can see some of the
+    // points.
     let ours = |name: &str| std::fs::read(Path::new(PHOTOGRAPHS).join(name)).unwrap();
     place.put("2.jpg", ours("2.jpg"));
     let points = String::from_utf8(ours("2.points")).unwrap();
@@ -332,7 +333,7 @@ fn broken_files_are_refused_with_their_place() {
     place.refused(2, "photo solve b.txt -o b.txt", &["is an input of this run"]);
 }
 
-/// A square picture.
+/// Returns a square PNG without content.
 fn square() -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
     image::GrayImage::new(64, 64).write_to(&mut bytes, image::ImageFormat::Png).unwrap();
@@ -357,10 +358,11 @@ fn objects_are_placed_in_a_photograph_with_shadows() {
             [0, 1].map(|i| [0, 1, 2].map(|c| sum[i][c] + u32::from(both[i][c])))
         })
     };
-    // Pixels without object and shadow equal the photograph, except for rounding.
+    // Pixels without objects and shadows are equal to the photograph, except for rounding.
     let [now, before] = sum(0, 0, 320, 80);
     assert!((0..3).all(|c| now[c].abs_diff(before[c]) < 320 * 80 / 100), "{now:?} {before:?}");
-    // The shadow is left of the red ball; the ball is red where the floor was grey.
+    // The shadow is to the left of the red ball. Where the ball is, the picture is red instead of
+    // grey.
     let [now, before] = sum(90, 196, 30, 10);
     assert!((0..3).all(|c| now[c] * 10 < before[c] * 9 && now[c] * 4 > before[c]), "{now:?} {before:?}");
     let [now, before] = sum(135, 150, 20, 20);
@@ -398,8 +400,8 @@ fn object_is_placed_in_an_external_photograph() {
             [now + sum(placed.pixels[(y * placed.width + x) as usize]), before + sum(plate.get_pixel(x, y).0)]
         })
     };
-    // The books are unchanged; the seat is darker left of the solid, and left of the ball, where
-    // the foot also casts a shadow.
+    // The books are unchanged. The seat is darker to the left of the solid and of the ball, where
+    // the foot casts a shadow too.
     let [now, before] = luma(120, 140, 220, 230);
     assert!(now.abs_diff(before) * 100 < before, "{now} {before}");
     for [now, before] in [luma(466, 442, 8, 6), luma(518, 444, 4, 6)] {

@@ -1,10 +1,10 @@
-//! Pictures of `durer render`, and options that must not change a bit of them.
+//! Tests pictures of `durer render`, and options that must not change them by a single bit.
 
 mod common;
 
 use common::{SCENE, TestFolder};
 
-/// Sampling options to test.
+/// Sampling options that are tested.
 const SAMPLINGS: [&str; 9] = [
     "--samples 1",
     "--samples 5",
@@ -109,7 +109,7 @@ fn several_pictures_are_separate_files_or_layers() {
         assert_eq!((image.width, image.height), size, "{name}");
     }
     assert_eq!(place.names().len(), before.len() + 11);
-    // EXR holds every picture except diagrams, whose sizes differ.
+    // An EXR file holds all pictures except diagrams, which have other sizes.
     let output = place.expect_exit(0, "render scene.txt --size 9x8 --show color,depth,normals -o layers.exr");
     assert_eq!(output.out, "wrote layers.exr\n");
     let text = String::from_utf8_lossy(&place.bytes("layers.exr")).into_owned();
@@ -142,7 +142,7 @@ fn eight_bits_by_transfer() {
             &format!("render scene.txt --size 2x2 --samples 1 --crop 0,0,1x1 --transfer {transfer} -o {transfer}.png"),
         );
     }
-    // The sky, 0.2 0.1 0.5.
+    // Colour of the sky, 0.2 0.1 0.5.
     assert_eq!(place.image8("srgb.png").pixels, [[124, 89, 188]]);
     assert_eq!(place.image8("linear.png").pixels, [[51, 26, 128]]);
     assert_eq!(place.image8("course.png").pixels, [[51, 25, 127]]);

@@ -1,4 +1,4 @@
-//! Errors have a message and the right exit code, and write nothing.
+//! Tests that errors have a message and the right exit code, and that nothing is written.
 
 mod common;
 
@@ -188,7 +188,7 @@ fn closed_pipes_and_odd_names_do_not_panic() {
         let output = Command::new("bash").args(["-c", &script]).current_dir(place.path("")).output().unwrap();
         assert!(!String::from_utf8_lossy(&output.stdout).contains("panicked"), "{arguments}");
     }
-    // Nobody reads standard error, and there is a message to print.
+    // Standard error is a closed pipe, and there is a message to print.
     let mut child = place.command("render missing.txt").stderr(Stdio::piped()).spawn().unwrap();
     drop(child.stderr.take());
     assert_eq!(child.wait().unwrap().code(), Some(2));
@@ -201,7 +201,7 @@ fn closed_pipes_and_odd_names_do_not_panic() {
     assert_eq!(output.status.code(), Some(2));
 }
 
-/// Options of other programs point to ours, and never to an option that does something else.
+/// Options of other programs get a hint at the equivalent option of Dürer.
 #[test]
 fn options_of_other_programs_are_pointed_to_ours() {
     let place = TestFolder::new();
@@ -219,6 +219,6 @@ fn options_of_other_programs_are_pointed_to_ours() {
         assert!(!output.err.contains("similar argument") && !output.err.contains("as a value"), "{}", output.err);
     }
     let output = place.expect_exit(2, "check scene.txt --verbose");
-    assert!(output.err.contains("`--json` prints everything"), "{}", output.err);
+    assert!(output.err.contains("use `--json` for the full output"), "{}", output.err);
     assert!(!output.err.contains("--stats"), "{}", output.err);
 }

@@ -1,5 +1,5 @@
-//! Converted scenes give the same picture, and the Khronos sample models show what their cards
-//! specify.
+//! Tests that converted scenes give the same picture, and that the Khronos sample models look as
+//! specified on their test cards.
 
 mod common;
 
@@ -12,14 +12,14 @@ use std::path::{Path, PathBuf};
 
 const SMALL: &str = "--size 16x16 --samples 2 --quiet --hash";
 
-/// Returns the hash of a small picture.
+/// Returns the hash of a small render.
 #[track_caller]
 fn hash(place: &TestFolder, scene: impl AsRef<Path>, more: &str) -> String {
     place.expect_exit(0, &format!("render {} -o x.png {SMALL} {more}", scene.as_ref().display())).out
 }
 
-/// Collects the files with these extensions in and below a folder, sorted. Skips paths with blanks,
-/// which separate arguments here.
+/// Collects the files with these extensions in a folder and below, sorted. Skips paths with spaces,
+/// because spaces separate arguments here.
 fn below(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
@@ -46,7 +46,7 @@ fn khronos(name: &str) -> Option<PathBuf> {
     found.into_iter().next()
 }
 
-/// Number of scenes tested of each dialect.
+/// Number of scenes per dialect that are tested.
 const SCENES: usize = 3;
 
 #[test]
@@ -57,7 +57,7 @@ fn course_scenes_survive_conversion_to_durer_and_json() {
     let mut tried = BTreeMap::new();
     let place = TestFolder::new();
     for path in all {
-        // Skip files that are not scenes; find the dialect.
+        // Skip files that are not scenes, and find the dialect.
         let options = LoadOptions::default();
         let read = load(&path, &options, &mut Files::default(), &mut Diagnostics::default()).unwrap();
         let Some(dialect) = read.and_then(|loaded| Some(loaded.guess.as_ref()?.dialect.name())) else { continue };
@@ -70,10 +70,10 @@ fn course_scenes_survive_conversion_to_durer_and_json() {
         let shown = path.display().to_string();
         place.expect_exit(0, &format!("convert {shown} -o ours.txt --to durer {files}"));
         place.expect_exit(0, &format!("convert ours.txt -o back.txt --dialect durer --to {dialect} {files}"));
-        // With every quirk of the year's program.
+        // Use every quirk of the year's program.
         let requested = format!("{files} --dialect {dialect}");
         assert_eq!(hash(&place, "back.txt", &requested), hash(&place, &path, &requested), "{shown}");
-        // JSON records its dialect, because keywords can have another meaning in another year.
+        // JSON files store the dialect, because a keyword can have another meaning in another year.
         place.expect_exit(0, &format!("convert {shown} -o scene.json {files}"));
         place.expect_exit(0, &format!("convert scene.json -o back.txt --to {dialect} {files}"));
         let usual = hash(&place, &path, &files);
@@ -83,7 +83,7 @@ fn course_scenes_survive_conversion_to_durer_and_json() {
     assert!(tried.len() >= 5, "{tried:?}");
 }
 
-/// Sample models whose picture stays the same when written as glTF.
+/// Sample models that give the same picture after conversion to glTF.
 const WRITTEN: [&str; 12] = [
     "AlphaBlendModeTest",
     "BoxTextured",
@@ -110,7 +110,7 @@ fn converted_gltf_renders_the_same_picture() {
         assert_eq!(first, again, "{name}");
         let usual = hash(&place, &path, "");
         assert_eq!(first, usual, "{name}");
-        // The conversion is lossless and reports no loss.
+        // The conversion loses nothing, and so reports no loss.
         assert!(!output.contains("NO_COUNTERPART"), "{name}: {output}");
     }
 }
@@ -119,7 +119,7 @@ fn converted_gltf_renders_the_same_picture() {
 fn mesh_is_equal_in_all_formats_with_the_same_attributes() {
     let place = TestFolder::new();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/meshes");
-    // PLY and STL are written without normals, so a mesh with normals changes.
+    // PLY and STL files are written without normals, which changes meshes with normals.
     for (mesh, its_own) in [("durer-solid.obj", false), ("knot.ply", true)] {
         let path = folder.join(mesh);
         let usual = hash(&place, &path, "--up y");
@@ -138,21 +138,21 @@ fn mesh_is_equal_in_all_formats_with_the_same_attributes() {
 /// Width and height of the cards' pictures in pixels.
 const SIDE: usize = 200;
 
-/// Expected content around a pixel of a card.
+/// Expected content of a test card around a pixel.
 #[derive(Clone, Copy, Debug)]
 enum Mark {
-    /// A green tick, and no red cross.
+    /// A green tick and no red cross.
     Tick,
-    /// One colour, up to noise.
+    /// A uniform colour, up to noise.
     Color([u8; 3]),
-    /// The content around another pixel.
+    /// Content that is equal to that around another pixel.
     As(usize, usize),
 }
 
-/// A card and the expected content at some of its pixels.
+/// A test card, and what must be visible at some of its pixels.
 type Card = (&'static str, &'static [(usize, usize, Mark)]);
 
-/// The cards, with the expected content at pixels of their front view.
+/// The cards, with what must be visible at pixels of the front view.
 const CARDS: &[Card] = &[
     (
         "TextureSettingsTest",
@@ -167,7 +167,7 @@ const CARDS: &[Card] = &[
         ],
     ),
     ("NegativeScaleTest", &[(100, 55, Mark::Tick), (100, 73, Mark::Tick)]),
-    // The arrows for transformed coordinates point to the ticks.
+    // The arrows of transformed texture coordinates point to the ticks.
     ("TextureTransformTest", &[(36, 153, Mark::Tick), (101, 128, Mark::Tick), (154, 141, Mark::Tick)]),
     ("TextureLinearInterpolationTest", &[(57, 143, Mark::Tick), (143, 143, Mark::Tick), (143, 143, Mark::As(57, 143))]),
     ("UnlitTest", &[(53, 100, Mark::Color([255, 127, 0])), (147, 100, Mark::Color([0, 127, 255]))]),
@@ -182,7 +182,7 @@ const CARDS: &[Card] = &[
     ),
 ];
 
-/// Cells behind a hidden back face, which only the studio lights reach.
+/// Cells behind a hidden back face, which only light from the studio lights reaches.
 const BEHIND: &[Card] = &[
     ("TextureSettingsTest", &[(107, 47, Mark::Tick)]),
     ("NegativeScaleTest", &[(131, 54, Mark::Tick), (131, 73, Mark::Tick)]),

@@ -1,5 +1,5 @@
-//! `durer check` reports nothing for valid scenes: those of the repository, and all course scenes
-//! except those with real faults.
+//! Tests that `durer check` reports nothing for correct scenes: those of the repository, and the
+//! course's scenes except those with real faults.
 
 mod common;
 
@@ -8,13 +8,13 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Expected findings in the course's scenes, with the reason.
+/// Expected findings for scenes of the course, with the reason.
 const ODD: [(&str, &str, &str); 2] = [
     ("f04/scene2_05_inside_sphere.txt", "camera-inside", "the camera is inside a sphere, as its name says"),
     ("f04/scene8_10_transparent_vase.txt", "open-glass", "the vase is of glass, and open at its rim"),
 ];
 
-/// Expected notes about the course's scenes: true, and harmless.
+/// Expected notes for scenes of the course, which are true but harmless.
 const NOTES: [(&str, usize, &str); 8] = [
     ("degenerate-mesh", 6, "vases and teapots have triangles without area at their poles"),
     (
@@ -32,14 +32,14 @@ const NOTES: [(&str, usize, &str); 8] = [
 
 fn scenes(folder: &Path) -> Vec<PathBuf> {
     let mut scenes: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    // Spline scenes use another file format.
+    // Scenes of splines use another file format.
     let spline = |path: &Path| path.file_name().unwrap().to_string_lossy().starts_with("spline");
     scenes.retain(|path| path.extension().is_some_and(|extension| extension == "txt") && !spline(path));
     scenes.sort();
     scenes
 }
 
-/// Returns the findings of some scenes as (scene, severity, code).
+/// Returns the findings for some scenes: scene, severity and code.
 fn found(scenes: &[PathBuf], options: &str) -> Vec<(String, String, String)> {
     let place = TestFolder::new();
     let mut command = place.command(&format!("check --json {options}"));
@@ -87,7 +87,7 @@ fn course_scenes_have_only_expected_findings() {
 fn repository_scenes_have_no_findings() {
     let own = scenes(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes"));
     assert!(own.len() > 30, "{} scenes", own.len());
-    // Daylight is in cd/m^2 and needs an exposure.
+    // Daylight is in cd/m^2 and requires an exposure.
     let (sunny, others): (Vec<PathBuf>, Vec<PathBuf>) =
         own.into_iter().partition(|path| path.ends_with("daylight.txt"));
     let found: Vec<_> = found(&others, "").into_iter().chain(found(&sunny, "--exposure -13")).collect();

@@ -1,5 +1,5 @@
-//! Mistakes of students: one case for each that `check` or the reader once missed or reported
-//! wrongly.
+//! Tests mistakes of students, with one case for each that `check` or the reader once missed or
+//! reported incorrectly.
 
 mod common;
 
@@ -20,7 +20,7 @@ Group { numObjects 3
   MaterialIndex 1 Plane { normal 0 1 0 offset 0 } }
 ";
 
-/// Returns the scene in a year's dialect, with changes.
+/// Returns the scene in the dialect of a year, with changes.
 fn scene(year: &str, changes: &[(&str, &str)]) -> String {
     let (light, shine, glass) = match year {
         "f04" => ("attenuation 1 0 0.01", "exponent 20", "transparentColor 0.9 0.9 0.9 indexOfRefraction 1.5"),
@@ -45,7 +45,8 @@ fn found(place: &TestFolder, year: &str, options: &str, changes: &[(&str, &str)]
     (findings.iter().map(|finding| finding["code"].as_str().unwrap().to_string()).collect(), output.out)
 }
 
-/// Year, options, changes, and the first finding; `None` if there must be no warning.
+/// Year, options, changes, and the code of the first finding; an empty code if there must be no
+/// warning.
 type Case = (&'static str, &'static str, &'static [(&'static str, &'static str)], &'static str);
 
 const CASES: &[Case] = &[
@@ -74,10 +75,11 @@ const CASES: &[Case] = &[
         "same-parts",
     ),
     ("f04", "--bounces 3", &[(LEFT, "TriangleMesh { obj_file quad.obj }")], "mesh-quads"),
-    // If a floor faces down, the light is not at fault.
+    // If a floor faces down, the light is not the cause.
     ("f04", "--bounces 3", &[("normal 0 1 0 offset 0", "normal 0 -1 0 offset 0")], "seen-from-behind"),
     ("f16", "", &[("normal 0 1 0 offset 0", "normal 0 -1 0 offset 0")], "seen-from-behind"),
-    // Report the cause, not that nothing is visible or the picture has one colour.
+    // Report the cause, rather than that nothing is visible or that the picture has a single
+    // colour.
     ("f04", "--bounces 3", &[("direction 0 -0.15 -1", "direction 0 0.15 1")], "camera-away"),
     (
         "f04",
@@ -85,7 +87,7 @@ const CASES: &[Case] = &[
         &[(ANGLE, "OrthographicCamera { center -1.2 1 9 direction 0 0 -1 up 0 1 0 size 0.1 }")],
         "too-narrow",
     ),
-    // If the camera turned to the objects below the floor, it would see the floor.
+    // If the camera were turned to the objects below the floor, it would see only the floor.
     (
         "f04",
         "--bounces 3",
@@ -96,7 +98,7 @@ const CASES: &[Case] = &[
         "f04",
         "--bounces 3",
         &[(RIGHT, "Transform { Translate -240 -198 -1791 Sphere { center 0 0 0 radius 1 } }")],
-        // An object narrower than two pixels: report why it is invisible.
+        // If an object is narrower than two pixels, report why it is invisible.
         "tiny",
     ),
     ("f04", "--bounces 3 --show depth --depth-range 12 6", &[], "depth-range"),
@@ -139,8 +141,8 @@ fn cause_is_reported_first() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A colour out of range is not also reported as too much light. An object behind glass is not
-/// hidden.
+/// A colour out of range is not reported as too much light as well. An object behind glass is not
+/// reported as hidden.
 #[test]
 fn consequences_are_not_reported() {
     let place = TestFolder::new();
@@ -151,11 +153,11 @@ fn consequences_are_not_reported() {
     assert!(!codes.iter().any(|code| code == "unseen" || code == "hidden-behind"), "{codes:?}");
 }
 
-/// A possible intention gets at most a note, and no change.
+/// A possible intention gets at most a note, and no fix.
 #[test]
 fn possible_intentions_are_left_unchanged() {
     let place = TestFolder::new();
-    // A crescent moon; and only ambient light of 1, as in the first assignment.
+    // A crescent moon, and a scene with only ambient light of 1, as in the first assignment.
     let moon = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 20 }
 Lights { numLights 1 DirectionalLight { direction -1 -0.1 0.35 color 1 1 0.9 } }
 Materials { numMaterials 1 Material { diffuseColor 0.8 0.8 0.8 } }
@@ -175,7 +177,7 @@ Group { numObjects 1 MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }
     }
 }
 
-/// A colour of 5 does not mean 5 of 255, and messages use the year's own words.
+/// A colour of 5 is not taken for 5 of 255, and messages use the keywords of the year.
 #[test]
 fn help_suggests_the_intended_value() {
     let place = TestFolder::new();
@@ -185,12 +187,12 @@ fn help_suggests_the_intended_value() {
     assert_eq!(place.bytes("five.txt"), before);
     let (_, text) = found(&place, "f16", "", &[("falloff 0.03", "falloff 0")]);
     assert!(!text.contains("attenuation"), "{text}");
-    // A directional light has no position that could be moved.
+    // A directional light has no position, so the help must not suggest to move it.
     let behind =
         ("PointLight { position 3 5 4 color 0.9 0.9 0.9", "DirectionalLight { direction 0.1 1 -0.1 color 0.9 0.9 0.9");
     let (_, text) = found(&place, "f12a4", "", &[behind]);
     assert!(text.contains("light-behind") && !text.contains("move it"), "{text}");
-    // Mirrors that reflect more than they receive are at fault, not the lights.
+    // If mirrors reflect more light than they receive, do not blame the lights.
     let mirrors = [
         ("color 0.2 0.3 0.4 ambientLight 0.1 0.1 0.1", "color 0.9 0.9 0.9 ambientLight 0.4 0.4 0.4"),
         ("diffuseColor 0.6 0.6 0.6", "diffuseColor 0.6 0.6 0.6 reflectiveColor 1 1 1"),
@@ -211,7 +213,7 @@ Scene { Node { Component<Object> { type sphere radius 1 } }
     place.put("nodes.txt", nodes);
     let output = place.run("check nodes.txt --dialect f23").out;
     assert!(output.contains("`Component<Material> { index 0 }`") && !output.contains("MaterialIndex"), "{output}");
-    // Each message that mentions `--fix` says what it changes.
+    // Each message that mentions `--fix` says what it would change.
     place.put("bytes.txt", scene("f04", &[("diffuseColor 0.7 0.3 0.2", "diffuseColor 204 51 51")]));
     let output = place.run("check bytes.txt --dialect f04 --bounces 3").out;
     assert!(output.contains("(`--fix` writes `0.8 0.2 0.2`)"), "{output}");
@@ -245,7 +247,8 @@ Background { color 0 0 0 ambient_light 0.1 0.1 0.1 }
 Materials { Material { diffuse 1 0 0 } }
 Scene { Node { Component<Material> { index 0 } Component<Object> { type sphere radius 1 } } }
 ";
-    // One foreign word does not change a file's dialect; the message names it and its equivalent.
+    // A single foreign keyword does not change a file's dialect. The message names the keyword and
+    // its equivalent.
     place.put("nodes.txt", nodes);
     let errors = place.run("check nodes.txt").out;
     assert!(errors.contains("`angle` is not a word of f23") && errors.contains("in f23 it is `fov`"), "{errors}");
@@ -256,10 +259,10 @@ Scene { Node { Component<Material> { index 0 } Component<Object> { type sphere r
     place.put("binary.txt", (0..4000_u32).map(|i| (i * 7919 % 251) as u8).collect::<Vec<u8>>());
     let output = place.expect_exit(2, "render binary.txt -q -o words.png");
     assert!(output.err.contains("binary") && output.err.lines().count() < 8, "{}", output.err);
-    // A light's direction is not a camera's.
+    // The message about a zero direction of a light must not be that for the camera.
     let still = ("PointLight { position 3 5 4", "DirectionalLight { direction 0 0 0");
     says("", &scene("f12a4", &[still]), "for a light, it is the direction in which the light shines");
-    // An input that the year's own program would reject gets a note.
+    // A scene that the year's own program would reject gets a note.
     place.put("brace.txt", scene("f04", &[("Group {", "Group{")]));
     let output = place.run("check brace.txt --dialect f04 --bounces 3");
     assert!(output.out.contains("would refuse this file"), "{}{}", output.out, output.err);

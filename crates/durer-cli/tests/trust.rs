@@ -1,4 +1,5 @@
-//! Hostile input: files that exhaust memory, options that would overwrite files, and system limits.
+//! Tests hostile input: files that exhaust memory, options that would overwrite files, and system
+//! limits.
 #![cfg(unix)]
 
 mod common;
@@ -21,7 +22,7 @@ fn chunk(kind: &[u8; 4], content: &[u8]) -> Vec<u8> {
     chunk
 }
 
-/// Returns a PNG of one colour, with extra chunks between header and pixels.
+/// Returns a PNG of a single colour, with extra chunks between header and pixels.
 fn png(side: u32, between: &[u8]) -> Vec<u8> {
     let mut head = [side.to_be_bytes(), side.to_be_bytes()].concat();
     head.extend([8, 2, 0, 0, 0]);
@@ -29,7 +30,7 @@ fn png(side: u32, between: &[u8]) -> Vec<u8> {
     [b"\x89PNG\r\n\x1a\n", &chunk(b"IHDR", &head)[..], between, &chunk(b"IDAT", &pixels), &chunk(b"IEND", b"")].concat()
 }
 
-/// Returns `count` zeros, compressed as far as deflate allows.
+/// Returns `count` zeros, compressed as much as deflate allows.
 fn zeros(count: u64) -> Vec<u8> {
     let mut packer = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
     std::io::copy(&mut std::io::Read::take(std::io::repeat(0), count), &mut packer).unwrap();
@@ -57,7 +58,7 @@ fn with_pictures(place: &TestFolder, name: &str) -> [String; 3] {
     })
 }
 
-/// Half a gigabyte of address space for the whole program, with two threads.
+/// Limits the program to half a gigabyte of address space and two threads.
 const LIMITED: &str = "ulimit -v 700000; export RAYON_NUM_THREADS=2; $DURER ";
 
 #[cfg(target_os = "linux")]
@@ -86,7 +87,7 @@ fn large_pictures_are_refused_by_their_headers() {
         assert_eq!(output.code, Some(2), "{line}: {}", output.err);
         assert!(output.err.contains(words), "{}", output.err);
     }
-    // Readers of other formats decode images themselves, within the same memory limit.
+    // Readers of other formats decode their images themselves, but the same memory limit applies.
     let pbrt = "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n";
     let lit = r#"LightSource "infinite" "string filename" "large.png" Shape "sphere""#;
     let rough = r#"Texture "t" "float" "imagemap" "string filename" "large.png"
@@ -110,12 +111,12 @@ fn large_pictures_are_refused_by_their_headers() {
         assert_eq!(output.code, Some(2), "{line}: {}", output.err);
         assert!(output.err.contains("need about") && output.err.contains("see `--memory`"), "{line}: {}", output.err);
     }
-    // A decoded picture is copied once, so both copies exist for a moment.
+    // The decoded picture is copied once, so two copies exist for a moment.
     place.put("large.png", png(5000, b""));
     let [texture, ..] = with_pictures(&place, "large.png");
     let output = place.shell(&format!("{LIMITED}{texture} --threads 2 --memory 120M"));
     assert!(output.code == Some(2) && output.err.contains("need about 191 MiB"), "{}", output.err);
-    // Six faces together exceed the limit, although each would fit alone.
+    // The six faces together exceed the limit, although each one alone would fit.
     place.put("large.png", png(2000, b""));
     let [texture, _, sky] = with_pictures(&place, "large.png");
     assert_eq!(place.shell(&format!("{LIMITED}{texture} --threads 2 --memory 32M")).code, Some(0));
@@ -176,15 +177,15 @@ fn no_input_is_overwritten() {
     place.refused(2, &format!("render scene.txt {size} -o o.png --preview here/o.png"), &[two]);
     place.refused(2, &format!("render scene.txt {size} -o o.png --checkpoint ./o.png"), &[two]);
     place.refused(2, "course -input scene.txt -output o.tga -normals ./o.tga", &[two]);
-    // A part to merge, named like a picture.
+    // A part file that is named like a picture.
     place.expect_exit(0, &format!("render scene.txt {size} --shard 1/1 -o part.png --quiet"));
     place.refused(2, "merge part.png -o here/part.png", &["it is an input of this run"]);
-    // Saved work never replaces another file.
+    // Saved work never overwrites other files.
     for option in ["--checkpoint scene.txt", "--checkpoint here/m.obj", "--shard 1/1"] {
         let output = if option.starts_with("--sh") { "endless.txt" } else { "o.png" };
         place.refused(2, &format!("render mesh.txt {size} {option} -o {output}"), &["not a part file"]);
     }
-    // Other outputs never replace saved work.
+    // Other outputs never overwrite saved work.
     let part = place.bytes("part.png");
     for line in [
         format!("render scene.txt {size} -o part.png"),
@@ -232,7 +233,7 @@ fn special_files_are_written_through_or_refused_at_once() {
     place.expect_exit(0, &format!("{work} -o null.png --no-checkpoint"));
     let reader = place.path("pipe.png");
     let reader = std::thread::spawn(move || std::fs::read(reader).unwrap());
-    // The reader may need a moment.
+    // The reader may not be ready at once.
     let output = (0..100).map(|_| place.run(&format!("{work} -o pipe.png"))).find(|output| output.code == Some(0));
     assert!(output.is_some() && reader.join().unwrap().starts_with(b"\x89PNG"));
 }
@@ -271,7 +272,7 @@ fn terminating_signals_save_the_work() {
         (&["INT"][..], 130),
         (&["TERM"], 143),
         (&["HUP"], 129),
-        // Signals as sent by `timeout` and closed terminals.
+        // Send the signals that `timeout` and closed terminals send.
         (&["INT", "INT"], 130),
         (&["TERM", "TERM"], 143),
         (&["HUP", "TERM"], 129),
@@ -281,7 +282,7 @@ fn terminating_signals_save_the_work() {
         assert!(output.err.contains("o.png.part (--resume"), "{signals:?}: {}", output.err);
         assert!(latency < Duration::from_secs(5), "{latency:?}");
     }
-    // A program started with nohup outlives its terminal.
+    // A program that was started with nohup survives the end of its terminal.
     let output = place.shell(
         "trap '' HUP; $DURER render scene.txt --size 200x150 --samples 400 --quiet --restart -o n.png & \
          sleep 0.3; kill -HUP $!; wait $!",
@@ -319,8 +320,8 @@ fn system_limits_are_named_errors() {
 #[test]
 fn calling_thread_does_all_work_without_threads() {
     let place = TestFolder::new();
-    // The superuser has no such limit, so the test runs as nobody, in a folder that nobody may
-    // write to.
+    // The superuser is not limited by permissions, so the test runs as the user nobody, in a folder
+    // that this user cannot write to.
     let nobody = "setpriv --reuid=65534 --regid=65534 --clear-groups";
     let usable = place.shell(&format!("chmod 777 . && cp {} own && {nobody} ./own dialects", common::durer()));
     if usable.code != Some(0) {

@@ -1,4 +1,4 @@
-//! `--watch` while files are replaced, removed, half written, and saved a thousand times per
+//! Tests `--watch` while files are replaced, removed, half written, or saved a thousand times per
 //! second.
 #![cfg(unix)]
 
@@ -24,7 +24,7 @@ fn watching(place: &TestFolder) -> Child {
     place.command(line).stdout(Stdio::null()).stderr(errors).spawn().unwrap()
 }
 
-/// Waits until the picture equals a single render of the current files.
+/// Waits until the picture is equal to a render of the current files.
 fn shows_what_is_there(place: &TestFolder, child: &mut Child, after: &str) {
     place.expect_exit(0, "render scene.txt -o b.png --size 16x16 --samples 2 --dialect durer --quiet --restart");
     let start = Instant::now();
@@ -53,6 +53,7 @@ fn what_happens_to_the_files_ends_no_watch() {
     };
     for name in ["scene.txt", "mesh.obj"] {
         let whole = if name == "scene.txt" { scene("0.9 0.1 0.1") } else { MESH.replace("v 1 0 0", "v 2 0 0") };
+        /// A way to change a watched file: its name in messages, and a function that does it.
         type Fire<'a> = (&'a str, Box<dyn Fn() + 'a>);
         let fires: [Fire; 9] = [
             ("a removal", Box::new(|| remove(name))),
@@ -107,7 +108,7 @@ fn what_happens_to_the_files_ends_no_watch() {
             shows_what_is_there(&place, &mut child, &format!("{what} in place of {name}"));
         }
     }
-    // Modification times jump to the past and to the future.
+    // Modification times go back to the past and forward to the future.
     for date in ["1970-01-01", "2001-01-01", "2099-01-01", "1960-01-01"] {
         place.put("scene.txt", scene(if date < "2001" { "0.1 0.9 0.2" } else { "0.1 0.2 0.9" }));
         let _ = Command::new("touch").args(["-d", date]).arg(place.path("scene.txt")).status();

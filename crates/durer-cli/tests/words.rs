@@ -1,4 +1,4 @@
-//! Help, manual, dialects, words, and `durer info`.
+//! Tests the help, the manual page, `durer dialects`, `durer words` and `durer info`.
 
 mod common;
 
@@ -59,8 +59,8 @@ fn info_as_text_and_json() {
             .replace("numObjects 2", "numObjects 3"),
     );
     let json: serde_json::Value = serde_json::from_str(&place.expect_exit(0, "info mesh.txt --json").out).unwrap();
-    // One leaf: the root and its one box of equal size. Vertices take 36 bytes, an index 4, a node
-    // 256, and padding for a leaf 320.
+    // The tree is a single leaf: the root and one box of equal size. Three vertices take 36 bytes,
+    // an index 4, a node 256, and the padding of a leaf 320.
     assert_eq!((json["tree_cost"].as_f64(), json["bytes_per_triangle"].as_f64()), (Some(2.0), Some(616.0)));
 }
 
@@ -94,7 +94,7 @@ fn words_are_looked_up() {
     for part in ["f23", "position", "required", "falloff", "Example:\n    PointLight {"] {
         assert!(light.contains(part), "{part} is not in\n{light}");
     }
-    // A field lists its blocks; a dialect lists only its own words.
+    // The entry of a field names the blocks that have it; a dialect lists only its own words.
     assert!(place.expect_exit(0, "words radius").out.contains("in Sphere\n"));
     assert!(!place.expect_exit(0, "words --dialect f04").out.contains("Torus"));
     place.refused(2, "words Spere", &["did you mean `Sphere`?"]);

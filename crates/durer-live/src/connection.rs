@@ -1,4 +1,4 @@
-//! An HTTP connection: serves one file, or upgrades to a WebSocket.
+//! Handles an HTTP connection: serves one file, or upgrades to a WebSocket.
 
 use crate::head::{self, Head};
 use crate::{Shared, page, socket};
@@ -6,19 +6,19 @@ use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream};
 use std::time::Duration;
 
-/// Time limit for reading the request and for writing the answer.
+/// Time limit for reading the request and for sending the response.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Limits in time and bytes for reading from a client after its answer.
+/// Limits in time and bytes for reading from a client after its response was sent.
 const LINGER: Duration = Duration::from_secs(1);
 const MAX_REST: u64 = 1 << 20;
 
-/// Content security policy, sent with every answer.
+/// Content security policy, sent with every response.
 const POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; \
                       connect-src 'self' ws://127.0.0.1:* ws://localhost:*; worker-src 'self'; base-uri 'none'; \
                       form-action 'none'; frame-ancestors 'none'";
 
-/// Refuses a connection because too many are open.
+/// Sends an error response if too many connections are open.
 pub(crate) fn refuse(mut stream: &TcpStream) {
     // Do not block on a slow client.
     let _ = stream.set_nonblocking(true);
@@ -27,7 +27,7 @@ pub(crate) fn refuse(mut stream: &TcpStream) {
 
 /// Answers the single request of a connection.
 pub(crate) fn serve(mut stream: TcpStream, shared: &Shared) {
-    // Ignore errors: the client disconnected or sent an invalid request.
+    // Ignore errors: the client has disconnected or sent an invalid request.
     let _ = answer(&mut stream, shared);
 }
 
@@ -63,7 +63,7 @@ fn answer(stream: &mut TcpStream, shared: &Shared) -> io::Result<()> {
 }
 
 fn upgrade(stream: &mut TcpStream, head: &Head, shared: &Shared) -> io::Result<()> {
-    // Browsers always send an `Origin` with WebSocket requests; reject clients without one.
+    // Browsers always send `Origin` with WebSocket requests, so reject clients without it.
     let (true, Some(key), Some(_)) = (head.upgrade, &head.key, &head.origin) else {
         return send(stream, "426 Upgrade Required", "text/plain", b"this path needs a WebSocket\n");
     };
@@ -86,8 +86,8 @@ fn send(stream: &mut TcpStream, status: &str, kind: &str, body: &[u8]) -> io::Re
     stream.write_all(head.as_bytes())?;
     stream.write_all(body)?;
     stream.flush()?;
-    // Unread bytes would reset the connection, and the client could lose the answer. Read them
-    // first.
+    // If bytes were unread at the close, the connection would be reset and the client could lose
+    // the response. Read them first.
     stream.shutdown(Shutdown::Write)?;
     stream.set_read_timeout(Some(LINGER))?;
     io::copy(&mut stream.take(MAX_REST), &mut io::sink()).map(|_| ())

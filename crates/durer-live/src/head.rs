@@ -1,12 +1,12 @@
-//! Parser of HTTP request heads, and access checks.
+//! Parses and checks the heads of HTTP requests.
 
 use std::io::{self, Read};
 use std::net::TcpStream;
 
-/// Maximum size of a head in bytes.
+/// Maximum size of a request head in bytes.
 const MAX_HEAD: usize = 8 << 10;
 
-/// Head of an HTTP request. Bodies are not read.
+/// Request line and relevant headers of an HTTP request to the server. Request bodies are not read.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Head {
     pub method: String,
@@ -15,11 +15,11 @@ pub(crate) struct Head {
     pub origin: Option<String>,
     pub upgrade: bool,
     pub key: Option<String>,
-    /// Bytes received after the head.
+    /// Bytes received after the end of the head.
     pub rest: Vec<u8>,
 }
 
-/// Reads the head of a request.
+/// Reads the head of a request from a connection.
 pub(crate) fn read(stream: &mut TcpStream) -> io::Result<Head> {
     let (mut bytes, mut some) = (Vec::new(), [0_u8; 1024]);
     loop {
@@ -37,7 +37,7 @@ pub(crate) fn read(stream: &mut TcpStream) -> io::Result<Head> {
     }
 }
 
-/// Parses a head; `None` if it is incomplete.
+/// Parses the head of a request; `None` if it is incomplete.
 pub(crate) fn parse(bytes: &[u8]) -> io::Result<Option<Head>> {
     let invalid = |error| io::Error::new(io::ErrorKind::InvalidData, error);
     let mut headers = [httparse::EMPTY_HEADER; 64];
@@ -52,7 +52,7 @@ pub(crate) fn parse(bytes: &[u8]) -> io::Result<Option<Head>> {
     for header in request.headers {
         let value = String::from_utf8_lossy(header.value).into_owned();
         match header.name.to_ascii_lowercase().as_str() {
-            // Reject a second `Host` header, since proxies differ on which one counts.
+            // Reject a second `Host` header, because proxies disagree on which one counts.
             "host" if head.host.is_some() => return Err(io::ErrorKind::InvalidData.into()),
             "host" => head.host = Some(value),
             "origin" => head.origin = Some(value),
@@ -65,20 +65,20 @@ pub(crate) fn parse(bytes: &[u8]) -> io::Result<Option<Head>> {
 }
 
 impl Head {
-    /// True if the request comes from a page of this machine. After DNS rebinding a foreign name
-    /// resolves to the loopback interface, but the browser still sends that name. The port is
-    /// ignored, because it differs behind `ssh -L`.
+    /// Returns true if the request comes from a page on this machine. After DNS rebinding, a
+    /// foreign name resolves to the loopback interface, but the browser still sends that name. The
+    /// port is ignored, because it differs behind `ssh -L`.
     pub fn is_local(&self) -> bool {
         let Some(host) = &self.host else { return false };
         let same = |origin: &String| origin.strip_prefix("http://").is_some_and(|origin| origin == host);
         is_loopback(host) && self.origin.as_ref().is_none_or(same)
     }
 
-    /// Path after the token; `None` if the token is wrong.
+    /// Returns the path after the token; `None` if the token is wrong.
     pub fn path_behind(&self, token: &str) -> Option<&str> {
         let path = self.path.split(['?', '#']).next()?.strip_prefix('/')?;
         let (found, rest) = path.split_once('/')?;
-        // Compare all bytes, in constant time.
+        // Compare all bytes, so that the time does not depend on the token.
         let differ = found.bytes().zip(token.bytes()).fold(0, |all, (a, b)| all | (a ^ b));
         (found.len() == token.len() && differ == 0).then_some(rest)
     }

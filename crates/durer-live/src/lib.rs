@@ -1,7 +1,7 @@
-//! Server for interactive viewing: the web page, and a WebSocket to a [`durer_session::Host`].
+//! Server of `durer live`: the web page, and a WebSocket to a [`durer_session::Host`].
 //!
-//! It listens on the loopback interface only. Every path begins with a random token, `Host` and
-//! `Origin` must name the loopback interface, and only the files of the page are served.
+//! The server listens on the loopback interface only. Every path begins with a random token, `Host`
+//! and `Origin` must name the loopback interface, and only the files of the page are served.
 
 mod connection;
 mod head;
@@ -17,17 +17,18 @@ use std::time::Duration;
 
 /// Maximum number of open connections.
 const MAX_CONNECTIONS: usize = 48;
-/// Interval at which the server checks whether to stop.
+/// Interval at which the server checks whether it should stop.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
-/// A listening server.
+/// The web server of `durer live`, listening on the loopback interface.
 #[derive(Debug)]
 pub struct Server {
     listener: TcpListener,
     shared: Arc<Shared>,
 }
 
-/// State shared by all connections.
+/// State that the connections of a [`Server`] share: the token, the scene to open, and the count of
+/// open connections.
 #[derive(Debug)]
 pub(crate) struct Shared {
     pub token: String,
@@ -37,7 +38,7 @@ pub(crate) struct Shared {
 }
 
 impl Server {
-    /// Listens on a port (0 for any free one) and serves `start` to pages.
+    /// Listens on a port (0 for any free one). Pages that connect start with `start`.
     ///
     /// # Errors
     ///
@@ -52,7 +53,7 @@ impl Server {
         Ok(Server { listener, shared: Arc::new(shared) })
     }
 
-    /// URL of the page.
+    /// Returns the URL of the page.
     ///
     /// # Errors
     ///
@@ -77,7 +78,7 @@ impl Server {
                         connection::refuse(&stream);
                         continue;
                     }
-                    // If no thread can be started, drop the connection; the browser tries again.
+                    // If no thread can be started, drop the connection; the browser will try again.
                     let _ =
                         std::thread::Builder::new().name("durer-live".into()).stack_size(64 << 20).spawn(move || {
                             let _held = held;
@@ -87,7 +88,7 @@ impl Server {
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
                     std::thread::sleep(POLL_INTERVAL.min(Duration::from_millis(5)))
                 }
-                // The client reset the connection before it was accepted.
+                // The client closed the connection before it was accepted.
                 Err(error) if error.kind() == io::ErrorKind::ConnectionAborted => {}
                 Err(error) => return Err(error),
             }
@@ -97,7 +98,7 @@ impl Server {
     }
 }
 
-/// A slot among the open connections.
+/// Counts one open connection of the server until it is dropped.
 struct ConnectionSlot(Arc<Shared>);
 
 impl ConnectionSlot {

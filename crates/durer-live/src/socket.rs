@@ -1,4 +1,4 @@
-//! WebSocket connection to a host of sessions.
+//! Handles a WebSocket connection between a page and its sessions.
 
 use crate::Shared;
 use durer_session::{Clock, Host};
@@ -10,16 +10,17 @@ use std::time::{Duration, Instant};
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Error, Message, WebSocket};
 
-/// Maximum size of a message from the page in bytes, large enough for a dropped model.
+/// Maximum size in bytes of a message from the page. Large enough for a model that is dropped on
+/// the page.
 const MAX_MESSAGE: usize = 360 << 20;
 /// Time to wait for a message while idle.
 const IDLE: Duration = Duration::from_millis(250);
-/// Time after which a page that does not read is disconnected.
+/// Time after which a page that does not read its messages is disconnected.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// Handles messages and renders in between, until the page disconnects.
+/// Handles messages from the page, and renders between them, until the page disconnects.
 pub(crate) fn serve(stream: TcpStream, rest: Vec<u8>, shared: &Shared) {
-    // Ignore errors: connections may end at any time.
+    // Ignore errors: a connection can end at any time.
     let _ = talk(stream, rest, shared);
 }
 
@@ -55,7 +56,7 @@ fn talk(stream: TcpStream, rest: Vec<u8>, shared: &Shared) -> Result<(), Error> 
     Ok(())
 }
 
-/// Returns the next message; `None` if none arrives in time.
+/// Returns the next message; `None` if none arrives in time. Does not wait if `at_once` is true.
 fn next(socket: &mut WebSocket<TcpStream>, at_once: bool) -> Result<Option<Message>, Error> {
     if at_once {
         socket.get_ref().set_nonblocking(true)?;

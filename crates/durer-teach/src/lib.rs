@@ -1,4 +1,4 @@
-//! Teaching tools: checks that explain an odd picture, common mistakes, and the lesson.
+//! Tools for teaching: checks that explain a wrong picture, common mistakes, and the lesson.
 
 pub mod check;
 pub mod lesson;

@@ -1,4 +1,4 @@
-//! `.balls`: four numbers per line, the centre and radius of a sphere.
+//! Example of a scene format: `.balls` has four numbers per line, centre and radius of a sphere.
 
 use super::model::{Input, SceneFormat};
 use durer_diag::{Diagnostic, Diagnostics, Span};
@@ -6,6 +6,7 @@ use durer_scene::math::Vec3;
 use durer_scene::scene::{Axis, Group, Node, Object, Scene};
 use durer_scene::shape::Sphere;
 
+/// Scene format of `.balls` files.
 pub(super) const FORMAT: SceneFormat = SceneFormat {
     name: "Balls",
     extensions: &["balls"],

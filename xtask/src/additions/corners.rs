@@ -1,4 +1,4 @@
-//! `.tri`: nine numbers per line, the vertices of a triangle.
+//! Example of a mesh format: `.tri` has nine numbers per line, the vertices of a triangle.
 
 use super::report::Report;
 use super::{MeshFormat, as_it_is};
@@ -7,6 +7,7 @@ use durer_scene::math::Vec3;
 use durer_scene::scene::Axis;
 use durer_scene::shape::mesh::MeshData;
 
+/// Mesh format of `.tri` files.
 pub(super) const FORMAT: MeshFormat =
     MeshFormat { name: "Corners", extensions: &["tri"], recognise, read, known: as_it_is, write, up: Axis::Y };
 

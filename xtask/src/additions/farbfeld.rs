@@ -1,5 +1,5 @@
-//! farbfeld: a signature of eight bytes, width and height, and 16 bits per channel. Source:
-//! farbfeld(5), suckless.org.
+//! Example of a picture format: farbfeld has a signature of eight bytes, width and height, and 16
+//! bits per channel. Source: farbfeld(5), suckless.org.
 
 use super::{Depth, Format, Head, Raster};
 use crate::{Image, ImageError};
@@ -12,6 +12,7 @@ fn sizes(bytes: &[u8]) -> Result<[u32; 2], ImageError> {
     side(8).zip(side(12)).map(|(width, height)| [width, height]).ok_or_else(|| ImageError::malformed(NAME, "the file is too short"))
 }
 
+/// Picture format of farbfeld files.
 pub const FORMAT: Format = Format {
     name: NAME,
     extensions: &["ff"],

@@ -1,4 +1,4 @@
-//! A point light without attenuation.
+//! Example of a light: a point light without attenuation.
 
 use super::{Illuminate, LightLiSample};
 use crate::describe::{FileName, Constraint, described};

@@ -1,8 +1,9 @@
-//! Height of the hit point.
+//! Example of an AOV: the height of the hit point.
 
 use super::{Aov, Value};
 use durer_scene::math::Vec3;
 
+/// AOV with the y coordinate of the hit point.
 pub(super) const AOV: Aov = Aov {
     name: "heights",
     doc: "y coordinate of the hit point, in world space",

@@ -1,4 +1,4 @@
-//! White for hits within a distance, black elsewhere.
+//! Example of an integrator: white for hits within a distance, black elsewhere.
 
 use super::{Integrate, Parameters, IntegratorContext, TraceListener};
 use durer_scene::describe::{Constraint, described};
@@ -27,7 +27,7 @@ impl Parameters for HitsParameters {
     }
 }
 
-/// The integrator over one world.
+/// Integrator that returns white if a ray hits something within a distance, otherwise black.
 #[derive(Clone, Copy, Debug)]
 pub struct Hits<'w> {
     world: &'w World,

@@ -1,4 +1,4 @@
-//! An oblique camera: parallel rays that are not perpendicular to the picture, as in a cabinet
+//! Example of a camera: parallel rays that are not perpendicular to the picture, as in a cabinet
 //! projection.
 
 use super::{CameraSample, CameraBasis, Projection, Pose};

@@ -1,4 +1,4 @@
-//! The regular octahedron: |x| + |y| + |z| <= radius, relative to its centre.
+//! Example of a primitive: the regular octahedron |x| + |y| + |z| <= radius around its centre.
 
 use super::{ShapeHit, Shape, Surface, padded};
 use crate::describe::{Constraint, described};
@@ -22,7 +22,8 @@ impl Shape for Octahedron {
         Some(padded(center - radius, center + radius))
     }
 
-    /// Returns the interval of the line between all pairs of opposite faces.
+    /// Returns the interval of a line inside the octahedron, by intersecting it with all pairs of
+    /// opposite faces.
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
         let (mut enters, mut leaves) = (f64::NEG_INFINITY, f64::INFINITY);
         for normal in [DVec3::new(1.0, 1.0, 1.0), DVec3::new(-1.0, 1.0, 1.0), DVec3::new(1.0, -1.0, 1.0), DVec3::new(1.0, 1.0, -1.0)] {

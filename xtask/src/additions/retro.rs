@@ -1,10 +1,11 @@
-//! Retroreflection, as from a cat's eye.
+//! Example of a lobe: retroreflection, for example by a cat's eye.
 
 use super::{LobeKind, Scatter, LobeSample};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
-/// A perfect retroreflector; its weight is its reflectance.
+/// Lobe of a perfect retroreflector, which reflects light to where it comes from. Its weight is the
+/// reflectance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Retro;
 

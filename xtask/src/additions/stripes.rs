@@ -1,4 +1,4 @@
-//! Alternating stripes of two materials.
+//! Example of a material: alternating stripes of two materials.
 
 use super::Pattern;
 use crate::describe::{Constraint, described};

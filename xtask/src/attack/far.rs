@@ -1,4 +1,5 @@
-//! Closed rooms far from the origin, with a light outside: no light enters through their walls.
+//! Attack `far`: renders closed rooms far from the origin with lights outside. No light must enter
+//! through the walls.
 
 use super::{Attack, Outcome};
 use anyhow::{Context, Result};
@@ -8,11 +9,13 @@ use std::sync::Arc;
 /// Width and height of the pictures in pixels.
 const SIDE: u32 = 24;
 
+/// Runs the attack.
 pub fn run(attack: &Attack) -> Result<Outcome> {
     let mut fallen = Vec::new();
     for number in 0..attack.count {
         let random = |place: u32| attack.random(number, place, 1 << 20) as f64 / f64::from(1 << 20);
-        // Distances from 10 to 10^6, and a wall at least four single-precision steps thick.
+        // Use distances from 10 to 10^6, and walls that are at least four single-precision steps
+        // thick.
         let far = durer::math::fp::pow(10.0, 1.0 + 5.0 * random(0) as f32);
         let step = f64::from(far.next_up() - far);
         let wall = (4.0 + (60.0 * random(1)).floor()) * step;
@@ -22,7 +25,7 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
             1 => f64::from(far),
             _ => -f64::from(far),
         });
-        // Round coordinates to steps, so that they are exact in the scene's text.
+        // Round coordinates to single-precision steps, so that they are exact in the scene's text.
         let on_step = |x: f64| (x / step).round() * step;
         let half = on_step(half);
         let corner = |grow: f64, sign: f64| center.map(|c| on_step(c) + sign * (half + grow));

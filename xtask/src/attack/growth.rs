@@ -1,17 +1,17 @@
-//! Small files that describe huge data, with a limit of address space.
+//! Attack `growth`: small files that describe huge data, read with a limit of address space.
 
 use super::{Attack, Outcome, broken, inputs, name};
 use anyhow::Result;
 use std::fmt::Write;
 
-/// Limits: address space in KiB, and time in seconds.
+/// Limits of a run: address space in KiB, and time in seconds.
 const SPACE: u64 = 900_000;
 const SECONDS: u64 = 20;
 
-/// Function from the numbers of levels and of copies per level to the text of a file.
+/// Function that returns the text of a file for a number of levels and of copies per level.
 type Generator = fn(usize, usize) -> String;
 
-/// File names with their generators.
+/// Names of the files, and the functions that generate them.
 const KINDS: [(&str, Generator); 6] = [
     ("variables.xml", |levels, copies| {
         let value = |i: usize| format!("$a{}_", i).repeat(copies);
@@ -64,6 +64,7 @@ fn mitsuba(first: &str, last: &str) -> String {
     )
 }
 
+/// Runs the attack.
 pub fn run(attack: &Attack) -> Result<Outcome> {
     let (mut fallen, mut tried) = (Vec::new(), 0);
     let mut check = |path: &str, what: String, options: &[&str]| -> Result<()> {
@@ -83,7 +84,7 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         let (levels, copies) = (1 + attack.random(number, 1, 40), 2 + attack.random(number, 2, 6));
         attack.put(file, make(levels, copies))?;
         let memory = ["--memory", ["64M", "256M", "1G", "64G"][attack.random(number, 3, 4)]];
-        // Half of the trials omit the option, whose default depends on the limit of address space.
+        // Half of the trials omit `--memory`, whose default depends on the limit of address space.
         let options = if attack.random(number, 4, 2) == 0 { &memory[..] } else { &[] };
         check(
             file,

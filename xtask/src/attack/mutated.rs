@@ -1,5 +1,5 @@
-//! Mutated files of all formats are read, compiled, and rendered at 16 x 16. Worker processes do
-//! the work, so that an abort or a hang loses only one file.
+//! Attack `mutated`: reads, compiles and renders (at 16 x 16) mutated files of all formats. Worker
+//! processes do this, so that an abort or a hang affects only one file.
 
 use super::{Attack, Outcome, name};
 use anyhow::{Context, Result};
@@ -16,10 +16,10 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-/// First argument of a worker.
+/// First argument of a worker process.
 pub const WORKER: &str = "--mutated-worker";
-/// Limits: bytes of an original, seconds per file, KiB of a worker's address space, bytes of memory
-/// of a render.
+/// Limits: bytes of an original file, seconds per file, KiB of address space of a worker, and bytes
+/// of memory for a render.
 const MAX_BYTES: u64 = 64 << 10;
 const SECONDS: u64 = 20;
 const SPACE: u64 = 4_000_000;
@@ -28,8 +28,8 @@ const MEMORY: u64 = 256 << 20;
 const SCENES: [&str; 11] = ["txt", "json", "gltf", "glb", "pbrt", "xml", "rad", "3mf", "obj", "ply", "stl"];
 const PICTURES: [&str; 11] = ["png", "bmp", "tga", "ppm", "pfm", "hdr", "exr", "jpg", "jpeg", "webp", "ktx2"];
 
-/// Returns the original files: small files of the repository and of the corpus, and seeds of the
-/// fuzz targets.
+/// Returns the original files: small files of the repository and the corpus, and seeds of the fuzz
+/// targets.
 fn originals(only: &str) -> Result<Vec<(PathBuf, String)>> {
     let mut found = Vec::new();
     let root = crate::root()?;
@@ -48,7 +48,7 @@ fn collect(folder: &Path, depth: usize, found: &mut Vec<(PathBuf, String)>) {
             collect(&path, depth - 1, found);
             continue;
         }
-        // A seed has no extension; its folder is named after its format.
+        // A seed has no extension, but its folder is named after its format.
         let lower = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().to_lowercase();
         let ending = match lower(path.extension()) {
             ending if ending.is_empty() => match lower(folder.file_name()).as_str() {
@@ -65,7 +65,7 @@ fn collect(folder: &Path, depth: usize, found: &mut Vec<(PathBuf, String)>) {
     }
 }
 
-/// Returns a file after a few random changes.
+/// Returns the bytes of a file after a few random changes.
 fn mutated(mut bytes: Vec<u8>, seed: u64, number: u64) -> Vec<u8> {
     const WORDS: [&[u8]; 12] = [
         b"0",
@@ -107,7 +107,7 @@ fn mutated(mut bytes: Vec<u8>, seed: u64, number: u64) -> Vec<u8> {
                 drop(bytes.splice(at..end, word.iter().copied()));
             }
             5 => {
-                // Replace a number in a text.
+                // Replace a number in the text.
                 let digit = |b: &u8| b.is_ascii_digit();
                 let from = at + bytes[at..].iter().position(digit).unwrap_or(0);
                 let to = from + bytes[from..].iter().take_while(|b| digit(b)).count();
@@ -120,7 +120,7 @@ fn mutated(mut bytes: Vec<u8>, seed: u64, number: u64) -> Vec<u8> {
     bytes
 }
 
-/// Reads, compiles and renders a file. Errors are fine, panics are not.
+/// Reads, compiles and renders a file. Errors are allowed, panics are not.
 fn tried(path: &Path, ending: &str, bytes: Vec<u8>) {
     if PICTURES.contains(&ending) {
         if let Ok(encoded) = Encoded::open(&bytes, &format!("x.{ending}")) {
@@ -140,7 +140,8 @@ fn tried(path: &Path, ending: &str, bytes: Vec<u8>) {
     let _ = render(&world, &job, &Arc::new(control));
 }
 
-/// Runs a worker. Arguments: seed, first number, end, and extension of the files.
+/// Runs a worker. The arguments are the seed, the first number, the end of the range, and the
+/// extension of the files.
 pub fn work(arguments: &[String]) -> Result<ExitCode> {
     let number = |i: usize| -> Result<u64> { Ok(arguments.get(i).context("a number")?.parse()?) };
     let (seed, first, end) = (number(0)?, number(1)?, number(2)?);
@@ -170,6 +171,7 @@ fn start(attack: &Attack, first: u64, end: u64) -> Result<(Child, Receiver<Strin
     Ok((child, heard))
 }
 
+/// Runs the attack.
 pub fn run(attack: &Attack) -> Result<Outcome> {
     let originals = originals(&attack.only)?;
     anyhow::ensure!(!originals.is_empty(), "there are no files of the kind `{}`", attack.only);

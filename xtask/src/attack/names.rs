@@ -1,19 +1,21 @@
-//! File names in inputs that lead out of the input's folder, or to pipes and devices.
+//! Attack `names`: file names in inputs that lead out of the input's folder, or to pipes and
+//! devices.
 
 use super::{Attack, Outcome, broken};
 use anyhow::Result;
 use std::os::unix::fs::symlink;
 use std::process::Command;
 
-/// Path prefixes that stay in the same folder.
+/// Path prefixes that lead back to the same folder.
 const IDLE: [&str; 6] = ["./", ".//", "sub/../", "./sub/.././", "sub//../", "sub/deep/../../"];
 /// Path prefixes that lead out of the folder.
 const OUT: [&str; 9] =
     ["../", "sub/../../", "..//", "../case/../", "sub/deep/../../../", "up/", "sub/up2/", "%2e%2e/", "..\\"];
-/// Devices and pipes.
+/// Devices and pipes that never end.
 const ENDLESS: [&str; 5] = ["/dev/zero", "/dev/stdin", "pipe", "zero", "/proc/self/fd/0"];
 
-/// Input files that name a file: path, text with `NAME`, name of the secret file, and command.
+/// Input files that refer to another file: path, text with the placeholder `NAME`, name of the
+/// secret file, and command.
 const INPUTS: [(&str, &str, &str, &str); 12] = [
     (
         "a.txt",
@@ -59,7 +61,7 @@ const INPUTS: [(&str, &str, &str, &str); 12] = [
     ("cm/images.txt", "1 1 0 0 0 0 0 5 1 a.png\n16 16 1\n2 1 0 0 0 .1 0 5 1 NAME\n16 16 1\n", "s.png", "tour"),
 ];
 
-/// Secret files outside the folder, each valid in its format.
+/// Secret files outside the folder, each valid in its own format.
 const SECRETS: [(&str, &str); 9] = [
     ("s.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
     ("s.ppm", "P3 2 2 255 9 9 9 8 8 8 7 7 7 6 6 6\n"),
@@ -78,6 +80,7 @@ const SECRETS: [(&str, &str); 9] = [
     ("s.png", ""),
 ];
 
+/// Runs the attack.
 pub fn run(attack: &Attack) -> Result<Outcome> {
     for (name, content) in SECRETS {
         attack.put(&format!("case/out/{name}"), content)?;
@@ -108,7 +111,7 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         };
         let output = attack.limited(&arguments, 4_000_000, 20)?;
         let messages = String::from_utf8_lossy(&output.stderr);
-        // In some formats a file that cannot be read is only a warning, and quiet runs print only
+        // In some formats an unreadable file causes only a warning, and quiet runs print only
         // errors.
         let outcome = output.status.code() == Some(2) || file == "a.obj" && messages.is_empty();
         if let Some(why) = broken(&output).or_else(|| (!outcome).then(|| "it was read".into())) {
@@ -118,7 +121,7 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
     Ok(Outcome { tried: attack.count, fallen, note: String::new() })
 }
 
-/// Returns a name that leads to a secret file, a device or a pipe.
+/// Returns a name that leads to a secret file, to a device or to a pipe.
 fn named(attack: &Attack, number: u64, secret: &str) -> String {
     let pick = |place: u32, list: &[&str]| list[attack.random(number, place, list.len() as u64)].to_string();
     if attack.random(number, 1, 5) == 0 {

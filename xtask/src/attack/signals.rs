@@ -1,4 +1,5 @@
-//! Signals at random times during all commands. Each command must end within half a second.
+//! Attack `signals`: sends signals to all commands at random times. Each command must end within
+//! half a second.
 
 use super::{Attack, Outcome, wait_for};
 use anyhow::{Context, Result};
@@ -8,7 +9,7 @@ use std::time::{Duration, Instant};
 /// Maximum time from a signal to the end of the program.
 const MOST: Duration = Duration::from_millis(500);
 
-/// Commands that take long.
+/// Commands that take a long time.
 const LONG: [&str; 14] = [
     "render ENDLESS --bounces 256 -o o.png --restart -q",
     "render MESH --accel none -o o.png --restart -q",
@@ -26,6 +27,7 @@ const LONG: [&str; 14] = [
     "info MESH",
 ];
 
+/// Runs the attack.
 pub fn run(attack: &Attack) -> Result<Outcome> {
     attack.put("mesh.obj", mesh(900))?;
     attack.put("mesh.txt", scene("TriangleMesh { obj_file mesh.obj }"))?;
@@ -51,8 +53,8 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         let took = ended.map_or(Duration::from_secs(20), |_| start.elapsed());
         worst = worst.max((took, line));
         let code = child.wait().context("it ran")?.code();
-        // 0: the program ended before the signal. A signal that arrives before the handler is
-        // installed ends the program without a code.
+        // Code 0 means that the program ended before the signal. If the signal arrives before the
+        // handler is installed, the program ends without a code.
         if took > MOST || !matches!(code, None | Some(0 | 129 | 130 | 143)) {
             fallen.push(format!("{line}: {:.2} s after {signal}, exit code {code:?}", took.as_secs_f64()));
         }
@@ -61,7 +63,7 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
     Ok(Outcome { tried: attack.count, fallen, note })
 }
 
-/// Mirrors and glass that split every ray in two. With many bounces, no pixel finishes.
+/// Mirrors and glass that split every ray in two. With many bounces, no pixel is ever finished.
 const ENDLESS: &str = "PerspectiveCamera { center 0 0 0 direction 0.3 0.1 -1 up 0 1 0 angle 60 }
 Lights { PointLight { position 0 0 0 color 1 1 1 } }
 Materials { Material { reflectiveColor 1 1 1 transparentColor 1 1 1 indexOfRefraction 1.5 } }

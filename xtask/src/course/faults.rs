@@ -5,13 +5,13 @@ use anyhow::{Context, Result};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// Largest percentage of pixels that may differ by more than rounding.
+/// Maximum percentage of pixels that can differ by more than rounding.
 const MOST: f64 = 0.1;
 
-/// Known pixels of missing official pictures: scene, position, colour.
+/// Known pixels of official pictures that are missing: scene, position, colour.
 const PIXELS: [(&str, [usize; 2], [u8; 3]); 1] = [("glassplane", [10, 30], [41, 68, 116])];
 
-/// A scene of the folder, by its name.
+/// A regression scene and the dialect that its name indicates.
 struct Scene {
     name: String,
     dialect: &'static str,
@@ -25,7 +25,7 @@ impl Scene {
         Scene { name: name.into(), dialect }
     }
 
-    /// The official program that made the picture.
+    /// Returns the official program that rendered the picture.
     fn program(&self) -> &'static str {
         match self.dialect {
             "f12a4" => "a4soln",
@@ -35,7 +35,7 @@ impl Scene {
         }
     }
 
-    /// Arguments of the official picture, as listed beside the scenes.
+    /// Returns the arguments of the official program, as listed beside the scenes.
     fn arguments(&self, depth: &Path) -> Vec<String> {
         let mut words: Vec<String> = match self.name.as_str() {
             "glassplane" => ["-size", "64", "64", "-bounces", "2"].map(String::from).to_vec(),
@@ -59,7 +59,7 @@ impl Scene {
     }
 }
 
-/// Prints a table of the scenes in a folder; returns the number of failures.
+/// Renders the scenes in a folder and prints a table. Returns the number of failures.
 pub fn run(durer: &Path, folder: &Path, meshes: &Path, out: &Path, only: Option<&str>) -> Result<usize> {
     let mut names: Vec<String> = std::fs::read_dir(folder)?
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok()?.strip_suffix(".txt").map(String::from))
@@ -102,8 +102,8 @@ pub fn run(durer: &Path, folder: &Path, meshes: &Path, out: &Path, only: Option<
         } else {
             messages.push(String::from_utf8_lossy(&output.stderr).lines().next().unwrap_or("refused").into());
         }
-        // Undefined results: a single pixel has no position between first and last, or a mesh is
-        // missing.
+        // These results are undefined: a single pixel has no position between first and last, or a
+        // mesh is missing.
         let undefined = name.starts_with("size1x1") || messages.iter().any(|line| line.contains("missing-file"));
         wrong += usize::from(!agrees && !undefined);
         let verdict = if agrees {

@@ -1,4 +1,4 @@
-//! The keywords of the language as Python classes of `durer`.
+//! Writes the keywords of the language as Python classes of the package `durer`.
 
 use super::GENERATED;
 use durer::describe::Kind;
@@ -6,7 +6,7 @@ use durer::dialect::{Dialect, DialectSet};
 use durer::format::course::reference::{Chapter, Entry, FieldEntry, entries};
 use std::fmt::Write;
 
-/// Returns the base class of a chapter's keywords.
+/// Returns the Python base class for the keywords of a chapter.
 fn base(chapter: Chapter) -> Option<&'static str> {
     match chapter {
         Chapter::Structure => Some("Thing"),
@@ -18,13 +18,14 @@ fn base(chapter: Chapter) -> Option<&'static str> {
     }
 }
 
-/// Returns the module `durer.words`.
+/// Returns the text of the module `durer.words`.
 pub fn words() -> String {
     let mut classes = String::new();
     let mut names = Vec::new();
     for entry in entries() {
         let Some(base) = base(entry.chapter) else { continue };
-        // A grid contains spheres, and colour noise is part of another material.
+        // These keywords appear only inside others: a grid contains spheres, and colour noise is
+        // part of another material.
         let nested = entry.name() == "Grid" || entry.doc.contains("which replace the diffuse");
         if entry.fields.is_empty() || nested {
             continue;
@@ -43,7 +44,7 @@ pub fn words() -> String {
     )
 }
 
-/// Returns the keyword in our own dialect.
+/// Returns the keyword in Dürer's own dialect, if it has one.
 fn spelled(words: &[(&'static str, DialectSet)]) -> Option<&'static str> {
     words.iter().find(|word| Dialect::Durer.is_in(word.1)).map(|word| word.0)
 }
@@ -64,8 +65,8 @@ fn class(entry: &Entry, word: &str, base: &str) -> String {
     let _ = write!(out, "\n\nclass {word}({base}):\n    \"\"\"{}\n", entry.doc.replace('\\', "\\\\"));
     for (field, _) in &fields {
         let default = match (&field.default, field.required) {
-            (Some(default), _) => format!("; {default} where it is not given"),
-            (None, true) => "; must be given".into(),
+            (Some(default), _) => format!("; default {default}"),
+            (None, true) => "; required".into(),
             (None, false) => String::new(),
         };
         let _ = write!(out, "\n    {}: {}{default}. {}\n", name(field), field.value, field.doc);
@@ -78,7 +79,7 @@ fn class(entry: &Entry, word: &str, base: &str) -> String {
     out
 }
 
-/// Returns a field's name, avoiding Python keywords.
+/// Returns a field's name, changed if it is a Python keyword.
 fn name(field: &FieldEntry) -> String {
     match field.name {
         name @ ("from" | "in" | "is" | "as" | "not" | "with") => format!("{name}_"),

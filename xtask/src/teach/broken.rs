@@ -1,4 +1,4 @@
-//! Broken scenes for `durer check`, stored as changes of correct scenes.
+//! Broken scenes for testing `durer check`, stored as edits of correct scenes.
 
 use anyhow::{Context, Result, bail};
 use std::path::Path;
@@ -6,8 +6,8 @@ use std::process::Command;
 
 const SCENES: &str = include_str!("broken.txt");
 
-/// A scene, its options, and the codes that count as naming its fault; no codes if the scene is
-/// correct.
+/// A scene for testing `durer check`: its options, and the codes that correctly name its fault.
+/// Without codes, the scene is correct.
 struct Case {
     name: String,
     codes: Vec<String>,
@@ -56,14 +56,14 @@ fn cases() -> Result<Vec<Case>> {
     Ok(cases)
 }
 
-/// Tests `check`; returns true if the goals are met.
+/// Tests `durer check` on all cases. Returns true if the goals are met.
 pub fn judge(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Result<bool> {
     meshes(folder)?;
     let (mut first, mut second, mut later, mut missed, mut alarms) = (0, 0, 0, 0, 0);
     let cases = cases()?;
     for case in cases.iter().filter(|case| wanted(&case.name)) {
         std::fs::write(folder.join("broken.txt"), &case.text)?;
-        // If an option is given twice, the last one counts.
+        // If an option is given several times, keep only the last one.
         let mut options = case.options.clone();
         for name in ["--dialect", "--bounces", "--integrator"] {
             let places: Vec<usize> = (0..options.len()).filter(|&i| options[i] == name).collect();
@@ -115,13 +115,13 @@ pub fn judge(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resu
     Ok(first * 10 >= all * 9 && (first + second) * 100 >= all * 97 && alarms == 0)
 }
 
-/// Returns a program's output, regardless of its exit code.
+/// Returns what a program prints, whatever its exit code.
 fn output_of_any(command: &mut Command) -> Result<String> {
     let output = command.stdin(std::process::Stdio::null()).output()?;
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Writes meshes of a box with faults of all kinds.
+/// Writes mesh files of a box, each with a different fault.
 fn meshes(folder: &Path) -> Result<()> {
     let corners = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
     let quads = [[1, 4, 3, 2], [5, 6, 7, 8], [1, 2, 6, 5], [2, 3, 7, 6], [3, 4, 8, 7], [4, 1, 5, 8]];

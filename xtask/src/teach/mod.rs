@@ -1,5 +1,6 @@
-//! Tests the teaching tools: wrong pictures for `durer compare` and broken scenes for `durer
-//! check`. Both come from a judge that shares only the scene language with the library.
+//! `cargo xtask teach`: tests `durer compare` with wrong pictures and `durer check` with broken
+//! scenes. Both come from an independent tracer, the judge, that shares only the scene language
+//! with the library.
 
 mod broken;
 #[allow(clippy::disallowed_methods, reason = "the judge shares no arithmetic with the library")]
@@ -14,19 +15,20 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use tracer::{Picture, Tracer};
 
-/// Outcome of a wrong picture.
+/// Result of `durer compare` for a wrong picture, given the mistakes it was rendered with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Outcome {
-    /// Named correctly, alone or with other mistakes that give the same picture.
+    /// The mistakes were named, alone or with others that give the same picture.
     Right,
-    /// Reported as unknown.
+    /// No mistake was named.
     Nothing,
-    /// Something else was named.
+    /// Only other mistakes were named.
     Wrong,
-    /// The picture equals the reference: the mistake is invisible.
+    /// The picture equals the reference, because the mistake is invisible in this scene.
     Unseen,
 }
 
+/// Runs `cargo xtask teach`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let only = crate::value(arguments, "--only");
     let durer = crate::build::durer()?;
@@ -48,7 +50,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(if good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Tests `compare`; returns true if the goals are met.
+/// Tests `durer compare` on all wrong pictures. Returns true if the goals are met.
 fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Result<bool> {
     let scenes = wrong::scenes();
     for scene in &scenes {
@@ -109,7 +111,8 @@ fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resul
     Ok(wrong == 0 && right * 10 >= seen * 9)
 }
 
-/// Judges the program's JSON against the actual mistakes. Reads only the names.
+/// Compares the mistakes in the JSON output of `durer compare` with the actual ones. Only their
+/// names count.
 fn judged(json: &str, made: &[&str]) -> (Outcome, String) {
     let verdict = |name: &str| json.contains(&format!("\"verdict\": \"{name}\""));
     if verdict("identical") || verdict("same") {
@@ -119,13 +122,13 @@ fn judged(json: &str, made: &[&str]) -> (Outcome, String) {
         Some(rest) => rest.split("\"reference_off\"").next().unwrap_or(""),
         None => "",
     };
-    // One entry for each set of mistakes that make the picture.
+    // One entry for each set of mistakes that gives the picture.
     let sets: Vec<Vec<&str>> = named
         .split("\"mistakes\": [")
         .skip(1)
         .map(|set| set.split("\"name\": \"").skip(1).filter_map(|rest| rest.split('"').next()).collect())
         .collect();
-    // A mistake outside the table cannot be named.
+    // A mistake that is not in the table cannot be named.
     if made.iter().any(|made| made.starts_with("x-")) && sets.is_empty() {
         return (Outcome::Right, "not identified".into());
     }
@@ -144,7 +147,7 @@ fn ppm((width, height): (usize, usize), picture: &Picture) -> Vec<u8> {
     bytes
 }
 
-/// Returns a program's output; exit codes above 1 are failures.
+/// Returns what a program prints. Fails if its exit code is above 1.
 fn output(command: &mut Command) -> Result<String> {
     let output = command.stdin(Stdio::null()).output().context("cannot start the program")?;
     if output.status.code().is_none_or(|code| code > 1) {

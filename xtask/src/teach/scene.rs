@@ -1,8 +1,9 @@
-//! Scenes of the judge: plain data, and their text in the course's language.
+//! Scenes of the judge as plain data, and their text in the course's language.
 
 use super::vector::{Matrix, V};
 use std::fmt::Write;
 
+/// Dialect of a scene of the judge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Year {
     F04,
@@ -12,6 +13,7 @@ pub enum Year {
     Durer,
 }
 
+/// One matrix of an object's transform in a scene of the judge.
 #[derive(Clone, Debug)]
 pub enum Op {
     Translate(V),
@@ -21,15 +23,18 @@ pub enum Op {
     Z(f64),
 }
 
+/// Shape of an object in a scene of the judge.
 #[derive(Clone, Debug)]
 pub enum Shape {
     Sphere(V, f64),
     Plane(V, f64),
     Triangle([V; 3]),
-    /// Corners and triangles; smooth or flat as in that year.
+    /// File name, vertices and triangles of a mesh. The year determines whether it is shaded
+    /// smoothly.
     Mesh(&'static str, Vec<V>, Vec<[usize; 3]>),
 }
 
+/// An object in a scene of the judge: shape, transform and index of its material.
 #[derive(Clone, Debug)]
 pub struct Object {
     pub shape: Shape,
@@ -37,6 +42,7 @@ pub struct Object {
     pub material: usize,
 }
 
+/// Phong material in a scene of the judge.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Material {
     pub kd: V,
@@ -47,13 +53,15 @@ pub struct Material {
     pub index: f64,
 }
 
+/// Light in a scene of the judge: directional or a point light.
 #[derive(Clone, Copy, Debug)]
 pub enum Light {
     Sun(V, V),
-    /// Position, colour, attenuation a0 a1 a2.
+    /// Position, colour, and attenuation coefficients a0, a1, a2.
     Bulb(V, V, V),
 }
 
+/// A scene that the judge's tracer renders and that can be written as a scene file.
 #[derive(Clone, Debug)]
 pub struct Scene {
     pub name: &'static str,
@@ -64,7 +72,7 @@ pub struct Scene {
     pub eye: V,
     pub look: V,
     pub up: V,
-    /// Degrees, or minus the size of an orthographic picture.
+    /// Field of view in degrees, or minus the size of an orthographic picture.
     pub angle: f64,
     pub background: V,
     pub ambient: V,
@@ -74,6 +82,7 @@ pub struct Scene {
 }
 
 impl Op {
+    /// Returns the matrix of the transform. `degrees` converts angles to radians.
     pub fn matrix(&self, degrees: impl Fn(f64) -> f64) -> Matrix {
         let turn = |angle: f64, a: usize, b: usize| {
             let (s, c) = degrees(angle).sin_cos();
@@ -96,7 +105,7 @@ fn v(V(x, y, z): V) -> String {
 }
 
 impl Scene {
-    /// Returns the scene's text.
+    /// Returns the scene as text in the course's language.
     pub fn text(&self) -> String {
         let mut t = String::new();
         let camera = if self.angle > 0.0 { "PerspectiveCamera" } else { "OrthographicCamera" };
@@ -166,7 +175,7 @@ impl Scene {
         t + "}\n"
     }
 
-    /// Returns the mesh files that the scene refers to.
+    /// Returns names and contents of the mesh files that the scene refers to.
     pub fn files(&self) -> Vec<(&'static str, String)> {
         let mut files = Vec::new();
         for object in &self.objects {
@@ -180,7 +189,7 @@ impl Scene {
         files
     }
 
-    /// Returns the options of `durer` for its picture.
+    /// Returns the options of `durer` for rendering the scene.
     pub fn options(&self) -> Vec<String> {
         let dialect = match self.year {
             Year::F04 => "f04",

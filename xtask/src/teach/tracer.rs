@@ -1,18 +1,20 @@
-//! The judge's own tracer. It is independent of the library, and can make common mistakes by name.
+//! The judge's tracer, which is independent of the library and can make common mistakes by name.
 
 use super::scene::{Light, Material, Object, Op, Scene, Shape, Year};
 use super::vector::{Matrix, V};
 
-/// A picture with eight bits per channel, top row first.
+/// A picture with eight bits per channel, starting with the top row.
 pub type Picture = Vec<[u8; 3]>;
 
+/// Ray tracer for the judge's scenes, which makes the mistakes that are listed by name.
 pub struct Tracer<'s> {
     scene: &'s Scene,
     mistakes: &'s [&'static str],
-    /// Object-to-world matrix and its inverse, for each object.
+    /// For each object, the object-to-world matrix and its inverse.
     places: Vec<(Matrix, Matrix)>,
 }
 
+/// Hit of a ray in the judge's tracer.
 struct Hit {
     t: f64,
     /// Shading normal in world space.
@@ -22,6 +24,7 @@ struct Hit {
 }
 
 impl<'s> Tracer<'s> {
+    /// Creates a tracer for a scene with some mistakes.
     pub fn new(scene: &'s Scene, mistakes: &'s [&'static str]) -> Self {
         let mut tracer = Tracer { scene, mistakes, places: Vec::new() };
         tracer.places = scene.objects.iter().map(|object| tracer.place(object)).collect();
@@ -56,7 +59,8 @@ impl<'s> Tracer<'s> {
         (m, m.inverse())
     }
 
-    /// Returns all roots of an object along a ray in object space, each with its normals.
+    /// Returns all roots of a ray with an object in object space, each with its geometric and
+    /// shading normal.
     fn roots(&self, object: &Object, o: V, d: V) -> Vec<(f64, V, V)> {
         let triangle = |p: [V; 3]| {
             let n = (p[1] - p[0]).cross(p[2] - p[0]);
@@ -100,7 +104,7 @@ impl<'s> Tracer<'s> {
                 for face in faces {
                     let Some((t, n, w)) = triangle(face.map(|i| corners[i])) else { continue };
                     let mixed = if smooth {
-                        // Area-weighted: sums of cross products.
+                        // Weight vertex normals by area: they are sums of cross products.
                         let at = |corner: usize| {
                             let around = faces.iter().filter(|f| f.contains(&corner));
                             around
@@ -198,11 +202,11 @@ impl<'s> Tracer<'s> {
             () => distance,
         };
         let p = if self.is("shadows-from-eye") { self.scene.eye } else { p };
-        // Student programs use single precision, which causes acne.
+        // Student programs use single precision, which is what causes acne.
         let single = |v: V| v.map(|x| f64::from(x as f32));
         let p = if self.is("epsilon-0") { single(p) } else { p };
         match self.hit(p, l, self.epsilon(true), most) {
-            // The second program of 2012 counts only front faces of the nearest object.
+            // The second program of 2012 considers only front faces of the nearest object.
             Some(hit) if self.scene.year == Year::F12a5 => hit.n.dot(l) <= 0.0,
             hit => hit.is_some(),
         }
@@ -444,7 +448,7 @@ impl<'s> Tracer<'s> {
         }
     }
 
-    /// Returns the ray of a pixel; rows from the top.
+    /// Returns origin and direction of the ray of a pixel. Rows are counted from the top.
     fn ray(&self, i: usize, j: usize) -> (V, V) {
         let scene = self.scene;
         let (w, h) = (scene.size.0 as f64, scene.size.1 as f64);
@@ -487,7 +491,7 @@ impl<'s> Tracer<'s> {
         (eye, (w * (1.0 / half) + u * x + v * y).unit())
     }
 
-    /// Renders the picture.
+    /// Renders the scene to a picture.
     pub fn picture(&self) -> Picture {
         let (w, h) = self.scene.size;
         let bounces = match () {

@@ -1,8 +1,8 @@
-//! Vectors and matrices of the judge's own tracer, in double precision and independent of the
-//! library.
+//! Vectors and matrices of the judge's tracer, in double precision and independent of the library.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
+/// Vector of three numbers, also used for points and colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct V(pub f64, pub f64, pub f64);
 
@@ -34,7 +34,7 @@ impl Mul<f64> for V {
     }
 }
 
-/// Componentwise product.
+/// Multiplies component by component.
 impl Mul for V {
     type Output = V;
     fn mul(self, o: V) -> V {
@@ -43,35 +43,43 @@ impl Mul for V {
 }
 
 impl V {
+    /// Vector of zeros.
     pub const ZERO: V = V(0.0, 0.0, 0.0);
+    /// Vector of ones.
     pub const ONE: V = V(1.0, 1.0, 1.0);
 
+    /// Returns the dot product.
     pub fn dot(self, o: V) -> f64 {
         self.0 * o.0 + self.1 * o.1 + self.2 * o.2
     }
 
+    /// Returns the cross product.
     pub fn cross(self, o: V) -> V {
         V(self.1 * o.2 - self.2 * o.1, self.2 * o.0 - self.0 * o.2, self.0 * o.1 - self.1 * o.0)
     }
 
+    /// Returns the length.
     pub fn length(self) -> f64 {
         self.dot(self).sqrt()
     }
 
+    /// Returns the vector scaled to length 1.
     pub fn unit(self) -> V {
         self * (1.0 / self.length())
     }
 
+    /// Applies a function to each component.
     pub fn map(self, f: impl Fn(f64) -> f64) -> V {
         V(f(self.0), f(self.1), f(self.2))
     }
 
+    /// Returns the largest component.
     pub fn most(self) -> f64 {
         self.0.max(self.1).max(self.2)
     }
 }
 
-/// A 3 x 3 matrix by rows, and a translation.
+/// Affine transform: a 3 x 3 matrix by rows, and a translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrix {
     pub rows: [V; 3],
@@ -79,28 +87,33 @@ pub struct Matrix {
 }
 
 impl Matrix {
+    /// Identity.
     pub const ONE: Matrix = Matrix { rows: [V(1.0, 0.0, 0.0), V(0.0, 1.0, 0.0), V(0.0, 0.0, 1.0)], by: V::ZERO };
 
+    /// Transforms a vector, without the translation.
     pub fn vector(&self, v: V) -> V {
         V(self.rows[0].dot(v), self.rows[1].dot(v), self.rows[2].dot(v))
     }
 
+    /// Transforms a point.
     pub fn point(&self, p: V) -> V {
         self.vector(p) + self.by
     }
 
+    /// Returns the transposed 3 x 3 matrix, without the translation.
     pub fn transposed(&self) -> Matrix {
         let [a, b, c] = self.rows;
         Matrix { rows: [V(a.0, b.0, c.0), V(a.1, b.1, c.1), V(a.2, b.2, c.2)], by: V::ZERO }
     }
 
-    /// Returns the product: `o` first, then `self`.
+    /// Returns the product, which applies `o` first and then `self`.
     pub fn times(&self, o: &Matrix) -> Matrix {
         let columns = o.transposed().rows;
         let row = |r: V| V(r.dot(columns[0]), r.dot(columns[1]), r.dot(columns[2]));
         Matrix { rows: self.rows.map(row), by: self.point(o.by) }
     }
 
+    /// Returns the inverse.
     pub fn inverse(&self) -> Matrix {
         let [a, b, c] = self.transposed().rows;
         let det = a.dot(b.cross(c));

@@ -1,9 +1,10 @@
-//! Wrong pictures: scenes of the judge, rendered with mistakes by its own tracer.
+//! Wrong pictures for testing `durer compare`: scenes that the judge's tracer renders with
+//! mistakes.
 
 use super::scene::{Light, Material, Object, Op, Scene, Shape, Year};
 use super::vector::V;
 
-/// A wrong picture: index of the scene, and mistakes.
+/// A wrong picture: index of its scene, and the mistakes it is rendered with.
 pub struct Case {
     pub scene: usize,
     pub made: Vec<&'static str>,
@@ -35,21 +36,21 @@ fn moved(object: Object, ops: Vec<Op>) -> Object {
     Object { ops, ..object }
 }
 
-/// Returns eight triangles with corners on the axes.
+/// Returns an octahedron: eight triangles with vertices on the axes.
 fn octahedron(name: &'static str, r: f64) -> Shape {
     let corners = vec![V(r, 0., 0.), V(-r, 0., 0.), V(0., r, 0.), V(0., -r, 0.), V(0., 0., r), V(0., 0., -r)];
     let faces = vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
     Shape::Mesh(name, corners, faces)
 }
 
-/// Returns a rotated and stretched mesh, beside a sphere on a floor.
+/// Returns a rotated and stretched mesh next to a sphere on a floor.
 fn beside_a_ball(mesh: Shape) -> Vec<Object> {
     let ops = vec![Op::Translate(V(1.2, 0.5, 0.5)), Op::Y(30.0), Op::Scale(V(1.0, 1.5, 1.0))];
     vec![sphere(V(-1.4, 0.6, 0.0), 1.0, 0), Object { shape: mesh, ops, material: 1 }, floor(-0.8, 2)]
 }
 
-/// Returns the scenes, in the course's style: small, with few objects, for every year with the old
-/// grammar.
+/// Returns the scenes, which are small and have few objects, as in the course. There are scenes for
+/// every year with the old grammar.
 pub fn scenes() -> Vec<Scene> {
     let old = Scene {
         name: "lamps",
@@ -180,7 +181,7 @@ pub fn scenes() -> Vec<Scene> {
     vec![old, mirrors, glass, turned, flat, phong, falling, fresnel, ours, wide, facets, cubes]
 }
 
-/// Single mistakes for each scene.
+/// Mistakes that are made alone, for each scene.
 const ALONE: [&[&str]; 12] = [
     &[
         "no-ambient",
@@ -367,7 +368,7 @@ const ALONE: [&[&str]; 12] = [
     &["normals-smooth", "normals-local", "no-falloff"],
 ];
 
-/// Further mistakes, by scene.
+/// Further mistakes that are made alone, by index of the scene.
 const MORE: [(usize, &[&str]); 8] = [
     (
         0,
@@ -398,8 +399,8 @@ const MORE: [(usize, &[&str]); 8] = [
     (10, &["triangle-test", "mesh-first", "scale-inverted", "backs-culled"]),
 ];
 
-/// Mistakes that the table lacked when the judge was written. Valid answers are their own name, or
-/// none.
+/// Mistakes that the table of the library lacked when the judge was written. Correct answers are
+/// their own name, or none.
 const UNKNOWN: [&str; 7] = [
     "x-ambient-brighter",
     "x-kd-squared",
@@ -410,7 +411,7 @@ const UNKNOWN: [&str; 7] = [
     "x-second-light-unshadowed",
 ];
 
-/// Pairs of mistakes.
+/// Pairs of mistakes, by index of the scene.
 const TOGETHER: &[(usize, [&str; 2])] = &[
     (0, ["no-ambient", "no-highlights"]),
     (0, ["no-shadows", "exponent-doubled"]),
@@ -443,12 +444,12 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-/// Returns the table's name for a mistake of the judge's tracer.
+/// Returns the name in the library's table for a mistake of the judge's tracer.
 pub fn description(made: &str) -> &str {
     match made {
         "exponent-doubled" | "exponent-halved" | "exponent-3" => "exponent",
         "size-doubled" => "size",
-        // Added to the table since.
+        // Added to the table later.
         "x-ambient-brighter" => "ambient-factor",
         "x-materials-swapped" => "other-material",
         "x-kd-squared" => "diffuse-twice",

@@ -4,11 +4,11 @@ use durer::math::{Vec3, fp};
 use durer::texture::CieSky;
 use std::f64::consts::PI;
 
-/// A case with a known answer.
+/// A scene with a known answer: the quantity to measure, its formula and its value.
 pub struct Case {
     pub name: &'static str,
     pub formula: &'static str,
-    /// Fields of the background.
+    /// Fields of the `Background` block.
     pub background: String,
     pub materials: String,
     pub lights: String,
@@ -18,17 +18,19 @@ pub struct Case {
     pub answer: f64,
 }
 
-/// Quantity to measure.
+/// Quantity that a case measures.
 pub enum What {
-    /// Illuminance at a point, on the side of a normal.
+    /// Illuminance at a point, for the side to which a normal points.
     Illuminance(Vec3, Vec3),
-    /// Luminance from a point in a direction.
+    /// Luminance seen from a point in a direction.
     Luminance(Vec3, Vec3),
-    /// Flux through parallelograms (corner, edges), on the side of the edges' cross product.
+    /// Flux through parallelograms (corner and two edges), on the side of the cross product of the
+    /// edges.
     Flux(Vec<[Vec3; 3]>),
 }
 
 impl What {
+    /// Returns the unit of the quantity.
     pub fn unit(&self) -> &'static str {
         match self {
             What::Illuminance(..) => "lx",
@@ -42,22 +44,23 @@ const MATTE: &str = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0
 const BLACK: &str = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 }";
 const LIGHT: &str = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1000 }";
 const GLASS: &str = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 }";
-/// Point light of 100 cd: the colour of a light is illuminance over pi.
+/// Fields of a point light of 100 cd. The colour of a light is its illuminance divided by pi.
 const CANDELAS_100: &str = "color 31.830989 31.830989 31.830989 attenuation 0 0 1";
-/// Sun at the zenith with 1000 lux.
+/// A sun at the zenith with an illuminance of 1000 lux.
 const SUN: &str = "DirectionalLight { direction 0 -1 0 color 318.30989 318.30989 318.30989 }";
-/// Sky of uniform luminance, also below the horizon.
+/// Fields of a sky with uniform luminance, also below the horizon.
 const EVEN: &str = "color 1000 1000 1000";
 
-/// Form factor from a floor element to a parallel rectangle with a corner above it; arguments are
-/// its sides over its distance.
+/// Form factor from a floor element to a parallel rectangle that has a corner above the element.
+/// The arguments are the sides of the rectangle divided by its distance.
 fn parallel(x: f64, y: f64) -> f64 {
     let (p, q) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
     (x / p * fp::atan_f64(y / p) + y / q * fp::atan_f64(x / q)) / (2.0 * PI)
 }
 
-/// Form factor to a perpendicular rectangle: the element is opposite a corner, and its normal is
-/// along the sides of length `a`; `b` is the other side and `c` the distance.
+/// Form factor from an element to a perpendicular rectangle. The element is opposite a corner, and
+/// its normal is along the sides of length `a`; `b` is the length of the other sides and `c` the
+/// distance.
 fn upright(a: f64, b: f64, c: f64) -> f64 {
     let far = (a * a + c * c).sqrt();
     (fp::atan_f64(b / c) - c / far * fp::atan_f64(b / far)) / (2.0 * PI)
@@ -82,25 +85,25 @@ fn fresnel(cosine: f64, eta: f64) -> f64 {
     0.5 * (parallel + across)
 }
 
-/// Returns the transmittance of two faces of reflectance `r` with all inter-reflections, each pass
-/// of which keeps the share `kept`.
+/// Returns the transmittance of two faces with reflectance `r`, including all inter-reflections.
+/// Each pass between the faces keeps the fraction `kept`.
 fn through_faces(r: f64, kept: f64) -> f64 {
     (1.0 - r) * (1.0 - r) * kept / (1.0 - r * r * kept * kept)
 }
 
-/// Returns the transmittance of a pane at a cosine, for light that is unpolarised at each face.
+/// Returns the transmittance of a pane at an angle, for light that is unpolarised at each face.
 fn pane(cosine: f64, kept: f64) -> f64 {
     through_faces(fresnel(cosine, 1.5), kept)
 }
 
-/// Returns the transmittance of a pane for light that keeps its polarisation.
+/// Returns the transmittance of a pane at an angle, for light that keeps its polarisation.
 fn polarised_pane(cosine: f64, kept: f64) -> f64 {
     let [along, across] = polarised(cosine, 1.5).map(|r| through_faces(r, kept));
     0.5 * (along + across)
 }
 
-/// Returns the illuminance at the origin, on the side of `n`, from a sky seen through an opening,
-/// by the midpoint rule with 2000 x 2000 cells.
+/// Returns the illuminance at the origin for normal `n`, from a sky seen through an opening, by the
+/// midpoint rule with 2000 x 2000 cells.
 fn through(opening: [Vec3; 3], n: Vec3, sky: impl Fn(Vec3) -> f64) -> f64 {
     const STEPS: u32 = 2_000;
     let [corner, a, b] = opening.map(|v| v.as_dvec3());
@@ -115,7 +118,7 @@ fn through(opening: [Vec3; 3], n: Vec3, sky: impl Fn(Vec3) -> f64) -> f64 {
     sum / f64::from(STEPS * STEPS)
 }
 
-/// Returns a plate with a rectangular opening, written as four rectangles in the plane of the
+/// Returns the text of a plate with a rectangular opening: four rectangles in the plane of the
 /// opening.
 fn around(opening: [Vec3; 3]) -> String {
     let [corner, a, b] = opening;
@@ -142,7 +145,7 @@ fn floor() -> What {
     What::Illuminance(Vec3::ZERO, Vec3::Y)
 }
 
-/// Returns the six inner sides of a cube of 4 m around the origin, with normals inwards.
+/// Returns the six inner faces of a cube of 4 m around the origin, with normals pointing inwards.
 fn inside_of_cube() -> Vec<[Vec3; 3]> {
     let side = |n: Vec3| {
         let u = n.any_orthonormal_vector().abs().round();
@@ -152,6 +155,7 @@ fn inside_of_cube() -> Vec<[Vec3; 3]> {
     [Vec3::X, Vec3::Y, Vec3::Z].iter().flat_map(|&n| [side(n), side(-n)]).collect()
 }
 
+/// Returns all cases.
 pub fn cases() -> Vec<Case> {
     let mut all = area_lights();
     all.extend(skies());
@@ -214,7 +218,7 @@ fn area_lights() -> Vec<Case> {
 
 fn skies() -> Vec<Case> {
     let roof = [Vec3::new(0.0, 2.0, 0.0), Vec3::new(3.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
-    // A window on the +x side; its sill is 1 m above the point.
+    // A window on the +x side whose sill is 1 m above the point.
     let window = [Vec3::new(2.0, 1.0, -0.8), Vec3::new(0.0, 1.2, 0.0), Vec3::new(0.0, 0.0, 1.6)];
     let open =
         |name, formula, sky: &str, answer| Case { background: sky.into(), ..case(name, formula, floor(), answer) };
@@ -284,8 +288,8 @@ fn skies() -> Vec<Case> {
         let answer = through(window, Vec3::Y, |dir| f64::from(known.luminance(dir)));
         all.push(behind(name, "E = ∫ L cosθ dω, by quadrature", sky, window, answer));
     }
-    // A canopy over the window hides the sky above the line to its edge. A screen in front hides
-    // the sky below its top edge.
+    // A canopy over the window hides the sky above its edge. A screen in front hides the sky below
+    // its top.
     let hidden = |low: f32, high: f32| {
         let part = [Vec3::new(2.0, low, -0.8), Vec3::new(0.0, high - low, 0.0), Vec3::new(0.0, 0.0, 1.6)];
         let known = CieSky::new(16, Vec3::Y, 10_000.0, 0.2);
@@ -299,13 +303,13 @@ fn skies() -> Vec<Case> {
     all.push(masked(
         "[5.13] The window under a canopy 1 m deep, overcast",
         "Rectangle { corner 2.001 2.4 -999 edge0 0.999 0 0 edge1 0 0 1998 }",
-        // The canopy's edge at y = 2.4, x = 3 appears at 1.6 in the window.
+        // Seen from the point, the canopy's edge at y = 2.4, x = 3 is at 1.6 in the window.
         hidden(1.0, 1.6),
     ));
     all.push(masked(
         "[5.14] The window opposite a black wall 4 m away and 3.2 m high, overcast",
         "Rectangle { corner 4 0 -999 edge0 0 3.2 0 edge1 0 0 1998 }",
-        // The top at y = 3.2, x = 4 appears at 1.6 in the window.
+        // Seen from the point, the top at y = 3.2, x = 4 is at 1.6 in the window.
         hidden(1.6, 2.2),
     ));
     all
@@ -322,7 +326,7 @@ fn reflections() -> Vec<Case> {
     let light = |position: &str| format!("PointLight {{ position {position} {CANDELAS_100} }}");
     let patch = "Rectangle { corner 0 0 0 edge0 0 0 1.5 edge1 2 0 0 }";
     let flux = 400.0 * PI;
-    // A black box with an opening in its ceiling: all flux that enters arrives.
+    // A black box with an opening in its ceiling: all flux that enters reaches the inside.
     let (a, b) = (Vec3::new(4.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 4.0));
     let up = Vec3::new(0.0, 3.0, 0.0);
     let (low, far) = (Vec3::new(-2.0, 0.001, -2.0), Vec3::new(2.0, 0.001, 2.0));

@@ -9,7 +9,7 @@ use durer::render::Job;
 use durer::sampler::{SampleId, random_2d};
 use durer::world::World;
 
-/// Compiles a scene from text in our language.
+/// Compiles a scene in Dürer's own dialect from the texts of its sections.
 pub fn world(name: &str, background: &str, materials: &str, lights: &str, group: &str) -> Result<World> {
     let text = format!(
         "PerspectiveCamera {{ center 0 1 9 direction 0 0 -1 up 0 1 0 angle 30 }}\nBackground {{ color 0 0 0 {background} }}\n\
@@ -25,7 +25,7 @@ fn one(path: &Path, what: &What, sample: u32) -> f64 {
         What::Illuminance(point, normal) => f64::from(path.irradiance(point.as_dvec3(), *normal, id, &mut ()).y),
         What::Luminance(origin, dir) => f64::from(path.radiance(&Ray::new(*origin, dir.normalize()), id, &mut ()).y),
         What::Flux(patches) => {
-            // A uniform point on all patches.
+            // Choose a uniform point on all parallelograms.
             let area = |patch: &[durer::math::Vec3; 3]| f64::from(patch[1].cross(patch[2]).length());
             let all: f64 = patches.iter().map(area).sum();
             let u = random_2d(99, 0, 0, sample, 0);
@@ -56,6 +56,7 @@ fn measured(case: &Case, samples: u32) -> Result<(f64, f64)> {
     Ok((sum / n, ((squares / n - (sum / n) * (sum / n)).max(0.0) / n).sqrt()))
 }
 
+/// Adds the table that compares light with known answers.
 pub fn light(table: &mut Table, samples: u32) -> Result<()> {
     table.head(
         "Light",

@@ -1,4 +1,4 @@
-//! White furnaces and chi-square tests.
+//! White furnace tests of materials, and chi-square tests of sampling against pdfs.
 
 use super::Table;
 use super::measure::world;
@@ -13,6 +13,7 @@ use durer::world::emitters::Receiver;
 const ROUGHNESSES: [f32; 7] = [0.0, 0.05, 0.1, 0.3, 0.5, 0.8, 1.0];
 const COSINES: [f32; 5] = [0.999, 0.7, 0.4, 0.2, 0.1];
 
+/// Adds the table of white furnace tests.
 pub fn furnaces(table: &mut Table) {
     table.head(
         "Energy conservation",
@@ -39,7 +40,7 @@ pub fn furnaces(table: &mut Table) {
     brushed(table);
 }
 
-/// Adds furnace tests over anisotropy, azimuth and side, for anisotropic materials.
+/// Adds furnace tests of anisotropic materials, over anisotropy, azimuth and side.
 fn brushed(table: &mut Table) {
     for (name, material) in proof::brushed() {
         let furnace = Furnace::new(&material);
@@ -62,8 +63,9 @@ fn brushed(table: &mut Table) {
     }
 }
 
-/// Area lights seen from the origin. Cylinders are excluded: their pdf is unbounded at the
-/// silhouette, so sums over cells are too inaccurate. Unit tests compare them with random sampling.
+/// Area lights as seen from the origin. Cylinders are missing, because their pdf is unbounded at
+/// the silhouette, so that sums over cells are too inaccurate. Unit tests compare them with random
+/// sampling instead.
 const LIGHTS: [(&str, &str); 6] = [
     ("sphere", "Sphere { center 0.5 2 1 radius 0.7 }"),
     ("disc", "Disc { center 0 2 0.5 normal 0.3 -1 0 radius 1.5 }"),
@@ -77,6 +79,7 @@ const LIGHTS: [(&str, &str); 6] = [
     ("sphere around the point", "Sphere { center 0.4 0.2 0.1 radius 2 }"),
 ];
 
+/// Adds the table of chi-square tests of sampled directions.
 pub fn densities(table: &mut Table) -> Result<()> {
     const CELLS: Cells = Cells { rows: 80, columns: 160, samples: 1_000_000, fine: 12 };
     let mut rows: Vec<(String, Verdict)> = Vec::new();
@@ -92,7 +95,7 @@ pub fn densities(table: &mut Table) -> Result<()> {
         rows.push((format!("Henyey-Greenstein, mean cosine {anisotropy}"), verdict));
     }
     let light = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1 walls thin }";
-    // The pdf of an area light ends at its edge, so integrate cells there more finely.
+    // The pdf of an area light drops to zero at its edge, so use finer integration there.
     let finely = Cells { fine: 40, ..CELLS };
     for (name, group) in LIGHTS {
         let world = world(name, "", light, "", &format!("MaterialIndex 0 {group}"))?;
@@ -123,7 +126,7 @@ pub fn densities(table: &mut Table) -> Result<()> {
     Ok(())
 }
 
-/// Rotates a direction: cells are around the z axis, skies around the y axis.
+/// Rotates a direction, because cells are arranged around the z axis but skies around the y axis.
 fn turned(v: Vec3) -> Vec3 {
     Vec3::new(v.x, -v.z, v.y)
 }
@@ -143,7 +146,7 @@ fn of_lights(world: &World, cells: Cells) -> Verdict {
         let dir = back(wi);
         let mut ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
         let (mut sum, mut met) = (0.0, Vec::new());
-        // Occluded emitters are sampled too, but never the far side of an emitter.
+        // Occluded emitters are sampled too, but not the far side of an emitter.
         for _ in 0..16 {
             let Some(hit) = world.closest(&ray, &mut ()) else { break };
             if !met.contains(&hit.object) {
@@ -159,7 +162,7 @@ fn of_lights(world: &World, cells: Cells) -> Verdict {
 
 /// Returns the normal deviate with a given upper tail probability.
 fn deviate_of(probability: f64) -> f64 {
-    // Upper tail by Simpson's rule up to 10.
+    // Integrate the upper tail up to 10 with Simpson's rule.
     let tail = |from: f64| {
         const STEPS: u32 = 2_000;
         let h = (10.0 - from) / f64::from(STEPS);

@@ -1,6 +1,7 @@
-//! Changes made by `--fix`.
+//! Changes to a scene file made by `durer check --fix`.
 
-/// A change made by `--fix`.
+/// A change that `durer check --fix` made to a scene file, with the code of the finding that it
+/// fixes.
 pub struct Change {
     pub code: &'static str,
     /// Position in the text at the time of the change, for JSON.

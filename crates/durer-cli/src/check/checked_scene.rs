@@ -1,4 +1,4 @@
-//! A checked scene.
+//! Reads and checks one scene.
 
 use super::args::CheckArgs;
 use crate::failure::Failure;
@@ -11,7 +11,7 @@ use durer::load_text;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A scene and its findings.
+/// A scene file after `durer check`: its files, its findings, and whether it can be rendered.
 pub struct CheckedScene {
     pub path: PathBuf,
     pub files: Files,
@@ -20,17 +20,18 @@ pub struct CheckedScene {
     pub dialect: Option<&'static str>,
     /// True if the scene can be rendered.
     pub readable: bool,
-    /// Files named by the scene.
+    /// Files that the scene refers to.
     pub named: Vec<PathBuf>,
 }
 
 impl CheckedScene {
+    /// Returns the number of findings for which `wanted` returns true.
     pub fn count(&self, wanted: impl Fn(&Finding) -> bool) -> usize {
         self.findings.iter().filter(|finding| wanted(finding)).count()
     }
 }
 
-/// Reads and checks the text of a scene file, which need not be saved yet.
+/// Reads and checks the text of a scene file. The text need not be saved yet.
 pub fn look(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<CheckedScene, Failure> {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let mut options = load_options(&args.reading);

@@ -1,11 +1,11 @@
-//! Output of `--json`; `durer check --help` describes its form.
+//! Output of `durer check --json`; `durer check --help` describes its form.
 
 use super::change::Change;
 use super::checked_scene::CheckedScene;
 use durer::report::findings;
 use serde_json::{Value, json};
 
-/// Version of the JSON.
+/// Version of the JSON form.
 const VERSION: u32 = 1;
 
 /// Returns the document for the checked scenes and their changes.

@@ -1,4 +1,4 @@
-//! `--fix`: applies one edit after the other and keeps those that remove their finding.
+//! `durer check --fix`: applies one edit after the other and keeps those that remove their finding.
 
 use super::args::CheckArgs;
 use super::change::Change;
@@ -9,10 +9,10 @@ use durer::diag::{Edit, Severity};
 use durer::report::place;
 use std::sync::Arc;
 
-/// Maximum number of findings fixed in one run.
+/// Maximum number of findings that are fixed in one run.
 const MOST: usize = 100;
 
-/// Applies all fixes that help. Leaves the findings of the new text in `checked`.
+/// Applies all fixes that help, and sets `checked` to the result for the new text.
 pub fn mend(
     checked: &mut CheckedScene,
     mut text: Arc<[u8]>,
@@ -38,10 +38,10 @@ pub fn mend(
     Ok((text, changes))
 }
 
-/// Maximum number of findings whose edits are tried before they are offered.
+/// Maximum number of findings whose edits are tried before they are offered to the user.
 const MAX_TRIED: usize = 8;
 
-/// Withdraws offered edits that `--fix` would not keep.
+/// Removes edits that `--fix` would not keep from the findings.
 pub fn withdraw(checked: &mut CheckedScene, text: &[u8], args: &CheckArgs) -> Result<(), Failure> {
     let offered = |finding: &&Finding| !finding.diagnostic.fix.is_empty();
     let mut kept = Vec::new();
@@ -59,8 +59,8 @@ pub fn withdraw(checked: &mut CheckedScene, text: &[u8], args: &CheckArgs) -> Re
     Ok(())
 }
 
-/// Returns true if `finding` is gone and nothing is worse: no new error, and no new finding that
-/// precedes it in causal order.
+/// Returns true if `finding` is gone and nothing is worse: no new error, and no new finding about
+/// the whole picture that comes earlier in causal order.
 fn is_better(before: &CheckedScene, after: &CheckedScene, finding: &Finding) -> bool {
     let code = finding.diagnostic.code;
     let errors = |checked: &CheckedScene| checked.count(|f| f.diagnostic.severity == Severity::Error);

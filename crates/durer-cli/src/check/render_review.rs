@@ -1,4 +1,4 @@
-//! Diagnosis after a render whose result looks wrong.
+//! Checks a scene after a render whose picture looks wrong.
 
 use crate::open::CompiledInput;
 use crate::report;
@@ -14,7 +14,7 @@ use durer::render::{Job, Statistics};
 /// Maximum number of findings printed.
 const MOST: usize = 3;
 
-/// Returns statistics of the first picture, if it is the colour picture.
+/// Returns the scan of the first picture, if it is the colour picture.
 pub fn looks(job: &Job, pictures: &[Layer], exposure: f32) -> Option<PictureScan> {
     let color = pictures.first().filter(|_| job.color)?;
     let mut looks = PictureScan::new(exposure);
@@ -22,7 +22,7 @@ pub fn looks(job: &Job, pictures: &[Layer], exposure: f32) -> Option<PictureScan
     Some(looks)
 }
 
-/// Reports every visible fault of a picture made by `durer render`.
+/// Reports a visible fault of a picture from `durer render`, with its likely causes.
 pub fn after_render(
     compiled: &CompiledInput,
     job: &Job,
@@ -36,15 +36,15 @@ pub fn after_render(
     RenderReview { compiled, job, statistics, exposure: display.exposure }.look(looks, pictures, is_odd);
 }
 
-/// Reports only black or single-colour pictures made by `durer course`. No scene of
-/// any year intends such a picture.
+/// Reports black or single-colour pictures from `durer course`. No scene of any year is meant to
+/// give such a picture.
 pub fn after_course(compiled: &CompiledInput, job: &Job, pictures: &[Layer], statistics: &Statistics) {
     let is_odd = |oddity: &Oddity| matches!(oddity, Oddity::Black | Oddity::OneColor);
     let looks = looks(job, pictures, 1.0);
     RenderReview { compiled, job, statistics, exposure: 1.0 }.look(looks.as_ref(), pictures, is_odd);
 }
 
-/// A finished render.
+/// A finished render and its scene, to be checked if the picture looks wrong.
 struct RenderReview<'a> {
     compiled: &'a CompiledInput,
     job: &'a Job,
@@ -60,7 +60,7 @@ impl RenderReview<'_> {
         }
     }
 
-    /// Warns if a depth picture with a given range has no grey pixels.
+    /// Warns if a depth picture with a range set by the user has no grey pixels.
     fn depths(&self, pictures: &[Layer]) {
         let is_requested = self.job.depth_range.is_some();
         let Some(layer) = pictures.iter().find(|layer| layer.name == "depth").filter(|_| is_requested) else { return };

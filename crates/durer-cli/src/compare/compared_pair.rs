@@ -1,4 +1,4 @@
-//! A compared pair of pictures.
+//! A pair of pictures and the result of its comparison.
 
 use super::mistakes;
 use super::pairs::Pair;
@@ -6,30 +6,32 @@ use super::pixel_hit::PixelHit;
 use durer::image::compare::{Comparison, Finding, Verdict};
 use durer::mistakes::Diagnosis;
 
-/// Outcome of a comparison.
+/// Result of comparing one pair of pictures in `durer compare`.
 pub enum Outcome {
     Compared(Box<Comparison>),
-    /// No picture matches the reference.
+    /// There is no picture for the reference.
     Missing,
-    /// The pictures cannot be compared, for this reason.
+    /// The pictures cannot be compared, for the given reason.
     Failed(String),
 }
 
-/// A pair of pictures and the outcome of its comparison.
+/// A pair of pictures after its comparison, with the causes of the difference.
 pub struct ComparedPair {
     pub pair: Pair,
     pub outcome: Outcome,
     /// Pictures for the report, if one is written.
     pub shown: Option<PairPictures>,
-    /// Hit of the ray through the worst pixel of each region; empty without a scene.
+    /// For each region, the hit of the ray through the pixel that differs most; empty without a
+    /// scene.
     pub hits: Vec<PixelHit>,
-    /// Mistakes that reproduce the picture; `None` without a scene.
+    /// Result of the search for mistakes; `None` without a scene.
     pub diagnosis: Option<Diagnosis>,
-    /// Note on the options of the reference, if they were inferred.
+    /// Note on the inferred options of the reference, if they were inferred.
     pub note: Option<String>,
 }
 
 impl ComparedPair {
+    /// Creates a compared pair without hits and diagnosis.
     pub fn new(pair: Pair, outcome: Outcome, shown: Option<PairPictures>) -> Self {
         ComparedPair { pair, outcome, shown, hits: Vec::new(), diagnosis: None, note: None }
     }
@@ -43,7 +45,7 @@ impl ComparedPair {
         }
     }
 
-    /// Returns the keywords of the mistakes that explain the difference; empty if none does.
+    /// Returns the names of the mistakes that explain the difference; empty if there are none.
     pub fn mistakes(&self) -> String {
         let all: Vec<&str> = match (&self.outcome, &self.diagnosis) {
             (_, Some(diagnosis)) => {
@@ -67,19 +69,19 @@ impl ComparedPair {
     }
 }
 
-/// Pictures of a pair for the report: PNG in base 64.
+/// The pictures of a pair for the HTML report, as data URIs of PNG files.
 pub struct PairPictures {
     pub reference: String,
     pub picture: String,
     pub heat: String,
 }
 
-/// Returns the name of a pair, prefixed with the student's name.
+/// Returns the name of a pair, with the student's name in front.
 pub fn name(pair: &Pair) -> String {
     pair.who.as_ref().map_or_else(|| pair.name.clone(), |who| format!("{who}/{}", pair.name))
 }
 
-/// Explains the difference from the pictures alone, with one line per cause.
+/// Explains a difference from the pictures alone; one line per cause.
 fn explained(found: &Comparison) -> Vec<String> {
     if found.verdict != Verdict::Different {
         return Vec::new();
@@ -94,7 +96,7 @@ fn explained(found: &Comparison) -> Vec<String> {
     let line = |(i, finding): (usize, &Finding)| {
         let percent = mistakes::percent(finding.explained);
         match i {
-            // The location of a difference does not explain it.
+            // The place of a difference does not explain it.
             0 if finding.kind.ends_with("-parts") => {
                 format!("{} ({percent} of the squared difference is there)", finding.words)
             }

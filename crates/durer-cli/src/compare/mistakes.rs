@@ -1,4 +1,4 @@
-//! Mistakes of a student's program, as text and JSON.
+//! Formats the result of the search for a student's mistakes as text and JSON.
 
 use super::stage::Stage;
 use crate::progress;
@@ -6,7 +6,7 @@ use durer::image::compare::Picture;
 use durer::mistakes::{Diagnosis, DiagnosisInput, Explanation, diagnose};
 use serde_json::{Value, json};
 
-/// Tries the known mistakes on a pair of pictures.
+/// Searches for the mistakes that explain the difference between two pictures.
 pub fn named(stage: &Stage, reference: &Picture, test: &Picture) -> Diagnosis {
     let Stage { compiled, job, transfer, .. } = stage;
     let scene = &compiled.loaded.scene;

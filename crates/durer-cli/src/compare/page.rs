@@ -1,4 +1,4 @@
-//! The report of a comparison: one HTML file that needs no network.
+//! The report of `durer compare`: one HTML file that needs no network.
 
 use super::args::CompareArgs;
 use super::compared_pair::{ComparedPair, Outcome, PairPictures, name};

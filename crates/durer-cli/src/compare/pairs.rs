@@ -1,21 +1,21 @@
-//! Pairs of pictures in two files or folders.
+//! Pairs the pictures in two files or folders.
 
 use crate::failure::{Failure, bad};
 use durer::image::format_for;
 use std::path::{Path, PathBuf};
 
-/// A reference and its counterpart.
+/// A reference picture and the picture to compare with it.
 pub struct Pair {
-    /// Student, if the folder has one folder for each student.
+    /// Name of the student, if there is a folder for each student.
     pub who: Option<String>,
-    /// Name of the file, or its path below the folder.
+    /// File name, or path below the folder.
     pub name: String,
     pub reference: PathBuf,
-    /// `None` without a counterpart.
+    /// Picture to compare; `None` if there is none for this reference.
     pub picture: Option<PathBuf>,
 }
 
-/// Pairs of two pictures or two folders, and pictures without a reference.
+/// The pairs of pictures that `durer compare` compares, and pictures without a reference.
 pub struct Pairs {
     pub pairs: Vec<Pair>,
     pub extra: Vec<PathBuf>,
@@ -23,9 +23,10 @@ pub struct Pairs {
     pub folders: bool,
 }
 
-/// Maximum depth of folders: links may form cycles.
+/// Maximum depth of folders, because links can form cycles.
 const DEPTH: usize = 16;
 
+/// Pairs two pictures, or the pictures in two folders with the same names.
 pub fn find(reference: &Path, picture: &Path) -> Result<Pairs, Failure> {
     for path in [reference, picture] {
         if !path.exists() {

@@ -1,4 +1,4 @@
-//! Ray hits where pictures differ.
+//! Traces the scene where pictures differ.
 
 use super::stage::Stage;
 use crate::explain::shown;
@@ -12,16 +12,18 @@ use durer::render::{Job, center_ray, raster};
 use durer::sampler::SampleId;
 use serde_json::{Value, json};
 
-/// The ray through a pixel's centre, and the surface that it hits.
+/// The ray through the pixel that differs most in a region, explained for the report of `durer
+/// compare`.
 pub struct PixelHit {
-    /// Hit; `None` if the ray hits nothing.
+    /// First hit of the ray; `None` if it hits nothing.
     pub hit: Option<Hit>,
-    /// Explanation of the ray's colour, in the lines of `durer explain`.
+    /// Explanation of the ray's colour, with the lines of `durer explain`.
     pub explanation: Vec<String>,
     /// Command that explains the whole pixel.
     pub command: String,
 }
 
+/// First surface on a ray, with names for the report.
 pub struct Hit {
     pub object: String,
     pub material: String,
@@ -29,7 +31,7 @@ pub struct Hit {
     pub normal: [f32; 3],
 }
 
-/// Traces the ray through the pixel of each region that differs most.
+/// Traces the ray through the pixel that differs most in each region.
 pub fn pixel_hits(stage: &Stage, found: &Comparison) -> Result<Vec<PixelHit>, Failure> {
     let Stage { compiled, job, .. } = stage;
     let raster = raster(&compiled.world, job.width, job.height);
@@ -74,6 +76,7 @@ impl PixelHit {
         }
     }
 
+    /// Returns the hit, the explanation and the command as JSON.
     pub fn json(&self) -> Value {
         json!({
             "hit": self.hit.as_ref().map(|hit| json!({

@@ -1,4 +1,5 @@
-//! The scene of a pair of pictures, with the options that the reference was rendered with.
+//! Opens the scene of a pair of pictures and finds the options that the reference was rendered
+//! with.
 
 use super::args::CompareArgs;
 use super::pairs::Pair;
@@ -14,12 +15,12 @@ use durer::mistakes::{DiagnosisInput, off};
 use durer::render::{Job, Sampling};
 use std::path::{Path, PathBuf};
 
-/// Largest fraction of differing pixels at which options count as those of the reference.
+/// Maximum share of differing pixels at which options count as those of the reference.
 const SAME: f64 = 0.01;
-/// [`SAME`] for filters wider than a pixel.
+/// The limit used instead of [`SAME`] for filters wider than a pixel.
 const MAX_OFF: f64 = 0.2;
 
-/// An opened scene and the options that reproduce the reference.
+/// A compiled scene with the options that reproduce the reference, used to explain differences.
 pub struct Stage {
     pub compiled: CompiledInput,
     pub job: Job,
@@ -28,11 +29,11 @@ pub struct Stage {
     pub path: PathBuf,
     /// Command-line options that reproduce the picture, without its size.
     pub options: String,
-    /// Note on the options, if they were inferred.
+    /// Note on the options if they were inferred.
     pub note: Option<String>,
 }
 
-/// Candidate options of the reference.
+/// Options with which the reference may have been rendered.
 struct RenderGuess {
     dialect: Option<Dialect>,
     center: bool,
@@ -40,9 +41,9 @@ struct RenderGuess {
     bounces: Option<u32>,
 }
 
-/// Opens the scene of a pair and finds the options that reproduce the reference. Without given
-/// options, tries the ones that students often forget: one sample per pixel, the year's dialect,
-/// shadows, bounces.
+/// Opens the scene of a pair and finds the options that reproduce the reference. If the given
+/// options do not, tries the ones that students often forget: the dialect, one sample per pixel,
+/// shadows, and the number of bounces.
 pub fn stage(
     args: &CompareArgs,
     pair: &Pair,
@@ -55,9 +56,9 @@ pub fn stage(
     let first = compiled(args, &path, &requested, reference, guard)?;
     let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
     let mut best = (way_off(&first, reference, transfer), first, transfer, None);
-    // Filters wider than a pixel make edges inexact.
+    // With filters wider than a pixel, edges cannot be reproduced exactly.
     let enough = if best.1.1.sampling.is_local() { SAME } else { MAX_OFF };
-    // The course has no path tracer, so there are no other dialects to try.
+    // The course's programs have no path tracer, so there are no other dialects to try.
     if best.0 <= enough || best.1.1.method.transport().is_some() {
         return Ok(Some(finished(args, path, best.1, best.2, None)));
     }
@@ -132,7 +133,7 @@ fn reopened(
     Ok((compiled, job))
 }
 
-/// Opens the scene in a candidate dialect, without printing errors.
+/// Opens the scene in a candidate dialect; `None` if the scene cannot be read in it.
 fn tried(
     args: &CompareArgs,
     path: &Path,
@@ -197,7 +198,7 @@ impl Stage {
     }
 }
 
-/// Returns the scene of a pair; in a folder, the file with the picture's name.
+/// Returns the path of the scene of a pair. In a folder, it is the file with the picture's name.
 fn path(scene: &Path, pair: &Pair) -> Result<PathBuf, Failure> {
     if !scene.is_dir() {
         return Ok(scene.into());

@@ -1,4 +1,4 @@
-//! Comparisons as text and as JSON.
+//! Prints comparisons as text, CSV and JSON.
 
 use super::args::CompareArgs;
 use super::compared_pair::{ComparedPair, Outcome, name};
@@ -12,10 +12,10 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Version of the JSON. It increases when a field changes its meaning or is removed.
+/// Version of the JSON form. It increases if a field changes its meaning or is removed.
 const VERSION: u32 = 1;
 
-/// Prints the comparison of one pair.
+/// Prints the comparison of a single pair.
 pub fn single(compared: &ComparedPair, options: &Options) {
     let Outcome::Compared(found) = &compared.outcome else { return };
     let measures = &found.measures;
@@ -74,7 +74,7 @@ pub fn single(compared: &ComparedPair, options: &Options) {
     }
 }
 
-/// Describes a region.
+/// Describes a region of differing pixels.
 pub fn place(region: &Region) -> String {
     let Region { x, y, width, height, pixels, mean_difference, share, worst } = region;
     let [r, g, b] = mean_difference.to_array();
@@ -93,7 +93,7 @@ fn tolerance(value: f32) -> String {
     if (steps - steps.round()).abs() < 1e-3 && steps < 256.0 { format!("{steps:.0}/255") } else { format!("{value}") }
 }
 
-/// Prints a line for each picture of a folder, and one for each student.
+/// Prints a line for each picture in a folder and a line for each student.
 pub fn table(all: &[ComparedPair], extra: &[PathBuf]) {
     let names: Vec<String> = all.iter().map(|compared| name(&compared.pair)).collect();
     let wide = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(7);
@@ -130,8 +130,8 @@ pub fn table(all: &[ComparedPair], extra: &[PathBuf]) {
     }
 }
 
-/// Returns a table of comma-separated values (RFC 4180) with one line per picture: verdict,
-/// metrics, and the keywords and descriptions of its mistakes.
+/// Returns the results as comma-separated values (RFC 4180) with one line per picture: verdict,
+/// metrics, and the names and descriptions of mistakes.
 pub fn csv(all: &[ComparedPair]) -> String {
     let quoted = |text: &str| match text.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),
@@ -161,7 +161,7 @@ pub fn csv(all: &[ComparedPair]) -> String {
     table
 }
 
-/// Counts the pictures of each student: same, different, missing, unreadable.
+/// Counts the pictures of each student: same, different, missing, failed.
 pub fn students(all: &[ComparedPair]) -> BTreeMap<String, [usize; 4]> {
     let mut students = BTreeMap::new();
     for compared in all {

@@ -1,4 +1,4 @@
-//! Options of the course's programs as a table, and the parsed arguments.
+//! The options of the course's programs as a table, and their parser.
 
 use crate::failure::{Failure, bad};
 use crate::terminal::{complain, say};
@@ -7,13 +7,15 @@ use durer::dialect::{Dialect, DialectSet, Quirk, set};
 use durer::format::course::Hint;
 use std::path::Path;
 
-/// An official program: its name, its dialect, and quirks beyond those of the dialect.
+/// An official program of the course, which `durer course` emulates: name, dialect and further
+/// quirks.
 pub struct Program {
     pub name: &'static str,
     pub dialect: Dialect,
     pub compat: &'static [Quirk],
 }
 
+/// The official programs of the course.
 pub const PROGRAMS: [Program; 7] = [
     Program { name: "raytracer", dialect: Dialect::F04, compat: &[] },
     Program { name: "a4soln", dialect: Dialect::F12a4, compat: &[] },
@@ -24,12 +26,12 @@ pub const PROGRAMS: [Program; 7] = [
     Program { name: "assignment4", dialect: Dialect::F23, compat: &[] },
 ];
 
-/// Returns the official program with this name.
+/// Returns the official program with the given name.
 pub fn program(name: &str) -> Option<&'static Program> {
     PROGRAMS.iter().find(|program| program.name == name)
 }
 
-/// An option: name, values, years that have it, help.
+/// An option of the course's programs: name, names of its values, years that have it, help text.
 pub struct Row(&'static str, &'static [&'static str], DialectSet, &'static str);
 
 const NOT_A4: DialectSet = set::ALL & !set::F12A4;
@@ -70,7 +72,7 @@ const OPTIONS: [Row; 32] = [
     Row("--assets", &["FOLDER"], set::ALL, "folder to search for missing meshes and textures"),
 ];
 
-/// Dürer's own options, which only affect execution.
+/// Dürer's own options, which the course's programs do not have.
 const CONTROL: [Row; 4] = [
     Row("--seed", &["N"], set::ALL, "seed of the random number generator"),
     Row("--threads", &["N"], set::ALL, "threads"),
@@ -78,17 +80,19 @@ const CONTROL: [Row; 4] = [
     Row("--allow-outside", &[], set::ALL, "allow files outside the scene's folder"),
 ];
 
+/// Iterates over all options.
 pub fn rows() -> impl Iterator<Item = &'static Row> {
     OPTIONS.iter().chain(&CONTROL)
 }
 
-/// The parsed arguments.
+/// The parsed command line of `durer course`.
 pub struct Arguments {
     options: Vec<(&'static Row, Vec<String>)>,
     unknown: Vec<String>,
 }
 
 impl Arguments {
+    /// Parses a command line. Unknown words are kept for [`Arguments::check_unknown`].
     pub fn parse(arguments: Vec<String>) -> Result<Self, Failure> {
         let mut parsed = Arguments { options: Vec::new(), unknown: Vec::new() };
         let mut rest = arguments.into_iter();
@@ -98,7 +102,7 @@ impl Arguments {
                 continue;
             };
             let values: Vec<String> = rest.by_ref().take(row.1.len()).collect();
-            // An option in place of a value means that the value is missing.
+            // An option in place of a value means that a value is missing.
             let option = values.iter().find(|value| rows().any(|row| row.0 == **value));
             if values.len() < row.1.len() || option.is_some() {
                 let found = option.map(|option| format!(", but found {option}")).unwrap_or_default();
@@ -109,37 +113,41 @@ impl Arguments {
         Ok(parsed)
     }
 
+    /// Returns true if an option is present.
     pub fn has(&self, name: &str) -> bool {
         self.options.iter().any(|(row, _)| row.0 == name)
     }
 
-    /// Returns the values of an option; the last occurrence counts.
+    /// Returns the values of an option. If it is given several times, the last one counts.
     pub fn values(&self, name: &str) -> Option<&[String]> {
         self.options.iter().rev().find(|(row, _)| row.0 == name).map(|(_, values)| values.as_slice())
     }
 
+    /// Returns the first value of an option.
     pub fn text(&self, name: &str) -> Option<&str> {
         self.values(name)?.first().map(String::as_str)
     }
 
+    /// Returns the first `count` values of an option as numbers.
     pub fn numbers<T: std::str::FromStr>(&self, name: &str, count: usize) -> Result<Option<Vec<T>>, Failure> {
         let Some(values) = self.values(name) else { return Ok(None) };
         let parse = |text: &String| text.parse().map_err(|_| bad(format!("{name}: `{text}` is not a valid number")));
         values.iter().take(count).map(parse).collect::<Result<_, _>>().map(Some)
     }
 
+    /// Returns the first value of an option as a number.
     pub fn number<T: std::str::FromStr>(&self, name: &str) -> Result<Option<T>, Failure> {
         Ok(self.numbers(name, 1)?.and_then(|mut values| values.pop()))
     }
 
-    /// Returns the zoom of a diagram, if it is requested.
+    /// Returns the magnification of a diagram, if it is requested.
     pub fn zoom(&self, name: &str) -> Result<Option<u32>, Failure> {
         let Some(values) = self.values(name) else { return Ok(None) };
         let zoom = values[1].parse().ok().filter(|zoom| (1..=1000).contains(zoom));
         zoom.map(Some).ok_or_else(|| bad(format!("{name}: the zoom must be from 1 to 1000")))
     }
 
-    /// Reports unknown options. The program of f12a4 ignores them, the others stop.
+    /// Reports unknown options. The program of f12a4 ignores them; the others fail.
     pub fn check_unknown(&self, dialect: Option<Dialect>, quiet: bool) -> Result<(), Failure> {
         for word in &self.unknown {
             let near = did_you_mean(word, rows().map(|row| row.0));
@@ -157,7 +165,7 @@ impl Arguments {
         Ok(())
     }
 
-    /// Returns hints about the dialect from the options.
+    /// Returns hints about the dialect that follow from the options.
     pub fn hints(&self) -> Vec<Hint> {
         let mut hints: Vec<Hint> = self
             .options
@@ -182,6 +190,7 @@ impl Arguments {
     }
 }
 
+/// Prints the options and the emulated programs.
 pub fn usage() {
     say("durer course: accepts the arguments of the course's own programs from any year\n");
     say(

@@ -1,7 +1,7 @@
-//! Chooses the year of a scene whose keywords and options fit several years.
+//! Chooses the dialect of a scene whose keywords and options fit several years.
 //!
-//! A small picture is rendered in the guessed year. If it has NaN samples, the first other year
-//! without NaN samples is used instead.
+//! A small picture is rendered in the guessed dialect. If it has NaN samples, the first other
+//! fitting dialect without NaN samples is used instead.
 
 use super::job;
 use super::options::Arguments;
@@ -18,17 +18,17 @@ use durer::math::Vec3;
 use durer::render::{Control, Job, Sampling};
 use std::path::Path;
 
-/// Maximum width and height of a trial picture, in pixels.
+/// Maximum width and height of the trial picture in pixels.
 const SIDE: u32 = 64;
 
-/// Largest difference per channel between pixels that look the same.
+/// Maximum difference per channel between pixels that look the same.
 const ALIKE: f32 = 2.0 / 255.0;
 
-/// Two pictures look the same if at most one pixel in this many differs visibly.
+/// Two pictures look the same if at most one in this many pixels differs visibly.
 const ONE_OF: usize = 1000;
 
-/// Opens a scene in the year that fits best. Prints its warnings, and a note if the chosen year
-/// changes the picture compared with the guess from keywords alone.
+/// Opens a scene in the dialect that fits best. Prints its warnings, and a note if the picture
+/// differs from that of the dialect guessed from keywords alone.
 pub fn open(
     scene: &Path,
     options: &LoadOptions,
@@ -66,7 +66,7 @@ pub fn open(
     Ok(chosen)
 }
 
-/// Explains why a scene is read in a year's dialect.
+/// Explains why a scene is read in a dialect.
 fn note(guess: &Guess, dialect: Dialect) -> Diagnostic {
     match guess.dialect == dialect {
         true => guess.note(),
@@ -77,10 +77,10 @@ fn note(guess: &Guess, dialect: Dialect) -> Diagnostic {
     }
 }
 
-/// A small trial picture.
+/// A small picture rendered to test whether a dialect fits the scene.
 struct Trial {
     layers: Vec<Layer>,
-    /// Number of NaN samples.
+    /// Number of samples that are NaN.
     nan: u64,
 }
 

@@ -1,10 +1,10 @@
-//! Bindings to Open Image Denoise 2, loaded at run time: the functions of its C interface that
-//! denoise one picture.
+//! Bindings to Open Image Denoise 2, which is loaded at run time. They cover the part of its C
+//! interface that denoises one picture.
 //!
 //! Source: the documentation at <https://www.openimagedenoise.org>. Results differ in their last
 //! bits between machines.
 
-#![expect(unsafe_code, reason = "a library of C is called")]
+#![expect(unsafe_code, reason = "calls a C library")]
 
 use durer::image::Image;
 use durer::math::Vec3;
@@ -14,7 +14,7 @@ use std::ffi::{CStr, c_char, c_int, c_void};
 use std::path::{Path, PathBuf};
 use std::ptr::null;
 
-/// Environment variable with the library's folder, or the folder above `lib`.
+/// Environment variable with the folder of the library, or with the folder that contains `lib`.
 const FOLDER: &str = "OIDN_DIR";
 
 /// File name of the library.
@@ -30,9 +30,10 @@ const NAME: &str = if cfg!(windows) {
 const CPU: c_int = 1;
 const FLOAT3: c_int = 3;
 
+/// Handle of an object of the library: a device, buffer or filter.
 type Object = *mut c_void;
 
-/// Denoises a picture.
+/// Denoises a picture with Open Image Denoise.
 pub fn denoise(noisy: &NoisyPicture, threads: Option<usize>) -> Result<Image, String> {
     let library = load()?;
     let (width, height) = (noisy.picture.width as usize, noisy.picture.height as usize);
@@ -40,7 +41,7 @@ pub fn denoise(noisy: &NoisyPicture, threads: Option<usize>) -> Result<Image, St
     if [&noisy.albedo, &noisy.normal].iter().any(|guide| guide.len() != count) || count != width * height {
         return Err("the picture has no albedo or normals".into());
     }
-    // The library expects albedo in 0..=1 and finite values.
+    // The library expects albedo in [0, 1] and finite values.
     let albedo: Vec<Vec3> = noisy.albedo.iter().map(|albedo| albedo.clamp(Vec3::ZERO, Vec3::ONE)).collect();
     let mut clean = vec![Vec3::ZERO; count];
     // SAFETY: names and types are those of oidn.h, version 2. `Vec3` is three floats without
@@ -75,7 +76,7 @@ pub fn denoise(noisy: &NoisyPicture, threads: Option<usize>) -> Result<Image, St
         commit_device(device);
         let filter = new_filter(device, c"RT".as_ptr());
         if !filter.is_null() {
-            // C takes one pointer type for inputs and outputs.
+            // The C interface has one pointer type for inputs and outputs.
             for (name, pixels) in [
                 (c"color", noisy.picture.pixels.as_ptr().cast_mut()),
                 (c"albedo", albedo.as_ptr().cast_mut()),
@@ -103,7 +104,7 @@ pub fn denoise(noisy: &NoisyPicture, threads: Option<usize>) -> Result<Image, St
     Image::from_pixels(noisy.picture.width, noisy.picture.height, clean).map_err(|error| error.to_string())
 }
 
-/// Returns a function of the library.
+/// Returns a function of the library by name.
 ///
 /// # Safety
 /// `T` must be the type of the function.
@@ -117,6 +118,6 @@ fn load() -> Result<Library, String> {
     let folder = std::env::var_os(FOLDER).map(PathBuf::from);
     let folders = folder.iter().flat_map(|folder| [folder.join(NAME), folder.join("lib").join(NAME)]);
     let file = folders.into_iter().find(|file| file.is_file()).unwrap_or_else(|| Path::new(NAME).to_path_buf());
-    // SAFETY: the library's initialisers run; the user or the system installed it.
+    // SAFETY: this runs the library's initialisers. The user or the system installed the library.
     unsafe { Library::new(&file) }.map_err(|_| "Open Image Denoise was not found".into())
 }

@@ -1,4 +1,4 @@
-//! The explanation as an HTML page.
+//! The page of `durer explain --html`.
 
 use crate::failure::Failure;
 use crate::page;
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 /// Page template without data.
 const PAGE: &str = include_str!("page.html");
-/// Returns a self-contained page: the picture, the tree of `sample`, and the rays in space.
+/// Returns a self-contained page with the picture, the tree of `sample`, and its rays in 3D.
 pub fn page(
     explanation: Value,
     sample: usize,

@@ -1,10 +1,10 @@
-//! Quoting for the languages of job files. Any text becomes a single line of printable characters,
+//! Quotes text for the languages of job files. The result is a single line of printable characters,
 //! so it cannot end a shell command, a comment or a YAML block.
 
 use crate::frames;
 use std::fmt::Write;
 
-/// Returns true if a character needs no escape in any job file.
+/// Returns true if a character needs no escape in any of the languages.
 fn is_plain(c: char) -> bool {
     // Letters of all alphabets are printable in YAML. Other non-ASCII characters can be line
     // breaks, bidirectional controls or unprintable.
@@ -13,7 +13,7 @@ fn is_plain(c: char) -> bool {
 
 /// Quotes text as one bash word.
 ///
-/// Braces are escaped, because `{{` begins an expression in templates of Open Job Description.
+/// Braces are escaped, because `{{` starts an expression in templates of Open Job Description.
 pub fn bash_word(text: &str) -> String {
     let is_bare = |c: char| c.is_ascii_alphanumeric() || "_-./:=,+%".contains(c);
     if !text.is_empty() && text.chars().all(is_bare) {
@@ -36,7 +36,8 @@ pub fn bash_word(text: &str) -> String {
     word + "'"
 }
 
-/// Quotes the file name pattern of the frames as one bash word, with the frame number in `$frame`.
+/// Quotes the file name pattern of an animation as one bash word, with `$frame` as the frame
+/// number.
 pub fn bash_word_of_frame(pattern: &str) -> String {
     match frames::place(pattern) {
         None if pattern.is_empty() => String::new(),
@@ -50,7 +51,7 @@ pub fn bash_word_of_frame(pattern: &str) -> String {
     }
 }
 
-/// Prefixes a path that begins with a dash with `./`, so that no command reads it as an option.
+/// Adds `./` to a path that begins with a dash, so that no command treats it as an option.
 pub fn not_an_option(path: &str) -> String {
     if path.starts_with('-') { format!("./{path}") } else { path.into() }
 }

@@ -1,12 +1,12 @@
-//! Tests job files for scenes with hostile names, with bash, and with YAML and Python parsers if
-//! installed.
+//! Tests job files for scenes with hostile names, using bash and, if installed, parsers of YAML and
+//! Python.
 
 use super::*;
 use durer::sampler::hash;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// Pieces of hostile names.
+/// Pieces from which hostile names are built.
 const PIECES: [&str; 46] = [
     "a",
     "Z9",
@@ -56,7 +56,7 @@ const PIECES: [&str; 46] = [
     "*",
 ];
 
-/// Returns a name made of these pieces; deterministic for each number.
+/// Returns a name built from these pieces, which depends only on `number`.
 fn name(number: u32) -> String {
     let random = |i: u32, most: u64| (hash(7, number, i, 0, 0) % most) as usize;
     (0..1 + random(0, 8)).map(|i| PIECES[random(i as u32 + 1, PIECES.len() as u64)]).collect()
@@ -84,7 +84,7 @@ fn made(template: &str, number: u32) -> (String, [String; 3]) {
     (text.unwrap_or_else(|_| panic!("{scene:?} {output:?}")), [scene, output, camera])
 }
 
-/// Returns the output of a program that reads a file; `None` if the program is not installed.
+/// Returns what a program prints for a file as input; `None` if the program is not installed.
 fn piped(program: &str, arguments: &[&str], input: &Path) -> Option<Vec<u8>> {
     let input = std::fs::File::open(input).unwrap();
     let done = Command::new(program).args(arguments).stdin(input).stderr(Stdio::piped()).output().ok()?;
@@ -92,7 +92,7 @@ fn piped(program: &str, arguments: &[&str], input: &Path) -> Option<Vec<u8>> {
     Some(done.stdout)
 }
 
-/// Separator between scripts. No script contains it.
+/// Separator between scripts, which no script contains.
 const END: char = '\0';
 
 /// Runs shell scripts with a stub `durer` that prints its arguments.
@@ -119,7 +119,7 @@ fn check_scripts(scripts: &str, names: &[[String; 3]]) {
 
 #[test]
 fn names_of_scenes_are_words_of_bash_and_nothing_else() {
-    // A name that escapes its quotes would add lines to the template.
+    // If a name escaped its quotes, the file would have more lines than the template.
     let lines = |template: &str| made_plain(template).lines().count();
     for template in ["slurm", "k8s", "openjd", "dask"] {
         for number in 0..rounds() {
@@ -136,7 +136,7 @@ fn names_of_scenes_are_words_of_bash_and_nothing_else() {
         let (text, own) = made("slurm", number);
         scripts.extend([&text, "\0"]);
         names.push(own);
-        // Check the command in the comment too, because users copy it.
+        // Check the command in the comment too, because users may copy it.
         let comment = text.lines().find(|line| line.contains("durer merge")).unwrap();
         assert!(comment.starts_with("# When all tasks have finished:  durer merge "), "{comment}");
     }

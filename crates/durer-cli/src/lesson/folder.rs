@@ -1,4 +1,4 @@
-//! The folder of a lesson. Replaces only files written by a lesson.
+//! Writes the folder of a lesson. Only files of an earlier lesson are replaced.
 
 use super::step_files::TEXT;
 use crate::failure::{Failure, bad};
@@ -10,14 +10,14 @@ use std::collections::BTreeSet;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// First line of a lesson's text.
+/// First line of a lesson's text, by which an earlier lesson is recognised.
 pub const MARK: &str =
     "<!-- Written by durer lesson, which also replaces or removes the files that are linked here. -->";
 
 /// Maximum size of a lesson's text in bytes.
 const LONGEST: u64 = 16 << 20;
 
-/// The folder of a lesson.
+/// Output folder of `durer lesson`, with the files of an earlier lesson that can be replaced.
 pub struct Folder {
     path: PathBuf,
     /// True if the folder does not exist yet.
@@ -46,7 +46,8 @@ impl Folder {
         Ok(Folder { path, new, own })
     }
 
-    /// Writes all files or none, and removes stale files of an earlier lesson. Returns the folder.
+    /// Writes all files or none, and removes files of an earlier lesson that are no longer needed.
+    /// Returns the path of the folder.
     pub fn write(self, files: Vec<(String, Vec<u8>)>, guard: &mut Guard) -> Result<PathBuf, Failure> {
         let foreign = |name: &String| !self.own.contains(name) && self.path.join(name).exists();
         if let Some((name, _)) = files.iter().find(|(name, _)| foreign(name)) {
@@ -71,7 +72,7 @@ impl Folder {
             save_silently(&places.iter().zip(bytes).collect::<Vec<_>>())
         });
         if let Err(failure) = saved {
-            // Remove a folder that this run created. If that fails, an empty folder remains.
+            // Remove the folder if this run created it. If that fails, an empty folder remains.
             let _ = if self.new { std::fs::remove_dir(&self.path) } else { Ok(()) };
             return Err(failure);
         }
@@ -87,13 +88,13 @@ impl Folder {
     }
 }
 
-/// Returns the files that a lesson's text links to; empty for any other text.
+/// Returns the names of the files that a lesson's text links to; empty if the text is not a lesson.
 fn linked(text: &str) -> BTreeSet<String> {
     if text.lines().next() != Some(MARK) {
         return BTreeSet::new();
     }
     let names = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
-    // Ignore paths outside the folder.
+    // Ignore paths that lead outside the folder.
     let names = names.filter(|name| !name.is_empty() && !name.contains(['/', '\\']) && !name.starts_with('.'));
     names.map(str::to_string).chain([TEXT.to_string()]).collect()
 }

@@ -1,11 +1,11 @@
-//! The lesson as Markdown, with pictures as files.
+//! Writes a lesson as Markdown that links to picture files.
 
 use super::folder::MARK;
 use super::step_files::{Lesson, PAGE, StepFiles};
 use durer::lesson::OWN_SCENE_NAME;
 use std::fmt::Write;
 
-/// Returns the text of the whole lesson.
+/// Returns the Markdown text of the lesson.
 pub fn text(lesson: &Lesson) -> String {
     let scene = &lesson.scene;
     let mut text = format!(
@@ -29,7 +29,7 @@ fn step(text: &mut String, number: usize, step: &StepFiles, scene: &str) {
     if !step.goes_on {
         let _ = writeln!(text, "{}\n\n```text\n{}\n```\n", step.topic.words, step.topic.equations.join("\n"));
     }
-    // Pictures side by side in a table, captions above.
+    // Show the pictures side by side in a table, with captions above.
     let mut columns: Vec<(&str, &str)> =
         step.before.iter().chain([&step.after]).map(|figure| (figure.caption, figure.file.as_str())).collect();
     columns.extend(step.change.as_ref().map(|file| ("the change, lighter or darker than grey", file.as_str())));
@@ -47,7 +47,8 @@ fn step(text: &mut String, number: usize, step: &StepFiles, scene: &str) {
     let _ = writeln!(text, "In the source:\n\n- {}", places.join("\n- "));
 }
 
-/// Escapes text that contains a user's file name, so that it creates no link and no HTML element.
+/// Escapes text that contains a user's file name, so that it cannot create a link or an HTML
+/// element.
 fn plain(text: &str) -> String {
     text.replace('[', "&#91;").replace(']', "&#93;").replace('<', "&lt;")
 }

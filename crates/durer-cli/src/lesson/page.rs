@@ -1,4 +1,4 @@
-//! The lesson as an HTML page.
+//! Writes a lesson as an HTML page.
 
 use super::step_files::{Figure, Lesson, StepFiles};
 use crate::page::{uri, with_data};
@@ -26,7 +26,7 @@ fn step(step: &StepFiles, scene: &str) -> Value {
     json!({
         "title": step.title,
         "elsewhere": step.elsewhere(scene),
-        // Print a topic's text once, at its first step.
+        // Print the text of a topic once, at its first step.
         "words": (!step.goes_on).then_some(step.topic.words),
         "equations": (!step.goes_on).then_some(step.topic.equations),
         "before": step.before.as_ref().map(figure),

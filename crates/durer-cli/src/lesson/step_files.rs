@@ -1,49 +1,50 @@
-//! A lesson ready to be written: its steps, with pictures as files.
+//! A lesson that is ready to be written: its steps, with pictures as files.
 
 use crate::failure::Failure;
 use crate::page::png;
 use durer::image::{Layer, Transfer};
 use durer::lesson::{OWN_SCENE_NAME, Picture, Step, Topic};
 
-/// File names of the lesson's text and page.
+/// Name of the lesson's text file.
 pub const TEXT: &str = "lesson.md";
+/// Name of the lesson's HTML page.
 pub const PAGE: &str = "index.html";
 
-/// A picture's caption and file.
+/// A picture of a lesson step: its caption and the name of its file.
 pub struct Figure {
     pub caption: &'static str,
     pub file: String,
 }
 
-/// A step with its pictures as files.
+/// A lesson step whose pictures have been encoded as files.
 pub struct StepFiles {
     pub topic: &'static Topic,
     pub title: String,
     pub words: String,
     pub ours: bool,
-    /// Reason why the scene cannot show the step.
+    /// Reason why the user's scene cannot show the step.
     pub lacking: &'static str,
-    /// True if the step continues the topic of the step before.
+    /// True if the step continues the topic of the previous step.
     pub goes_on: bool,
     pub before: Option<Figure>,
     pub after: Figure,
     pub change: Option<String>,
-    /// Drawing as SVG, and its file.
+    /// SVG drawing and the name of its file, if any.
     pub plan: Option<(String, String)>,
 }
 
-/// A lesson ready to be written.
+/// A lesson that is ready to be written: steps, and encoded pictures by file name.
 pub struct Lesson {
-    /// Name of the scene's file, without its folder.
+    /// File name of the scene, without its folder.
     pub scene: String,
     pub steps: Vec<StepFiles>,
-    /// Pictures by file name, without duplicates.
+    /// Names and contents of the picture files, without duplicates.
     pub pictures: Vec<(String, Vec<u8>)>,
     pub transfer: Transfer,
 }
 
 impl Lesson {
-    /// Adds a step. The names of its files begin with its number.
+    /// Adds a step, whose file names begin with its number.
     pub fn add(&mut self, step: Step) -> Result<(), Failure> {
         let name = format!("{:02}-{}", self.steps.len() + 1, step.topic.name);
         let figure = |lesson: &mut Lesson, picture: &Picture, end: &str| -> Result<Figure, Failure> {
@@ -60,8 +61,8 @@ impl Lesson {
         Ok(())
     }
 
-    /// Returns the file of a picture. Equal pictures share a file, because a step can begin with
-    /// the picture that ends the previous one.
+    /// Returns the file name of a picture. Equal pictures share a file, because a step often begins
+    /// with the last picture of the previous step.
     fn picture(&mut self, name: String, layer: &Layer) -> Result<String, Failure> {
         let png = png(layer.clone(), self.transfer)?;
         if let Some((there, _)) = self.pictures.iter().find(|picture| picture.1 == png) {
@@ -78,10 +79,11 @@ impl Lesson {
 }
 
 impl StepFiles {
-    /// Returns a sentence that says why the step uses the built-in scene; `None` if it does not.
+    /// Returns a sentence that says why the step uses the built-in scene; `None` if it uses the
+    /// user's scene.
     pub fn elsewhere(&self, scene: &str) -> Option<String> {
         let lacking = self.lacking;
-        // Later steps of the topic use the same scene.
+        // Later steps of the same topic need no explanation.
         (self.ours && !self.goes_on).then(|| {
             format!("{scene} cannot show this: {lacking}. This step uses a small built-in scene, {OWN_SCENE_NAME}.")
         })

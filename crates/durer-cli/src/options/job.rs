@@ -1,4 +1,5 @@
-//! Options of the picture, as stated by the library, and of the acceleration structure.
+//! Command-line options of the render job, generated from the library's table, and of the
+//! acceleration structure.
 
 use super::method::IntegratorArgs;
 use crate::failure::{Failure, bad};
@@ -9,9 +10,9 @@ use durer::compile::AccelKind;
 use durer::job::{JobOption, OptionForm, RenderJob};
 use durer::options::{doc as meaning, grid_cells, one_line};
 
-/// Options of the picture and of the acceleration structure.
+/// Command-line options that determine a picture: the render job and the acceleration structure.
 pub struct JobArgs {
-    /// Options of the picture.
+    /// Options of the render job.
     pub options: RenderJob,
     accel: AccelArgs,
 }
@@ -25,11 +26,11 @@ struct AccelArgs {
     grid: Option<[u32; 3]>,
 }
 
-/// Builds the clap argument of an option.
+/// Builds the clap argument for an option of the library.
 fn arg(option: &'static JobOption) -> Arg {
     let JobOption { name, doc, form } = *option;
     let arg = Arg::new(name).long(name).help(one_line(doc));
-    // Check the text, but keep it as text.
+    // Validate the text, but keep it as text.
     let checked = move |text: &str| RenderJob::default().set(name, text).map(|()| text.to_string());
     let arg = match form {
         OptionForm::Flag => arg.action(ArgAction::SetTrue),

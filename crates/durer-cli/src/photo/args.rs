@@ -16,6 +16,7 @@ pub struct PhotoArgs {
     pub command: PhotoCommand,
 }
 
+// The subcommands of `durer photo`. A doc comment would replace the description of the command.
 #[derive(Subcommand)]
 pub enum PhotoCommand {
     Match(MatchArgs),

@@ -12,6 +12,7 @@ use durer_photo::photo;
 use durer_photo::resect::{LensPriors, camera, from_vanishing_lines};
 use durer_photo::{Lens, Pose};
 
+/// Runs `durer photo camera`.
 pub fn run(args: &CameraArgs) -> Result<(), Failure> {
     let mut guard = Guard::default();
     let file = args.picture.to_string_lossy();

@@ -7,6 +7,7 @@ use crate::guard::Guard;
 use crate::terminal::say;
 use durer_photo::explain;
 
+/// Runs `durer photo explain`.
 pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     let all = read(&args.file, args.pictures.as_deref(), &mut Guard::default())?;
     let text = match (&args.camera, args.point) {

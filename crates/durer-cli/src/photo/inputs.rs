@@ -1,7 +1,8 @@
-//! Input files: photographs, and cameras with points.
+//! Reads input files: photographs, and files of cameras and points.
 //!
-//! A file named by the user can be anywhere. A file that another file names, or that is found in a
-//! folder, must be in or below that folder after links are resolved, as for the files of a scene.
+//! A file that the user names can be anywhere. A file that another file names, or that is found in
+//! a folder, must be in or below that folder after links are resolved. The same rule applies to the
+//! files of a scene.
 
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
@@ -13,6 +14,7 @@ use durer_photo::{Error, Reconstruction};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// Converts an error in a photograph or a reconstruction into a failure for invalid input.
 pub fn wrong(error: Error) -> Failure {
     bad(error.to_string())
 }
@@ -43,14 +45,14 @@ fn outside(path: &Path, folder: &Path) -> String {
     )
 }
 
-/// Reads a regular file that a source allows, if it fits into memory.
+/// Reads a regular file that the source allows, if it fits into memory.
 fn within(source: FolderSource, path: &Path) -> Result<Arc<[u8]>, SourceError> {
     let most = Memory::default().bytes().unwrap_or(u64::MAX).min(FolderSource::DEFAULT_BUDGET);
     let real = source.allowed(path)?;
     source.budget(most).read_path(&real, &path.to_string_lossy())
 }
 
-/// Runs `work` with a number of threads; one per processor if `None`.
+/// Runs `work` with the given number of threads; `None` means one per processor.
 pub fn threaded<R: Send>(threads: Option<u16>, work: impl FnOnce() -> R + Send) -> Result<R, Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from)).build()?;
     Ok(pool.install(work))
@@ -63,7 +65,7 @@ pub fn photographs(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let mut paths = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, Failure>>()?;
     let known = |path: &PathBuf| {
         let end = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        // Skip hidden files, such as those that macOS writes beside each file on foreign file
+        // Skip hidden files, such as those that macOS writes next to each file on foreign file
         // systems.
         let hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
         ["jpg", "jpeg", "png"].contains(&&*end) && !hidden && path.is_file()
@@ -81,17 +83,18 @@ fn folder_of(file: &Path) -> &Path {
     file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
+/// Returns the name of a file, without its folder.
 pub fn name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Reads cameras and points. If the file lacks names and sizes of photographs, those of a folder
-/// are used, in order.
+/// Reads cameras and points. If the file lacks the names and sizes of photographs, those in the
+/// folder `pictures` are used, in order.
 pub fn read(file: &Path, pictures: Option<&Path>, guard: &mut Guard) -> Result<Reconstruction, Failure> {
     inputs(file).iter().try_for_each(|path| guard.reads(path))?;
     let folder = if file.is_dir() { file } else { folder_of(file) };
     let mut open = |path: &Path| {
-        // The user named the file itself. It names the other files, or its folder contains them.
+        // The user named only the file itself; other files are named by it or found in its folder.
         let source = FolderSource::new(folder);
         let source = if path == file { source.allow_outside() } else { source };
         within(source, path).map_err(|error| match error {

@@ -1,4 +1,4 @@
-//! `durer photo match`: finds and matches features.
+//! `durer photo match`: finds features in photographs and matches them.
 
 use super::args::MatchArgs;
 use super::inputs::{bytes_below, name, photographs, threaded, wrong};
@@ -12,9 +12,10 @@ use durer_photo::matching::{GUESS, Matches, Options, describe, match_all};
 use durer_photo::photo;
 use std::path::Path;
 
-/// Fraction of the progress bar for features. Matching takes the remaining part.
+/// Fraction of the progress bar for finding features; matching takes the rest.
 const FEATURES: f64 = 0.5;
 
+/// Runs `durer photo match`.
 pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let mut guard = Guard::default();
     let paths = photographs(&args.folder)?;

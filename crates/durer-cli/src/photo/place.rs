@@ -1,9 +1,9 @@
 //! `durer photo place`: inserts objects of a scene into a photograph, with their shadows.
 //!
-//! The scene is rendered with and without the objects. The photograph is multiplied by the ratio of
-//! the two renders on the stand-ins. Source: Debevec, *Rendering Synthetic Objects into Real
-//! Scenes*, SIGGRAPH 1998, section 5.3; a ratio instead of a difference, so that the stand-ins'
-//! colours cancel.
+//! The scene is rendered with and without the objects. Where stand-ins are visible, the photograph
+//! is multiplied by the ratio of the two renders. Source: Debevec, *Rendering Synthetic Objects
+//! into Real Scenes*, SIGGRAPH 1998, section 5.3. Here a ratio replaces the difference, so that the
+//! colours of the stand-ins cancel.
 
 use super::args::PlaceArgs;
 use super::inputs::{bytes, wrong};
@@ -25,13 +25,14 @@ use durer::world::World;
 use durer_photo::photo;
 use std::sync::Arc;
 
-/// Rays per pixel along each axis, for coverage.
+/// Number of rays per pixel along each axis for the coverage by inserted objects.
 const ACROSS: u32 = 4;
-/// Rows of pixels traced at once.
+/// Number of rows of pixels traced at once.
 const BAND: u32 = 64;
-/// Radius in pixels of the neighbourhood whose shadow a partly covered pixel takes.
+/// Radius in pixels of the neighbourhood from which a partly covered pixel takes its shadow.
 const NEAR: usize = 2;
 
+/// Runs `durer photo place`.
 pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
     let mut guard = Guard::default();
     let format = format(&args.output)?;
@@ -50,7 +51,7 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
     }
     (job.width, job.height) = (width, height);
     if let (Sampling::Filtered { filter, .. }, None) = (&mut job.sampling, args.job.options.get("filter")) {
-        // A photograph's pixel is the mean over its area.
+        // A pixel of a photograph is the mean over its area.
         *filter = Filter::Box { radius: 0.5 };
     }
     if raster(&with.world, width, height).empty() != (0, 0) {
@@ -76,7 +77,7 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
     save(&[(&place, file)], args.quiet)
 }
 
-/// Returns a flag for each material: true for stand-ins.
+/// Returns for each material whether it is that of a stand-in.
 fn stand_ins(compiled: &CompiledInput, numbers: &[u32]) -> Result<Vec<bool>, Failure> {
     let count = compiled.loaded.scene.materials.len();
     let mut all = vec![false; count];
@@ -107,7 +108,8 @@ fn parts(node: &Node) -> &[Object] {
     }
 }
 
-/// Returns true if an object contains a shape that is a stand-in (`wanted`), or one that is not.
+/// Returns true if an object contains a shape that is a stand-in (`wanted`) or is not one
+/// (`!wanted`).
 fn has(object: &Object, stand_in: &[bool], wanted: bool) -> bool {
     let own = object.material.is_some_and(|number| stand_in.get(number as usize) == Some(&true));
     match parts(&object.node) {
@@ -116,7 +118,7 @@ fn has(object: &Object, stand_in: &[bool], wanted: bool) -> bool {
     }
 }
 
-/// Keeps the stand-ins. A solid stays if any part is a stand-in.
+/// Removes all objects except stand-ins. A solid stays if any of its parts is a stand-in.
 fn kept(objects: Vec<Object>, stand_in: &[bool]) -> Vec<Object> {
     let one = |mut object: Object| {
         if !has(&object, stand_in, true) {
@@ -132,7 +134,7 @@ fn kept(objects: Vec<Object>, stand_in: &[bool]) -> Vec<Object> {
     objects.into_iter().filter_map(one).collect()
 }
 
-/// Returns the share of each pixel covered by inserted objects.
+/// Returns the share of each pixel that inserted objects cover.
 fn coverage(
     world: &World,
     job: &Job,
@@ -160,9 +162,9 @@ fn coverage(
     Ok(covered)
 }
 
-/// Composes the photograph. With the render with objects W, the render without them G, the
-/// photograph P, coverage a and shadow r = W / G, the result is W + (1 - a) r (P - G): W for a = 1,
-/// and P W / G for a = 0. In a partly covered pixel, r is the mean over its neighbours.
+/// Composes the photograph from the render with the objects W, the render without them G, the
+/// photograph P, the coverage a and the shadow r = W / G. The result is W + (1 - a) r (P - G): W
+/// for a = 1, and P W / G for a = 0. In a partly covered pixel, r is the mean over its neighbours.
 fn composed(width: usize, plate: &[Vec3], with: &[Vec3], without: &[Vec3], covered: &[f32]) -> Vec<Vec3> {
     let height = plate.len() / width.max(1);
     let ratio = |w: f32, g: f32| if g > 0.0 { w / g } else { 1.0 };
@@ -201,7 +203,7 @@ mod tests {
     #[test]
     fn shadows_darken_and_objects_cover_the_photograph() {
         let [plate, ground, object] = [0.6, 0.4, 0.9].map(Vec3::splat);
-        // Three lit pixels; one in half shadow; one half covered, half in shadow; one covered.
+        // Pixels: three lit, one in half shadow, one half covered and half in shadow, one covered.
         let without = [ground; 6];
         let with = [ground, ground, ground, 0.5 * ground, 0.5 * object + 0.25 * ground, object];
         let covered = [0.0, 0.0, 0.0, 0.0, 0.5, 1.0];

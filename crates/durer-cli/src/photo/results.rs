@@ -1,4 +1,4 @@
-//! Results: printed and written.
+//! Prints and writes reconstructions.
 
 use super::args::ResultArgs;
 use super::inputs::wrong;
@@ -22,7 +22,7 @@ pub fn report(all: &Reconstruction) {
     }
 }
 
-/// Output files, each with its format.
+/// Output files for cameras and points, with their formats and encoded contents.
 pub struct Results {
     outputs: Vec<(Output, PathBuf, Vec<Destination>)>,
     folders: Vec<PathBuf>,
@@ -30,8 +30,8 @@ pub struct Results {
 }
 
 impl Results {
-    /// Checks before the work that the files can be written. Folders are created only when there is
-    /// something to write.
+    /// Checks before the work that the files can be written. Folders are created only when the
+    /// files are saved.
     pub fn new(args: &ResultArgs, guard: &mut Guard) -> Result<Self, Failure> {
         let mut results = Results { outputs: Vec::new(), folders: Vec::new(), files: Vec::new() };
         for path in &args.output {
@@ -52,7 +52,7 @@ impl Results {
         Ok(results)
     }
 
-    /// Encodes the files.
+    /// Encodes a reconstruction for each output.
     pub fn add(&mut self, all: &Reconstruction) -> Result<(), Failure> {
         for (output, ..) in &self.outputs {
             self.files.extend(output.write(all).map_err(wrong)?);

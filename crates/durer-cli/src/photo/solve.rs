@@ -14,6 +14,7 @@ use durer_photo::matching::Matches;
 use durer_photo::solve::{Options, solve};
 use durer_photo::{Lens, Reconstruction};
 
+/// Runs `durer photo solve`.
 pub fn run(args: &SolveArgs) -> Result<(), Failure> {
     let mut guard = Guard::default();
     let mut results = Results::new(&args.results, &mut guard)?;
@@ -60,13 +61,13 @@ fn lens_line(all: &Reconstruction, number: usize, lens: &Lens) -> String {
     format!("lens {}: focal length {f:.3} pixels, k1 {k1:.6}, k2 {k2:.6}; {views} photographs", number + 1)
 }
 
-/// Reads the control points before the work, so that a mistake in the file is reported at once.
+/// Reads the control points before the work, so that errors in the file are reported at once.
 fn control(args: &SolveArgs, names: &[&str], guard: &mut Guard) -> Result<Option<Vec<Control>>, Failure> {
     let Some(path) = &args.control else { return Ok(None) };
     read_control(&path.to_string_lossy(), &bytes(path, guard)?, names).map(Some).map_err(wrong)
 }
 
-/// Solves for cameras and points from matches.
+/// Computes cameras and points from matches, one photograph after the other.
 fn incremental(args: &SolveArgs, matches: &Matches) -> Result<Reconstruction, Failure> {
     let options = Options {
         fixed_focal: args.fixed_focal,
@@ -93,7 +94,7 @@ fn incremental(args: &SolveArgs, matches: &Matches) -> Result<Reconstruction, Fa
     Ok(solved.all)
 }
 
-/// Reads a file that has cameras.
+/// Reads a file that already has cameras.
 fn read_input(args: &SolveArgs, guard: &mut Guard) -> Result<Reconstruction, Failure> {
     let mut all = read(&args.file, args.pictures.as_deref(), guard)?;
     if args.own_lenses {
@@ -103,7 +104,7 @@ fn read_input(args: &SolveArgs, guard: &mut Guard) -> Result<Reconstruction, Fai
     Ok(all)
 }
 
-/// Adjusts cameras and points.
+/// Adjusts the cameras and points of a file.
 fn adjusted(args: &SolveArgs, mut all: Reconstruction) -> Result<Reconstruction, Failure> {
     let before = all.fit();
     if before.observations == 0 {

@@ -1,4 +1,4 @@
-//! `durer photo tour`: an HTML page for moving through photographs in 3D.
+//! `durer photo tour`: writes an HTML page for moving through photographs in 3D.
 
 use super::args::TourArgs;
 use super::inputs::{bytes_below, read, wrong};
@@ -16,6 +16,7 @@ use std::path::Path;
 /// Page template without data.
 const PAGE: &str = include_str!("tour.html");
 
+/// Runs `durer photo tour`.
 pub fn run(args: &TourArgs) -> Result<(), Failure> {
     let mut guard = Guard::default();
     let all = read(&args.file, Some(&args.pictures), &mut guard)?;
@@ -40,7 +41,7 @@ pub fn run(args: &TourArgs) -> Result<(), Failure> {
         Ok(format!("data:image/jpeg;base64,{}", STANDARD.encode(jpeg)))
     });
     let pictures = pictures.into_iter().collect::<Result<Vec<_>, Failure>>()?;
-    // Six decimals exceed the resolution of a screen.
+    // Six decimals are more than a screen can resolve.
     let short = |value: f64| (value * 1e6).round() / 1e6;
     let points: Vec<_> = all.points.iter().map(|point| point.position.map(short).as_slice().to_vec()).collect();
     let colors: Vec<_> = all.points.iter().map(|point| point.color).collect();

@@ -1,4 +1,4 @@
-//! Pages in a real browser: headless Chromium, from file:// URLs.
+//! Tests pages in a real browser: headless Chromium with file:// URLs.
 
 use super::TestFolder;
 use std::path::{Path, PathBuf};
@@ -34,11 +34,11 @@ fn chromium() -> Option<PathBuf> {
     found
 }
 
-/// Opens a page, runs a script at its end, and checks that it records all of some texts. Skipped
-/// without a browser.
+/// Opens a page, runs a script at its end, and checks that the script records all of the given
+/// texts. The test is skipped if there is no browser.
 ///
-/// The page must fetch nothing, from disk or network. It must be readable in windows of several
-/// widths, light and dark.
+/// The page must load nothing from disk or network. It must be readable at several window widths,
+/// in light and dark mode.
 #[track_caller]
 pub fn sees(place: &TestFolder, page: &str, script: &str, wanted: &[&str]) {
     let Some(chromium) = chromium() else { return };
@@ -46,7 +46,7 @@ pub fn sees(place: &TestFolder, page: &str, script: &str, wanted: &[&str]) {
     for wanted in wanted.iter().chain(&["fetched 0"]) {
         assert!(title.contains(wanted), "`{wanted}` is not in {title}");
     }
-    // Content in a frame sees the frame as its window.
+    // Inside a frame, the content sees the frame as its window.
     put_with(place, page, "framed.html", READABLE);
     let frames =
         WIDTHS.map(|width| format!("<iframe src=framed.html style='width:{width}px;height:1000px;border:0'></iframe>"));
@@ -55,10 +55,10 @@ pub fn sees(place: &TestFolder, page: &str, script: &str, wanted: &[&str]) {
     assert_eq!(title.matches(": readable").count(), 2 * WIDTHS.len(), "{page}: {title}");
 }
 
-/// Widths of the windows in which pages are tested.
+/// Window widths at which pages are tested.
 const WIDTHS: [u32; 3] = [400, 900, 1600];
 
-/// Waits for the frames' messages.
+/// Script that waits for the messages of the frames.
 const FRAMES: &str = r#"
 const told = [];
 window.onmessage = event => {
@@ -67,9 +67,9 @@ window.onmessage = event => {
 };
 "#;
 
-/// Checks, in light and dark, that text has the contrast of WCAG 2.1 AA (1.4.3: 4.5 : 1, large text
-/// 3 : 1), that coloured drawings have that of 1.4.11 (3 : 1), and that the page is not wider than
-/// its window.
+/// Script that checks a page in light and dark mode: contrast of text (WCAG 2.1 AA, 1.4.3: 4.5 : 1,
+/// large text 3 : 1), contrast of coloured drawings (1.4.11: 3 : 1), and that the page is not wider
+/// than its window.
 const READABLE: &str = r#"
 const parts = color => { const [r, g, b, a = 1] = color.match(/[\d.]+/g).map(Number); return { rgb: [r, g, b], a }; };
 const light = rgb => rgb.map(c => c / 255).map(c => c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4).reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0);
@@ -110,7 +110,7 @@ setTimeout(() => {
 }, 500);
 "#;
 
-/// Writes a copy of a page with a script at its end.
+/// Writes a copy of a page with a script added at its end.
 fn put_with(place: &TestFolder, page: &str, name: &str, script: &str) {
     let text = String::from_utf8(place.bytes(page)).unwrap();
     let end = text.rfind("</body>").unwrap();
@@ -121,7 +121,7 @@ fn put_with(place: &TestFolder, page: &str, name: &str, script: &str) {
 #[track_caller]
 fn title_of(place: &TestFolder, chromium: &Path, page: &str, name: &str, script: &str) -> String {
     let text = String::from_utf8(place.bytes(page)).unwrap();
-    // The SVG namespace is an address that is never fetched.
+    // The SVG namespace is a URL that is never loaded.
     let links = text.replace("http://www.w3.org/2000/svg", "");
     assert!(!links.contains("http://") && !links.contains("https://"), "{page} names an address");
     put_with(place, page, name, script);

@@ -1,4 +1,4 @@
-//! Shared helpers: a temporary folder with a scene, and the program run in it.
+//! Shared helpers: a temporary folder with scenes, in which the program is run.
 
 #![allow(dead_code, reason = "each test file is a separate program that uses a part")]
 
@@ -10,7 +10,7 @@ use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// A sphere over a mirroring floor.
+/// A sphere above a mirroring floor.
 pub const SCENE: &str = "PerspectiveCamera { center 0 1 8 direction 0 -0.1 -1 up 0 1 0 angle 40 }
 Lights { numLights 1 DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 } }
 Background { color 0.2 0.1 0.5 ambientLight 0.2 0.2 0.2 }
@@ -22,7 +22,7 @@ Group { numObjects 2
   MaterialIndex 1 Plane { normal 0 1 0 offset -0.5 } }
 ";
 
-/// Mirrors and glass that split every ray in two: with many bounces, no pixel finishes.
+/// Mirrors and glass that split every ray in two. With many bounces, no pixel is ever finished.
 pub const ENDLESS: &str = "PerspectiveCamera { center 0 0 0 direction 0.3 0.1 -1 up 0 1 0 angle 60 }
 Lights { numLights 1 PointLight { position 0 0 0 color 1 1 1 } }
 Materials { numMaterials 1
@@ -31,12 +31,12 @@ Group { numObjects 3 MaterialIndex 0
   Plane { normal 0 0 1 offset -2 } Plane { normal 0 0 1 offset 2 } Sphere { center 0 0 -1 radius 0.5 } }
 ";
 
-/// A temporary folder with `scene.txt` and `endless.txt`, in which the program runs.
+/// Temporary folder with `scene.txt` and `endless.txt`, in which tests run the program.
 pub struct TestFolder {
     folder: TempDir,
 }
 
-/// Output of a run.
+/// Exit code and output of a run of the program.
 pub struct ProgramOutput {
     pub code: Option<i32>,
     pub out: String,
@@ -44,6 +44,7 @@ pub struct ProgramOutput {
 }
 
 impl TestFolder {
+    /// Creates the folder.
     pub fn new() -> TestFolder {
         let place = TestFolder { folder: TempDir::new().unwrap() };
         place.put("scene.txt", SCENE);
@@ -51,21 +52,24 @@ impl TestFolder {
         place
     }
 
+    /// Returns the path of a file in the folder.
     pub fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }
 
+    /// Writes a file.
     pub fn put(&self, name: &str, content: impl AsRef<[u8]>) {
         std::fs::write(self.path(name), content).unwrap();
     }
 
-    /// Prepares a run with arguments separated by blanks.
+    /// Prepares a run with arguments that are separated by spaces.
     pub fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(durer());
         command.current_dir(self.folder.path()).args(arguments.split_whitespace()).stdin(Stdio::null());
         command
     }
 
+    /// Runs the program with arguments that are separated by spaces.
     pub fn run(&self, arguments: &str) -> ProgramOutput {
         ProgramOutput::of(self.command(arguments).output().unwrap())
     }
@@ -79,7 +83,7 @@ impl TestFolder {
         output
     }
 
-    /// Runs the program and checks that it fails with these words and writes nothing.
+    /// Runs the program. Checks that it fails with these words and writes no file.
     #[track_caller]
     pub fn refused(&self, code: i32, arguments: &str, words: &[&str]) {
         let before = self.names();
@@ -91,7 +95,7 @@ impl TestFolder {
         assert_eq!(self.names(), before, "{arguments}");
     }
 
-    /// Returns the names in the folder, sorted.
+    /// Returns the names of the files in the folder, sorted.
     pub fn names(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.folder.path()).unwrap();
         let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
@@ -99,25 +103,28 @@ impl TestFolder {
         names
     }
 
+    /// Reads a file.
     pub fn bytes(&self, name: &str) -> Vec<u8> {
         std::fs::read(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
     }
 
+    /// Reads a picture in linear light.
     pub fn image(&self, name: &str) -> Image {
         read(&self.bytes(name), name).unwrap()
     }
 
+    /// Reads an 8-bit picture.
     pub fn image8(&self, name: &str) -> Image8 {
         read8(&self.bytes(name), name).unwrap()
     }
 
-    /// Interrupts a run after a while. Returns its output and the time it took to end.
+    /// Interrupts a run after some time. Returns its output and the time it took to end.
     #[cfg(unix)]
     pub fn interrupted(&self, arguments: &str, after: Duration) -> (ProgramOutput, Duration) {
         self.signalled(arguments, after, &["INT"])
     }
 
-    /// Sends several signals in quick succession to a run. See [`Self::interrupted`].
+    /// Sends several signals in quick succession to a run, as in [`Self::interrupted`].
     #[cfg(unix)]
     pub fn signalled(&self, arguments: &str, after: Duration, signals: &[&str]) -> (ProgramOutput, Duration) {
         let mut command = self.command(arguments);
@@ -148,11 +155,12 @@ impl ProgramOutput {
     }
 }
 
+/// Returns the path of the program.
 pub fn durer() -> &'static str {
     env!("CARGO_BIN_EXE_durer")
 }
 
-/// Returns the course's scenes and pictures, if they are available.
+/// Returns the folder with the course's scenes and pictures, if it is available.
 pub fn corpus() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
     let folder = std::env::var_os("DURER_CORPUS").map_or_else(beside, PathBuf::from).join("course");

@@ -9,7 +9,7 @@ const button = name => [...moves.children].find(child => child.textContent === n
   see(word.textContent);
   await go("button first", () => button("closer").click());
   await go("strip", () => strip.children[3].click());
-  // The photograph fills the window that its camera looks through.
+  // The photograph fills the window, because the viewer has the photograph's camera.
   const [a, , c] = photographs[3].corners.map(pixel), box = canvas.getBoundingClientRect(), ratio = canvas.width / box.width;
   see(`opacity ${images[3].style.opacity}, marked ${strip.children[3].getAttribute("aria-current")}`);
   see(`fills ${Math.abs((a[0] + c[0]) / 2 - canvas.width / 2) < 2 && Math.abs(c[0] - a[0] - canvas.width) < 2}`);

@@ -1,20 +1,20 @@
-//! Checks of where the beam of a light points.
+//! Checks of where a light's beam points.
 
 use super::probes::{Probe, ProbeGrid, ProbeHit};
 use durer_render::world::World;
 use durer_scene::light::Illuminate as _;
 use durer_scene::math::{Ray, Vec3};
 
-/// Largest share of the visible points in a beam that misses the scene.
+/// A beam that covers at most this share of the visible points misses the scene.
 const NOTHING: f32 = 0.005;
-/// Same limit for a beam narrow enough that its angle may be in radians by mistake.
+/// The limit used instead of [`NOTHING`] if the beam is so narrow that its angle may be in radians.
 const LITTLE: f32 = 0.03;
 /// A point is in the beam if it gets more than this share of the light's peak intensity.
 const IN_BEAM: f32 = 0.02;
 /// Cone angle in degrees at or below which the angle may be in radians by mistake.
 const PENCIL: f32 = 3.2;
 
-/// A beam that misses everything the camera sees.
+/// How the beam of a spotlight or photometric light misses everything that the camera sees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Aim {
     /// The beam points away from everything visible.
@@ -23,8 +23,8 @@ pub(super) enum Aim {
     Narrow,
 }
 
-/// Returns the light that arrives at a point, as a share of the most that the light can send that
-/// far.
+/// Returns the light that arrives at a point, as a fraction of the light's peak intensity at that
+/// distance. Ignores occlusion.
 pub(super) fn share(world: &World, light: usize, point: Vec3) -> f32 {
     let emitter = &world.lights()[light];
     let Some((place, strongest)) = emitter.place() else { return 1.0 };
@@ -33,18 +33,19 @@ pub(super) fn share(world: &World, light: usize, point: Vec3) -> f32 {
     world.illuminate(light, point.as_dvec3()).color.max_element() / full.max(f32::MIN_POSITIVE)
 }
 
-/// Returns the points of the scene that the probes hit, in world space.
+/// Returns the world-space positions of the probes' hits.
 pub(super) fn places(grid: &ProbeGrid) -> Vec<Vec3> {
     grid.seen().map(|(probe, seen): (&Probe, &ProbeHit)| probe.ray.at(seen.t)).collect()
 }
 
-/// Returns the share of `places` that are in the beam of a light.
+/// Returns the share of `places` that lie in the beam of a light.
 pub(super) fn within(grid: &ProbeGrid, light: usize, places: &[Vec3]) -> f32 {
     let held = places.iter().filter(|place| share(grid.world(), light, **place) > IN_BEAM).count();
     held as f32 / places.len().max(1) as f32
 }
 
-/// Returns how the beam of a light misses the visible points; `None` if it hits or has no cone.
+/// Returns how the beam of a light misses the visible points; `None` if it covers some of them or
+/// the light has no cone.
 pub(super) fn aim(grid: &ProbeGrid, light: usize) -> Option<Aim> {
     let angle = grid.world().lights()[light].cone()?;
     let places = places(grid);

@@ -1,4 +1,4 @@
-//! Checks of fog: too dense, or outside the picture.
+//! Checks of fog that is too dense or outside the picture.
 
 use super::finding::{Finding, number, percent};
 use super::scene_probe::SceneProbe;
@@ -6,7 +6,7 @@ use durer_diag::Diagnostic;
 use durer_scene::light::Illuminate as _;
 use durer_scene::math::{Color, fp};
 
-/// Fog is opaque if it transmits less than this.
+/// Fog that transmits less than this fraction counts as opaque.
 const WALL: f32 = 0.01;
 
 /// Reports a fog box that no camera ray crosses before it hits a surface.
@@ -26,11 +26,11 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
         return Vec::new();
     }
     let (min, max) = (super::finding::vector(around.min), super::finding::vector(around.max));
-    let diagnostic = Diagnostic::warning("this fog is not in the picture: no ray goes through its box")
-        .effect("nothing of it is seen")
+    let diagnostic = Diagnostic::warning("this fog is outside the picture: no camera ray passes through its box")
+        .effect("it is invisible")
         .help(match around.is_empty() {
-            true => "put its `min` and `max` where the camera looks".to_string(),
-            false => format!("the scene is in `min {min} max {max}`"),
+            true => "move its `min` and `max` to where the camera looks".to_string(),
+            false => format!("the bounds of the objects are `min {min} max {max}`"),
         });
     vec![Finding::from(scout.at_value(diagnostic, written.span, &["min", "max"]))]
 }
@@ -84,7 +84,7 @@ pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
             let bounds = world.bounds();
             let size = bounds.size().max_element().max(1.0);
             let (min, max) = (bounds.min - size, bounds.max + size);
-            let diagnostic = Diagnostic::warning("this fog is unbounded: no light of the sun or sky passes through it")
+            let diagnostic = Diagnostic::warning("this fog is unbounded: no light from the sun or sky passes through it")
                 .effect(match near {
                     true => "lights at infinity and the background are black",
                     false => "the picture is black: light would have to cross unbounded fog",

@@ -1,4 +1,4 @@
-//! Checks of area lights in path tracing: why their light does not arrive.
+//! Checks for path tracing of area lights whose light does not reach the visible surfaces.
 
 use super::facing::{flip_text, flipped};
 use super::finding::{Finding, MAX_SOUGHT};
@@ -16,26 +16,28 @@ use durer_scene::shape::{Flip, Shape};
 const MAX_PLACES: usize = 200;
 /// Sample points on an area light.
 const ON_LIGHT: [Vec2; 4] = [Vec2::new(0.3, 0.2), Vec2::new(0.7, 0.3), Vec2::new(0.2, 0.7), Vec2::new(0.8, 0.8)];
-/// Fraction of its possible light below which an area light counts as contributing nothing.
+/// Positions on the unit square at which an area light is sampled.
 const NOTHING: f32 = 0.1;
 const HARDLY: f32 = 0.03;
 
-/// Contribution of an area light to the visible points: sums of the cosine at the light.
+/// Light from one area light at the visible points, with and without occlusion; each sum is of
+/// cosines at the light.
 #[derive(Clone, Copy, Debug, Default)]
 struct AreaLightShare {
-    /// Sum over unoccluded points.
+    /// Sum over the points in front of the light that nothing occludes.
     front: f32,
     back: f32,
     /// Sum as if nothing occluded the light.
     front_free: f32,
-    /// Number of rays that only glass occluded.
+    /// Number of rays that pass only through glass.
     glass: usize,
     rays: usize,
-    /// Object that last occluded the front side.
+    /// The last object found to occlude a point in front of the light.
     blocker: Option<u32>,
 }
 
-/// Returns the area lights that can be sampled: object, and true if they are two-sided.
+/// Returns the objects that emit light and can be sampled, each with true if it emits on both
+/// sides.
 pub(super) fn emissive_objects(scout: &SceneProbe) -> Vec<(u32, bool)> {
     let world = scout.world();
     let emits = |(number, object): (usize, &Object)| {
@@ -46,7 +48,7 @@ pub(super) fn emissive_objects(scout: &SceneProbe) -> Vec<(u32, bool)> {
     world.objects().iter().enumerate().filter_map(emits).take(MAX_SOUGHT).collect()
 }
 
-/// Returns the span and the value of the strongest area light's luminance.
+/// Returns the highest `emissionLuminance` of the area lights, and its span in the scene file.
 pub(super) fn brightest(scout: &SceneProbe) -> Option<(Span, f32)> {
     let materials = &scout.subject.scene.materials;
     let lights = emissive_objects(scout).into_iter().filter_map(|(number, _)| {
@@ -57,7 +59,8 @@ pub(super) fn brightest(scout: &SceneProbe) -> Option<(Span, f32)> {
     lights.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Returns true if light can pass through an object.
+/// Returns true if light can pass through an object: it is transparent, an interface, or not
+/// opaque.
 fn is_clear(scout: &SceneProbe, object: u32) -> bool {
     match scout.world().materials().get(scout.world().objects()[object as usize].material as usize) {
         Some(Material::Phong(phong)) => {
@@ -68,7 +71,8 @@ fn is_clear(scout: &SceneProbe, object: u32) -> bool {
     }
 }
 
-/// Returns the first opaque object between two points, and true if the ray passed glass.
+/// Returns the first opaque object between two points, and true if the ray passed through glass
+/// before it.
 fn between(scout: &SceneProbe, light: u32, from: Vec3, to: Vec3) -> (Option<u32>, bool) {
     let ray = Ray { t_min: 1e-3, t_max: 1.0 - 1e-3, ..Ray::new(from, to - from) };
     let mut glass = false;
@@ -81,8 +85,8 @@ fn between(scout: &SceneProbe, light: u32, from: Vec3, to: Vec3) -> (Option<u32>
     (None, glass)
 }
 
-/// Measures an area light of one part, and returns true if it is flat; `None` if it cannot be
-/// sampled.
+/// Measures the light from an area light at the visible points, and returns true if the light is
+/// flat. `None` if the light consists of several parts or cannot be sampled.
 fn contribution(scout: &SceneProbe, light: u32) -> Option<(AreaLightShare, bool)> {
     let object = &scout.world().objects()[light as usize];
     let all: Vec<Vec3> =
@@ -138,7 +142,7 @@ pub(super) fn turned(scout: &SceneProbe) -> Vec<Finding> {
     let say = |(number, _): (u32, bool)| {
         let object = &scout.world().objects()[number as usize];
         let (contribution, flat) = contribution(scout, number)?;
-        // A light that illuminates the ceiling works too.
+        // A light that illuminates the ceiling may be intended.
         let indirect = reach(scout, object).is_some_and(|far| far > 0.03) && !scout.is_dark();
         if !flat || contribution.back <= 0.0 || contribution.front > NOTHING * contribution.back || indirect {
             return None;
@@ -162,8 +166,8 @@ pub(super) fn turned(scout: &SceneProbe) -> Vec<Finding> {
     one_sided.filter_map(say).collect()
 }
 
-/// Adds the edit that flips a flat area light. Which corners of a triangle to swap is for the
-/// author to decide.
+/// Adds the edit that flips a flat area light. For a triangle there is no edit: any two of its
+/// corners can be swapped.
 fn turned_round(scout: &SceneProbe, diagnostic: Diagnostic, number: u32) -> Diagnostic {
     match shape(&scout.world().objects()[number as usize]).and_then(Shape::flip) {
         Some(Flip::Edges(_) | Flip::Negate(_)) => flipped(scout, &diagnostic, number).unwrap_or(diagnostic),
@@ -206,7 +210,7 @@ pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
     lights.iter().filter_map(say).collect()
 }
 
-/// Reports area lights inside glass, which paths hit by chance or not at all.
+/// Reports area lights inside glass: paths hit them only by chance, or never.
 pub(super) fn in_glass(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     if !matches!(scout.subject.job.method, IntegratorKind::Path(_)) {

@@ -10,7 +10,7 @@ use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::Spanned;
 
-/// Reports beams that miss everything visible.
+/// Reports lights whose beam misses everything visible.
 pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     missing(scout, Aim::Away, |diagnostic, light| {
         let place = light.value.place().map_or(Vec3::ZERO, |(place, _)| place);
@@ -21,7 +21,7 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
         let middle = all.iter().sum::<Vec3>() / all.len().max(1) as f32;
         let (Some(direction), Some(_)) = (light.value.direction(), light.value.cone()) else { return diagnostic };
         let word = if light.value.profile().is_some() { "this photometric light" } else { "this spotlight" };
-        // The opposite direction is most often the intended one.
+        // Usually the opposite direction is the intended one.
         let turned = -direction.normalize_or(Vec3::NEG_Y);
         let to = (middle - place).normalize_or(Vec3::NEG_Y);
         let aimed = if turned.dot(to) > 0.7 { -direction } else { middle - place };
@@ -95,8 +95,8 @@ pub(super) fn inner_angle(scout: &SceneProbe) -> Vec<Finding> {
     lights.filter_map(say).take(MAX_SOUGHT).collect()
 }
 
-/// Returns the distance and the object if a light is so close to a surface that it lights only a
-/// spot.
+/// Returns the distance and the object if a light is so close to a surface that it illuminates only
+/// a spot.
 fn touching(scout: &SceneProbe, light: usize) -> Option<(f32, u32)> {
     let point = point(&scout.world().lights()[light])?;
     point.attenuation.filter(|a| a.z > 0.0 || a.y > 0.0)?;
@@ -113,7 +113,7 @@ fn touching(scout: &SceneProbe, light: usize) -> Option<(f32, u32)> {
     hits.map(|hit| (hit.t, hit.object)).min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// Reports lights with attenuation just above a surface.
+/// Reports lights with attenuation that are just above a surface.
 pub(super) fn near(scout: &SceneProbe) -> Vec<Finding> {
     let places = places(scout);
     let mut found = Vec::new();
@@ -128,7 +128,8 @@ pub(super) fn near(scout: &SceneProbe) -> Vec<Finding> {
         let lit: Vec<f32> =
             scout.seen().filter_map(|(_, seen)| seen.by(light)).map(|lit| lit.adds.max_element()).collect();
         let bright = lit.iter().filter(|adds| **adds > 0.04).count();
-        // Only a large surface loses light at grazing angles; light fixtures are small.
+        // Only a large surface loses light at grazing angles; lights in a fixture are close to a
+        // small one.
         let along: Vec<f32> = scout
             .seen()
             .filter(|(_, seen)| seen.object == object)

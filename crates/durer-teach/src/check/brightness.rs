@@ -1,4 +1,4 @@
-//! Brightness of the picture.
+//! Measures the brightness of the picture from a few samples.
 
 use super::probes::{Probe, ProbeGrid};
 use durer_render::integrator::{Integrate, Path};
@@ -6,12 +6,13 @@ use durer_scene::math::Color;
 use durer_scene::sampler::SampleId;
 use rayon::prelude::*;
 
-/// Number of pixels that a path tracer samples, and samples of each.
+/// Maximum number of pixels that are path traced, and the number of samples for each.
 const MAX_PIXELS: usize = 300;
 const SAMPLES: u32 = 16;
 
-/// Returns the exposed colours of the picture, each with the index of its probe: one for each
-/// probe, or with a path tracer the mean of `SAMPLES` samples for at most `MAX_PIXELS` of them.
+/// Returns exposed colours of the picture, each with the index of its probe. Whitted's method gives
+/// one colour per probe; path tracing gives the mean of `SAMPLES` samples for at most `MAX_PIXELS`
+/// probes.
 pub(super) fn light(grid: &ProbeGrid) -> (Vec<usize>, Vec<Color>) {
     let exposure = grid.subject.exposure;
     let Some(transport) = grid.subject.job.method.transport() else {
@@ -31,7 +32,7 @@ pub(super) fn light(grid: &ProbeGrid) -> (Vec<usize>, Vec<Color>) {
     chosen.par_iter().map(mean).unzip()
 }
 
-/// Returns the second largest value, so that one bright speck does not count.
+/// Returns the second largest value, so that a single bright pixel is ignored.
 pub(super) fn brightest(light: &[Color]) -> f32 {
     let mut values: Vec<f32> = light.iter().map(|color| color.max_element()).collect();
     values.sort_by(f32::total_cmp);

@@ -1,4 +1,4 @@
-//! Checks of colours: materials that show nothing, and values out of range.
+//! Checks of colours: invisible or black materials, and values out of range.
 
 use super::finding::{Finding, MAX_SOUGHT, counted, percent, vector};
 use super::scene_probe::SceneProbe;
@@ -15,10 +15,10 @@ const BLACK: f32 = 0.01;
 /// Colours that differ by less than this look the same.
 const ALIKE: f32 = 2.0 / 255.0;
 
-/// Minimum number of rays that must hit an object for it to count as lost in the background.
+/// Minimum number of rays that must hit an object before it can count as lost in the background.
 const FEWEST_LOST: usize = 6;
 
-/// Iterates over the Phong materials: index, description and compiled material.
+/// Iterates over the Phong materials: index, description in the scene file, and compiled material.
 fn phongs<'s>(scout: &'s SceneProbe) -> impl Iterator<Item = (u32, &'s Spanned<Written>, &'s Phong)> {
     let compiled = scout.world().materials().iter();
     let both = scout.subject.scene.materials.iter().zip(compiled).enumerate();
@@ -28,7 +28,7 @@ fn phongs<'s>(scout: &'s SceneProbe) -> impl Iterator<Item = (u32, &'s Spanned<W
     })
 }
 
-/// Returns the number of rays that see a material, directly or as part of a mix.
+/// Returns the number of rays that hit a material, directly or as part of a mix.
 fn rays(scout: &SceneProbe, material: u32) -> usize {
     scout.material_rays()[material as usize]
 }
@@ -54,7 +54,7 @@ pub(super) fn black(scout: &SceneProbe) -> Vec<Finding> {
     }
     let all = scout.seen().count();
     let whole = all_black(scout);
-    // A part of a pattern may be black, unless the whole pattern is.
+    // Part of a pattern may be black, but not all of it.
     let shown = |i: u32| if whole { rays(scout, i) > 0 } else { scout.seen().any(|(_, seen)| seen.material == i) };
     let black: Vec<_> = phongs(scout).filter(|(i, _, phong)| is_black(phong) && shown(*i)).collect();
     let say = |(i, written, _): &(u32, &Spanned<Written>, &Phong)| {
@@ -83,8 +83,8 @@ pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
     let cut = |phong: &Phong| counts(phong.reflective).max(counts(phong.transparent)) < settings.least_weight;
     let none = settings.bounces == 0;
     let bounces = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
-    // If the highlight's colour is also the mirror's, only a material that would be black without
-    // reflection is meant as a mirror.
+    // If highlights and mirrors share one colour, it is meant as a mirror only if the material
+    // would be black without reflection.
     let shared = matches!(scout.world().rules().secondary, Secondary::Specular | Secondary::SpecularFresnel);
     let intended = |phong: &Phong| phong.fresnel || !shared || phong.diffuse.max_element() < 0.15;
     let all: Vec<_> =
@@ -112,7 +112,7 @@ pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
         .at(written.span)
         .effect(if diffuse < 0.15 { "it is black, or nearly black" } else { "only its diffuse colour is visible" })
         .help(help);
-    // If that year's program traces no secondary rays by default, their absence is intentional.
+    // If the dialect's program traces no secondary rays by default, their absence is intentional.
     let seen: usize = all.iter().map(|(i, ..)| rays(scout, *i)).sum();
     let black: usize =
         all.iter().filter(|(.., phong)| phong.diffuse.max_element() < 0.1).map(|(i, ..)| rays(scout, *i)).sum();
@@ -122,8 +122,8 @@ pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
     vec![finding.whole(whole)]
 }
 
-/// Reports mirrors and glass whose secondary rays are disabled by the options, or end inside the
-/// body.
+/// Reports mirrors and glass objects whose secondary rays are disabled by the options, or
+/// terminated inside the object by the depth limit.
 fn switched_off(scout: &SceneProbe, all: &[(u32, &Spanned<Written>, &Phong)]) -> Vec<Finding> {
     let settings = &scout.subject.job.settings;
     let dark = |phong: &Phong| phong.diffuse.max_element() < 0.15;
@@ -149,7 +149,7 @@ fn switched_off(scout: &SceneProbe, all: &[(u32, &Spanned<Written>, &Phong)]) ->
     all.iter().filter_map(say).take(1).collect()
 }
 
-/// Reports glass with an index of refraction that no glass has.
+/// Reports an index of refraction that no glass has.
 pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = super::layers::odd_index(scout);
     let fields = ["indexOfRefraction", "refractionIndex"];
@@ -192,7 +192,7 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
                     })
                     .help("water has 1.33, glass 1.5, diamond 2.4")
             }
-            // This is correct for coloured foil.
+            // An index of 1 without Fresnel reflection is correct for coloured foil.
             None if phong.ior == 1.0 && !phong.fresnel => Diagnostic::note(format!(
                 "material {i} transmits light but has no `{}`",
                 if scout.world().rules().secondary == Secondary::Colors { fields[0] } else { fields[1] }
@@ -206,12 +206,12 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// A colour of the scene, its block and its field names.
+/// A colour of a light, material or background, and the place where the scene file sets it.
 struct ColorField {
     color: Color,
     block: Span,
     fields: [&'static str; 2],
-    /// Largest plausible channel value.
+    /// Largest plausible value of a channel.
     most: f32,
 }
 
@@ -219,8 +219,8 @@ fn all_colors(scout: &SceneProbe) -> Vec<ColorField> {
     let mut colors = Vec::new();
     for (i, written, used) in phongs(scout) {
         let Written::Phong(phong, _) = &written.value else { continue };
-        // A surface reflects at most what it receives, but a small bright object may stand for a
-        // light.
+        // A surface reflects at most the light it receives, but a small bright object may represent
+        // a light.
         let small = rays(scout, i) * 25 < scout.probes.len();
         let named = |color, fields, most: f32| {
             let most = if small { most.max(15.0) } else { most };
@@ -228,7 +228,7 @@ fn all_colors(scout: &SceneProbe) -> Vec<ColorField> {
         };
         colors.extend(phong.diffuse_color.map(|color| named(color, ["diffuseColor", "diffuse"], 1.001)));
         let all = |color, fields, most: f32| ColorField { color, block: written.span, fields, most };
-        // A highlight may be a little stronger than white; a mirror reflects at most what it
+        // A highlight may be slightly brighter than white; a mirror reflects at most the light it
         // receives.
         let mirrors = used.reflective != Color::ZERO && phong.reflective_color == Color::ZERO;
         colors.push(all(phong.specular_color, ["specularColor", "specular"], if mirrors { 1.05 } else { 1.6 }));
@@ -244,7 +244,7 @@ fn all_colors(scout: &SceneProbe) -> Vec<ColorField> {
             (m.coat_color, "coatColor"),
             (m.fuzz_color, "fuzzColor"),
         ];
-        // Presets of measured metals are a little above 1.
+        // Presets of measured metals slightly exceed 1.
         colors.extend(shares.map(|(color, field)| ColorField {
             color,
             block: written.span,
@@ -255,8 +255,8 @@ fn all_colors(scout: &SceneProbe) -> Vec<ColorField> {
     for (number, (written, light)) in
         scout.subject.scene.lights.iter().flatten().zip(scout.world().lights()).enumerate()
     {
-        // A light with attenuation may be strong as long as not too much of it arrives. Lights in
-        // candela are rarely near 1.
+        // A light with attenuation may be strong if not too much of its light arrives. Lights in
+        // candela rarely have values near 1.
         let (fades, candela) = match light {
             Light::Directional(_) => (false, false),
             Light::Point(point) => (point.attenuation.is_some(), false),
@@ -264,7 +264,7 @@ fn all_colors(scout: &SceneProbe) -> Vec<ColorField> {
         };
         let arrives = scout.seen().filter_map(|(_, seen)| seen.by(number)).map(|lit| lit.arrives.max_element());
         let too_much = arrives.fold(0.0, f32::max) > 20.0;
-        // Path tracing has free units of light, which the exposure scales.
+        // Path tracing has no fixed unit of light: the exposure scales it.
         let free = candela || fades && !too_much || scout.is_physical();
         let most = if free { f32::INFINITY } else { 20.0 };
         colors.push(ColorField { color: light.color(), block: written.span, fields: ["color", "color"], most });
@@ -299,7 +299,7 @@ pub(super) fn too_large(scout: &SceneProbe) -> Vec<Finding> {
                 false => format!("colours range from 0 to 1: try `{}`", vector(mended)),
             });
         let diagnostic = match place {
-            // Only bytes have an obvious correction.
+            // Only byte values have an obvious correction.
             Some(place) if bytes && !percent => diagnostic.at(place).fix(place, vector(mended)),
             Some(place) => diagnostic.at(place),
             None => Diagnostic { span: block, ..diagnostic },
@@ -322,8 +322,8 @@ pub(super) fn too_large(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Returns a warning for the most visible material whose diffuse, mirrored and transmitted shares
-/// add up to more than 1.
+/// Returns a warning for the most visible material whose diffuse, reflective and transparent
+/// colours add up to more than 1.
 pub(super) fn gives_too_much(scout: &SceneProbe) -> Option<Diagnostic> {
     let bounces = scout.subject.job.settings.bounces > 0;
     let sum = |phong: &Phong| {
@@ -404,7 +404,7 @@ fn dull_by_color(scout: &SceneProbe) -> Vec<Finding> {
     phongs(scout).filter(dull).take(MAX_SOUGHT).map(say).collect()
 }
 
-/// Returns the span of the background's section; the scene does not store it.
+/// Returns the span of the `Background` section, which the compiled scene does not store.
 pub(super) fn background_span(scout: &SceneProbe) -> Option<Span> {
     let file = scout.subject.scene.camera_span.file;
     durer_formats::course::place::section(scout.subject.files.bytes(file)?, file, "Background")
@@ -433,7 +433,7 @@ pub(super) fn negative(scout: &SceneProbe) -> Vec<Finding> {
     all.filter(below).take(MAX_SOUGHT).map(say).collect()
 }
 
-/// Reports objects of the background's colour.
+/// Reports objects with the same colour as the background.
 pub(super) fn camouflaged(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     if world.cube_map().is_some() {
@@ -456,11 +456,11 @@ pub(super) fn camouflaged(scout: &SceneProbe) -> Vec<Finding> {
         false => "choose another `color` for the background, or for the materials",
     });
     let finding = Finding::from(diagnostic);
-    // If no light arrives, that is the cause, and this only follows from it.
+    // If no light arrives, that is the cause, and this finding only follows from it.
     vec![if black { finding.last() } else { finding.whole(true) }]
 }
 
-/// Reports objects whose visible pixels all have exactly the background's colour.
+/// Reports objects all of whose visible pixels have exactly the background's colour.
 fn lost_in_background(scout: &SceneProbe, alike: &dyn Fn(Color) -> bool) -> Vec<Finding> {
     let world = scout.world();
     if world.background().max_element() < 0.02 || scout.is_physical() {
@@ -488,7 +488,7 @@ fn lost_in_background(scout: &SceneProbe, alike: &dyn Fn(Color) -> bool) -> Vec<
     world.objects().iter().enumerate().filter_map(say).take(super::finding::MAX_ALIKE).collect()
 }
 
-/// Reports textures on objects without texture coordinates.
+/// Reports textured objects without texture coordinates.
 pub(super) fn no_coordinates(scout: &SceneProbe) -> Vec<Finding> {
     let meshes_only = scout.world().rules().has(Quirk::MeshTextures);
     let textured = phongs(scout).filter(|(_, _, phong)| phong.texture.is_some());
@@ -524,7 +524,7 @@ pub(super) fn unused(scout: &SceneProbe) -> Vec<Finding> {
             _ => used[object.material as usize] = true,
         }
     }
-    // A mixed material refers to earlier materials only, so go backwards.
+    // A mix refers only to earlier materials, so iterate backwards.
     for i in (0..world.materials().len()).rev() {
         if let (Material::Solid(solid, ..), true) = (&world.materials()[i], used[i]) {
             solid.materials().into_iter().for_each(|part| used[part as usize] = true);

@@ -1,5 +1,5 @@
-//! Checks of exposure: pictures that are too bright, too dark or of one colour, and depth ranges
-//! that show black or white only.
+//! Checks of exposure: pictures that are too bright, too dark or of a single colour, and depth
+//! ranges that show only black or white.
 
 use super::brightness::brightest;
 use super::finding::{Finding, number, percent, vector};
@@ -11,29 +11,27 @@ use durer_diag::{Diagnostic, Severity};
 use durer_scene::light::Illuminate as _;
 use durer_scene::math::{Color, fp};
 
-/// Values above `BEYOND` are clipped in eight bits; above `FAR_BEYOND` most of their shading is
-/// lost.
+/// Values above `BEYOND` are clipped to white; above `FAR_BEYOND` most shading is lost.
 const BEYOND: f32 = 1.0 + VISIBLE;
 const FAR_BEYOND: f32 = 1.25;
-/// Largest fractions of visible points that may be clipped, or far too bright. Above these, more
+/// Maximum fractions of visible points that may be clipped, or far too bright. Above these, more
 /// than highlights is affected.
 const MAX_CUT: f32 = 0.4;
 const MAX_FAR: f32 = 0.2;
 
-/// Largest share of white pixels in a picture that still shows something.
+/// Maximum share of white pixels in a usable picture.
 const MAX_WHITE: f32 = 0.5;
-/// Largest fraction of white points on lit surfaces, regardless of the background.
+/// Maximum share of white points on lit surfaces, whatever the background looks like.
 const MAX_WHITE_THINGS: f32 = 0.8;
 
-/// Converts a factor of light to stops.
+/// Converts a ratio of luminances to stops.
 fn stops_of(factor: f32) -> f32 {
     fp::ln(factor) / std::f32::consts::LN_2
 }
 
-/// Reports a picture in physical units (path tracing, or a sky in cd/m^2) that eight bits show as
-/// white.
+/// Reports a picture in physical units (path tracing, or a sky in cd/m^2) that is clipped to white.
 fn white(scout: &SceneProbe) -> Vec<Finding> {
-    // Emitters may be white, and an unlit background does not count.
+    // Emitters can be white, and an unlit background does not count.
     let lit = |probe: &Probe| probe.seen.as_ref().is_some_and(|seen| !scout.world().may_emit(seen.material));
     let all = scout.light();
     let objects: Vec<Color> = (scout.lit_probes().filter(|(probe, color)| lit(probe) && color.max_element() > VISIBLE))
@@ -44,7 +42,7 @@ fn white(scout: &SceneProbe) -> Vec<Finding> {
     let (shown, what) = if over(all, MAX_WHITE) {
         (all, "the picture")
     } else if objects.len() * 20 > all.len() && over(&objects, MAX_WHITE_THINGS) {
-        (&objects[..], "what is lit")
+        (&objects[..], "the lit surface area")
     } else {
         return Vec::new();
     };
@@ -73,7 +71,7 @@ fn white(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// Reports values above 1 in a picture of eight bits.
+/// Reports values above 1 in an eight-bit picture.
 pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
     if scout.is_physical() || scout.world().environment().is_some() {
         return white(scout);
@@ -104,7 +102,7 @@ pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
                  .hdr)",
                 number(factor)
             ));
-    // If the lights alone are too strong, blame no material.
+    // If the lights alone are too strong, do not blame a material.
     let local = |seen: &ProbeHit| (seen.ambient + seen.lit.iter().map(|lit| lit.adds).sum::<Color>()).max_element();
     let by_lights = scout.seen().filter(|(_, seen)| local(seen) > FAR_BEYOND).count();
     if let Some(cause) = super::colors::gives_too_much(scout).filter(|_| by_lights * 2 < far) {
@@ -137,7 +135,7 @@ pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())]
 }
 
-/// Reports a picture of one colour.
+/// Reports a picture of a single colour.
 pub(super) fn one_color(scout: &SceneProbe) -> Vec<Finding> {
     let shown = |color: Color| color.clamp(Color::ZERO, Color::ONE);
     let mut colors = scout.light().iter().map(|color| shown(*color));
@@ -151,7 +149,7 @@ pub(super) fn one_color(scout: &SceneProbe) -> Vec<Finding> {
         _ => format!("uniformly {}", vector(first)),
     };
     let empty = scout.seen().next().is_none();
-    // Small objects between the probes are still visible.
+    // Probes can miss small objects that are visible.
     if empty && scout.visibilities().contains(&super::visibility::Visibility::Seen) {
         return Vec::new();
     }

@@ -1,4 +1,4 @@
-//! Checks of size: objects too small or too large to be seen, and fields of view of the wrong size.
+//! Checks of size: objects too small or too large to be visible, and unsuitable fields of view.
 
 use super::finding::{Finding, MAX_SOUGHT, number};
 use super::scene_probe::SceneProbe;
@@ -13,24 +13,24 @@ use durer_scene::scene::{MatrixOp, Node, Object};
 
 /// Minimum size in pixels of a recognisable object.
 const FEWEST_PIXELS: f32 = 6.0;
-/// Size ratios above which an object is out of scale, for harmless objects and for objects that
-/// spoil the picture.
+/// Ratios to the typical size above which an object is out of scale: for harmless objects, and for
+/// objects that spoil the picture.
 const OUT_OF_SCALE: f32 = 3e3;
 const HARMFUL: f32 = 100.0;
-/// Ratio of sizes above which an object that contains the camera is out of scale.
+/// Size ratio above which an object that contains the camera is out of scale.
 const SWALLOWING: f32 = 20.0;
 
 /// Range of sizes that single precision can represent next to other objects.
 const ABSURD: std::ops::Range<f32> = 1e-9..1e9;
 
-/// Reports scenes whose bounded objects all together cover only a few pixels.
+/// Reports scenes whose bounded objects together cover only a few pixels.
 pub(super) fn too_small(scout: &SceneProbe) -> Vec<Finding> {
     let bounds = scout.world().bounds();
     let Some(size) = Some(bounds).filter(|b| !b.is_empty()).and_then(|bounds| pixels(scout, bounds)) else {
         return Vec::new();
     };
     let empty = scout.seen().next().is_none();
-    // A very wide field of view is meant to show much, not a few small objects in its middle.
+    // A very wide field of view is meant to show a lot, not a few small objects in the centre.
     let share = match scout.world().camera() {
         Camera::Perspective(camera) if camera.angle > 120.0 => 0.12,
         Camera::Perspective(camera) if camera.angle > 90.0 => 0.08,
@@ -70,11 +70,11 @@ pub(super) fn too_small(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// Reports pictures that show a tiny part of the objects, for example because of an angle in
+/// Reports pictures that show only a tiny part of the objects, for example because an angle is in
 /// radians.
 pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
     let (bounds, span, larger) = (scout.world().bounds(), scout.subject.scene.camera_span, scout.larger());
-    // The camera is not too close to an object that is entirely visible.
+    // If an object is entirely visible, the camera is not too close.
     let seen =
         scout.world().objects().iter().zip(scout.visibilities()).filter(|(_, sight)| **sight == Visibility::Seen);
     let sizes: Vec<f32> = seen.filter_map(|(object, _)| pixels(scout, object.bounds()?)).collect();
@@ -87,7 +87,7 @@ pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
     let radians = |angle: f32| angle <= std::f32::consts::PI;
     match scout.world().camera() {
         Camera::Perspective(camera) if camera.angle < 5.0 => {
-            // A telescope is meant to see distant objects.
+            // A telescope is meant to show distant objects.
             let Some(size) = pixels(scout, bounds).filter(|size| *size > 8.0 * larger) else { return Vec::new() };
             let degrees = camera.angle.to_degrees();
             let mut diagnostic =
@@ -107,7 +107,7 @@ pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
             vec![Finding::from(scout.at_value(diagnostic, span, &["angle", "fov"])).whole(true)]
         }
         Camera::Orthographic(camera) => {
-            // A picture of the surface of a single object shows nothing.
+            // A picture filled by the surface of a single object shows nothing useful.
             let mut seen: Vec<u32> = scout.seen().map(|(_, seen)| seen.object).collect();
             seen.sort_unstable();
             seen.dedup();
@@ -124,7 +124,7 @@ pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
     }
 }
 
-/// Reports a narrow field of view that one object fills while most others are outside it.
+/// Reports a narrow field of view filled by one object, with most others outside it.
 fn one_fills(scout: &SceneProbe, sizes: &[f32]) -> Option<Finding> {
     let Camera::Perspective(camera) = scout.world().camera() else { return None };
     let visibilities = scout.visibilities().iter().zip(scout.world().objects());
@@ -144,7 +144,8 @@ fn one_fills(scout: &SceneProbe, sizes: &[f32]) -> Option<Finding> {
     Some(Finding::from(scout.at_value(diagnostic, span, &["angle", "fov"])).whole(true))
 }
 
-/// Returns how many times larger an object is than the largest other one, if above `SWALLOWING`.
+/// Returns the ratio of an object's size to that of the largest other object, if above
+/// `SWALLOWING`.
 pub(super) fn times_larger(scout: &SceneProbe, object: u32) -> Option<f32> {
     let size = |i: usize| Some(scout.world().objects()[i].bounds()?.size().max_element());
     let others = (0..scout.world().objects().len()).filter(|&i| i != object as usize).filter_map(size);
@@ -152,14 +153,14 @@ pub(super) fn times_larger(scout: &SceneProbe, object: u32) -> Option<f32> {
     (times > SWALLOWING && times.is_finite()).then_some(times)
 }
 
-/// Returns true if a large object spoils the picture: it is invisible despite its size, or hides
-/// other objects.
+/// Returns true if a large object spoils the picture: it is not visible despite its size, or it
+/// hides other objects or blocks light.
 fn is_harm(scout: &SceneProbe, object: u32) -> bool {
     let visibilities = scout.visibilities();
     let hides = visibilities.contains(&Visibility::Hidden(object));
     let keeps_light = scout.verdicts().contains(&Verdict::Blocked(object));
     let ball = is_ball(&scout.world().objects()[object as usize]);
-    // An object that contains the camera and blocks the light or the view is not a sky.
+    // An object around the camera that blocks the light or the view is not a sky.
     if swallows(scout, object) {
         return true;
     }
@@ -251,7 +252,7 @@ pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
     if sizes.len() < 2 || !lost.is_empty() {
         return lost;
     }
-    // Of two objects, the one whose size fits its distance from the camera is right.
+    // Of two objects, trust the one whose size fits its distance from the camera.
     let eye = world.camera().pose().center;
     let away = |object: u32| world.objects()[object as usize].bounds().map_or(1.0, |b| (b.center() - eye).length());
     let odd = |(object, size): (u32, f32)| fp::ln(size / away(object).clamp(1e-6, 1e6)).abs();
@@ -285,8 +286,8 @@ pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
         {
             continue;
         }
-        // A huge ball can be the ground or the sky. Objects around the camera and lights outside a
-        // sky have their own findings.
+        // A huge ball can be the ground or the sky. Other checks report objects around the camera
+        // and lights outside a sky.
         if size > middle && (!spoils || holds_eye(object) || is_sky_before_lights(scout, object)) {
             continue;
         }
@@ -338,7 +339,8 @@ pub(super) fn radians(scout: &SceneProbe) -> Vec<Finding> {
     })]
 }
 
-/// A rotation: span of its transform, its possible keywords, and its angle.
+/// A rotation in the scene file: span of its transform, its possible keywords, and its angle in
+/// degrees.
 type Rotation = (Span, [&'static str; 2], f32);
 
 fn rotations(object: &Object, angles: &mut Vec<Rotation>) {

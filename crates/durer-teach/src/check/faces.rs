@@ -1,4 +1,4 @@
-//! Checks of coplanar faces that overlap: which one is visible is random.
+//! Checks for coplanar faces that overlap, where the visible one is random (z-fighting).
 
 use super::scene_probe::SceneProbe;
 use super::shapes::shape;
@@ -7,10 +7,11 @@ use durer_scene::camera::Projection;
 use durer_scene::math::Vec3;
 use durer_scene::shape::Shape as _;
 
-/// Number of objects above which this check is skipped.
+/// Maximum number of objects for this check.
 const MAX_THINGS: usize = 300;
 
-/// A flat face: its corners in order, and its normal if only one side can be visible.
+/// A flat face of a box or rectangle in world space, compared with others to find coplanar
+/// overlaps. `outwards` is its normal if only that side can be visible.
 struct Face {
     object: usize,
     corners: Vec<Vec3>,
@@ -27,7 +28,7 @@ fn faces_of(number: usize, object: &Object) -> Vec<Face> {
     let world = |corners: &[Vec3]| corners.iter().map(|p| object.world_point(*p)).collect::<Vec<Vec3>>();
     let Some(shape) = shape(object) else { return Vec::new() };
     let polygons = shape.polygons();
-    // Triangles often come in hundreds and share edges; they are only compared with planes, see
+    // Triangles often come in hundreds and share edges. They are only compared with planes, in
     // `objects::in_plane`.
     let mut faces: Vec<Face> = polygons
         .iter()
@@ -55,8 +56,8 @@ fn meet(a: &Face, b: &Face) -> bool {
     if b.corners.iter().any(|p| (*p - a.corners[0]).dot(n).abs() > 1e-5 * size) {
         return false;
     }
-    // Convex faces are disjoint if a side of one separates them; faces that only touch are disjoint
-    // too.
+    // Convex faces are disjoint if an edge of either separates them. Faces that only touch count as
+    // disjoint.
     let separates = |one: &Face, other: &Face| {
         let count = one.corners.len();
         (0..count).any(|i| {
@@ -72,7 +73,8 @@ fn meet(a: &Face, b: &Face) -> bool {
     !separates(a, b) && !separates(b, a)
 }
 
-/// Returns pairs of boxes or rectangles whose faces overlap on the side that the camera sees.
+/// Returns pairs of objects (boxes or rectangles) whose faces overlap on the side that the camera
+/// sees.
 pub(super) fn overlapping(scout: &SceneProbe) -> Vec<(usize, usize)> {
     let objects = scout.world().objects();
     if objects.len() > MAX_THINGS {
@@ -86,7 +88,7 @@ pub(super) fn overlapping(scout: &SceneProbe) -> Vec<(usize, usize)> {
         for b in faces[i + 1..].iter().filter(|b| b.object != a.object) {
             let (first, second) = (a.object, b.object);
             if !found.contains(&(first, second)) && faces_eye(a) && faces_eye(b) && meet(a, b) {
-                // Adjacent boxes face each other.
+                // Adjacent boxes touch with opposite normals.
                 let opposite = a.outwards.zip(b.outwards).is_some_and(|(n, m)| n.dot(m) < 0.0);
                 if !opposite {
                     found.push((first, second));

@@ -1,4 +1,5 @@
-//! Checks of orientation: surfaces seen from behind, and reversed triangles of the scene file.
+//! Checks of orientation: surfaces seen from behind, and triangles with reversed winding in the
+//! scene file.
 
 use super::finding::{Finding, MAX_SOUGHT, counted};
 use super::mesh_files::topology::Topology;
@@ -22,8 +23,8 @@ pub(super) fn flip_text(flip: Flip) -> String {
     }
 }
 
-/// Adds the edit that flips a flat shape; `None` if the shape is not flat or a field is not
-/// written.
+/// Adds the edit that flips a flat shape. `None` if the shape is not flat, or the scene file does
+/// not set the field to change.
 pub(super) fn flipped(scout: &SceneProbe, diagnostic: &Diagnostic, object: u32) -> Option<Diagnostic> {
     let shape = shape(&scout.world().objects()[object as usize])?;
     let value = |field: &str| scout.value(scout.object_span(object), &[field]);
@@ -47,12 +48,12 @@ pub(super) fn flipped(scout: &SceneProbe, diagnostic: &Diagnostic, object: u32) 
     Some(diagnostic)
 }
 
-/// Returns how to flip a flat shape of the course's programs.
+/// Returns how to flip a flat shape that the course's programs support.
 fn course_flip(object: &Object) -> Option<Flip> {
     shape(object).filter(|shape| !shape.is_ours())?.flip()
 }
 
-/// Adds the edit that flips a flat shape of the course's programs.
+/// Adds the edit that flips a flat shape that the course's programs support.
 fn turned(scout: &SceneProbe, diagnostic: Diagnostic, object: u32) -> Diagnostic {
     match course_flip(&scout.world().objects()[object as usize]) {
         Some(flip) => match flipped(scout, &diagnostic, object) {
@@ -63,8 +64,8 @@ fn turned(scout: &SceneProbe, diagnostic: Diagnostic, object: u32) -> Diagnostic
     }
 }
 
-/// Reports objects seen only from behind: a warning if backs are not shaded, otherwise a note for
-/// flat shapes, whose front was meant to be visible.
+/// Reports objects that are seen only from behind: a warning if backs are not shaded, otherwise a
+/// note for flat shapes, whose front was probably meant to be visible.
 pub(super) fn from_behind(scout: &SceneProbe) -> Vec<Finding> {
     let shaded = scout.subject.job.settings.shade_back;
     let is_flat = |i: usize| course_flip(&scout.world().objects()[i]).is_some();
@@ -76,7 +77,7 @@ pub(super) fn from_behind(scout: &SceneProbe) -> Vec<Finding> {
         black |= surface.black;
     }
     let all: usize = seen.iter().sum();
-    // If `hidden-behind` fires, suppress this finding: same cause.
+    // If `hidden-behind` reports something, skip this finding: the cause is the same.
     if !super::hidden::hidden(scout).is_empty() {
         return Vec::new();
     }
@@ -156,7 +157,7 @@ fn turned_of(scout: &SceneProbe, soup: &[u32]) -> Vec<Finding> {
         diagnostic = turned(scout, diagnostic, soup[i as usize]);
     }
     if !topology.is_closed() && count * 3 > soup.len() {
-        // Sheets that only touch share no edge.
+        // Sheets that only touch do not share an edge, so this is only a note.
         diagnostic.severity = Severity::Note;
     }
     vec![Finding::from(diagnostic)]

@@ -1,4 +1,4 @@
-//! Checks of lights with attenuation: how much light arrives, and whether the divisor is valid.
+//! Checks of lights with attenuation: how much light arrives, and whether the divisor is positive.
 
 use super::finding::{Finding, number, vector};
 use super::lights::{each, place, useless, written};
@@ -10,6 +10,7 @@ use durer_scene::dialect::Dialect;
 use durer_scene::light::Illuminate as _;
 use durer_scene::math::Vec3;
 
+/// Reports lights whose light is too weak when it arrives at the visible surfaces.
 pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
     each(scout, |light, verdict| {
         let Verdict::Faint(most) = verdict else { return None };
@@ -25,7 +26,7 @@ pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
             let help = format!("it is {} times too weak: try `color {}`", number(factor), vector(color));
             return Some(scout.at_value(diagnostic, span, &["color"]).help(help));
         };
-        // If the colour is plausible for a light, the attenuation is wrong.
+        // If the light's colour is plausible, the attenuation is wrong.
         let value = scout.value(span, &["attenuation", "falloff"]).filter(|_| point.color.max_element() > 0.2);
         if let (Some(value), Some(a)) = (value, point.attenuation.filter(|_| point.falloff.is_none())) {
             let reversed = Vec3::new(a.z, a.y, a.x);
@@ -37,12 +38,12 @@ pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
         let (value, text, field) = match (value, point.falloff, point.attenuation) {
             (Some(value), Some(falloff), _) => (value, number(falloff / factor), scout.text(before(scout, value))),
             (Some(value), None, Some(a)) => {
-                // The constant factor limits brightness near the light; increase it at most to its
-                // usual value.
+                // The constant coefficient limits brightness near the light; raise it to its usual
+                // value at most.
                 let scaled = a / factor;
                 (value, vector(Vec3::new(scaled.x.max(a.x.min(1.0)), scaled.y, scaled.z)), "attenuation".into())
             }
-            // The dialect's default attenuation applies unless the file states another.
+            // The dialect's default attenuation applies unless the scene file sets another.
             _ => match (scout.value(span, &["color"])?, divisor(&scout.world().lights()[light])) {
                 (color, Some(a)) if scout.subject.dialect == Dialect::F23 => {
                     let after = Span { start: color.end, ..color };
@@ -58,7 +59,8 @@ pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
     })
 }
 
-/// Returns true if a light with other attenuation factors would arrive at a usual brightness.
+/// Returns true if other attenuation coefficients would give the light a usual brightness at the
+/// visible surfaces.
 fn fits(scout: &SceneProbe, light: usize, factors: Vec3) -> bool {
     let Some(point) = point(&scout.world().lights()[light]) else { return false };
     let faces = scout.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.cosine > 0.1));
@@ -78,6 +80,7 @@ fn before(scout: &SceneProbe, value: Span) -> Span {
     Span { file: value.file, start: start as u32, end: end as u32 }
 }
 
+/// Reports lights whose attenuation divides by zero or by a negative number.
 pub(super) fn divides(scout: &SceneProbe) -> Vec<Finding> {
     let found = scout.verdicts().iter().enumerate().filter(|(_, verdict)| **verdict == Verdict::Divides);
     found

@@ -1,4 +1,4 @@
-//! Findings and their wording.
+//! The result of a check, and helpers for its wording.
 
 use durer_diag::{Diagnostic, Edit, Severity};
 pub(super) use durer_render::render::explain::number;
@@ -9,14 +9,16 @@ pub(super) const MAX_ALIKE: usize = 3;
 /// Number of findings of one kind after which a check stops.
 pub(super) const MAX_SOUGHT: usize = 50;
 
-/// A finding of a check.
+/// A problem that a check found in a scene, such as a light that illuminates nothing, with the edit
+/// that fixes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
     /// Code, span, message, and the edit that fixes it.
     pub diagnostic: Diagnostic,
-    /// True if it spoils the whole picture, not only a part of it.
+    /// True if it affects the whole picture, not only part of it.
     pub whole: bool,
-    /// True if it only describes the picture, and is dropped when another finding explains it.
+    /// True if it only describes the picture. It is dropped if another finding explains the whole
+    /// picture.
     pub(super) last: bool,
 }
 
@@ -27,23 +29,25 @@ impl From<Diagnostic> for Finding {
 }
 
 impl Finding {
-    /// Returns true for warnings and errors: the picture is wrong or cannot be made.
+    /// Returns true for warnings and errors: the picture is wrong or cannot be rendered.
     pub fn is_serious(&self) -> bool {
         self.diagnostic.severity > Severity::Note
     }
 
-    /// Sets whether the finding spoils the whole picture.
+    /// Sets whether the finding affects the whole picture.
     pub(super) fn whole(self, whole: bool) -> Self {
         Finding { whole, ..self }
     }
 
-    /// Marks the finding as one that is dropped if another one spoils the whole picture.
+    /// Marks the finding as a description that is dropped if another finding explains the whole
+    /// picture.
     pub(super) fn last(self) -> Self {
         Finding { last: true, whole: true, ..self }
     }
 }
 
-/// Adds the number of further findings to the last finding of a kind, with the edits of `other`.
+/// Adds the number of further findings of the same kind to the last one that is shown, along with
+/// the edits of `other`.
 pub(super) fn count_more(last: Option<&mut Finding>, more: usize, other: &Finding) {
     let Some(Finding { diagnostic, .. }) = last else { return };
     let words = format!("; and {more} more of this kind");
@@ -60,7 +64,7 @@ pub(super) fn vector(v: Vec3) -> String {
     format!("{} {} {}", number(v.x), number(v.y), number(v.z))
 }
 
-/// Formats a share in percent.
+/// Formats a ratio as a percentage.
 pub(super) fn percent(part: usize, of: usize) -> String {
     let share = 100.0 * part as f32 / of.max(1) as f32;
     if share > 0.0 && share < 1.0 { "less than 1 %".into() } else { format!("{share:.0} %") }

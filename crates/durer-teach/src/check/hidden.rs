@@ -1,4 +1,4 @@
-//! Checks of one object, often a plane, in front of all or most others.
+//! Checks for a single object, often a plane, that hides all or most others.
 
 use super::finding::{Finding, counted, number, percent, vector};
 use super::scene_probe::SceneProbe;
@@ -9,16 +9,16 @@ use durer_render::world::Object;
 use durer_scene::camera::{Camera, Projection};
 use durer_scene::math::{Ray, Vec3};
 
-/// Number of objects above which a single one is not blamed.
+/// In scenes with more objects than this, a single one is not blamed.
 const FEW_OBJECTS: usize = 8;
 
-/// Reports one object in front of all, or almost all, others.
+/// Reports one object that hides all, or almost all, others.
 pub(super) fn hidden_behind(scout: &SceneProbe) -> Vec<Finding> {
     let found = hidden(scout);
     if found.is_empty() { in_the_way(scout) } else { found }
 }
 
-/// Reports one object in front of all others.
+/// Reports one object that hides all others.
 pub(super) fn hidden(scout: &SceneProbe) -> Vec<Finding> {
     let mut hits = scout.seen().map(|(_, seen)| seen.object);
     let Some(front) = hits.next().filter(|front| hits.all(|other| other == *front)) else { return Vec::new() };
@@ -34,17 +34,16 @@ pub(super) fn hidden(scout: &SceneProbe) -> Vec<Finding> {
     }
     let covered = scout.seen().count();
     let is_plane = scout.world().objects()[front as usize].bounds().is_none();
-    // An object can be behind another on purpose, but nothing behind an infinite plane is ever
-    // visible.
+    // An object can be hidden on purpose, but nothing behind an infinite plane is ever visible.
     let few = !is_plane && covered * 2 < scout.probes.len();
     if hidden == 0 || others > 0 || few || scout.is_glass(front) {
         return Vec::new();
     }
     let name = scout.object(front);
     let behind = scout.seen().all(|(_, seen)| seen.from_behind);
-    // Rays without a start also see objects behind the camera.
+    // The rays of some cameras are infinite lines, which also hit objects behind the camera.
     let backwards = !has_eye(scout) && scout.seen().all(|(_, seen)| seen.t < 0.0);
-    // If the back is visible, the camera may be on the wrong side instead.
+    // If the visible side is the back, the camera is probably on the wrong side instead.
     let turned = (is_plane && !behind).then(|| offset_turned(scout, front)).flatten();
     let help = match (is_plane, behind) {
         _ if backwards => {
@@ -87,8 +86,8 @@ fn in_the_way(scout: &SceneProbe) -> Vec<Finding> {
         return Vec::new();
     }
     let Some(bounds) = objects[front].bounds() else { return Vec::new() };
-    // A room or a table contains the others; an obstacle is far in front of them and hides almost
-    // all.
+    // A room or a table contains the other objects. An obstacle is far in front of them and hides
+    // almost all of them.
     let eye = scout.world().camera().pose().center;
     let others: Vec<usize> = (0..objects.len()).filter(|&i| i != front && objects[i].bounds().is_some()).collect();
     let away = |i: &usize| objects[*i].bounds().map_or(f32::INFINITY, |own| (own.center() - eye).length());
@@ -173,7 +172,7 @@ pub(super) fn below_plane(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// Returns the plane between the camera and an object, which hides the object for every camera
+/// Returns the plane between the camera and an object. It hides the object whatever the camera's
 /// direction.
 pub(super) fn plane_before(scout: &SceneProbe, object: &Object) -> Option<u32> {
     let world = scout.world();
@@ -182,7 +181,8 @@ pub(super) fn plane_before(scout: &SceneProbe, object: &Object) -> Option<u32> {
     world.hits_of_each(&way).map(|hit| hit.object).find(|&other| world.objects()[other as usize].bounds().is_none())
 }
 
-/// Reflects the camera position through a plane, if all objects stand on that plane.
+/// Returns the camera's mirror image in a plane, if the camera is below the plane and all objects
+/// stand on it.
 fn raised(scout: &SceneProbe, object: u32) -> Option<Vec3> {
     let (n, d) = ground(scout, object)?;
     let eye = scout.world().camera().pose().center;
@@ -202,7 +202,7 @@ pub(super) fn ground(scout: &SceneProbe, object: u32) -> Option<(Vec3, f32)> {
     Some((n, on.dot(n)))
 }
 
-/// Returns the only plane if it faces up and the camera and all objects are below it.
+/// Returns the only plane of the scene, if it faces up and the camera and all objects are below it.
 fn ceiling(scout: &SceneProbe) -> Option<u32> {
     let world = scout.world();
     let planes = world.objects().iter().enumerate().filter(|(_, object)| object.bounds().is_none());
@@ -218,8 +218,8 @@ fn ceiling(scout: &SceneProbe) -> Option<u32> {
     (faces_up && all && seen && !matches!(world.camera(), Camera::Orthographic(_))).then_some(number)
 }
 
-/// Returns the negated offset of a plane and its span, if that puts the camera and the objects on
-/// the same side.
+/// Returns the span of a plane's offset and the negated value, if negating it puts the camera and
+/// the objects on the same side.
 fn offset_turned(scout: &SceneProbe, object: u32) -> Option<(Span, String)> {
     let plane_object = &scout.world().objects()[object as usize];
     let plane = plane(plane_object)?;

@@ -1,4 +1,4 @@
-//! Checks of layered materials: black metals, glass that absorbs all light, invisible surfaces.
+//! Checks of layered materials: black metals, glass that absorbs all light, and invisible surfaces.
 
 use super::finding::{Finding, MAX_SOUGHT, number as number_word, vector};
 use super::scene_probe::SceneProbe;
@@ -8,10 +8,11 @@ use durer_scene::material::principled::Walls;
 use durer_scene::math::fp;
 use durer_scene::scene::{Material as Written, Spanned};
 
-/// Shares of light below this count as black.
+/// Reflectances and transmittances below this count as black.
 const BLACK: f32 = 0.002;
 
-/// Returns the layered materials that objects use: index, description and parameters.
+/// Returns the layered materials that objects use: index, description in the scene file, and
+/// parameters.
 pub(super) fn layers<'s>(scout: &SceneProbe<'s>) -> Vec<(usize, &'s Spanned<Written>, &'s PrincipledMaterial)> {
     let used = |number: usize| scout.world().objects().iter().any(|object| object.material as usize == number);
     let all = scout.subject.scene.materials.iter().enumerate();
@@ -22,7 +23,7 @@ pub(super) fn layers<'s>(scout: &SceneProbe<'s>) -> Vec<(usize, &'s Spanned<Writ
     own.take(MAX_SOUGHT).collect()
 }
 
-/// Returns the smallest side of the thickest object of a material.
+/// Returns the thickness of the thickest object with a material: the smallest side of its bounds.
 pub(super) fn thickness(scout: &SceneProbe, material: usize) -> Option<f32> {
     let made = scout.world().objects().iter().filter(|object| object.material as usize == material);
     let sides = made.filter_map(|object| Some(object.bounds()?.size().min_element()));
@@ -79,7 +80,7 @@ pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
                 (diagnostic.effect("its colour absorbs all light: it is black").help(help), "transmissionColor")
             })?
         } else {
-            // Paths through a round body are about this long.
+            // Use the thickness as the length of a path through a round body.
             let thick = thickness(scout, number)?;
             let left = fp::exp(fp::ln(color.max(1e-6)) * 0.6 * thick / m.transmission_depth);
             (left < BLACK).then(|| {
@@ -118,7 +119,7 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
         let index = number_word(m.specular_ior);
         let message = format!("material {number} is glass with an index of refraction of {index}");
         let effect = match m.specular_ior {
-            // A body of smoke has no surface reflection on purpose.
+            // A volume of smoke also has an index of 1, so report only clear glass.
             ior if (ior - 1.0).abs() < 1e-3 && clear && plain && m.transmission_weight > 0.99 => {
                 "light passes straight through without reflection, so its objects are invisible"
             }
@@ -133,7 +134,7 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
     layers(scout).into_iter().filter_map(say).collect()
 }
 
-/// Reports surfaces of zero opacity.
+/// Reports surfaces with zero opacity.
 pub(super) fn not_there(scout: &SceneProbe) -> Vec<Finding> {
     let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
         if m.opacity > 0.01 {

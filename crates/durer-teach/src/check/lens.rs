@@ -1,5 +1,5 @@
-//! Checks of lenses and stereo cameras: focus, aperture, shift, separation; and of planes seen
-//! edge-on.
+//! Checks of lenses and stereo cameras (focus, aperture, shift, eye separation), of planes seen
+//! edge-on, and of scale and position relative to floating-point precision.
 
 use super::finding::{Finding, number};
 use super::probes::{Probe, ProbeHit};
@@ -10,19 +10,19 @@ use durer_diag::Diagnostic;
 use durer_scene::camera::{Camera, Projection, ThinLensCamera};
 use durer_scene::math::{Aabb, Vec3, fp};
 
-/// Size of a blur disc, as a share of the picture, above which the picture is blurred everywhere.
+/// Diameter of blur discs above which the picture is blurred everywhere, as a share of its size.
 const MAX_BLUR: f32 = 0.08;
-/// Discs smaller than this share of the picture look sharp.
+/// Diameter of blur discs below which a point looks sharp, as a share of the picture's size.
 const SHARP: f32 = 0.02;
-/// Aperture as a share of the focus distance that no lens exceeds.
+/// Aperture that no lens exceeds, as a share of the focus distance.
 const WIDEST: f32 = 0.4;
-/// Aperture as a share of the distance that few lenses exceed.
+/// Aperture that few lenses exceed, as a share of the distance to the objects.
 const FITTING: f32 = 0.12;
-/// Eye separation as a share of the distance above which the two pictures do not fuse.
+/// Eye separation above which the two images do not fuse, as a share of the distance.
 const FURTHEST: f32 = 0.5;
 
-/// Returns the blur discs of the visible points, as shares of the picture's larger side, and the
-/// depths.
+/// Returns the diameter of the blur disc of each visible point, as a share of the picture's larger
+/// side, and the point's depth.
 fn blurs(scout: &SceneProbe, camera: &ThinLensCamera) -> Vec<(f32, f32)> {
     let forward = scout.world().camera_frame().forward;
     let depth = |(probe, seen): (&Probe, &ProbeHit)| seen.t * probe.ray.dir.dot(forward);
@@ -56,13 +56,12 @@ pub(super) fn out_of_focus(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(scout.at_value(diagnostic, span, &["focusDistance", "aperture"])).whole(true)]
 }
 
-/// Reports an aperture that no lens has: everything but one plane is blurred.
+/// Reports an aperture larger than that of any lens, which blurs everything except one plane.
 pub(super) fn wide_aperture(scout: &SceneProbe) -> Vec<Finding> {
     let Camera::ThinLens(camera) = scout.world().camera() else { return Vec::new() };
     let all = blurs(scout, camera);
     let sharp = all.iter().filter(|(blur, _)| *blur < SHARP).count();
-    // An aperture that would fit the distance of most objects means that the focus is wrong
-    // instead.
+    // If the aperture fits the distance of most objects, the focus distance is wrong instead.
     let mut depths: Vec<f32> = all.iter().map(|(_, depth)| *depth).collect();
     depths.sort_by(f32::total_cmp);
     let fits = depths.get(depths.len() / 2).is_some_and(|middle| camera.aperture < FITTING * middle);
@@ -114,7 +113,7 @@ pub(super) fn shifted(scout: &SceneProbe, middle: Vec3) -> Option<Diagnostic> {
     })
 }
 
-/// Reports eyes that are too far apart.
+/// Reports a stereo camera whose eyes are too far apart.
 pub(super) fn eyes_apart(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let (separation, target) = match world.camera() {
@@ -153,7 +152,7 @@ pub(super) fn eyes_apart(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(scout.at_value(diagnostic, span, &["separation"])).whole(true)]
 }
 
-/// Reports planes that are seen edge-on, and are therefore invisible.
+/// Reports planes that are seen edge-on and are therefore invisible.
 pub(super) fn edge_on(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let (eye, forward) = (world.camera().pose().center, world.camera_frame().forward);
@@ -179,7 +178,7 @@ pub(super) fn edge_on(scout: &SceneProbe) -> Vec<Finding> {
             true => Diagnostic::note(format!("the camera looks along the {name}"))
                 .help("from there it is at most a line: tilt the camera's `direction` towards it"),
             false => {
-                // Towards the side with the objects.
+                // The normal on the side of the objects.
                 let side = if (objects.center() - on).dot(n) < 0.0 { -n } else { n };
                 let raised = super::finding::vector(eye + 0.2 * size * side);
                 let value = scout.value(scout.subject.scene.camera_span, &["center"]);
@@ -203,7 +202,8 @@ pub(super) fn far_origin(scout: &SceneProbe) -> Vec<Finding> {
     };
     let all: Vec<(f32, f32)> = world.objects().iter().filter_map(|object| sized(object.bounds()?)).collect();
     let eye = world.camera().pose().center.abs().max_element();
-    // The camera and most objects must be far away; a single distant object is another problem.
+    // The camera and most objects must be far from the origin; a single distant object is a
+    // different problem.
     let lost = |far: f32, size: f32| far * f32::EPSILON > size / 500.0;
     let many = all.iter().filter(|(far, size)| lost(*far, *size)).count();
     if many * 2 <= all.len() || all.is_empty() {
@@ -229,7 +229,7 @@ pub(super) fn far_origin(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(scout.at_value(diagnostic, scout.subject.scene.camera_span, &["center"])).whole(true)]
 }
 
-/// Reports a scene smaller than the distance at which an old program starts shadow rays.
+/// Reports a scene smaller than the offset at which a dialect's program starts shadow rays.
 pub(super) fn below_epsilon(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let Some(epsilon) = world.rules().epsilon else { return Vec::new() };

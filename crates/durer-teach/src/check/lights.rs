@@ -14,12 +14,12 @@ use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::Vec3;
 use durer_scene::scene::Spanned;
 
-/// Returns a light's description.
+/// Returns the scene file's description of a light.
 pub(super) fn written<'s>(scout: &SceneProbe<'s>, light: usize) -> Option<&'s Spanned<Light>> {
     scout.subject.scene.lights.as_ref()?.get(light)
 }
 
-/// Returns a light's span.
+/// Returns the span of a light in the scene file.
 pub(super) fn place(scout: &SceneProbe, light: usize) -> Option<Span> {
     Some(written(scout, light)?.span)
 }
@@ -30,7 +30,7 @@ pub(super) fn all_fail(scout: &SceneProbe) -> bool {
     !verdicts.is_empty() && verdicts.iter().all(|verdict| *verdict != Verdict::Works)
 }
 
-/// Returns a warning about a light that contributes nothing.
+/// Returns a warning that a light contributes nothing, and the light's span.
 pub(super) fn useless(scout: &SceneProbe, light: usize, message: String) -> Option<(Diagnostic, Span)> {
     let span = place(scout, light)?;
     let effect = match (all_fail(scout), scout.world().ambient().max_element() > VISIBLE) {
@@ -41,14 +41,14 @@ pub(super) fn useless(scout: &SceneProbe, light: usize, message: String) -> Opti
     Some((Diagnostic::warning(message).at(span).effect(effect), span))
 }
 
-/// Collects the findings that `find` makes from each light's index and verdict.
+/// Collects the findings that `find` returns for each light's index and verdict.
 pub(super) fn each(scout: &SceneProbe, find: impl Fn(usize, Verdict) -> Option<Diagnostic>) -> Vec<Finding> {
     let whole = all_fail(scout);
     let verdicts = scout.verdicts().iter().enumerate();
     verdicts.filter_map(|(light, verdict)| Some(Finding::from(find(light, *verdict)?).whole(whole))).collect()
 }
 
-/// Reports lights inside an object that work only because shadows are off.
+/// Reports lights inside an object that contribute only because shadows are off.
 fn enclosed(scout: &SceneProbe) -> Vec<Finding> {
     let shadows = scout.subject.job.settings.shadows;
     let lights = scout.world().lights().iter().enumerate().filter(|_| !shadows).take(MAX_JUDGED);
@@ -68,11 +68,12 @@ fn enclosed(scout: &SceneProbe) -> Vec<Finding> {
     lights.filter_map(say).collect()
 }
 
+/// Reports lights inside an object.
 pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = enclosed(scout);
     found.extend(each(scout, |light, verdict| {
         let Verdict::Inside(object) = verdict else { return None };
-        // Photons can leave a glass body.
+        // Photons can leave a glass object by refraction.
         if scout.subject.job.method.prepares() && transmits(scout, object) {
             return None;
         }
@@ -96,6 +97,7 @@ fn transmits(scout: &SceneProbe, object: u32) -> bool {
     }
 }
 
+/// Reports lights that an object blocks from all visible surfaces.
 pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
     each(scout, |light, verdict| {
         let Verdict::Blocked(object) = verdict else { return None };
@@ -116,17 +118,18 @@ pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
     })
 }
 
-/// Share of visible points that the lights must reach together; below, most of the picture is dark.
+/// Share of the visible points that the lights must reach together. Below it, most of the picture
+/// is dark.
 const MOSTLY_DARK: f32 = 0.33;
 /// A light weaker than this share of the strongest one is a fill light.
 const WEAK: f32 = 0.15;
 
-/// Share of lit points below which only a rim is lit.
+/// Share of lit points below which only a rim of the objects is lit.
 const RIM: f32 = 0.2;
 /// Share of lit points below which almost everything is dark.
 const NEARLY_ALL_DARK: f32 = 0.25;
 
-/// Returns the working lights, without those much weaker than the strongest.
+/// Returns the lights that contribute, except those much weaker than the strongest.
 fn main_lights(scout: &SceneProbe) -> Vec<usize> {
     let strength = |light: usize| {
         let arrives = scout.seen().filter_map(|(_, seen)| Some(seen.by(light)?.arrives.max_element()));
@@ -138,14 +141,14 @@ fn main_lights(scout: &SceneProbe) -> Vec<usize> {
     all.into_iter().filter(|(_, strength)| *strength >= WEAK * most).map(|(light, _)| light).collect()
 }
 
-/// Reports lights that reach little because most visible surfaces face away from them.
+/// Reports lights that reach few visible surfaces because most of them face away.
 fn mostly_dark(scout: &SceneProbe) -> Vec<Finding> {
     let working = main_lights(scout);
     let (mut all, mut reached, mut away, mut grazed) = (0, 0, 0, 0);
     let is_main = |lit: &&LightContribution| working.contains(&lit.light);
     let bright =
         |lit: &LightContribution| is_main(&lit) && lit.cosine > GRAZING && lit.adds.abs().max_element() > VISIBLE;
-    // An unshaded back is not the light's fault.
+    // If backs are not shaded, a dark back is not the light's fault.
     let shaded = scout.subject.job.settings.shade_back;
     for (_, seen) in scout.seen().filter(|(_, seen)| shaded || !seen.from_behind) {
         all += 1;
@@ -154,7 +157,7 @@ fn mostly_dark(scout: &SceneProbe) -> Vec<Finding> {
         away += usize::from(faces_away);
         grazed += usize::from(faces_away && seen.lit.iter().filter(is_main).any(is_grazing));
     }
-    // Black or shadowed surfaces say nothing about the direction of the lights.
+    // If surfaces are black or in shadow, the direction of the lights is not the cause.
     let reaches = reached as f32 > MOSTLY_DARK * all as f32;
     if all == 0 || working.is_empty() || reaches || away * 2 < all - reached || super::colors::all_black(scout) {
         return Vec::new();
@@ -175,7 +178,7 @@ fn mostly_dark(scout: &SceneProbe) -> Vec<Finding> {
                `position` its place",
         );
     diagnostic = scout.at_value(diagnostic, span, &["direction", "position"]);
-    // If the lights face away together, each `direction` probably points towards its source.
+    // If all lights are behind the surfaces, each `direction` probably points towards its source.
     for &light in &working {
         let Some(light) = written(scout, light) else { continue };
         if let (None, Some(direction)) = (light.value.position(), light.value.direction()) {
@@ -188,7 +191,7 @@ fn mostly_dark(scout: &SceneProbe) -> Vec<Finding> {
     let lit_floor = scout.seen().any(|(_, seen)| flat(seen.object) && seen.lit.iter().any(bright));
     if (!floor || lit_floor) && reached as f32 > 0.02 * all as f32 {
         diagnostic.severity = Severity::Note;
-        // Leave a half-lit moon alone; a thin rim is more likely a wrong sign.
+        // Offer no edit for a half-lit object. A thin lit rim is more likely due to a wrong sign.
         if reached as f32 > RIM * all as f32 {
             diagnostic.fix.clear();
         }
@@ -197,7 +200,7 @@ fn mostly_dark(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole((reached as f32) < NEARLY_ALL_DARK * all as f32)]
 }
 
-/// Distance of a light, as a multiple of the scene's size, beyond which no edit places it.
+/// Maximum distance at which an edit places a light, as a multiple of the scene's size.
 const FARTHEST: f32 = 20.0;
 
 fn is_grazing(lit: &LightContribution) -> bool {
@@ -243,7 +246,7 @@ fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
             } else {
                 bounds.size().length() + (eye - bounds.center()).length()
             };
-            // A light far outside the scene is a separate mistake.
+            // If the light is far outside the scene, that is a separate mistake.
             if (place - eye).length() > FARTHEST * wide {
                 let help = "the light lies in the plane of that surface, and far from everything: move it nearer";
                 return Some(scout.at_value(diagnostic, span, &["position"]).help(help));
@@ -256,7 +259,7 @@ fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
     }
 }
 
-/// Reports lights that lie in a visible plane or run parallel to it, so that it gets no light.
+/// Reports lights that lie in a visible plane or run parallel to it, and so do not light it.
 fn along_plane(scout: &SceneProbe) -> Vec<Finding> {
     let flat = |object: u32| scout.world().objects()[object as usize].bounds().is_none();
     let is_along = |light: &usize| {
@@ -272,6 +275,7 @@ fn along_plane(scout: &SceneProbe) -> Vec<Finding> {
         .collect()
 }
 
+/// Reports lights behind the visible surfaces.
 pub(super) fn behind(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = mostly_dark(scout);
     if found.is_empty() {
@@ -307,12 +311,13 @@ pub(super) fn behind(scout: &SceneProbe) -> Vec<Finding> {
                 scout.at_value(diagnostic, span, &["position"]).help(help)
             }
         };
-        // One of several lights may be meant for another side.
+        // If other lights contribute, this one may be meant for the hidden side.
         Some(if all_fail(scout) { diagnostic } else { Diagnostic { severity: Severity::Note, ..diagnostic } })
     }));
     found
 }
 
+/// Reports lights whose colour the surfaces that they reach absorb completely.
 pub(super) fn cancelled(scout: &SceneProbe) -> Vec<Finding> {
     each(scout, |light, verdict| {
         if verdict != Verdict::Cancelled || super::colors::all_black(scout) {
@@ -331,7 +336,7 @@ pub(super) fn cancelled(scout: &SceneProbe) -> Vec<Finding> {
     })
 }
 
-/// Reports lights that are written twice.
+/// Reports lights that are defined twice.
 pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
     let lights = scout.subject.scene.lights.as_deref().unwrap_or_default();
     let pairs = lights.iter().enumerate().filter_map(|(i, light)| {
@@ -345,7 +350,7 @@ pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
     pairs.map(say).collect()
 }
 
-/// Adds the edit that removes a light from the file and from the light count.
+/// Adds the edits that remove a light from the file and reduce the light count.
 fn without(scout: &SceneProbe, diagnostic: Diagnostic) -> Diagnostic {
     let Some(own) = diagnostic.span else { return diagnostic };
     let Some(bytes) = scout.subject.files.bytes(own.file) else { return diagnostic };

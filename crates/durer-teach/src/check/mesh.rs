@@ -1,4 +1,4 @@
-//! Checks of meshes, file by file: triangles, edges and normals.
+//! Checks of the meshes of a scene: triangles, edges and normals.
 
 use super::finding::{Finding, counted, percent, vector};
 use super::mesh_files::topology::Topology;
@@ -9,11 +9,11 @@ use durer_render::world::{Material, Object as Placed};
 use durer_scene::dialect::Quirk;
 use durer_scene::math::Vec3;
 
-/// Fraction of zero-area triangles above which they are not just the poles of a surface of
+/// Fraction of zero-area triangles above which they are more than the poles of a surface of
 /// revolution.
 const MANY_FLAT: f32 = 0.03;
 
-/// Reports triangles without area.
+/// Reports triangles with zero area.
 pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for mesh in scout.meshes() {
@@ -33,7 +33,7 @@ pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Reports holes and non-manifold edges in meshes that need an inside.
+/// Reports holes and non-manifold edges in glass meshes, which must be closed.
 pub(super) fn open_glass(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = flat_glass(scout);
     for mesh in scout.meshes() {
@@ -60,7 +60,7 @@ pub(super) fn holes(scout: &SceneProbe) -> Vec<Finding> {
     for mesh in scout.meshes().iter().filter(|mesh| mesh.glass(scout).is_none() && mesh.topology.open > 0) {
         let seen = scout.seen().filter(|(_, seen)| mesh.is_shown_at(scout.object_span(seen.object)));
         let (all, backs) = seen.fold((0, 0), |(all, backs), (_, s)| (all + 1, backs + usize::from(s.from_behind)));
-        // An open sheet is seen mostly from one side.
+        // Most rays hit the same side of an open sheet.
         if backs * 50 < all || backs * 10 > all * 7 || all == 0 {
             continue;
         }
@@ -75,7 +75,7 @@ pub(super) fn holes(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Reports flat objects of glass, which have no inside.
+/// Reports flat objects of glass, which have no interior.
 pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
     use super::shapes::{shape, triangle};
     use durer_scene::describe::DescribedList as _;
@@ -91,7 +91,7 @@ pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
     };
     let flat: Vec<(&Placed, String)> =
         world.objects().iter().filter(glass).filter_map(|object| Some((object, what(object)?))).collect();
-    // Triangles that form a closed surface have an inside.
+    // Triangles that form a closed surface enclose an interior.
     let corners: Vec<_> = flat
         .iter()
         .filter_map(|(object, _)| Some(triangle(object)?.map(|corner| object.world_point(corner))))
@@ -108,7 +108,7 @@ pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
                  inside the glass",
             )
             .help("glass needs a closed body, such as a sphere or a closed mesh; or set its index to 1");
-        // The surface of a lake is flat on purpose.
+        // Water surfaces are often flat on purpose.
         if *what != "triangle" && !world.rules().is_bit_compatible() {
             diagnostic.severity = durer_diag::Severity::Note;
         }
@@ -117,8 +117,8 @@ pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
     flat.iter().filter(open).take(3).map(say).collect()
 }
 
-/// Returns mesh files with faces of more than three corners: path, number of such faces, number of
-/// all faces, and span of the first.
+/// Returns the mesh files that have faces with more than three vertices: path, number of such
+/// faces, number of all faces, and span of the first such face.
 pub(super) fn large_faces<'s>(scout: &SceneProbe<'s>) -> Vec<(&'s str, usize, usize, Span)> {
     let one = |mesh: &MeshFile<'s>| {
         let bytes = scout.subject.files.bytes(mesh.file)?;
@@ -139,8 +139,8 @@ pub(super) fn large_faces<'s>(scout: &SceneProbe<'s>) -> Vec<(&'s str, usize, us
     scout.meshes().iter().filter_map(one).collect()
 }
 
-/// Reports mesh files whose last line that year's program drops, or whose normals it assigns to
-/// other vertices than the file does.
+/// Reports mesh files that a dialect's program misreads: it drops their last line, or assigns
+/// normals to other vertices than the faces do.
 pub(super) fn misread(scout: &SceneProbe) -> Vec<Finding> {
     let rules = scout.world().rules();
     let mut found = Vec::new();
@@ -177,7 +177,7 @@ pub(super) fn misread(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Returns the first corner of a face whose normal index differs from its vertex index.
+/// Returns the first face with a normal index that differs from the vertex index.
 fn other_normal(bytes: &[u8], file: u32) -> Option<Span> {
     let mut start = 0;
     for line in bytes.split_inclusive(|b| *b == b'\n') {
@@ -239,9 +239,9 @@ pub(super) fn inside_out(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Reports closed meshes of a model whose triangles are clockwise when seen from outside.
+/// Reports closed meshes in model files whose triangles are clockwise when seen from outside.
 fn models_inside_out(scout: &SceneProbe) -> Vec<Finding> {
-    // Formats reverse the winding under a mirroring transform, so skip mirrored meshes.
+    // File formats reverse the winding under a mirroring transform, so skip mirrored meshes.
     let kept = |object: &Placed| {
         object.to_world.as_ref().is_none_or(|to_world| {
             to_world.vector(Vec3::X).cross(to_world.vector(Vec3::Y)).dot(to_world.vector(Vec3::Z)) > 0.0
@@ -255,18 +255,18 @@ fn models_inside_out(scout: &SceneProbe) -> Vec<Finding> {
         let index = scout.world().objects().iter().position(|object| mesh.is_shown_at(object.span))? as u32;
         let seen = scout.seen().filter(|(_, seen)| mesh.is_shown_at(scout.object_span(seen.object))).count();
         let most = seen * 2 > scout.seen().count();
-        let diagnostic = Diagnostic::warning(format!("the {} is closed, and inside out", scout.object(index)))
+        let diagnostic = Diagnostic::warning(format!("the {} is closed, but inside out", scout.object(index)))
             .at(scout.object_span(index))
-            .effect("programs that leave out backs show its inside; as glass it bends light the wrong way")
-            .help("let its faces go round counter-clockwise, seen from outside");
-        // Modelling programs leave small inverted pieces, which are hardly visible.
+            .effect("programs that cull back faces show its inside; as glass it refracts light the wrong way")
+            .help("order the vertices of its faces counter-clockwise, as seen from outside");
+        // Modelling programs often leave small inverted pieces, which are hardly visible.
         let severity = if most { Severity::Warning } else { Severity::Note };
         Some(Finding::from(Diagnostic { severity, ..diagnostic }))
     };
     turned.filter_map(say).collect()
 }
 
-/// Returns true if an object shows a mesh that `inside-out` reports.
+/// Returns true if an object uses a mesh that `inside-out` reports.
 pub(super) fn shows_inside_out(scout: &SceneProbe, object: u32) -> bool {
     let span = scout.object_span(object);
     let turned =
@@ -274,7 +274,8 @@ pub(super) fn shows_inside_out(scout: &SceneProbe, object: u32) -> bool {
     turned.into_iter().any(|mesh| mesh.objects.iter().any(|own| own.span.start == span.start))
 }
 
-/// Reports normals of a file that contradict its faces, are missing on some, or have no length.
+/// Reports normals in a mesh file that contradict its faces, are missing for some faces, or have
+/// zero length.
 pub(super) fn given_normals(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for mesh in scout.meshes() {

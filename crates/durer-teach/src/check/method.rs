@@ -1,4 +1,5 @@
-//! Checks that the integrator supports the scene's light sources and that their light arrives.
+//! Checks that the integrator supports the scene's light sources and that their light reaches the
+//! surfaces.
 
 use super::area_lights::emissive_objects;
 use super::colors::background_span;
@@ -14,9 +15,9 @@ use durer_scene::scene::Material as Written;
 
 /// Radiance below which a surface is black in eight bits.
 const BLACK: f32 = 0.001;
-/// Minimum fraction of black surfaces, in tenths, in a picture without light.
+/// Minimum number of black surface samples, in tenths, for the picture to count as black.
 const MOSTLY: usize = 9;
-/// Minimum number of surface samples for a judgement.
+/// Minimum number of surface samples needed for a conclusion.
 const FEWEST: usize = 20;
 
 /// Reports a scene whose only light is of a kind that Whitted's method does not support.
@@ -27,14 +28,14 @@ pub(super) fn wrong_integrator(scout: &SceneProbe) -> Vec<Finding> {
     }
     let light = emissive_objects(scout).into_iter().next();
     let (what, span) = match (light, world.environment()) {
-        (Some((object, _)), _) => ("surfaces that shine", Some(scout.object_span(object))),
+        (Some((object, _)), _) => ("emissive surfaces", Some(scout.object_span(object))),
         (None, Some(_)) => ("its environment", background_span(scout)),
         (None, None) => return Vec::new(),
     };
     let diagnostic =
-        Diagnostic::warning(format!("the light of this scene comes from {what}, which Whitted's method leaves out"))
-            .effect("nothing is lit: surfaces are black, or of one flat colour")
-            .help("paths bring it: ask for `--integrator path`, or leave `--integrator` away");
+        Diagnostic::warning(format!("the only light in this scene comes from {what}, which Whitted's method does not support"))
+            .effect("nothing is lit: surfaces are black or have a flat colour")
+            .help("use `--integrator path`, or omit `--integrator`");
     vec![Finding::from(Diagnostic { span, ..diagnostic }).whole(true)]
 }
 
@@ -46,8 +47,8 @@ pub(super) fn black_sky(scout: &SceneProbe) -> Vec<Finding> {
     }
     let alone = scout.world().lights().is_empty() && emissive_objects(scout).is_empty();
     let diagnostic = Diagnostic::warning("the environment is multiplied by 0")
-        .effect(if alone { "nothing else shines: the picture is black" } else { "it gives no light, and is not seen" })
-        .help("`environmentScale` is a factor: `environmentScale 1 1 1` is the picture as it is");
+        .effect(if alone { "nothing else emits light, so the picture is black" } else { "it emits no light and is invisible" })
+        .help("`environmentScale` is a factor; `environmentScale 1 1 1` leaves the environment unchanged");
     let value = background_span(scout).and_then(|block| scout.value(block, &["environmentScale"]));
     let diagnostic = Diagnostic { span: value.or(background_span(scout)), ..diagnostic.fix_at(value, "1 1 1") };
     vec![Finding::from(diagnostic).whole(alone)]
@@ -80,10 +81,10 @@ pub(super) fn mostly_black(scout: &SceneProbe) -> Vec<Finding> {
     }
     let model = scout.subject.files.name(0).is_some_and(|name| scene_format_for(name).is_some());
     let diagnostic =
-        Diagnostic::warning(format!("{} of what is seen is black: its lights do not reach it", percent(black, all)))
-            .effect("hardly anything but the background is seen")
+        Diagnostic::warning(format!("{} of the visible surface area is black: the scene's lights do not reach it", percent(black, all)))
+            .effect("hardly anything except the background is visible")
             .help(match model {
-                true => "`--studio sun` lights a model from outside; its own lights then do not count",
+                true => "`--studio sun` lights a model from outside, and replaces its lights",
                 false => {
                     "move the light to the camera's side, add another, or write `Background { color 0.3 0.3 0.3 }`"
                 }
@@ -116,9 +117,9 @@ pub(super) fn nothing_mirrored(scout: &SceneProbe) -> Vec<Finding> {
     if dark * 100 < all * 95 {
         return Vec::new();
     }
-    let diagnostic = Diagnostic::warning("all that is seen mirrors, and there is nothing to be mirrored")
-        .effect("mirrors show what is around them, and that is black")
-        .help("give the `Background` a `color`, add something to be mirrored, or give the mirror a `diffuseColor`");
+    let diagnostic = Diagnostic::warning("only mirrors are visible, and they have nothing to reflect")
+        .effect("mirrors show their surroundings, which are black")
+        .help("give the `Background` a `color`, add an object to reflect, or give the mirror a `diffuseColor`");
     let span = scout.subject.scene.materials.get(first.material as usize).map(|written| written.span);
     vec![Finding::from(Diagnostic { span, ..diagnostic }).whole(true)]
 }

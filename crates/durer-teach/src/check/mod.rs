@@ -1,9 +1,9 @@
 //! Diagnosis of scenes whose picture is black, white, empty or odd, with fixes.
 //!
 //! A [`SceneProbe`] traces a coarse grid of camera rays through the world and records their hits.
-//! The checks of the table [`CHECKS`] examine these probes, the meshes and the description. Every
-//! finding has a stable code, a place, an effect on the picture, a suggested change and, if it is
-//! mechanical, an edit of the scene's text.
+//! The checks in the table [`CHECKS`] examine these probes, the meshes and the scene description.
+//! Every finding has a stable code, a place in the scene file, an effect on the picture, and a
+//! suggested change. If the change is mechanical, the finding also has an edit of the scene's text.
 
 mod aim;
 mod air;
@@ -56,11 +56,11 @@ pub use repair::{RepairedText, apply};
 pub use scene_probe::SceneProbe;
 pub use table::{CHECKS, Check, rank};
 
-/// Findings that explain why nothing, or a single object, is visible.
+/// Codes of findings that explain why nothing, or only a single object, is visible.
 const EMPTIES: [&str; 7] =
     ["camera-inside", "camera-away", "too-small", "too-narrow", "all-missed", "hidden-behind", "below-plane"];
 
-/// Causes, each with the findings that are suppressed because they follow from it.
+/// Causes, each with the codes of findings that follow from it and are then suppressed.
 const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("wrong-integrator", &["no-light", "no-emitter", "too-dark", "same-color", "one-color", "nothing-mirrored"]),
     ("black-sky", &["no-emitter", "too-dark", "one-color"]),
@@ -114,8 +114,8 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("epsilon", &["tiny"]),
 ];
 
-/// Returns all findings about a compiled scene, causes first, including the diagnostics of its
-/// reader.
+/// Returns all findings about a compiled scene, causes first. They include the diagnostics of the
+/// reader and the compiler.
 pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
     let scout = SceneProbe::new(subject);
     let mut found: Vec<Finding> = diagnostics.iter().cloned().map(Finding::from).collect();
@@ -124,11 +124,12 @@ pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
         let of_kind = (check.find)(&scout).into_iter();
         found.extend(of_kind.map(|finding| Finding { diagnostic: finding.diagnostic.code(check.code), ..finding }));
     }
-    // Drop findings that only count if nothing explains the picture.
+    // Drop findings that only describe the picture if another finding explains it.
     if found.iter().any(|finding| finding.whole && !finding.last) {
         found.retain(|finding| !finding.last);
     }
-    // If a foreign attenuation keyword was ignored, that is why the light does not fade.
+    // If an attenuation keyword of another dialect was ignored, that is why the light does not
+    // fade.
     let fades = |finding: &Finding| {
         let word = finding.diagnostic.span.map(|span| scout.text(span)).unwrap_or_default();
         finding.diagnostic.code == "foreign-word" && ["attenuation", "falloff"].contains(&word.as_str())
@@ -139,28 +140,29 @@ pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
             (finding.diagnostic.severity, finding.whole) = (Severity::Warning, true);
         }
     }
-    // Drop findings that follow from a cause that was found.
+    // Drop findings that follow from a reported cause.
     for (cause, consequences) in CONSEQUENCES {
         if found.iter().any(|finding| finding.diagnostic.code == *cause && finding.is_serious()) {
             found.retain(|finding| !consequences.contains(&finding.diagnostic.code));
         }
     }
-    // If nothing is visible, do not report each invisible object.
+    // If nothing is visible, do not report individual invisible objects.
     if found.iter().any(|finding| EMPTIES.contains(&finding.diagnostic.code) && finding.whole) {
         found.retain(|finding| finding.diagnostic.code != "unseen");
     }
     ordered(found)
 }
 
-/// Returns the findings of the reader and the compiler only, for a scene that cannot be rendered.
+/// Returns the diagnostics of the reader and the compiler as findings, for a scene that cannot be
+/// rendered.
 pub fn reported(diagnostics: &Diagnostics) -> Vec<Finding> {
     ordered(diagnostics.iter().cloned().map(Finding::from).collect())
 }
 
-/// Sorts findings: errors, then warnings about the whole picture, other warnings, then notes.
-/// Within a level, the order is that of the table (causes before consequences), and each kind
-/// appears once before any kind repeats. If a kind has many findings, the last one shown counts the
-/// others.
+/// Sorts findings by level: errors, warnings about the whole picture, other warnings, notes. Within
+/// a level they follow the order of the table (causes before consequences), and each kind appears
+/// once before any kind repeats. If a kind has many findings, the last one shown gives the number
+/// of the others.
 fn ordered(mut found: Vec<Finding>) -> Vec<Finding> {
     let level = |finding: &Finding| match finding.diagnostic.severity {
         Severity::Error => 0,
@@ -169,7 +171,7 @@ fn ordered(mut found: Vec<Finding>) -> Vec<Finding> {
         Severity::Warning => 2,
         Severity::Note => 4,
     };
-    // Errors keep their order: the first may be the reason for the others.
+    // Errors keep their order, because the first may cause the others.
     let rank = |finding: &Finding| if level(finding) == 0 { 0 } else { table::rank(finding.diagnostic.code) };
     found.sort_by_key(|finding| (level(finding), rank(finding)));
     let mut reported: Vec<(u8, &str)> = Vec::new();

@@ -1,13 +1,13 @@
-//! Checks of names in the scene file that are not used.
+//! Checks for names that the scene file defines but does not use.
 
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_formats::course::place::values;
 
-/// Reports definitions that are never used.
+/// Reports `define` statements whose name is never used.
 pub(super) fn unused_define(scout: &SceneProbe) -> Vec<Finding> {
-    // Definitions in other files form a library.
+    // Definitions in included files form a library and need not be used.
     let file = scout.subject.scene.camera_span.file;
     let Some(bytes) = scout.subject.files.bytes(file) else { return Vec::new() };
     let files = (0..).map_while(|i| scout.subject.files.bytes(i).map(|bytes| (i, bytes)));

@@ -1,4 +1,4 @@
-//! Checks of samples that are NaN or infinite, and where that starts.
+//! Checks for samples that are NaN or infinite, and for the term that causes them.
 
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
@@ -8,7 +8,7 @@ use durer_render::integrator::trace::{TermKind, TermValue};
 use durer_render::render::explain::{explain, explain_ray};
 use durer_scene::sampler::SampleId;
 
-/// Reports the first sample that is not finite, and the terms that make it so.
+/// Reports the first sample that is not finite, and the chain of terms that leads to the cause.
 pub(super) fn not_finite(scout: &SceneProbe) -> Vec<Finding> {
     let (world, job) = (scout.world(), scout.subject.job);
     let (name, tree) = match scout.subject.rejected {
@@ -45,7 +45,7 @@ pub(super) fn not_finite(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(bad * 4 > scout.probes.len())]
 }
 
-/// Follows the tree from a term down to the first that is not finite.
+/// Follows the trace tree from a term down to the first term that is not finite.
 fn path(scout: &SceneProbe, node: &TraceNode, steps: &mut Vec<String>, place: &mut Option<Span>) {
     let names = scout.names();
     match &node.what {

@@ -1,4 +1,4 @@
-//! Checks of objects: flat ones, squashed ones, and duplicates.
+//! Checks of objects: degenerate, squashed and duplicate ones.
 
 use super::faces::overlapping;
 use super::finding::{Finding, MAX_SOUGHT, number};
@@ -13,10 +13,10 @@ use durer_scene::shape::{Plane, Shape};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A box thinner than this share of its sides is squashed.
+/// A box is squashed if its smallest side is less than this share of its other sides.
 const SQUASHED: f32 = 1e-4;
 
-/// Reports triangles of the scene file without area.
+/// Reports triangles of the scene file that have zero area.
 pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
     let flat = |object: &&Object| {
         triangle(object).is_some_and(|corners| {
@@ -34,7 +34,7 @@ pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
     scout.world().objects().iter().filter(flat).map(say).collect()
 }
 
-/// Returns solids that none of a few hundred test rays hits.
+/// Returns solids that a few hundred test rays all miss.
 pub(super) fn empty_solids(scout: &SceneProbe) -> Vec<u32> {
     let world = scout.world();
     let empty = |&(i, object): &(usize, &Object)| {
@@ -58,7 +58,7 @@ pub(super) fn empty_solids(scout: &SceneProbe) -> Vec<u32> {
     world.objects().iter().enumerate().filter(|_| few).filter(empty).map(|(i, _)| i as u32).take(MAX_SOUGHT).collect()
 }
 
-/// Returns objects without a surface: empty solids, triangles and meshes without area.
+/// Returns objects without a surface: empty solids, and triangles and meshes with zero area.
 pub(super) fn nothing_of(scout: &SceneProbe) -> Vec<u32> {
     let mut nothing = empty_solids(scout);
     let flat = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).length_squared() == 0.0;
@@ -74,7 +74,7 @@ pub(super) fn nothing_of(scout: &SceneProbe) -> Vec<u32> {
     nothing
 }
 
-/// Reports solids that are empty.
+/// Reports empty solids.
 pub(super) fn empty_solid(scout: &SceneProbe) -> Vec<Finding> {
     let say = |object: u32| {
         let diagnostic = Diagnostic::warning(format!("the {} is empty", scout.object(object)))
@@ -86,7 +86,7 @@ pub(super) fn empty_solid(scout: &SceneProbe) -> Vec<Finding> {
     empty_solids(scout).into_iter().map(say).collect()
 }
 
-/// Reports objects that a transform makes flat, or nearly so.
+/// Reports objects that a transform makes flat, or nearly flat.
 pub(super) fn squashed(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for object in scout.world().objects() {
@@ -158,27 +158,27 @@ pub(super) fn same(a: &Object, b: &Object) -> bool {
     }
 }
 
-/// Reports objects that are at the same place twice.
+/// Reports objects that coincide with another object.
 pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let mut places: HashMap<[u32; 6], Vec<usize>> = HashMap::new();
     let mut found = Vec::new();
     found.extend(in_plane(scout));
-    // Identical surfaces are reported below; with equal materials it does not matter which face is
-    // visible.
+    // Identical surfaces are reported below. If the materials are equal, it does not matter which
+    // face is visible.
     let differ =
         |&(a, b): &(usize, usize)| objects[a].material != objects[b].material && !same(&objects[a], &objects[b]);
     let faces = overlapping(scout).into_iter().filter(differ).take(MAX_SOUGHT);
     found.extend(faces.map(|(a, b)| pair(scout, a, b)));
     for (i, object) in objects.iter().enumerate() {
-        // Unbounded objects share one key.
+        // All unbounded objects have the same key.
         let key = object.bounds().map_or([0; 6], |b| {
             let [x, y, z] = b.min.to_array().map(f32::to_bits);
             let [u, v, w] = b.max.to_array().map(f32::to_bits);
             [x, y, z, u, v, w]
         });
         let there = places.entry(key).or_default();
-        // Compare with the first 16 only, so that many objects at one place stay cheap.
+        // Compare with the first 16 only, which is cheap even if many objects are at one place.
         if found.len() >= MAX_SOUGHT {
             break;
         }
@@ -190,7 +190,7 @@ pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Reports flat objects that lie in a plane, where depth cannot separate the two.
+/// Reports flat objects that lie in a plane, where rounding decides which of the two is visible.
 fn in_plane(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let planes: Vec<(usize, &Plane)> = objects

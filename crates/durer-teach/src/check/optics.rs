@@ -1,5 +1,5 @@
-//! Checks of layered materials under path tracing: films, scattering bodies, dispersion, and paths
-//! too short for glass.
+//! Checks of layered materials under path tracing: thin films, scattering bodies, dispersion, and
+//! paths too short for glass.
 
 use super::finding::{Finding, MAX_SOUGHT, number, percent};
 use super::layers::{layers, thickness};
@@ -10,17 +10,18 @@ use durer_scene::material::principled::Walls;
 use durer_scene::scene::{Material as Written, Spanned};
 use durer_scene::spectrum::ColorMode;
 
-/// Thickness in micrometres above which a film shows no colours.
+/// Thickness in micrometres above which a thin film shows no interference colours.
 const THICKEST_FILM: f32 = 10.0;
 /// Mean free path, as a multiple of a body's thickness, above which the body hardly scatters light.
 const LONGEST_WAY: f32 = 30.0;
-/// Minimum difference of the index of refraction from 1 that bends light.
+/// Minimum deviation of the index of refraction from 1 that visibly bends light.
 const BENDS: f32 = 1e-3;
 
-/// A used material: its index, description and parameters.
+/// A layered material that an object uses: index, description in the scene file, and parameters.
 type Used<'s> = (usize, &'s Spanned<Written>, &'s PrincipledMaterial);
 
-/// Reports films too thick to show colours: their thickness is in micrometres.
+/// Reports thin films that are too thick to show colours, usually because a value in nanometres was
+/// written instead of micrometres.
 pub(super) fn thick_film(scout: &SceneProbe) -> Vec<Finding> {
     let say = |(index, written, m): Used| {
         if m.thin_film_weight <= 0.0 || m.thin_film_thickness <= THICKEST_FILM {
@@ -28,9 +29,9 @@ pub(super) fn thick_film(scout: &SceneProbe) -> Vec<Finding> {
         }
         let thin = number(m.thin_film_thickness / 1000.0);
         let thick = number(m.thin_film_thickness);
-        let diagnostic = Diagnostic::warning(format!("the film on material {index} is {thick} micrometres thick"))
-            .effect("it shows no colours: they need a film about as thick as light waves are long")
-            .help(format!("`thinFilmThickness` is in micrometres, and {thick} nm are `thinFilmThickness {thin}`"))
+        let diagnostic = Diagnostic::warning(format!("the thin film on material {index} is {thick} micrometres thick"))
+            .effect("it shows no colours: only a film about as thick as a wavelength of light does")
+            .help(format!("`thinFilmThickness` is in micrometres; for {thick} nm, write `thinFilmThickness {thin}`"))
             .fix_at(scout.value(written.span, &["thinFilmThickness"]), thin);
         Some(Finding::from(scout.at_value(diagnostic, written.span, &["thinFilmThickness"])))
     };
@@ -46,13 +47,13 @@ pub(super) fn wide_scatter(scout: &SceneProbe) -> Vec<Finding> {
             return None;
         }
         let (radius, less) = (number(m.subsurface_radius), number(0.1 * thick));
-        let message = format!("light goes {radius} in material {index} until it is scattered");
+        let message = format!("light travels {radius} in material {index} before it is scattered");
         let diagnostic = Diagnostic::warning(message)
             .effect(format!(
-                "what is made of it is {} thick: light goes straight through, and its colour is not seen",
+                "its objects are only {} thick: light passes straight through, and the colour is not visible",
                 number(thick)
             ))
-            .help(format!("`subsurfaceRadius` is in units of the scene: `subsurfaceRadius {less}`, say"))
+            .help(format!("`subsurfaceRadius` is in scene units: try `subsurfaceRadius {less}`"))
             .fix_at(scout.value(written.span, &["subsurfaceRadius"]), less);
         Some(Finding::from(scout.at_value(diagnostic, written.span, &["subsurfaceRadius"])))
     };
@@ -69,19 +70,19 @@ pub(super) fn no_spectrum(scout: &SceneProbe) -> Vec<Finding> {
         if m.transmission_dispersion_scale <= 0.0 || m.transmission_weight < 0.5 || m.walls == Walls::Thin {
             return None;
         }
-        // Ignore dispersion that comes from a preset or model, which is often not intended to be
+        // Ignore dispersion that comes from a preset or a model, because it may not be meant to be
         // visible.
         let value = scout.value(written.span, &["transmissionDispersionScale"])?;
-        let diagnostic = Diagnostic::note(format!("material {index} spreads colours, and light has none to spread"))
+        let diagnostic = Diagnostic::note(format!("material {index} has dispersion, but the picture is not rendered spectrally"))
             .at(value)
-            .effect("light is red, green and blue here, and bent by one index: no colours are seen")
-            .help("ask for light by wavelength: `--color spectral`");
+            .effect("red, green and blue light is refracted with the same index, so no dispersion is visible")
+            .help("use `--color spectral`");
         Some(Finding::from(diagnostic))
     };
     layers(scout).into_iter().filter_map(say).take(MAX_SOUGHT).collect()
 }
 
-/// Reports glass and mirrors for which paths have too few bounces.
+/// Reports glass and mirrors that need more bounces than the paths have.
 pub(super) fn short_paths(scout: &SceneProbe) -> Vec<Finding> {
     let bounces = scout.subject.job.settings.bounces;
     let say = |(index, written, m): Used| {
@@ -90,9 +91,9 @@ pub(super) fn short_paths(scout: &SceneProbe) -> Vec<Finding> {
         let glass = m.transmission_weight > 0.5 && m.base_metalness < 0.5 && m.opacity > 0.5;
         let mirror = m.base_metalness > 0.9 && m.specular_roughness < 0.2;
         let (least, what) = match (glass, mirror) {
-            // Light needs one bounce to enter a body and one to leave it.
-            (true, _) if bends => (2, "of glass"),
-            (true, _) => (1, "of glass"),
+            // Light needs one bounce to enter an object and one to leave it.
+            (true, _) if bends => (2, "glass"),
+            (true, _) => (1, "glass"),
             (_, true) => (1, "a mirror"),
             _ => return None,
         };
@@ -100,15 +101,15 @@ pub(super) fn short_paths(scout: &SceneProbe) -> Vec<Finding> {
             return None;
         }
         let level = if bounces == 1 { "1 bounce" } else { "no bounces" };
-        let message = format!("material {index} is {what}, and paths have {level} here");
+        let message = format!("material {index} is {what}, but paths have {level}");
         let diagnostic = Diagnostic::warning(message)
             .at(written.span)
-            .label(format!("on {} of what is seen", percent(rays, scout.seen().count())))
+            .label(format!("on {} of the visible surfaces", percent(rays, scout.seen().count())))
             .effect(match glass {
-                true => "light does not come out of it again: it is black, or nearly so",
-                false => "what it mirrors is black",
+                true => "light cannot leave it: it is black, or nearly black",
+                false => "its reflections are black",
             })
-            .help("ask for more: `--bounces 16`, or leave `--bounces` away");
+            .help("set `--bounces 16`, or omit `--bounces`");
         Some(Finding::from(diagnostic))
     };
     layers(scout).into_iter().filter_map(say).take(1).collect()

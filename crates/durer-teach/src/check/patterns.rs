@@ -1,4 +1,4 @@
-//! Checks of patterns that are invisible: only one part shows, or cells are finer than a pixel.
+//! Checks of patterns that are not visible: only one part shows, or cells are smaller than a pixel.
 
 use super::finding::{Finding, MAX_SOUGHT, number, percent};
 use super::scene_probe::SceneProbe;
@@ -8,16 +8,17 @@ use durer_scene::material::{ColorNoise, Solid};
 use durer_scene::math::Vec3;
 use durer_scene::scene::Material as Written;
 
-/// Number of steps across a pixel at which a pattern is evaluated.
+/// Number of steps per pixel at which a pattern is evaluated.
 const STEPS: u32 = 24;
-/// Number of changes within a pixel above which a pattern is noise.
+/// Number of changes within a pixel above which a pattern is only noise.
 const MAX_CHANGES: usize = 3;
-/// Cells this many times wider than the scene show no pattern.
+/// A pattern is invisible if its cells are this many times wider than the scene.
 const COARSEST: f32 = 3.0;
-/// Minimum number of visible points for a judgement.
+/// Minimum number of visible points needed for a conclusion.
 const FEWEST: usize = 20;
 
-/// A pattern that can be evaluated. Solids carry the matrix to pattern space and
+/// Solid pattern or colour noise of a material, evaluated to find out if its pattern is visible in
+/// the picture. `Solid` carries the matrix to pattern space and
 /// [`ShadingRules::conic_rings`](durer_render::world::ShadingRules::conic_rings).
 enum PatternSampler<'w> {
     Solid(&'w Solid, &'w glam::DAffine3, bool),
@@ -48,13 +49,13 @@ impl PatternSampler<'_> {
     }
 }
 
-/// Reports patterns of which the picture shows one part, or only noise.
+/// Reports patterns that show only one part, or only noise.
 pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let mut found = Vec::new();
     for (number, written) in scout.subject.scene.materials.iter().enumerate().take(MAX_SOUGHT) {
         let Some(look) = PatternSampler::of(world, number as u32) else { continue };
-        // Count direct hits only: a pattern inside another is only partly visible.
+        // Use direct hits only: a pattern nested in another shows only in places.
         let places: Vec<(Vec3, f32)> = scout
             .seen()
             .filter(|(_, seen)| seen.material as usize == number)
@@ -106,7 +107,7 @@ pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Explains from the description why a pattern shows no change, if it can.
+/// Explains from the scene description why a pattern does not vary, if possible.
 fn without_change(scout: &SceneProbe, look: &PatternSampler, written: &Written) -> Option<(String, &'static str)> {
     let PatternSampler::Solid(solid, to_pattern, _) = look else { return None };
     if let Solid::Mix(mix) = solid {
@@ -120,7 +121,7 @@ fn without_change(scout: &SceneProbe, look: &PatternSampler, written: &Written) 
     }
     let cell = to_pattern.inverse().matrix3;
     let cell = cell.x_axis.length().min(cell.y_axis.length()).min(cell.z_axis.length()) as f32;
-    // For unbounded objects use the size of the rest of the scene, or the distance from the camera.
+    // A scene of unbounded objects has no size to compare with.
     let size = match scout.world().bounds() {
         bounds if bounds.is_empty() => return None,
         bounds => bounds.size().max_element(),
@@ -131,8 +132,8 @@ fn without_change(scout: &SceneProbe, look: &PatternSampler, written: &Written) 
     (cell > COARSEST * size).then_some((message, help))
 }
 
-/// Reports textures that show a single colour: the image has no other, or all corners of a mesh
-/// have the same texture coordinates.
+/// Reports textures that show a single colour because the image has only one colour, or because all
+/// vertices of a mesh have the same texture coordinates.
 pub(super) fn flat_texture(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let mut found = Vec::new();

@@ -1,5 +1,5 @@
-//! Checks for path tracing: scenes without emitters, lights that are enclosed in glass, and media
-//! parameters without effect.
+//! Checks for path tracing: scenes without emitters, lights enclosed in glass, and medium
+//! parameters that have no effect.
 
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
@@ -11,7 +11,7 @@ use durer_scene::light::Illuminate as _;
 use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::Material;
 
-/// Checks of local lighting that do not apply to path tracing.
+/// Codes of checks for local lighting, which do not apply to path tracing.
 const OF_LOCAL_LIGHT: &[&str] = &[
     "light-divides",
     "light-inside",
@@ -26,15 +26,16 @@ const OF_LOCAL_LIGHT: &[&str] = &[
     "seen-from-behind",
 ];
 
-/// Checks of local lighting that explain a black picture of a path tracer.
+/// Codes of those checks that can explain a black path-traced picture.
 const OF_DARKNESS: &[&str] = &["light-inside", "light-blocked", "light-behind", "light-faint"];
 
-/// Returns true if a check of local lighting does not apply to the scene.
+/// Returns true if a check for local lighting does not apply to the scene.
 pub(super) fn is_beside_the_point(scout: &SceneProbe, code: &str) -> bool {
     let says_why = || OF_DARKNESS.contains(&code) && scout.is_dark();
     scout.is_physical() && OF_LOCAL_LIGHT.contains(&code) && !says_why()
 }
 
+/// Reports a scene in which nothing emits light.
 pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let scaled = scout.subject.scene.background.environment_scale != Some(Vec3::ZERO);
@@ -55,7 +56,7 @@ pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
     if !scout.is_physical() || !dark_sky || emits || world.lights().iter().any(|light| light.color() != Color::ZERO) {
         return Vec::new();
     }
-    // Some material was meant to emit.
+    // If a material was meant to emit, report that material.
     let emitter = scout.subject.scene.materials.iter().enumerate().find(|(_, material)| match &material.value {
         Material::Principled(layers) => layers.emission_luminance > 0.0,
         _ => false,
@@ -93,7 +94,7 @@ pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// Reports point lights inside glass, whose light no path can find from outside.
+/// Reports point lights inside glass: paths from outside cannot reach them.
 pub(super) fn lamp_in_glass(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     if !matches!(scout.subject.job.method, IntegratorKind::Path(_)) {
@@ -113,7 +114,7 @@ pub(super) fn lamp_in_glass(scout: &SceneProbe) -> Vec<Finding> {
     enclosed.collect()
 }
 
-/// Reports scattering parameters that have no effect.
+/// Reports scattering parameters of layered materials that have no effect.
 pub(super) fn without_effect(scout: &SceneProbe) -> Vec<Finding> {
     if !scout.is_physical() {
         return Vec::new();

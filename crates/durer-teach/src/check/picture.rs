@@ -1,14 +1,15 @@
-//! Checks of a finished picture.
+//! Checks of a rendered picture.
 
 use durer_render::render::Statistics;
 use durer_scene::math::Color;
 
 /// Share of pixels clipped in all channels above which a picture is mostly white.
 const MAX_WHITE: f32 = 0.5;
-/// Share of rejected samples above which more than a speck is affected.
+/// Share of rejected samples above which more than a few pixels are affected.
 const MAX_REJECTED: f64 = 0.001;
 
-/// A visible fault of a picture.
+/// An obvious fault of a rendered picture, such as black everywhere, after which `durer render`
+/// suggests `durer check`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Oddity {
     /// The whole picture is black.
@@ -22,7 +23,7 @@ pub enum Oddity {
 }
 
 impl Oddity {
-    /// Returns the fault as words to follow `the picture`.
+    /// Returns the fault as a predicate for the subject `the picture`.
     pub fn words(self) -> &'static str {
         match self {
             Oddity::Black => "is completely black",
@@ -33,21 +34,21 @@ impl Oddity {
     }
 }
 
-/// Accumulates pixels and finds visible faults. Pixels are multiplied by the exposure and may
-/// arrive in any number of pieces.
+/// Detects an obvious fault of a rendered picture from its pixels, which are multiplied by the
+/// exposure and can arrive in any number of pieces.
 #[derive(Clone, Debug)]
 pub struct PictureScan {
     exposure: f32,
     first: Option<Color>,
-    /// True if some pixel has another colour than the first.
+    /// True if some pixel has a different colour from the first.
     differs: bool,
     pixels: usize,
-    /// Pixels that are brighter than white.
+    /// Number of pixels that are brighter than white.
     cut: usize,
 }
 
 impl PictureScan {
-    /// Creates an accumulator without pixels.
+    /// Creates a scan without pixels. `exposure` is the factor for their values.
     pub fn new(exposure: f32) -> Self {
         PictureScan { exposure, first: None, differs: false, pixels: 0, cut: 0 }
     }
@@ -64,7 +65,7 @@ impl PictureScan {
         self.cut += pixels.iter().filter(|pixel| exposure * pixel.min_element() > 1.001).count();
     }
 
-    /// Returns the fault of the pixels so far, if there is one.
+    /// Returns the fault of the pixels added so far, if there is one.
     pub fn oddity(&self, statistics: &Statistics) -> Option<Oddity> {
         if self.pixels > 1 && !self.differs {
             let first = self.first.unwrap_or(Color::ZERO);

@@ -1,12 +1,12 @@
-//! Checks of where transforms place objects, with corrections.
+//! Checks for transforms that move objects out of the picture.
 
 use super::scene_probe::SceneProbe;
 use durer_diag::Span;
 use durer_scene::math::Vec3;
 use durer_scene::scene::{MatrixOp, MatrixRules, Node, Object};
 
-/// For a scene with nothing in the picture, returns the first transform that would bring its object
-/// into the picture if it were reversed or removed, and a sentence about it.
+/// If nothing is in the picture, returns the span of the first transform that moves its object out
+/// of the picture but would not if it were reversed or removed, and a sentence about it.
 pub(super) fn moved(scout: &SceneProbe) -> Option<(Span, String)> {
     let objects = scout.subject.scene.root.iter().flat_map(|root| &root.objects);
     objects.filter_map(|object| of(scout, object)).next()

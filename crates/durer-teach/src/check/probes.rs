@@ -1,4 +1,4 @@
-//! A coarse render of the picture: a grid of camera rays with all terms of their light.
+//! A coarse grid of camera rays, traced with all terms of their light; input of the checks.
 
 use durer_diag::{Diagnostic, Files, Span};
 use durer_formats::course::place;
@@ -15,35 +15,35 @@ use durer_scene::sampler::SampleId;
 use durer_scene::scene::Scene;
 use rayon::prelude::*;
 
-/// Rays along the larger side of the picture; fewer with many lights, because each ray asks each
-/// light.
+/// Number of rays along the larger side of the picture. It is reduced if there are many lights,
+/// because each hit evaluates every light.
 const RAYS: u32 = 48;
 const FEWEST_RAYS: u32 = 6;
 const MAX_QUESTIONS: u32 = 1 << 20;
-/// Levels of reflected and transmitted rays, and minimum throughput of a ray.
+/// Maximum depth and minimum throughput of secondary rays.
 const BOUNCES: u32 = 4;
 const MIN_WEIGHT: f32 = 1.0 / 64.0;
 
-/// A compiled scene to check.
+/// A compiled scene to be checked, with its source, its dialect and the options of the render.
 #[derive(Clone, Copy, Debug)]
 pub struct Subject<'a> {
-    /// The scene as written.
+    /// The parsed scene.
     pub scene: &'a Scene,
     /// The compiled scene.
     pub world: &'a World,
-    /// The scene's dialect.
+    /// Dialect of the scene file.
     pub dialect: Dialect,
     /// The files that were read.
     pub files: &'a Files,
-    /// The render job.
+    /// Options of the render.
     pub job: &'a Job,
     /// Factor by which colours are multiplied before display.
     pub exposure: f32,
-    /// Column, row and index of a sample known to be NaN or infinite.
+    /// Column, row and index of a sample known to be NaN or infinite, if there is one.
     pub rejected: Option<(u32, u32, u32)>,
 }
 
-/// Result of one camera ray.
+/// A camera ray that the checks trace, with its colour and first hit.
 #[derive(Clone, Debug)]
 pub(super) struct Probe {
     /// Pixel that the ray passes through.
@@ -53,14 +53,14 @@ pub(super) struct Probe {
     pub seen: Option<ProbeHit>,
 }
 
-/// The first surface on a camera ray, and its light.
+/// First surface hit by a probe's camera ray, and the light at that point.
 #[derive(Clone, Debug)]
 pub(super) struct ProbeHit {
     pub object: u32,
     pub material: u32,
     pub t: f32,
     pub from_behind: bool,
-    /// True if a back is left black.
+    /// True if the ray hit a back that is not shaded.
     pub black: bool,
     pub has_uv: bool,
     /// Contribution of the ambient light.
@@ -68,20 +68,20 @@ pub(super) struct ProbeHit {
     pub lit: Vec<LightContribution>,
 }
 
-/// Contribution of one light to a surface.
+/// Contribution of one light at a probe's hit, and the object that occludes the light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LightContribution {
     pub light: usize,
-    /// N·L, and the light that arrives if nothing occludes it.
+    /// N·L (`cosine`), and the light that would arrive without occlusion (`arrives`).
     pub cosine: f32,
     pub arrives: Color,
-    /// First object that occludes the light.
+    /// First object that occludes the light, if any.
     pub blocker: Option<u32>,
-    /// Contribution to the colour.
+    /// Contribution to the pixel's colour.
     pub adds: Color,
 }
 
-/// A scene and the results of a grid of camera rays.
+/// A scene to be checked and the results of a coarse grid of camera rays.
 #[derive(Debug)]
 pub struct ProbeGrid<'a> {
     pub(super) subject: Subject<'a>,
@@ -107,7 +107,7 @@ impl<'a> ProbeGrid<'a> {
                 least_weight: settings.least_weight.max(MIN_WEIGHT),
                 ..settings
             },
-            // The checks use Whitted's terms.
+            // The checks use the terms of Whitted's method.
             method: IntegratorKind::WHITTED,
             ..subject.job.clone()
         };
@@ -128,6 +128,7 @@ impl<'a> ProbeGrid<'a> {
         self.subject.job.width.max(self.subject.job.height) as f32
     }
 
+    /// Returns the compiled scene.
     pub(super) fn world(&self) -> &'a World {
         self.subject.world
     }
@@ -137,13 +138,13 @@ impl<'a> ProbeGrid<'a> {
         self.probes.iter().filter_map(|probe| Some((probe, probe.seen.as_ref()?)))
     }
 
-    /// Counts for each material the rays that see it, directly or as part of a mix.
+    /// Returns for each material the number of rays that hit it, directly or as part of a mix.
     pub(super) fn count_rays(&self) -> Vec<usize> {
         let materials = self.world().materials();
         let (mut direct, mut all) = (vec![0; materials.len()], vec![0; materials.len()]);
         self.seen().for_each(|(_, seen)| direct[seen.material as usize] += 1);
         for (whole, count) in direct.iter().enumerate().filter(|(_, count)| **count > 0) {
-            // A part that occurs several times in a mix counts once.
+            // Count a part once even if it occurs several times in the mix.
             let (mut parts, mut known) = (vec![whole], vec![false; materials.len()]);
             while let Some(part) = parts.pop() {
                 if std::mem::replace(&mut known[part], true) {
@@ -171,11 +172,12 @@ impl<'a> ProbeGrid<'a> {
         world.materials().get(world.objects()[object as usize].material as usize).is_some_and(phong)
     }
 
+    /// Returns the naming of the scene's objects and materials in messages.
     pub(super) fn names(&self) -> Names<'a> {
         Names { files: self.subject.files, scene: self.subject.scene, world: self.subject.world }
     }
 
-    /// Names an object by its keyword and line, or, if it comes from a model, by its name and
+    /// Names an object by its keyword and line. An object of a model is named by its own name and
     /// position.
     pub(super) fn object(&self, number: u32) -> String {
         let span = self.object_span(number);
@@ -186,12 +188,13 @@ impl<'a> ProbeGrid<'a> {
         }
     }
 
+    /// Returns the span of an object in the scene file.
     pub(super) fn object_span(&self, number: u32) -> Span {
         self.world().objects()[number as usize].span
     }
 
-    /// Returns the keyword of the course's first grammar or of the node grammar, whichever the
-    /// scene uses.
+    /// Returns the keyword of the grammar that the scene uses: the course's first grammar or the
+    /// node grammar.
     pub(super) fn word(&self, classic: &'static str, nodes: &'static str) -> &'static str {
         if self.subject.dialect == Dialect::F23 { nodes } else { classic }
     }
@@ -202,21 +205,22 @@ impl<'a> ProbeGrid<'a> {
         String::from_utf8_lossy(bytes.unwrap_or_default()).into_owned()
     }
 
-    /// Returns the span of a field's value in the block that a keyword opens.
+    /// Returns the span of a field's value in the block that starts at `block`; the first of
+    /// `fields` that is present counts.
     pub(super) fn value(&self, block: Span, fields: &[&str]) -> Option<Span> {
         let bytes = self.subject.files.bytes(block.file)?;
         fields.iter().find_map(|field| place::value(bytes, block, field))
     }
 
     /// Places a diagnostic at a field's value, or at the block's keyword if the field is not
-    /// written.
+    /// present.
     pub(super) fn at_value(&self, diagnostic: Diagnostic, block: Span, fields: &[&str]) -> Diagnostic {
         diagnostic.at(self.value(block, fields).unwrap_or(block))
     }
 }
 
 impl ProbeHit {
-    /// Returns the contribution of a light. Lights are stored by index.
+    /// Returns the contribution of the light with the given index.
     pub fn by(&self, light: usize) -> Option<&LightContribution> {
         self.lit.get(light).filter(|lit| lit.light == light)
     }
@@ -239,7 +243,7 @@ impl Probe {
         for term in &tree.root.terms {
             match &term.what {
                 TermKind::Ambient { .. } => seen.ambient += tree.color(term.contribution()),
-                // A surface of several materials has a term for each.
+                // A mix of materials has one term per light for each part.
                 TermKind::Light { light, to_light, shadow, .. } => {
                     let adds = tree.color(term.contribution());
                     match seen.lit.last_mut().filter(|lit| lit.light == *light) {

@@ -1,19 +1,19 @@
-//! Applies edits to a scene's text.
+//! Applies the edits of findings to a scene's text.
 
 use super::finding::Finding;
 use durer_diag::Edit;
 
-/// A text after the edits of some findings.
+/// Text of a scene file after the edits of some findings, for `durer check --fix`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RepairedText {
     /// The new text.
     pub bytes: Vec<u8>,
-    /// Indices of the findings that were fixed.
+    /// Indices of the findings whose edits were applied.
     pub mended: Vec<usize>,
 }
 
-/// Applies the edits of findings to a file. Skips a finding whose edits overlap an earlier one's or
-/// lie in another file.
+/// Applies the edits of findings to a file. Skips a finding if its edits overlap earlier ones or
+/// are in another file.
 pub fn apply(bytes: &[u8], file: u32, findings: &[Finding]) -> RepairedText {
     let mut edits: Vec<&Edit> = Vec::new();
     let mut mended = Vec::new();

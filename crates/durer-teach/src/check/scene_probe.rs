@@ -1,4 +1,4 @@
-//! Facts about the probes that several checks use, each computed once.
+//! Lazily computed results that several checks use.
 
 use super::aim::{Aim, aim};
 use super::brightness::{brightest, light};
@@ -10,10 +10,11 @@ use durer_scene::math::Color;
 use std::ops::Deref;
 use std::sync::OnceLock;
 
-/// Brightness below which a picture shows nothing.
+/// Brightness below which a picture counts as black.
 const DARK: f32 = 0.02;
 
-/// A scene, its probes, and lazily computed facts about them.
+/// A scene being checked: its probes, and results that several checks use and that are computed on
+/// first use.
 #[derive(Debug)]
 pub struct SceneProbe<'a> {
     grid: ProbeGrid<'a>,
@@ -47,24 +48,24 @@ impl<'a> SceneProbe<'a> {
         }
     }
 
-    /// Returns the visibility of each object.
+    /// Returns the visibility of each object, by index.
     pub(super) fn visibilities(&self) -> &[Visibility] {
         self.visibilities.get_or_init(|| visibilities(self))
     }
 
-    /// Returns the verdict on each light.
+    /// Returns the verdict on each light, by index.
     pub(super) fn verdicts(&self) -> &[Verdict] {
         self.verdicts.get_or_init(|| verdicts(self, self.aims()))
     }
 
-    /// Returns for each light how its beam misses the visible points, if it does.
+    /// Returns for each light how its beam misses the visible points; `None` if it does not.
     pub(super) fn aims(&self) -> &[Option<Aim>] {
         let lights = 0..self.world().lights().len();
         self.aims.get_or_init(|| lights.map(|light| aim(self, light)).collect())
     }
 
-    /// Returns the exposed colours of the picture: one for each probe, or with a path tracer the
-    /// mean of a few samples for some of them.
+    /// Returns exposed colours of the picture: one for each probe, or with path tracing the mean of
+    /// a few samples for some of them.
     pub(super) fn light(&self) -> &[Color] {
         &self.lit().1
     }
@@ -79,7 +80,7 @@ impl<'a> SceneProbe<'a> {
         probes.iter().zip(colors).map(|(probe, color)| (&self.probes[*probe], *color))
     }
 
-    /// Returns true if a path tracer's picture is black, or nearly so.
+    /// Returns true if a path-traced picture is black, or nearly so.
     pub(super) fn is_dark(&self) -> bool {
         self.is_physical() && !self.light().is_empty() && brightest(self.light()) < DARK
     }
@@ -89,7 +90,7 @@ impl<'a> SceneProbe<'a> {
         self.meshes.get_or_init(|| files(self))
     }
 
-    /// Returns for each material the number of rays that see it, directly or as part of a mix.
+    /// Returns for each material the number of rays that hit it, directly or as part of a mix.
     pub(super) fn material_rays(&self) -> &[usize] {
         self.material_rays.get_or_init(|| self.count_rays())
     }

@@ -1,4 +1,4 @@
-//! Checks of solids: parts that change nothing.
+//! Checks for parts of solids that have no effect.
 
 use super::finding::{Finding, MAX_SOUGHT};
 use super::scene_probe::SceneProbe;
@@ -6,7 +6,7 @@ use durer_diag::Diagnostic;
 use durer_scene::math::Aabb;
 use durer_scene::scene::{Node, Operation, extent};
 
-/// Reports subtracted parts that do not overlap the first part, judged by their bounds.
+/// Reports subtracted parts whose bounds do not overlap those of the first part.
 pub(super) fn idle_part(scout: &SceneProbe) -> Vec<Finding> {
     let scene = scout.subject.scene;
     let mut found = Vec::new();

@@ -7,14 +7,15 @@ use super::{
     names, numbers, objects, optics, patterns, physical, solid, unseen, view, year,
 };
 
-/// A kind of finding.
+/// A kind of finding with its stable code and the function that searches for it; a row of
+/// [`CHECKS`].
 #[derive(Clone, Copy, Debug)]
 pub struct Check {
     /// Stable code.
     pub code: &'static str,
-    /// Short description.
+    /// Short description, as listed by `durer check --codes`.
     pub about: &'static str,
-    /// Runs the check; empty for codes that the reader or the compiler reports.
+    /// Runs the check. Returns nothing for codes that the reader or the compiler reports.
     pub(super) find: fn(&SceneProbe) -> Vec<Finding>,
 }
 
@@ -24,7 +25,7 @@ fn reported(_: &SceneProbe) -> Vec<Finding> {
 
 macro_rules! checks {
     ($($code:literal: $about:literal, $find:expr;)+) => {
-        /// Every kind of finding.
+        /// Every kind of finding, in the order of reporting.
         pub const CHECKS: &[Check] = &[$(Check { code: $code, about: $about, find: $find },)+];
     };
 }
@@ -67,16 +68,16 @@ checks! {
     "plane-normal": "a plane whose normal does not have unit length", year::plane_normal;
     "out-of-scale": "an object far larger or smaller than most", extent::out_of_scale;
     // Lights.
-    "wrong-integrator": "light of a kind that the method leaves out", method::wrong_integrator;
+    "wrong-integrator": "light of a kind that the integrator does not support", method::wrong_integrator;
     "black-sky": "an environment that is multiplied by 0", method::black_sky;
     "no-light": "no light", reported;
     "no-emitter": "a path-traced scene in which nothing emits light", physical::no_emitter;
-    "fog-away": "fog that no ray of the picture goes through", air::away;
+    "fog-away": "fog that no camera ray passes through", air::away;
     "thick-fog": "fog that blocks all light", air::thick_fog;
     "lamp-turned": "an area light that faces away from everything visible", area_lights::turned;
     "lamp-blocked": "an area light that is occluded from everything visible", area_lights::blocked;
-    "lamp-in-glass": "an area light inside glass, which paths hardly find", area_lights::in_glass;
-    "no-depth": "parameters of a medium without effect", physical::without_effect;
+    "lamp-in-glass": "an area light inside glass, which paths hit only by chance", area_lights::in_glass;
+    "no-depth": "medium parameters that have no effect", physical::without_effect;
     "black-light": "a light without colour", reported;
     "light-divides": "a light whose falloff is zero, which causes a division by zero", fading::divides;
     "no-falloff": "a light without `falloff`, where the old program divides by it", reported;
@@ -104,10 +105,10 @@ checks! {
     "negative-color": "a colour below zero", colors::negative;
     "no-bounces": "mirrors or glass without secondary rays", colors::no_bounces;
     "dull-glass": "glass whose colour absorbs all light", colors::dull_glass;
-    "nothing-mirrored": "mirrors that have nothing to show", method::nothing_mirrored;
-    "thick-film": "a film too thick to show colours", optics::thick_film;
-    "wide-scatter": "a body thinner than the way of light in it", optics::wide_scatter;
-    "no-spectrum": "glass that spreads colours, without light by wavelength", optics::no_spectrum;
+    "nothing-mirrored": "mirrors that have nothing to reflect", method::nothing_mirrored;
+    "thick-film": "a thin film that is too thick to show colours", optics::thick_film;
+    "wide-scatter": "a scattering object much thinner than the mean free path of light in it", optics::wide_scatter;
+    "no-spectrum": "glass with dispersion in a picture that is not rendered spectrally", optics::no_spectrum;
     "odd-index": "glass with an impossible index of refraction", colors::odd_index;
     "same-color": "objects with the colour of the background", colors::camouflaged;
     "no-coordinates": "a texture on an object without texture coordinates", colors::no_coordinates;
@@ -132,7 +133,7 @@ checks! {
     "not-finite": "samples that are NaN or infinite", numbers::not_finite;
     "depth-range": "a depth range that contains no depth of the picture", exposure::depth_range;
     "too-bright": "more light than an 8-bit picture can show", exposure::too_bright;
-    "mostly-black": "lights that reach next to nothing of what is seen", method::mostly_black;
+    "mostly-black": "lights that reach hardly any of the visible surfaces", method::mostly_black;
     "too-dark": "hardly any light", exposure::too_dark;
     "all-missed": "no ray hits anything, although the camera looks at the scene", view::missed;
     "one-color": "a picture of one colour, from an unknown cause", exposure::one_color;
@@ -150,7 +151,7 @@ checks! {
     "mesh-file": "a part of a mesh file that was ignored", reported;
 }
 
-/// Returns the position of a code in the order of reporting; unknown codes come before the final
+/// Returns the position of a code in the order of reporting. Unknown codes come before the final
 /// notes.
 pub fn rank(code: &str) -> usize {
     let of = |code: &str| CHECKS.iter().position(|check| check.code == code);

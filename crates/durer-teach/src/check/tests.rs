@@ -1,4 +1,4 @@
-//! Tests of parts of the checks that no scene covers alone.
+//! Tests of parts of the checks that no scene covers on its own.
 
 use super::mesh_files::topology::Topology;
 use super::within::around;
@@ -10,7 +10,7 @@ use durer_scene::math::random::Random;
 use durer_scene::math::{Vec3, fp};
 use durer_scene::shape::{Cone, Cuboid, Cylinder, Ellipsoid, Primitive, Shape, Sphere, Torus};
 
-/// Builds a torus of `rows` by `rows` squares, each cut into two triangles that face outwards.
+/// Builds a torus of `rows` by `rows` quads, each split into two triangles that face outwards.
 fn torus(rows: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let turn = |i: u32| fp::sin_cos_degrees(f64::from(i) * 360.0 / f64::from(rows));
     let corner = |i: u32, j: u32| {
@@ -32,11 +32,11 @@ fn sound_mesh_is_closed_and_faces_outwards() {
     let (positions, triangles) = torus(24);
     let topology = Topology::of(&positions, &triangles);
     assert!(topology.is_closed() && topology.turned.is_empty() && topology.degenerate.is_empty());
-    // A torus of radii R and r encloses 2 pi^2 R r^2; its polygons enclose a little less.
+    // A torus with radii R and r encloses 2 pi^2 R r^2; its polygons enclose slightly less.
     let exact = 2.0 * std::f64::consts::PI * std::f64::consts::PI * 3.0;
     let volume = topology.volume / 6.0;
     assert!(volume < exact && volume > 0.95 * exact, "{volume} of {exact}");
-    // Separate corners for each triangle change nothing: equal positions are merged.
+    // Separate vertices for each triangle make no difference, because equal positions are merged.
     let apart: Vec<Vec3> = triangles.iter().flatten().map(|&i| positions[i as usize]).collect();
     let own: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     assert!(Topology::of(&apart, &own).is_closed());
@@ -96,7 +96,7 @@ fn points_are_inside_the_objects_around_them() {
         for _ in 0..300 {
             let local = 1.5 * random.point();
             let point = affine.transform_point3(local.as_dvec3()).as_vec3();
-            // Either answer is right within rounding.
+            // Within rounding, either answer is correct.
             let near = |far: f64| shape.inside(local.as_dvec3() * (1.0 + far));
             if near(1e-4) != near(-1e-4) {
                 continue;
@@ -179,7 +179,7 @@ fn causes_come_before_consequences() {
         "unused-material",
     ];
     assert_eq!(codes, expected);
-    // Of many alike, only a few are reported.
+    // Of many findings of a kind, only a few are reported.
     let many = ordered((0..9).map(|_| finding(warning, "same-place", false)).collect());
     assert!(many.len() < 6, "{many:?}");
     assert!(many.last().unwrap().diagnostic.message.ends_with("more of this kind"));

@@ -1,4 +1,4 @@
-//! Checks of objects that are invisible: outside the picture, hidden, far away, too small, or flat.
+//! Checks for invisible objects: outside the picture, hidden, far away, too small, or flat.
 
 use super::finding::{Finding, MAX_SOUGHT, counted, number, vector};
 use super::scene_probe::SceneProbe;
@@ -10,14 +10,14 @@ use durer_scene::camera::Projection;
 use durer_scene::math::{Aabb, Vec3};
 use durer_scene::scene::Node;
 
-/// Number of objects above which some may be out of sight.
+/// In scenes with more objects than this, some objects can be out of sight on purpose.
 const FEW_OBJECTS: usize = 8;
 
-/// Reports objects that are nowhere in the picture.
+/// Reports objects that are not visible in the picture.
 pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
     let visibilities = scout.visibilities();
     let nothing: Vec<u32> = super::objects::nothing_of(scout);
-    // In a large scene some objects are always outside the picture or hidden.
+    // In a large scene, some objects are always hidden or outside the picture.
     let mut found = far_away(scout);
     let missing =
         visibilities.iter().filter(|sight| matches!(sight, Visibility::Outside | Visibility::Hidden(_))).count();
@@ -39,7 +39,7 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
             !super::objects::same(&scout.world().objects()[i as usize], &scout.world().objects()[by as usize])
         })
         .collect();
-    // Warn if most of a small scene is missing: probably a mistake.
+    // Warn if most of a small scene is missing, which is probably a mistake.
     let bounded = scout.world().objects().iter().filter(|object| object.bounds().is_some()).count();
     let most = |lost: usize| lost >= 2 && lost * 2 >= bounded && visibilities.len() <= FEW_OBJECTS;
     let severity = |lost: usize| if most(lost) { Severity::Warning } else { Severity::Note };
@@ -53,7 +53,7 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
             ),
         };
         // An object outside the picture can be there for its shadow or its light, unless almost
-        // nothing else is left.
+        // nothing else is visible.
         let own = |(_, seen): &(_, &crate::check::probes::ProbeHit)| {
             scout.world().objects()[seen.object as usize].bounds().is_some()
         };
@@ -80,7 +80,7 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
             (false, true) => "move it outside, or move or shrink the other object",
             (false, false) => "is it on the wrong side of the other object, or is that object in the way?",
         };
-        // An object can be behind another on purpose.
+        // An object can be hidden by another on purpose.
         let one = hidden.iter().all(|(_, other)| *other == by);
         let severity = match below(scout, by, first) {
             // An object behind an infinite plane is never visible.
@@ -105,7 +105,7 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Returns true if an object and the camera are on opposite sides of a plane.
+/// Returns true if a plane separates an object from the camera.
 fn below(scout: &SceneProbe, plane: u32, object: u32) -> bool {
     let Some((n, d)) = super::hidden::ground(scout, plane) else { return false };
     let eye = scout.world().camera().pose().center.dot(n) - d;
@@ -113,7 +113,7 @@ fn below(scout: &SceneProbe, plane: u32, object: u32) -> bool {
     bounds.is_some_and(|bounds| bounds.corners().iter().all(|corner| (corner.dot(n) - d) * eye < 0.0))
 }
 
-/// Returns the negative scale around an object: its span and its replacement.
+/// Returns the span and the text of the negative scale that mirrors an object.
 fn mirrored(scout: &SceneProbe, number: u32) -> Option<(Span, String)> {
     let object = &scout.world().objects()[number as usize];
     object.to_world.as_ref().filter(|to_world| {
@@ -146,7 +146,7 @@ pub(super) fn tiny(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let small = |(index, object): (usize, &Object)| {
         let bounds = object.bounds().filter(|bounds| !bounds.is_empty())?;
-        // A mesh of many triangles is not meant to be a dot.
+        // A mesh with many triangles is not meant to be a dot.
         let least = if matches!(&object.geometry, Geometry::Mesh(tree) if tree.mesh.len() > 50) { 6.0 } else { 1.5 };
         let size = pixels(scout, bounds).filter(|size| *size < least)?;
         let looked = super::visibility::rays_to(scout, bounds.center());
@@ -157,7 +157,8 @@ pub(super) fn tiny(scout: &SceneProbe) -> Vec<Finding> {
         ))
     };
     let all: Vec<_> = objects.iter().enumerate().take(MAX_SOUGHT).filter_map(small).collect();
-    // A swarm of tiny objects is intended, and `too-small` covers a scene that is tiny as a whole.
+    // A swarm of tiny objects is probably intended, and `too-small` reports a scene that is tiny as
+    // a whole.
     let bounded = objects.iter().filter(|object| object.bounds().is_some()).count();
     if objects.len() > FEW_OBJECTS || all.len() == bounded || scout.seen().next().is_none() {
         return Vec::new();
@@ -176,7 +177,7 @@ pub(super) fn tiny(scout: &SceneProbe) -> Vec<Finding> {
     all.into_iter().map(say).collect()
 }
 
-/// Reports height fields without heights.
+/// Reports height fields with the same height everywhere.
 pub(super) fn flat_field(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     let mut all: Vec<&durer_scene::scene::Object> =
@@ -218,7 +219,7 @@ fn even_field(scout: &SceneProbe, object: &durer_scene::scene::Object, size: Vec
         Geometry::Primitive(_) | Geometry::Solid(_) => None,
     })?;
     let step = (mesh.len() / 2000).max(1);
-    // Ignore its sides and underside.
+    // Ignore the sides and the underside.
     let upper = |[a, b, c]: &[Vec3; 3]| {
         let n = (*b - *a).cross(*c - *a);
         n.y.abs() > 1e-3 * n.length() && n.y > 0.0
@@ -229,9 +230,9 @@ fn even_field(scout: &SceneProbe, object: &durer_scene::scene::Object, size: Vec
     if high - low > 0.002 * size.y {
         return None;
     }
-    let diagnostic = Diagnostic::warning("the picture of this landscape has the same value everywhere")
-        .effect("it is flat: there are no hills to be seen")
-        .help("dark is low and bright is high: take a picture of several values");
+    let diagnostic = Diagnostic::warning("the height map of this landscape has the same value everywhere")
+        .effect("the landscape is flat")
+        .help("dark pixels are low and bright ones high: use an image with different values");
     Some(Finding::from(scout.at_value(diagnostic, object.span, &["picture"])))
 }
 

@@ -1,4 +1,4 @@
-//! Judges what each light contributes to the visible points, and why it contributes nothing.
+//! Determines what each light contributes to the visible points, and why some contribute nothing.
 
 use super::aim::Aim;
 use super::probes::{LightContribution, ProbeGrid, ProbeHit};
@@ -9,45 +9,45 @@ use durer_scene::camera::Projection;
 use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::{Color, Ray, Vec3};
 
-/// Half a step of eight bits: smaller contributions are invisible.
+/// Half a step of an eight-bit value. Smaller contributions are invisible.
 pub(super) const VISIBLE: f32 = 1.0 / 512.0;
-/// Maximum number of lights that are judged; the rest count as working.
+/// Maximum number of lights that are examined. Further lights count as working.
 pub(super) const MAX_JUDGED: usize = 500;
-/// A light that reaches a smaller share of the visible points counts as useless.
+/// Share of the visible points below which a light counts as contributing nothing.
 const SHARE: f32 = 0.002;
-/// A light is blocked if more than this share of the points facing it is in shadow.
+/// Share of shadowed points above which a light is blocked; only points that face the light count.
 const MAX_BLOCKED: f32 = 0.95;
-/// Share of the points facing a light that a roof over all objects shadows.
+/// Minimum share of the points facing a light that a roof over all objects must shadow.
 const ROOFED: f32 = 0.6;
 /// Total light below which the lights are practically invisible.
 const MAX_WEAK: f32 = 0.06;
 /// Cosine below which light grazes a surface.
 pub(super) const GRAZING: f32 = 0.08;
 
-/// Judgement of a light.
+/// Result of examining a light: whether it contributes to the visible points and, if not, why not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Verdict {
-    /// The light contributes to the picture, or nothing visible could receive it.
+    /// The light contributes to the picture, or no visible point could receive its light.
     Works,
-    /// The colour is black.
+    /// The light's colour is black.
     Black,
-    /// The attenuation divides by zero or a negative number.
+    /// The attenuation divides by zero or by a negative number.
     Divides,
     /// The light is inside this object.
     Inside(u32),
-    /// This object blocks the light more than others do.
+    /// This object blocks the light, at more points than any other.
     Blocked(u32),
     /// The visible surfaces face away from the light.
     Behind,
     /// The beam misses the visible surfaces.
     Missing,
-    /// At most this much light arrives.
+    /// The light is too weak: at most this much arrives.
     Faint(f32),
-    /// The light and the surfaces have no colour in common.
+    /// The surfaces absorb the light's colour completely.
     Cancelled,
 }
 
-/// Judges each light of the world.
+/// Examines each light of the world and returns the verdicts by index.
 pub(super) fn verdicts(grid: &ProbeGrid, aims: &[Option<Aim>]) -> Vec<Verdict> {
     let judged = |light| if light < MAX_JUDGED { verdict(grid, light, aims) } else { Verdict::Works };
     let mut verdicts: Vec<Verdict> = (0..grid.world().lights().len()).map(judged).collect();
@@ -60,8 +60,8 @@ pub(super) fn verdicts(grid: &ProbeGrid, aims: &[Option<Aim>]) -> Vec<Verdict> {
     verdicts
 }
 
-/// Returns the light that arrives from up to three working lights if all together are almost
-/// invisible.
+/// Returns the light that arrives if there are at most three lights and all of them together are
+/// almost invisible.
 fn weak_together(grid: &ProbeGrid, verdicts: &[Verdict]) -> Option<f32> {
     if verdicts.is_empty() || verdicts.len() > 3 || verdicts.iter().any(|verdict| *verdict != Verdict::Works) {
         return None;
@@ -74,7 +74,7 @@ fn weak_together(grid: &ProbeGrid, verdicts: &[Verdict]) -> Option<f32> {
     (arrives > 0.0 && arrives < MAX_WEAK && adds < MAX_WEAK).then_some(arrives)
 }
 
-/// Returns true if almost all surfaces that the lights reach share no colour with them.
+/// Returns true if almost all surfaces that the lights reach absorb their colour.
 fn cancelled_together(grid: &ProbeGrid, verdicts: &[Verdict]) -> bool {
     let materials = grid.world().materials();
     if !verdicts.contains(&Verdict::Works) || verdicts.iter().any(|v| !matches!(v, Verdict::Works | Verdict::Cancelled))
@@ -97,7 +97,7 @@ fn cancelled_together(grid: &ProbeGrid, verdicts: &[Verdict]) -> bool {
 
 fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
     let light = &grid.world().lights()[number];
-    // Clear glass shows what is behind it, not the light that falls on it.
+    // Clear glass shows what is behind it, not the light that reaches it.
     let clear = |seen: &ProbeHit| match &grid.world().materials()[seen.material as usize] {
         Material::Phong(phong) => phong.transparent.min_element() > 0.5 && phong.diffuse.max_element() < 0.1,
         Material::Solid(..) => false,
@@ -117,7 +117,7 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
         return Verdict::Missing;
     }
     let visible = all.iter().filter(|lit| lit.adds.abs().max_element() > VISIBLE).count();
-    // If there are only a few lights, each is meant to be visible.
+    // If there are only a few lights, each of them is probably meant to be visible.
     let most = all.iter().map(|lit| lit.adds.abs().max_element()).fold(0.0, f32::max);
     let arrives = all.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
     if grid.world().lights().len() <= 3 && most > VISIBLE && most < 6.0 * VISIBLE && arrives < 12.0 * VISIBLE {
@@ -137,9 +137,9 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
     let blocked: Vec<u32> = facing.iter().filter_map(|lit| lit.blocker).collect();
     if facing.len() - blocked.len() > all.len() / 50 && !is_blocked {
         let most = facing.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
-        // At a grazing angle, a surface is dark regardless of its colour.
+        // At grazing angles a surface is dark whatever its colour.
         let colored = |seen: &ProbeHit| match &grid.world().materials()[seen.material as usize] {
-            // Mirrors and other surfaces without diffuse reflection cannot cancel a light's colour.
+            // Mirrors and other surfaces without diffuse reflection do not absorb a light's colour.
             Material::Phong(phong) => phong.diffuse.max_element() >= 0.05,
             Material::Solid(..) => true,
         };
@@ -166,8 +166,8 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
     }
 }
 
-/// Returns true if almost all points that face a light are in shadow; a few pixels at the horizon
-/// may be lit.
+/// Returns true if almost all points that face a light are in shadow. A few lit pixels at the
+/// horizon do not matter.
 fn nearly_blocked(all: &[&LightContribution]) -> bool {
     let facing: Vec<&&LightContribution> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
     let blocked = facing.iter().filter(|lit| lit.blocker.is_some()).count();
@@ -175,7 +175,7 @@ fn nearly_blocked(all: &[&LightContribution]) -> bool {
 }
 
 /// Returns true if one object shadows all other bounded objects that face a light, and most of the
-/// rest.
+/// remaining points.
 fn roofed(grid: &ProbeGrid, light: usize) -> bool {
     let objects = grid.world().objects();
     let facing = || {
@@ -191,7 +191,8 @@ fn roofed(grid: &ProbeGrid, light: usize) -> bool {
     count > 20 && covered as f32 > MAX_BLOCKED * count as f32 && dark as f32 > ROOFED * all as f32
 }
 
-/// Returns the object that blocks a light at the most points; objects may block each other.
+/// Returns the object that blocks a light at the most points. Several objects can block the same
+/// point.
 fn main_blocker(grid: &ProbeGrid, light: usize, blocked: &[u32]) -> Option<u32> {
     let (common, emitter) = (most_common(blocked)?, &grid.world().lights()[light]);
     let places = grid.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.blocker.is_some()));
@@ -212,7 +213,7 @@ fn main_blocker(grid: &ProbeGrid, light: usize, blocked: &[u32]) -> Option<u32> 
     most_common(&all).filter(|other| count(*other) * 10 > count(common) * 11).or(Some(common))
 }
 
-/// Returns the visible plane between the camera and a light, if it is the first hit.
+/// Returns the plane that separates the camera from a light, if it is visible.
 fn behind_plane(grid: &ProbeGrid, light: &Light) -> Option<u32> {
     let point = point(light)?;
     let world = grid.world();
@@ -222,21 +223,22 @@ fn behind_plane(grid: &ProbeGrid, light: &Light) -> Option<u32> {
     (is_seen && world.objects()[hit.object as usize].bounds().is_none()).then_some(hit.object)
 }
 
-/// Returns true if no light escapes from an object around a light: it blocks the light, or no
-/// visible surface faces the light.
+/// Returns true if an object around a light lets no light escape: it blocks the light, shadows are
+/// off, or no visible surface faces the light.
 fn keeps_light(grid: &ProbeGrid, object: u32, all: &[&LightContribution]) -> bool {
     let shadows = grid.subject.job.settings.shadows;
     let blocks = all.iter().any(|lit| lit.blocker == Some(object));
     blocks || !shadows || all.iter().all(|lit| lit.cosine <= 1e-3)
 }
 
+/// Returns the most frequent object.
 pub(super) fn most_common(objects: &[u32]) -> Option<u32> {
     let mut sorted = objects.to_vec();
     sorted.sort_unstable();
     sorted.chunk_by(|a, b| a == b).max_by_key(|same| same.len()).map(|same| same[0])
 }
 
-/// Returns the three attenuation factors of a point light.
+/// Returns the three attenuation coefficients of a point light.
 pub(super) fn divisor(light: &Light) -> Option<Vec3> {
     point(light)?.attenuation
 }

@@ -17,7 +17,7 @@ use durer_scene::scene::{Group, Node};
 
 /// Reports a scene without objects.
 pub(super) fn no_objects(scout: &SceneProbe) -> Vec<Finding> {
-    // `empty-solid` reports empty solids.
+    // `empty-solid` reports solids that are empty.
     let solid = |object: &Node| matches!(object, Node::Solid(..));
     let empty = |root: &&Group| scout.world().objects().is_empty() && !root.objects.iter().any(|o| solid(&o.node));
     let Some(root) = scout.subject.scene.root.as_ref().filter(empty) else { return Vec::new() };
@@ -31,7 +31,7 @@ pub(super) fn no_objects(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic.effect("every ray misses, so the picture shows only the background")).whole(true)]
 }
 
-/// Reports objects around the camera, except rooms.
+/// Reports objects that contain the camera, except rooms.
 pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
     if !has_eye(scout) {
         return Vec::new();
@@ -41,9 +41,9 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for object in around(scout.world(), pose.center) {
         let own = scout.seen().filter(|(_, seen)| seen.object == object).count();
-        // A room contains other objects and light.
+        // A room contains light and other objects.
         let dark = !physical && all_fail(scout) && scout.verdicts().contains(&Verdict::Blocked(object));
-        // Unshaded backs are not the walls of a room.
+        // If backs are not shaded, walls seen from behind are not those of a room.
         let backs = scout.seen().filter(|(_, seen)| seen.object == object && seen.from_behind).count();
         let walls = !physical && !scout.subject.job.settings.shade_back && backs * 50 > rays;
         let swallowed = super::extent::swallows_wrongly(scout, object) || is_alone(scout, object);
@@ -57,7 +57,7 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
             .label("this point is inside it")
             .related(scout.object_span(object), "around the camera")
             .effect(match dark {
-                _ if swallowed && own * 100 < rays * 99 => "it is all around: what is seen of it is its inside",
+                _ if swallowed && own * 100 < rays * 99 => "it surrounds the camera, so its inside is visible",
                 _ if walls && own * 100 < rays * 99 => "its walls are visible from behind, and that side gets no \
                                                         light",
                 true => "it blocks the light; everything visible is in its shadow",
@@ -80,8 +80,8 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Returns true if an object around the camera is the only bounded one, is seen only from behind,
-/// and fills much of the picture.
+/// Returns true if an object that contains the camera is the only bounded one, is seen only from
+/// behind, and fills much of the picture.
 fn is_alone(scout: &SceneProbe, object: u32) -> bool {
     let world = scout.world();
     let ended = world.objects().iter().filter(|object| object.bounds().is_some()).count();
@@ -94,15 +94,15 @@ fn is_alone(scout: &SceneProbe, object: u32) -> bool {
     ended == 1 && !scout.is_physical() && !textured && all == backs && all * 4 > scout.probes.len()
 }
 
-/// Returns a point outside a box, a little beyond the exit of a ray that starts inside.
+/// Returns a point outside a box, beyond the exit of a ray that starts inside it.
 fn leave(bounds: Aabb, from: Vec3, direction: Vec3) -> Vec3 {
     let direction = direction.normalize_or(Vec3::Z);
     let way = bounds.clip(from, direction).map_or(0.0, |(_, leave)| leave);
     from + 1.5 * way * direction
 }
 
-/// Returns the target of the camera: the bounds of all bounded objects, or the nearest point of a
-/// plane.
+/// Returns the region that the camera should look at: the bounds of all bounded objects, or
+/// otherwise the nearest point of a plane.
 pub(super) fn target(scout: &SceneProbe) -> Option<Aabb> {
     let (world, eye) = (scout.world(), scout.world().camera().pose().center);
     let bounds = world.bounds();
@@ -136,7 +136,7 @@ fn all_outside(scout: &SceneProbe) -> bool {
     }
 }
 
-/// Reports a camera that looks past everything, with the centre of the scene outside the picture.
+/// Reports a camera whose picture shows no bounded object because it points elsewhere.
 pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     let Some(bounds) = target(scout).filter(|_| all_outside(scout)) else { return Vec::new() };
     let (world, span) = (scout.world(), scout.subject.scene.camera_span);
@@ -146,7 +146,7 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     if aims(scout, center) || behind {
         return Vec::new();
     }
-    // A field of view that is far too narrow also misses the objects.
+    // A field of view that is far too narrow can also miss the objects.
     if aims_widely(scout, center) && !super::extent::too_narrow(scout).is_empty() {
         return Vec::new();
     }
@@ -193,7 +193,7 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// Returns true if a camera of usual field of view would see a point.
+/// Returns true if a camera with a usual field of view would see a point.
 fn aims_widely(scout: &SceneProbe, place: Vec3) -> bool {
     let world = scout.world();
     let to = place - world.camera().pose().center;
@@ -207,7 +207,7 @@ fn aims_widely(scout: &SceneProbe, place: Vec3) -> bool {
     }
 }
 
-/// Adds the edit that replaces a vector of the camera.
+/// Adds the edit that replaces a vector field of the camera.
 fn mended(scout: &SceneProbe, diagnostic: Diagnostic, field: &str, value: Vec3) -> Diagnostic {
     let span = scout.subject.scene.camera_span;
     match scout.value(span, &[field]).filter(|_| value != Vec3::ZERO || field == "center") {
@@ -232,7 +232,7 @@ fn only_seen(scout: &SceneProbe) -> String {
     }
 }
 
-/// Describes by how much the closest ray misses an object's bounding sphere.
+/// Describes how far the closest ray passes from an object's bounding sphere.
 fn nearest(scout: &SceneProbe) -> String {
     let world = scout.world();
     let balls = world.objects().iter().enumerate().filter_map(|(i, object)| {
@@ -254,14 +254,13 @@ fn nearest(scout: &SceneProbe) -> String {
     }
 }
 
-/// Reports a picture that is empty although the camera looks at the objects: they are too small or
-/// empty.
+/// Reports an empty picture although the camera looks at the centre of the objects.
 pub(super) fn missed(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     if scout.seen().next().is_some() || world.objects().is_empty() {
         return Vec::new();
     }
-    // Objects can be visible between the probes.
+    // Probes can miss objects that are visible.
     let hit = scout.visibilities().contains(&Visibility::Seen);
     let Some(bounds) = target(scout).filter(|bounds| !hit && aims(scout, bounds.center())) else { return Vec::new() };
     let mut diagnostic = Diagnostic::warning("every ray misses, although the camera looks at the center of the scene")
@@ -275,8 +274,8 @@ pub(super) fn missed(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).last()]
 }
 
-/// Reports planes through the middle of most objects, for example a floor with the wrong axis as
-/// its normal.
+/// Reports planes that cut most objects in the middle, for example a floor whose normal is along
+/// the wrong axis.
 pub(super) fn plane_through(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let boxes: Vec<[Vec3; 8]> =
@@ -302,8 +301,8 @@ pub(super) fn plane_through(scout: &SceneProbe) -> Vec<Finding> {
         let message = format!("the {} passes through the middle of most objects", scout.object(number));
         let diagnostic = Diagnostic { severity, ..Diagnostic::warning(message) }
             .at(scout.object_span(number))
-            .effect("only what is before it is seen of them")
-            .help("a floor lies below things: which axis is up? Look at its `normal` and `offset`, and what turns it");
+            .effect("only the parts in front of it are visible")
+            .help("a floor should be below the objects: which axis points up? Check its `normal`, its `offset` and the rotations around it");
         Finding::from(diagnostic)
     };
     (0..world.objects().len() as u32).filter(through).take(2).map(say).collect()
@@ -321,8 +320,8 @@ pub(super) fn upside_down(scout: &SceneProbe) -> Vec<Finding> {
     let stand = !objects.is_empty() && objects.corners().iter().all(|p| height(p) > -0.1 * size);
     let pose = world.camera().pose();
     let seen = scout.seen().any(|(_, seen)| seen.object == number);
-    // A ceiling from which objects hang would look the same; objects that touch the plane show that
-    // it is the ground.
+    // A ceiling with objects hanging from it would look the same. Objects that touch the plane show
+    // that it is the ground.
     let lowest = objects.corners().iter().map(height).fold(f32::INFINITY, f32::min);
     if !stand || !seen || lowest > 0.3 * size || world.camera_frame().up.dot(n) > -0.3 || pose.up.dot(n) > 0.1 {
         return Vec::new();

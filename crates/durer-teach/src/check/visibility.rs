@@ -6,26 +6,25 @@ use durer_render::world::{Geometry, Object};
 use durer_scene::camera::{Camera, CameraSample, Projection};
 use durer_scene::math::{Aabb, Ray, Vec2, Vec3};
 
-/// Visibility of an object.
+/// Visibility of an object in the picture: seen, hidden by another object, or outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Visibility {
     /// Some of the object is in the picture.
     Seen,
-    /// The object is in the picture, but behind this one.
+    /// The object projects into the picture, but this object hides it.
     Hidden(u32),
     /// The object is outside the picture.
     Outside,
-    /// The object is unbounded, or empty.
+    /// The object is unbounded or empty, and no probe hit it.
     Unknown,
 }
 
-/// Number of objects that are tested one by one.
+/// Maximum number of objects that are tested one by one.
 const MAX_OBJECTS: usize = 200;
-/// Number of corners of a mesh that are tested.
+/// Number of triangles of a mesh that are tested, at their centres.
 const MAX_CORNERS: usize = 40;
 
-/// Returns the visibility of each object. An object that no probe hit is tested by aiming at points
-/// of it.
+/// Returns the visibility of each object. If no probe hit an object, traces rays to points on it.
 pub(super) fn visibilities(grid: &ProbeGrid) -> Vec<Visibility> {
     let objects = grid.world().objects();
     let mut visibilities = vec![Visibility::Unknown; objects.len()];
@@ -54,7 +53,7 @@ fn sight(grid: &ProbeGrid, number: u32, object: &Object) -> Visibility {
     sight
 }
 
-/// Returns the camera rays to a point, if it projects into the picture.
+/// Returns the camera rays to a point; none if it projects outside the picture.
 pub(super) fn rays_to(grid: &ProbeGrid, point: Vec3) -> Vec<Ray> {
     let (world, mut places) = (grid.world(), Vec::new());
     world.camera().project(world.camera_frame(), point, Vec2::splat(0.5), &mut |place| places.push(place));
@@ -63,13 +62,13 @@ pub(super) fn rays_to(grid: &ProbeGrid, point: Vec3) -> Vec<Ray> {
     inside.filter_map(|place| world.camera().ray(world.camera_frame(), &CameraSample::at(place))).collect()
 }
 
-/// Returns the upper right corner of the picture in the camera's square.
+/// Returns the upper right corner of the picture in the camera's coordinates.
 pub(super) fn corner(grid: &ProbeGrid) -> Vec2 {
     grid.raster.point(Vec2::new(grid.raster.width as f32, 0.0)).abs()
 }
 
-/// Returns test points of an object in world space: corners and centres of triangles, otherwise a
-/// grid through the bounds.
+/// Returns points to test for an object, in world space: the centre and corners of a triangle, the
+/// centres of a mesh's triangles, otherwise a grid through the bounds.
 pub(super) fn points(object: &Object) -> Vec<Vec3> {
     let to_world = |p: Vec3| object.world_point(p);
     if let Some(corners) = triangle(object) {
@@ -84,7 +83,7 @@ pub(super) fn points(object: &Object) -> Vec<Vec3> {
         Geometry::Primitive(_) | Geometry::Solid(_) => {
             let Some(bounds) = object.bounds().filter(|bounds| !bounds.is_empty()) else { return Vec::new() };
             let (center, half) = (bounds.center(), 0.5 * bounds.size());
-            // Slightly inside the bounds: round objects do not reach the corners.
+            // Stay slightly inside the bounds, because round objects do not reach the corners.
             let steps = [0.0, -0.95, 0.95, -0.5, 0.5];
             let grid = steps.iter().flat_map(|x| steps.iter().flat_map(move |y| steps.map(|z| Vec3::new(*x, *y, z))));
             grid.map(|at| center + at * half).collect()
@@ -98,12 +97,13 @@ fn within([a, b, c]: [Vec3; 3]) -> [Vec3; 4] {
     [middle, a.lerp(middle, 0.1), b.lerp(middle, 0.1), c.lerp(middle, 0.1)]
 }
 
-/// Returns true if the camera sees a point, ignoring occlusion.
+/// Returns true if a point is in the camera's view, ignoring occlusion.
 pub(super) fn aims(grid: &ProbeGrid, place: Vec3) -> bool {
     !rays_to(grid, place).is_empty()
 }
 
-/// Returns the extent of a box in pixels.
+/// Returns the larger side of a box's projection in pixels; `None` if some corner does not project
+/// to exactly one point.
 pub(super) fn pixels(grid: &ProbeGrid, bounds: Aabb) -> Option<f32> {
     let (world, job) = (grid.world(), grid.subject.job);
     let mut around: Option<(Vec2, Vec2)> = None;
@@ -118,12 +118,12 @@ pub(super) fn pixels(grid: &ProbeGrid, bounds: Aabb) -> Option<f32> {
         }
     }
     let (min, max) = around.filter(|_| unseen == 0)?;
-    // The larger side of the picture spans 2.
+    // The larger side of the picture spans 2 units.
     Some((max - min).max_element() / (2.0 * corner(grid).max_element()) * job.width.max(job.height) as f32)
 }
 
-/// Returns true if all camera rays start at the camera's position. Rays that extend both ways also
-/// see what is behind.
+/// Returns true if all camera rays start at the camera's position. The rays of the other cameras
+/// are lines, which also hit objects behind the camera.
 pub(super) fn has_eye(grid: &ProbeGrid) -> bool {
     !matches!(grid.world().camera(), Camera::Orthographic(_) | Camera::PushBroom(_) | Camera::MultipleCenter(_))
 }

@@ -1,9 +1,9 @@
-//! Containment of a point in objects.
+//! Tests which objects contain a point.
 
 use durer_render::world::World;
 use durer_scene::math::{Ray, Ray64, Vec3};
 
-/// Directions that are unlikely to be parallel to an edge of a hand-made object.
+/// Directions that are unlikely to be parallel to an edge of a hand-modelled object.
 const DIRECTIONS: [Vec3; 5] = [
     Vec3::new(0.532, 0.741, 0.411),
     Vec3::new(-0.613, 0.274, 0.741),
@@ -12,8 +12,8 @@ const DIRECTIONS: [Vec3; 5] = [
     Vec3::new(0.687, 0.173, -0.706),
 ];
 
-/// Returns the bounded objects that contain a point: a ray in any direction leaves them once more
-/// than it enters them.
+/// Returns the bounded objects that contain a point: a ray in each test direction crosses their
+/// surface an odd number of times.
 pub(super) fn around(world: &World, point: Vec3) -> Vec<u32> {
     let boxed = |object: &u32| {
         let bounds = world.objects()[*object as usize].bounds();
@@ -24,7 +24,7 @@ pub(super) fn around(world: &World, point: Vec3) -> Vec<u32> {
         if inside.is_empty() {
             break;
         }
-        // Test each object alone: where two surfaces coincide, a ray hits only one of them.
+        // Test each object on its own: where two surfaces coincide, a ray hits only one of them.
         inside.retain(|&object| {
             let mut rest = Ray64::from(Ray::new(point, direction));
             let crossings = std::iter::from_fn(|| {

@@ -10,7 +10,7 @@ use durer_scene::dialect::Dialect;
 use durer_scene::math::Vec3;
 use durer_scene::scene::Material;
 
-/// Adds facts from the compiled scene to a finding.
+/// Adds an effect, help or edits from the compiled scene to a finding.
 pub(super) fn complete(scout: &SceneProbe, finding: &mut Finding) {
     match finding.diagnostic.code {
         "no-light" => no_light(scout, finding),
@@ -46,8 +46,8 @@ pub(super) fn complete(scout: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// Adds help about placement: the node grammar places an object by a node around it, other years
-/// inside the object.
+/// Adds help about placement. The node grammar places an object with the node around it; other
+/// dialects place it with the object's own fields.
 fn foreign_in_nodes(scout: &SceneProbe, finding: &mut Finding) {
     finding.diagnostic.severity = Severity::Note;
     let word = finding.diagnostic.span.map(|span| scout.text(span)).unwrap_or_default();
@@ -60,7 +60,8 @@ fn foreign_in_nodes(scout: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// Completes the finding about missing lights. A scene of flat colours needs none.
+/// Completes the finding about missing lights. It is only a note if all materials are plain
+/// colours.
 fn no_light(scout: &SceneProbe, finding: &mut Finding) {
     let scene = scout.subject.scene;
     let plain = |material: &Material| match material {
@@ -98,8 +99,8 @@ fn up_parallel(scout: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// Suggests a material index. An index one too large means that materials are counted from 1; with
-/// a single material this is certain.
+/// Suggests a material index. If an index is one too large, or there is only one material, the
+/// correction is certain.
 fn material_index(scout: &SceneProbe, finding: &mut Finding) {
     finding.diagnostic.effect = finding.diagnostic.help.take();
     let count = scout.subject.scene.materials.len();
@@ -124,8 +125,8 @@ fn material_index(scout: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// Fixes all indices if no object uses material 0 and an object uses the index after the last: they
-/// are counted from 1.
+/// Corrects all indices if no object uses material 0 and an object uses the index after the last,
+/// which means that they are counted from 1.
 fn from_one(scout: &SceneProbe, finding: &mut Finding, count: usize) -> bool {
     let span = finding.diagnostic.span.unwrap_or_default();
     let uses = scout.subject.files.bytes(span.file).map(|bytes| place::values(bytes, span.file, "MaterialIndex"));
@@ -147,7 +148,7 @@ fn no_material(scout: &SceneProbe, finding: &mut Finding) {
     let scene = scout.subject.scene;
     let first = scene.root.iter().flat_map(|root| &root.objects).next();
     let nodes = scout.subject.dialect == durer_scene::dialect::Dialect::F23;
-    // At the top of the group it applies to all objects without an index.
+    // At the top of the group it applies to all objects without their own index.
     if let Some(first) = first.filter(|first| first.material.is_none() && !scene.materials.is_empty() && !nodes) {
         let place = Span { end: first.span.start, ..first.span };
         finding.diagnostic = finding.diagnostic.clone().fix(place, "MaterialIndex 0 ");

@@ -1,4 +1,5 @@
-//! Checks of scenes that a year's program renders differently than intended because of its quirks.
+//! Checks of scenes that the program of a course year renders differently than intended because of
+//! its quirks.
 
 use super::finding::{Finding, MAX_SOUGHT, number, percent, vector};
 use super::scene_probe::SceneProbe;
@@ -10,14 +11,14 @@ use durer_scene::material::PhongMaterial;
 use durer_scene::math::Color;
 use durer_scene::scene::{Material as Written, Spanned};
 
-/// Lengths of a camera's `up` whose effect is invisible.
+/// Range of lengths of a camera's `up` whose effect is invisible.
 const UNIT: std::ops::RangeInclusive<f32> = 0.9..=1.1;
 /// Cosine between `up` and `direction` above which the skew is visible.
 const SKEW: f32 = 0.6;
 /// Aspect ratio below which a picture looks square.
 const SQUARE: f32 = 1.05;
 
-/// Iterates over the visible Phong materials with their descriptions.
+/// Iterates over the visible Phong materials with their descriptions in the scene file.
 fn seen<'s>(scout: &SceneProbe<'s>) -> impl Iterator<Item = (usize, &'s Spanned<Written>, &'s PhongMaterial)> {
     let rays = scout.material_rays().to_vec();
     let all = scout.subject.scene.materials.iter().enumerate();
@@ -27,7 +28,7 @@ fn seen<'s>(scout: &SceneProbe<'s>) -> impl Iterator<Item = (usize, &'s Spanned<
     })
 }
 
-/// Reports a highlight with exponent 0 in a dialect where 0 to the power of 0 is 1.
+/// Reports highlights with exponent 0 in a dialect in which 0 to the power of 0 is 1.
 pub(super) fn pow_zero(scout: &SceneProbe) -> Vec<Finding> {
     let rules = scout.world().rules();
     if rules.highlight != Highlight::Phong || !rules.has(Quirk::PowZero) {
@@ -60,7 +61,7 @@ pub(super) fn pow_zero(scout: &SceneProbe) -> Vec<Finding> {
     if found.is_empty() { blunt(scout) } else { found }
 }
 
-/// Returns the exponent of a material's highlight and the field that states it.
+/// Returns the exponent of a material's highlight, and the field that sets it.
 fn sharpness(phong: &PhongMaterial) -> Option<(&'static str, f32)> {
     match (phong.exponent, phong.shininess) {
         (Some(exponent), _) => Some(("exponent", exponent)),
@@ -112,7 +113,7 @@ pub(super) fn tiny_highlight(scout: &SceneProbe) -> Vec<Finding> {
     seen(scout).filter_map(say).take(MAX_SOUGHT).collect()
 }
 
-/// Reports a highlight colour without an exponent, which is then 1.
+/// Reports a highlight colour without an exponent, which is 1 by default.
 pub(super) fn no_exponent(scout: &SceneProbe) -> Vec<Finding> {
     match scout.world().rules().highlight {
         Highlight::None => return no_highlight(scout).into_iter().collect(),
@@ -135,7 +136,7 @@ pub(super) fn no_exponent(scout: &SceneProbe) -> Vec<Finding> {
     seen(scout).filter(|(.., phong)| bare(phong)).map(say).take(MAX_SOUGHT).collect()
 }
 
-/// Notes a highlight colour without an exponent in a dialect without highlights, which reads it as
+/// Notes a highlight colour without an exponent in a dialect without highlights, which uses it as
 /// the colour of a mirror.
 fn no_highlight(scout: &SceneProbe) -> Option<Finding> {
     let bare = |phong: &PhongMaterial| {
@@ -147,8 +148,8 @@ fn no_highlight(scout: &SceneProbe) -> Option<Finding> {
     };
     let (i, written, _) = seen(scout).find(|(.., phong)| bare(phong))?;
     let diagnostic = Diagnostic::note(format!("material {i} has a `specularColor` and no `shininess`"))
-        .effect("this year's program has no highlights, and mirrors with that colour; in others the highlight is everywhere")
-        .help("for a highlight write a `shininess`, 20 say, and take a year that has highlights, as `--dialect f16`");
+        .effect("this year's program has no highlights and uses the colour for a mirror; in other dialects the highlight covers everything")
+        .help("for a highlight, add a `shininess`, such as 20, and use a dialect with highlights, such as `--dialect f16`");
     Some(Finding::from(scout.at_value(diagnostic, written.span, &["specularColor"])))
 }
 
@@ -196,7 +197,7 @@ fn skew_up(scout: &SceneProbe) -> Option<Finding> {
     Some(Finding::from(scout.at_value(diagnostic.fix_at(value, text), span, &["up"])).whole(true))
 }
 
-/// Reports a picture that is not square in a dialect that stretches it.
+/// Reports a non-square picture in a dialect that stretches it.
 pub(super) fn stretched(scout: &SceneProbe) -> Vec<Finding> {
     let job = scout.subject.job;
     let (width, height) = (job.width as f32, job.height as f32);
@@ -215,7 +216,7 @@ pub(super) fn stretched(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// Reports faces of more than three corners, of which that year's program reads three.
+/// Reports faces with more than three vertices, of which the dialect's program reads only three.
 pub(super) fn quads(scout: &SceneProbe) -> Vec<Finding> {
     if !scout.world().rules().is_bit_compatible() {
         return Vec::new();
@@ -232,7 +233,7 @@ pub(super) fn quads(scout: &SceneProbe) -> Vec<Finding> {
     super::mesh::large_faces(scout).into_iter().map(say).collect()
 }
 
-/// Reports patterns of two equal parts.
+/// Reports patterns whose two parts are equal.
 pub(super) fn same_parts(scout: &SceneProbe) -> Vec<Finding> {
     use durer_scene::material::Pattern;
     let materials = &scout.subject.scene.materials;
@@ -265,7 +266,7 @@ pub(super) fn same_parts(scout: &SceneProbe) -> Vec<Finding> {
     materials.iter().enumerate().filter_map(say).take(MAX_SOUGHT).collect()
 }
 
-/// Reports ambient light so bright that other lights have little visible effect.
+/// Reports ambient light so bright that other lights are hardly visible.
 pub(super) fn full_ambient(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let ambient = world.ambient();
@@ -312,7 +313,7 @@ pub(super) fn plane_normal(scout: &SceneProbe) -> Vec<Finding> {
                 }
                 false => format!("normalise it: `normal {unit}`"),
             });
-        // The plane stays where it is.
+        // Keep the plane where it is.
         let offset = number(plane.offset / length);
         let diagnostic = match (scout.value(object.span, &["normal"]), scout.value(object.span, &["offset"])) {
             (Some(value), Some(place)) => diagnostic.at(value).fix(value, unit).fix(place, offset),

@@ -1,4 +1,4 @@
-//! Differences of two pictures of one scene.
+//! The difference between two pictures of a lesson step.
 
 use super::stage::{Stage, percent};
 use durer_image::{Image, Layer, LayerKind, Transfer};
@@ -6,14 +6,15 @@ use durer_scene::math::Vec3;
 
 /// Largest difference in a channel, in 255ths, that counts as rounding.
 const ROUNDING: i32 = 1;
-/// Share of the pixels that a step must change to be visible.
+/// Minimum share of the pixels that must change for the change to count as visible.
 const MIN_SHARE: f64 = 0.001;
 
-/// Difference between two pictures of a scene.
+/// Difference between the pictures before and after a lesson step, with the number of changed
+/// pixels.
 #[derive(Clone, Debug)]
 pub struct Change {
-    /// Difference picture: grey where nothing changes, lighter where the picture gets lighter and
-    /// darker where it gets darker. Half the difference in eight bits.
+    /// Difference picture: grey where nothing changes, lighter where the picture gets lighter,
+    /// darker where it gets darker. Shows half the difference of the eight-bit values.
     pub picture: Layer,
     /// Number of all pixels.
     pub pixels: usize,
@@ -27,6 +28,7 @@ pub struct Change {
 }
 
 impl Change {
+    /// Compares two layers after the transfer curve, which applies only to colour layers.
     pub(super) fn new(before: &Layer, after: &Layer, transfer: Transfer) -> Self {
         let light = after.kind == LayerKind::Color;
         let transfer = if light { transfer } else { Transfer::Linear };

@@ -1,8 +1,9 @@
-//! Shows a scene in the order of the lecture: pictures, equation and effect of each step.
+//! Explains the rendering of a scene in the order of the lecture, with pictures and equations for
+//! each step.
 //!
-//! The steps are one table, [`TOPICS`]; [`Teacher`] renders their pictures in order. If a step
-//! changes nothing in a scene, it is shown in a small built-in scene. Path-tracing steps are only
-//! shown for path-traced scenes that have the effect.
+//! The steps are the table [`TOPICS`]; [`Teacher`] renders their pictures in order. If a step
+//! changes nothing in the user's scene, it is shown in a small built-in scene. Path-tracing steps
+//! are shown only for path-traced scenes that have the effect.
 
 mod change;
 mod plan;
@@ -19,7 +20,7 @@ use stage::LessonPicture;
 pub use stage::{OWN_SCENE, OWN_SCENE_NAME, Stage};
 pub use topics::{Glass, PathSettings, Shot, ShotOptions, SourcePlace, TOPICS, Topic};
 
-/// A picture and its caption.
+/// A rendered picture of a lesson step and its caption.
 #[derive(Clone, Debug)]
 pub struct Picture {
     /// Short caption.
@@ -28,32 +29,33 @@ pub struct Picture {
     pub layer: Layer,
 }
 
-/// One step of the lesson.
+/// One step of the lesson as shown on a page: text, pictures, and the difference that the step
+/// makes.
 #[derive(Clone, Debug)]
 pub struct Step {
     /// Topic of the step.
     pub topic: &'static Topic,
     /// Title of the step.
     pub title: String,
-    /// True if the step uses the built-in scene because the user's scene lacks the effect.
+    /// True if the pictures show the built-in scene, because the user's scene lacks the effect.
     pub ours: bool,
     /// Reason why the user's scene lacks the effect.
     pub lacking: &'static str,
     /// True if the step continues the previous step's topic.
     pub goes_on: bool,
-    /// The picture before the step, if there is one to compare.
+    /// The picture before the step; `None` if there is nothing to compare with.
     pub before: Option<Picture>,
     /// The picture after the step.
     pub after: Picture,
-    /// SVG drawing to show with the picture.
+    /// SVG drawing to show with the picture, if any.
     pub plan: Option<String>,
-    /// The difference of the two pictures.
+    /// The difference between the two pictures.
     pub change: Option<Change>,
-    /// Effect of the step in this scene, in a sentence or two.
+    /// Effect of the step in this scene, in one or two sentences.
     pub words: String,
 }
 
-/// Renders the steps of the lesson.
+/// Renders the steps of the lesson for a scene, one topic at a time.
 #[derive(Debug)]
 pub struct Teacher {
     /// The scene of the lesson, and the built-in scene.
@@ -62,14 +64,14 @@ pub struct Teacher {
 }
 
 impl Teacher {
-    /// Creates a teacher for a scene; pictures are compared after the transfer curve.
+    /// Creates a teacher for a scene. `transfer` is the curve after which pictures are compared.
     pub fn new(stage: Stage, transfer: Transfer) -> Self {
         let ours = Stage::ours(stage.size());
         Teacher { stages: [stage, ours], transfer }
     }
 
-    /// Renders the steps of a topic: at least one, except for a path-tracing topic that the scene
-    /// cannot show, which has none. Later steps of a topic that change nothing are left out.
+    /// Renders the steps of a topic. There is at least one step, unless a path-tracing topic has no
+    /// effect in the scene. Later steps of the topic that change nothing are left out.
     ///
     /// # Errors
     /// [`RenderError`].
@@ -89,17 +91,17 @@ impl Teacher {
                 return Ok(marked(steps, lacking));
             }
         }
-        // Unreachable: a test checks that the built-in scene shows every topic.
+        // Not reached: a test checks that the built-in scene shows every topic.
         Ok(Vec::new())
     }
 }
 
-/// Marks why steps use the built-in scene, and which steps continue the one before.
+/// Sets why the steps use the built-in scene, and which of them continue the previous step.
 fn marked(steps: Vec<Step>, lacking: &'static str) -> Vec<Step> {
     steps.into_iter().enumerate().map(|(i, step)| Step { lacking, goes_on: i > 0, ..step }).collect()
 }
 
-/// Renders the steps of a topic in a scene; none if the first one is invisible.
+/// Renders the steps of a topic in a scene; none if the first step makes no visible change.
 fn steps(
     topic: &'static Topic,
     stage: &mut Stage,
@@ -127,7 +129,7 @@ fn steps(
             words,
         };
         if topic.shots.len() == 1 {
-            // The first picture of another quantity has nothing to compare with.
+            // A single picture of another quantity is not compared.
             let words = stage.facts(shot, &shown);
             steps.extend(words.map(|words| step(None, None, words)));
         } else if let Some((before_shot, before)) = &last {
@@ -146,12 +148,13 @@ fn steps(
     Ok(steps)
 }
 
-/// Describes the noise of two Monte Carlo pictures in a sentence.
+/// Describes the noise of two Monte Carlo pictures in a sentence; empty if a picture has no noise
+/// estimate.
 fn noise(before: &LessonPicture, after: &LessonPicture) -> String {
     let share = |noise: f64| format!("{:.1} %", 100.0 * noise);
     match (before.noise, after.noise) {
         (Some(before), Some(after)) => format!(
-            " Its noise (the mean of the pixels' standard errors, cut off at white) is {} of the mean luminance; before it was {}.",
+            " Its noise (the mean of the pixels' standard errors, clipped to white) is {} of the mean luminance; before it was {}.",
             share(after),
             share(before)
         ),

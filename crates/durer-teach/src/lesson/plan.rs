@@ -1,4 +1,4 @@
-//! Plan view of the camera rays of the picture's middle row.
+//! Draws a plan view of the camera rays through the picture's middle row.
 
 use super::stage::Stage;
 use durer_render::render::center_ray;
@@ -7,16 +7,16 @@ use std::fmt::Write;
 
 /// Number of rays drawn.
 const RAYS: u32 = 21;
-/// Maximum number of boxes drawn; more would hide each other.
+/// Maximum number of boxes drawn; more would cover each other.
 const MAX_BOXES: usize = 200;
 /// Width and height of the drawing.
 const SIZE: f32 = 400.0;
 
-/// Draws an SVG file: boxes around the objects, rays to their hits.
+/// Draws an SVG file with a box around each object and rays up to their hits.
 pub(super) fn plan(stage: &Stage) -> String {
     let (world, (width, height)) = (&stage.world, stage.size());
     let frame = world.camera_frame();
-    // Right on the page is the camera's right, up is its forward direction.
+    // Camera space seen from above: right is to the right, forward is up.
     let flat = |p: Vec3| Vec2::new((p - frame.eye).dot(frame.right), -(p - frame.eye).dot(frame.forward));
     let count = RAYS.min(width);
     let mut rays = Vec::new();
@@ -26,7 +26,7 @@ pub(super) fn plan(stage: &Stage) -> String {
         let hit = world.closest(&ray, &mut ()).map(|hit| hit.t);
         rays.push((ray, hit));
     }
-    // An infinite ground would dominate: rays end at three times the median length.
+    // Limit rays to three times the median length, so that an infinite ground does not dominate.
     let mut hits: Vec<f32> = rays.iter().filter_map(|ray| ray.1).collect();
     hits.sort_by(f32::total_cmp);
     let nothing = || (world.bounds().center() - frame.eye).length().max(1.0);
@@ -35,7 +35,7 @@ pub(super) fn plan(stage: &Stage) -> String {
     let ends = rays.iter().map(|(ray, hit)| (flat(ray.origin), flat(ray.at(hit.unwrap_or(reach))), hit.is_some()));
     let ends: Vec<(Vec2, Vec2, bool)> = ends.filter(|end| end.0.is_finite() && end.1.is_finite()).collect();
 
-    // Fit all rays into the drawing, with a margin.
+    // Scale the drawing so that all rays fit, with a margin.
     let points = ends.iter().flat_map(|end| [end.0, end.1]).chain([Vec2::ZERO]);
     let around = Aabb::around(points.map(|p| p.extend(0.0)));
     let (middle, side) = (around.center().truncate(), around.size().max_element().max(1e-6));
@@ -79,7 +79,7 @@ pub(super) fn plan(stage: &Stage) -> String {
 }
 
 fn line(svg: &mut String, a: Vec2, b: Vec2, style: &str) {
-    // Skip zero-length and extremely distant lines. Writing to a string never fails.
+    // Skip zero-length and extremely distant lines. Writing to a string cannot fail.
     if a.distance(b) > 0.05 && a.abs().max_element().max(b.abs().max_element()) < 1e6 {
         let _ =
             writeln!(svg, "<line x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\" {style}/>", a.x, a.y, b.x, b.y);

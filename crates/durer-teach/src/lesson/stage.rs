@@ -1,4 +1,4 @@
-//! A scene that can be rendered with parts of its light removed and with common mistakes.
+//! A scene whose pictures can leave out parts of the light or include a common mistake.
 
 use super::topics::{Glass, PathSettings, Shot, ShotOptions, Topic};
 use crate::mistakes::{SceneVariant, of_name};
@@ -21,7 +21,7 @@ use durer_scene::scene::Scene;
 use durer_scene::source::MemorySource;
 use std::sync::Arc;
 
-/// Built-in scene, in which every step is visible.
+/// Text of the built-in scene, in which every step is visible.
 pub const OWN_SCENE: &str = include_str!("scene.txt");
 /// File name of the built-in scene in messages.
 pub const OWN_SCENE_NAME: &str = "our-scene.txt";
@@ -32,28 +32,29 @@ const SAMPLES: u32 = 16;
 /// Number of pictures cached for later steps.
 const KEPT: usize = 4;
 
-/// A picture and the values that it shows.
+/// A picture rendered for the lesson, with the values before tone mapping and an estimate of the
+/// noise.
 #[derive(Clone, Debug)]
 pub(super) struct LessonPicture {
     pub(super) layer: Layer,
     pub(super) values: Image,
-    /// Standard error of the pixels as a share of the luminance, for Monte Carlo pictures.
+    /// Standard error of the pixels relative to the luminance, for Monte Carlo pictures.
     pub(super) noise: Option<f64>,
 }
 
-/// A scene, its world, and the job that renders the final picture of the lesson.
+/// A scene of the lesson, compiled and ready to render with parts of its light switched off.
 #[derive(Debug)]
 pub struct Stage {
     scene: Scene,
     files: Files,
     pub(super) world: World,
     pub(super) job: Job,
-    /// The world's original lights, materials and rules.
+    /// Lights, materials and rules of the unmodified world.
     lights: Vec<Light>,
     ambient: Color,
     materials: Vec<Material>,
     rules: Rules,
-    /// Recent pictures: a step starts with the last picture of the one before.
+    /// Recent pictures, since a step often starts with the last picture of the previous one.
     made: Vec<(Shot, LessonPicture)>,
 }
 
@@ -66,7 +67,7 @@ impl Stage {
         Stage { scene, files, world, job, lights, ambient, materials, rules, made: Vec::new() }
     }
 
-    /// Loads the built-in scene for pictures of a given size.
+    /// Loads the built-in scene, to be rendered at a given size.
     pub(super) fn ours((width, height): (u32, u32)) -> Self {
         let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
         let file = files.add(OWN_SCENE_NAME, OWN_SCENE.as_bytes().into());
@@ -79,13 +80,13 @@ impl Stage {
         Stage::new(scene, files, world, Job { width, height, ..Job::default() })
     }
 
-    /// Returns a reason if the scene's dialect does not support the effect.
+    /// Returns the reason if the scene's dialect does not support the effect of a topic.
     pub(super) fn year_lacks(&self, topic: &str) -> Option<&'static str> {
         let (highlights, secondary) = (self.rules.highlight, self.rules.secondary);
         match topic {
-            "specular" if highlights == Highlight::None => Some("this year's program has no highlights at all"),
+            "specular" if highlights == Highlight::None => Some("this year's program has no highlights"),
             "reflection" | "refraction" | "fresnel" if secondary == Secondary::None => {
-                Some("this year's program traces no mirrored or transmitted rays")
+                Some("this year's program traces no reflected or transmitted rays")
             }
             "refraction" | "fresnel" if secondary == Secondary::Specular => {
                 Some("this year's program has mirrors, but no glass")
@@ -95,10 +96,12 @@ impl Stage {
         }
     }
 
+    /// Returns the width and height of the pictures.
     pub(super) fn size(&self) -> (u32, u32) {
         (self.job.width, self.job.height)
     }
 
+    /// Returns the raster of the pictures.
     pub(super) fn raster(&self) -> Raster {
         raster(&self.world, self.job.width, self.job.height)
     }
@@ -134,7 +137,7 @@ impl Stage {
                 }
             }
         };
-        // Older pictures are not needed again.
+        // Drop older pictures, which are not needed again.
         self.made.drain(..self.made.len().saturating_sub(KEPT - 1));
         self.made.push((*shot, shown.clone()));
         Ok(shown)
@@ -162,7 +165,8 @@ impl Stage {
         for material in &mut own.materials {
             let Material::Phong(phong) = material else { continue };
             phong.highlight = phong.highlight.filter(|_| look.highlights);
-            // Flat colour includes textures, even if the dialect's ambient light ignores them.
+            // Flat colour includes textures, even if the dialect does not apply ambient light to
+            // them.
             phong.ambient = phong.ambient.filter(|_| look.lights);
             if phong.fresnel && look.glass != Glass::Fresnel {
                 (phong.fresnel, phong.reflective) = (false, Color::ZERO);
@@ -183,7 +187,7 @@ impl Stage {
         }
     }
 
-    /// Returns Whitted's method, or path tracing with the job's own options.
+    /// Returns Whitted's method, or path tracing with the options of the job.
     fn method(&self, look: &ShotOptions) -> IntegratorKind {
         let Some(carriage) = look.paths else { return IntegratorKind::WHITTED };
         let own = self.job.method.transport().unwrap_or_default();
@@ -202,8 +206,8 @@ impl Stage {
         self.has_paths() && self.lights.is_empty()
     }
 
-    /// Returns the options of a shot, with path tracing if Whitted's method would show no light.
-    /// Direct light is the same step with either method.
+    /// Returns the options of a shot. Switches to path tracing if Whitted's method would show no
+    /// light: for direct light, both methods show the same step.
     fn carried(&self, look: ShotOptions) -> ShotOptions {
         match self.needs_paths() && look.lights && look.paths.is_none() && look.bounces == 0 {
             true => ShotOptions { paths: Some(PathSettings::PLAIN), sampled: true, ..look },
@@ -211,12 +215,12 @@ impl Stage {
         }
     }
 
-    /// Returns a reason if a topic needs Whitted's method and that method does not support the
-    /// scene's lights.
+    /// Returns the reason if a topic needs Whitted's method, which does not support the scene's
+    /// lights.
     pub(super) fn method_lacks(&self, topic: &Topic) -> Option<&'static str> {
         let bounces = topic.shots.iter().any(|shot| shot.look.bounces > 0 && shot.look.paths.is_none());
         (self.needs_paths() && bounces)
-            .then_some("its light comes from surfaces or from all around, which Whitted's method does not know")
+            .then_some("its light comes from emissive surfaces or the environment, which Whitted's method does not support")
     }
 
     /// Returns true if the job uses path tracing.
@@ -232,8 +236,8 @@ impl Stage {
         }
     }
 
-    /// Returns the directions of the rays through the pixel centres as colours from 0 to 1; black
-    /// for pixels without a ray.
+    /// Returns the ray directions through the pixel centres as colours from 0 to 1; pixels without
+    /// a ray are black.
     fn directions(&self) -> Result<LessonPicture, RenderError> {
         let (raster, (width, height)) = (self.raster(), self.size());
         let rays: Vec<Option<Vec3>> =
@@ -245,7 +249,8 @@ impl Stage {
         Ok(LessonPicture { layer, values: Image::from_pixels(width, height, values)?, noise: None })
     }
 
-    /// Returns t of the first hit of each ray through a pixel's centre that hits something.
+    /// Returns the distances `t` of the first hits of the rays through the pixel centres; rays that
+    /// miss are left out.
     fn distances(&self) -> Vec<f32> {
         let raster = self.raster();
         let ray = |place| center_ray(&self.world, &raster, place);
@@ -253,8 +258,8 @@ impl Stage {
         hits.map(|at| at.hit.t).filter(|t| t.is_finite()).collect()
     }
 
-    /// Describes a picture that is not compared with another, in a sentence; `None` if there is
-    /// nothing to describe.
+    /// Describes in a sentence a picture that is not compared with another; `None` if it shows
+    /// nothing worth describing.
     pub(super) fn facts(&self, shot: &Shot, shown: &LessonPicture) -> Option<String> {
         let values = &shown.values.pixels;
         match shot.value {
@@ -307,13 +312,13 @@ impl Stage {
         }
     }
 
-    /// Names the object at a pixel's centre by its keyword and position in the scene file.
+    /// Names the object at a pixel's centre by its keyword and its position in the scene file.
     pub(super) fn object_at(&self, pixel: (u32, u32)) -> String {
         let hit = center_ray(&self.world, &self.raster(), pixel).and_then(|ray| self.world.closest(&ray, &mut ()));
         let names = Names { files: &self.files, scene: &self.scene, world: &self.world };
         hit.map_or("the background".into(), |hit| {
             let name = names.object(hit.object);
-            // Drop the folder of the file.
+            // Drop the directory of the file.
             match name.split_once(' ') {
                 Some((keyword, place)) => format!("{keyword} {}", place.rsplit(['/', '\\']).next().unwrap_or(place)),
                 None => name,
@@ -322,8 +327,8 @@ impl Stage {
     }
 }
 
-/// Returns a useful depth range for a scene with an infinite ground: from the minimum to at most
-/// three times as far beyond it as the median.
+/// Returns a useful depth range for a scene with an infinite ground: it starts at the minimum and
+/// extends at most three times as far as the median.
 fn depth_range(mut depths: Vec<f32>) -> Option<(f32, f32)> {
     depths.sort_by(f32::total_cmp);
     let (least, most) = (*depths.first()?, *depths.last()?);
@@ -331,16 +336,16 @@ fn depth_range(mut depths: Vec<f32>) -> Option<(f32, f32)> {
     (end > least).then_some((least, end))
 }
 
-/// Returns the mean of the pixels' standard errors as a share of the mean luminance, from the
-/// variances of the pixel means. Values are clipped to white, because edges of emitters would
-/// dominate. `None` for a black picture.
+/// Returns the mean standard error of the pixels relative to the mean luminance, from the variances
+/// of the pixel means. Values are clipped to white, because the edges of emitters would dominate
+/// otherwise. `None` for a black picture.
 fn noise_of(colors: &Image, variances: &Image) -> Option<f64> {
     let light: f64 = colors.pixels.iter().map(|color| luminance_of(*color).min(1.0)).sum();
     let errors: f64 = variances.pixels.iter().map(|variance| f64::from(variance.x).sqrt().min(1.0)).sum();
     Some(errors / light).filter(|noise| noise.is_finite())
 }
 
-/// Formats a share of pixels in percent.
+/// Formats a ratio as a percentage with one decimal.
 pub(super) fn percent(part: usize, all: usize) -> String {
     format!("{:.1} %", 100.0 * part as f64 / all.max(1) as f64)
 }

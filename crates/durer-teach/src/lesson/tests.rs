@@ -33,7 +33,7 @@ fn built_in_scene_shows_every_topic() {
     let mut ours = Stage::ours((64, 48));
     for topic in TOPICS.iter().filter(|topic| !topic.is_of_paths()) {
         let steps = steps(topic, &mut ours, Transfer::Srgb, true, &Control::default()).unwrap();
-        // Mirrors show other mirrors, and those show mirrors again.
+        // Mirrors show other mirrors, which show mirrors again.
         let least = if topic.name == "reflection" { 3 } else { 1 };
         assert!(steps.len() >= least, "{}: {}", topic.name, steps.len());
         assert!(steps.iter().all(|step| step.words.ends_with('.')));
@@ -51,7 +51,7 @@ fn lesson_ends_with_the_final_picture_and_is_deterministic() {
     let picture = render(&whitted.world, &whitted.job, &Control::default()).unwrap();
     assert_eq!(steps.last().unwrap().after.layer.image, picture.layers[0].image);
     assert_eq!(bits(&steps), bits(&lesson(whitted)));
-    // A step starts with the last picture of an earlier one.
+    // A step can start with the last picture of an earlier one.
     let specular = steps.iter().find(|step| step.topic.name == "specular").unwrap();
     let diffuse = steps.iter().find(|step| step.topic.name == "diffuse").unwrap();
     assert_eq!(specular.before.as_ref().unwrap().layer, diffuse.after.layer);
@@ -68,7 +68,7 @@ fn built_in_scene_replaces_a_scene_without_the_effect() {
     assert!(!transforms.contains(&"transforms") && transforms.contains(&"refraction"), "{transforms:?}");
 }
 
-/// Renders the path-tracing steps of a scene in small pictures.
+/// Renders the path-tracing steps of a scene at a small size.
 fn of_paths(scene: &str) -> Vec<Step> {
     let mut stage = stage(scene, 40);
     stage.job.method =
@@ -89,11 +89,11 @@ fn path_steps_appear_only_in_scenes_that_show_them() {
     let cornell = of_paths("cornell-box.txt");
     assert_eq!(names(&cornell), ["soft-shadows", "bounces", "mis"]);
     assert!(cornell.iter().all(|step| !step.ours && step.words.contains("Its noise")));
-    // Another bounce only adds light.
+    // Each further bounce only adds light.
     let bounces = cornell.iter().filter(|step| step.topic.name == "bounces").map(|step| step.change.as_ref().unwrap());
     assert!(bounces.clone().count() >= 3 && bounces.clone().all(|change| change.lighter == change.changed));
     assert_eq!(names(&of_paths("caustic.txt")), ["soft-shadows", "bounces", "mis", "caustic"]);
-    // Sunlight has no visible extent.
+    // The sun is a light without a visible extent.
     assert_eq!(names(&of_paths("prism.txt")).last(), Some(&"spectrum"));
     // Whitted's method has no path-tracing steps.
     assert!(lesson(stage("whitted.txt", 24)).iter().all(|step| !step.topic.is_of_paths()));
@@ -108,7 +108,7 @@ fn multiple_importance_sampling_has_less_noise_than_either_strategy() {
     let noise: Vec<f64> =
         topic.shots.iter().map(|shot| plates.show(shot, &Control::default()).unwrap().noise.unwrap()).collect();
     // The error of light sampling alone comes from rare bright samples, most of which are missing
-    // here.
+    // in so few samples.
     assert!(noise[2] < 0.95 * noise[0] && noise[2] < 0.5 * noise[1], "{noise:?}");
 }
 
@@ -143,8 +143,8 @@ fn moved_normals_are_transformed_by_the_matrix_itself() {
     }
 }
 
-/// A ball of radius 1 in the centre of the picture, 5 away from the camera. Rays that miss it have
-/// no distance.
+/// Places a ball of radius 1 in the centre of the picture, 5 units from the camera. Rays that miss
+/// it have no distance.
 #[test]
 fn distances_are_those_of_the_rays_that_hit() {
     let mut stage = stage("whitted.txt", 24);
@@ -165,8 +165,8 @@ fn distances_are_those_of_the_rays_that_hit() {
     assert!(words.starts_with("24.") && words.contains("from 4.00 to 4.8"), "{words}");
 }
 
-/// The light of the Cornell box is a surface: its direct light is path traced, and mirrors are
-/// shown in the built-in scene.
+/// The Cornell box is lit by an area light. Its direct light is path traced, and mirrors are shown
+/// in the built-in scene.
 #[test]
 fn a_scene_without_lights_of_whitteds_method_is_shown_by_paths() {
     let mut stage = stage("cornell-box.txt", 32);
@@ -181,5 +181,5 @@ fn a_scene_without_lights_of_whitteds_method_is_shown_by_paths() {
     let most = diffuse[0].after.layer.image.pixels.iter().map(|pixel| pixel.max_element()).fold(0.0, f32::max);
     assert!(!diffuse[0].ours && most > 0.3, "{most}");
     let mirrors = of("reflection");
-    assert!(mirrors[0].ours && mirrors[0].lacking.contains("Whitted's method does not know"), "{}", mirrors[0].lacking);
+    assert!(mirrors[0].ours && mirrors[0].lacking.contains("Whitted's method does not support"), "{}", mirrors[0].lacking);
 }

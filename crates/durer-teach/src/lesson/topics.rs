@@ -1,23 +1,24 @@
-//! The steps of the lecture as a table: text, equations, pictures and places in the source. The
-//! path-tracing steps come last.
+//! The table of the lesson's topics: text, equations, pictures and references to the source code.
+//! Topics of path tracing come last.
 
 use durer_render::integrator::Direct;
 use durer_scene::spectrum::ColorMode;
 
-/// Parts of the light that a shot shows, and the mistake that it makes.
+/// Options of one picture of the lesson: which parts of the light it shows, and which mistake it
+/// includes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShotOptions {
-    /// True if there are lights; otherwise each surface shows its own colour.
+    /// True if lights illuminate the scene; otherwise each surface shows its flat colour.
     pub lights: bool,
-    /// True if there are highlights.
+    /// True if surfaces have highlights.
     pub highlights: bool,
-    /// True if there are shadows.
+    /// True if lights cast shadows.
     pub shadows: bool,
-    /// Maximum depth of reflected and transmitted rays, limited by the job's.
+    /// Maximum depth of reflected and transmitted rays; the job's maximum also applies.
     pub bounces: u32,
-    /// Behaviour of glass.
+    /// How glass is rendered.
     pub glass: Glass,
-    /// Name of the mistake to make, from [`crate::mistakes::MISTAKES`].
+    /// Name of a mistake from [`crate::mistakes::MISTAKES`] to include.
     pub mistake: Option<&'static str>,
     /// True if a pixel has several samples.
     pub sampled: bool,
@@ -25,16 +26,16 @@ pub struct ShotOptions {
     pub paths: Option<PathSettings>,
 }
 
-/// Options of path tracing.
+/// Path-tracing options of one picture of the lesson.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PathSettings {
     /// Sampling strategy for direct light.
     pub direct: Direct,
-    /// True if photons render caustics.
+    /// True if caustics are rendered with photons.
     pub photons: bool,
     /// RGB or spectral light.
     pub color: ColorMode,
-    /// True if glass disperses light.
+    /// True if glass has dispersion.
     pub disperses: bool,
 }
 
@@ -44,51 +45,52 @@ impl PathSettings {
         PathSettings { direct: Direct::Both, photons: false, color: ColorMode::Rgb, disperses: true };
 }
 
-/// Behaviour of glass.
+/// How a picture of the lesson renders glass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Glass {
-    /// Opaque.
+    /// As an opaque surface.
     None,
     /// Transmits all light, without Fresnel reflection.
     Transmits,
-    /// As in the scene.
+    /// With Fresnel reflection, as in the scene.
     Fresnel,
 }
 
-/// One picture of a topic.
+/// One picture of a topic, to be rendered by a [`Stage`](super::stage::Stage).
 #[derive(Clone, Copy, Debug)]
 pub struct Shot {
     /// Short caption.
     pub caption: &'static str,
     /// `rays`, or an AOV of [`durer_render::film::aov::AOVS`]; `None` for colour.
     pub value: Option<&'static str>,
-    /// Parts of the light that are shown.
+    /// Parts of the light to show.
     pub look: ShotOptions,
 }
 
-/// A place in the source: a file relative to the repository's root, and the text to find in it.
+/// A reference from the lesson to the source code: a file, relative to the root of the repository,
+/// and text to find in it.
 #[derive(Clone, Copy, Debug)]
 pub struct SourcePlace {
     /// Path of the file.
     pub file: &'static str,
-    /// Start of a definition in the file.
+    /// Start of a definition in that file.
     pub symbol: &'static str,
 }
 
-/// A step of the lecture, or several of one kind.
+/// A topic of the lesson, such as shadows, with one or more pictures; a row of [`TOPICS`].
 #[derive(Debug)]
 pub struct Topic {
-    /// Keyword, also used in file names.
+    /// Short name, also used in file names.
     pub name: &'static str,
     /// Title of the step.
     pub title: &'static str,
-    /// Explanation for a student who has read the steps before.
+    /// Explanation for a student who has read the previous topics.
     pub words: &'static str,
     /// Equations, one per line.
     pub equations: &'static [&'static str],
-    /// Places of the equations in the source.
+    /// Places in the source code that implement the equations.
     pub places: &'static [SourcePlace],
-    /// Pictures: a single one, or a chain in which each differs from the one before.
+    /// Pictures: a single one, or a chain in which each is compared with the previous one.
     pub shots: &'static [Shot],
     /// Reason why a scene may lack the effect.
     pub lacking: &'static str,
@@ -137,7 +139,7 @@ const FRESNEL: ShotOptions = ShotOptions { glass: Glass::Fresnel, ..GLASS };
 const MOVED: ShotOptions = ShotOptions { mistake: Some("normals-moved"), ..FRESNEL };
 const SAMPLED: ShotOptions = ShotOptions { sampled: true, ..FRESNEL };
 
-/// Path tracing, always with many samples.
+/// Options for path tracing with many samples.
 const fn paths(bounces: u32, carriage: PathSettings) -> ShotOptions {
     ShotOptions { bounces, sampled: true, paths: Some(carriage), ..FRESNEL }
 }

@@ -1,7 +1,7 @@
-//! A student's tracer: a second implementation of Whitted's algorithm with optional mistakes.
+//! A student's ray tracer: a second implementation of Whitted's algorithm that can make mistakes.
 //!
-//! It is separate from [`Whitted`], so that the renderer never checks for mistakes. A test verifies
-//! that without mistakes it returns bit-identical colours.
+//! It is separate from [`Whitted`], so that the renderer contains no code for mistakes. A test
+//! checks that without mistakes both return bit-identical colours.
 
 mod hits;
 
@@ -23,7 +23,7 @@ use durer_scene::shape::{Primitive, Surface};
 use glam::DVec3;
 use smallvec::SmallVec;
 
-/// A student's tracer.
+/// Whitted ray tracer that makes the mistakes in `bugs`, as a student's program might.
 #[derive(Clone, Copy, Debug)]
 pub struct BuggyTracer<'w> {
     world: &'w World,
@@ -32,7 +32,7 @@ pub struct BuggyTracer<'w> {
     right: Whitted<'w>,
 }
 
-/// State of a ray from bounce to bounce.
+/// State that [`BuggyTracer`] passes from a ray to its reflected and transmitted rays.
 #[derive(Clone)]
 struct RayState {
     bounces: u32,
@@ -42,7 +42,7 @@ struct RayState {
 }
 
 impl<'w> BuggyTracer<'w> {
-    /// Creates a tracer for a world with settings and mistakes.
+    /// Creates a tracer that renders `world` with the mistakes in `bugs`.
     pub fn new(world: &'w World, settings: WhittedOptions, bugs: &'w Bugs) -> Self {
         BuggyTracer { world, settings, bugs, right: Whitted { world, settings, cancel: None } }
     }
@@ -55,7 +55,7 @@ impl<'w> BuggyTracer<'w> {
 
     fn trace(&self, ray: &Ray64, mut path: RayState) -> Color {
         let mut rest = *ray;
-        // With some mistakes a ray finds the same surface again, so limit the loop.
+        // With some mistakes a ray hits the same surface again, so limit the loop.
         for _ in 0..64 {
             let behind = self.bugs.behind.is_some_and(|rays| rays == BehindOrigin::All || path.first);
             let from = if behind { f32::NEG_INFINITY } else { rest.rounded.t_min };
@@ -81,7 +81,7 @@ impl<'w> BuggyTracer<'w> {
         }
     }
 
-    /// Adjusts position and normals of an interaction.
+    /// Applies mistakes in positions and normals to an interaction.
     fn met(&self, mut at: SurfaceInteraction, t: f32) -> SurfaceInteraction {
         let (bugs, object) = (self.bugs, &self.world.objects()[at.hit.object as usize]);
         let SurfaceInteraction { ray, hit, surface, .. } = &mut at;
@@ -91,8 +91,8 @@ impl<'w> BuggyTracer<'w> {
         if let (Geometry::Mesh(tree), true) = (&object.geometry, bugs.long_mixed)
             && let Some(mixed) = tree.mesh.mixed_normal(hit.part, hit.uv)
         {
-            // Use the length of the interpolated normal, which rotations and uniform scales
-            // preserve.
+            // Only the length of the interpolated normal is needed: rotations and uniform scales
+            // preserve it.
             surface.n_shade *= mixed.length();
         }
         if let (Geometry::Mesh(tree), true) = (&object.geometry, bugs.mixed_otherwise > 0) {
@@ -238,7 +238,7 @@ impl<'w> BuggyTracer<'w> {
         color
     }
 
-    /// Returns the incident light, with the tracer's mistakes.
+    /// Returns the incident light, including mistakes in its direction and attenuation.
     fn illuminated(&self, light: &Light, point: DVec3) -> LightLiSample {
         let mut seen = light.illuminate(point);
         if self.bugs.lights.all_negated {
@@ -289,13 +289,13 @@ impl<'w> BuggyTracer<'w> {
                     PointLightDirection::MinusPosition => seen.to_light = -point.position.normalize_or(seen.to_light),
                 }
             }
-            // The course has neither kind of light.
+            // The course's programs have neither kind of light.
             Light::Spot(_) | Light::Photometric(_) => {}
         }
         seen
     }
 
-    /// Returns the light vector used in products; unit length unless a mistake changes that.
+    /// Returns the light vector used in products; it is unit length unless a mistake changes that.
     fn light_vector(&self, light: &Light, seen: &LightLiSample) -> Vec3 {
         match light {
             Light::Directional(sun) if self.bugs.lights.long => seen.to_light * sun.direction.length(),
@@ -304,7 +304,7 @@ impl<'w> BuggyTracer<'w> {
         }
     }
 
-    /// Returns the diffuse term and highlight of one light.
+    /// Returns the diffuse term and the highlight due to one light.
     fn direct(&self, phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, light: &Light, seen: &LightLiSample) -> Color {
         let bugs = self.bugs.highlights;
         let to_light = self.light_vector(light, seen);
@@ -327,7 +327,7 @@ impl<'w> BuggyTracer<'w> {
         let plain = self.bugs.plain_diffuse && diffuse != Color::ZERO;
         let mut color = factor * if plain { Color::ONE } else { diffuse };
         if self.bugs.diffuse_lightless {
-            // Cancels the multiplication below.
+            // Cancels the multiplication by `seen.color` at the end.
             color /= seen.color.max(Color::splat(1e-6));
         }
         if let Some((specular, exponent, model)) = phong.highlight {
@@ -360,7 +360,7 @@ impl<'w> BuggyTracer<'w> {
         color * seen.color
     }
 
-    /// Returns the share of a light that arrives.
+    /// Returns the fraction of a light that reaches a surface, per channel; 0 in full shadow.
     fn visible(&self, surface: &Surface, light: usize, seen: &LightLiSample, first: bool) -> Color {
         let bugs = self.bugs.shadows;
         let unshadowed = self.bugs.bounces.unshadowed && !first;
@@ -421,7 +421,7 @@ impl<'w> BuggyTracer<'w> {
         Color::ZERO
     }
 
-    /// Returns 1 if all occluders along the ray are transparent, else 0.
+    /// Returns 1 if all objects along the ray are transparent, otherwise 0.
     fn visible_through_glass(&self, mut ray: Ray64, epsilon: Option<Epsilon>) -> Color {
         for _ in 0..64 {
             let Some((hit, _)) = self.closest(&ray) else { return Color::ONE };
@@ -551,7 +551,7 @@ impl<'w> BuggyTracer<'w> {
     }
 }
 
-/// Returns the direction of a reflected ray.
+/// Returns the direction of a reflected ray, computed correctly or with a mistake.
 fn mirrored(d: Vec3, n: Vec3, how: Mirror) -> Vec3 {
     match how {
         Mirror::Right => reflect(d, n),

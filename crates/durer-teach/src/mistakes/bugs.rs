@@ -1,42 +1,43 @@
-//! Deviations of a student's tracer from a correct one.
+//! The mistakes that a student's tracer can make, as options of
+//! [`BuggyTracer`](super::BuggyTracer).
 
 use durer_scene::math::{Color, Vec2};
 
-/// Hit that the tracer selects along a ray.
+/// Which hit along a ray a student's tracer uses; only `Nearest` is correct.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HitChoice {
-    /// The nearest, which is correct.
+    /// The nearest hit, which is correct.
     #[default]
     Nearest,
-    /// The nearest hit of the object whose nearest hit is farthest.
+    /// The nearest hit of the object whose nearest hit is farthest away.
     FarthestObject,
-    /// The last crossing of any surface.
+    /// The last intersection with any surface.
     Last,
-    /// The hit of the last object in the file.
+    /// The hit of the object that is last in the file.
     LastWritten,
-    /// The hit of the first object in the file.
+    /// The hit of the object that is first in the file.
     FirstWritten,
-    /// The nearest, but the far side of spheres.
+    /// The nearest hit, but with the far side of spheres.
     FarSpheres,
-    /// `FarthestObject`, with the farthest triangle of meshes.
+    /// `FarthestObject`, but with the farthest triangle of meshes.
     FarthestTriangle,
-    /// `LastWritten`, with the last triangle of meshes.
+    /// `LastWritten`, but with the last triangle of meshes.
     LastTriangle,
-    /// The nearest, but spheres are not hit from inside.
+    /// The nearest hit, except that spheres are not hit from inside.
     NearRoots,
     /// The nearest front-facing hit; with `true`, only triangles are culled.
     Fronts(bool),
-    /// The nearest object; in meshes, the first triangle in the file that is hit.
+    /// The hit of the nearest object; for a mesh, the first triangle in the file that is hit.
     FirstOfMesh,
-    /// The nearest object; in meshes, the last triangle in the file that is hit.
+    /// The hit of the nearest object; for a mesh, the last triangle in the file that is hit.
     LastOfMesh,
-    /// The nearest, with wrong roots of spheres.
+    /// The nearest hit, with wrong roots for spheres.
     Roots(Roots),
-    /// The nearest, with ray directions transformed like points into object space.
+    /// The nearest hit, with ray directions transformed to object space like points.
     MovedDirection,
 }
 
-/// Mistakes in the roots of a sphere's equation, with a = d·d and b = d·(o - center).
+/// Wrong formulas for the roots in ray-sphere intersection, with a = d·d and b = d·(o - center).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Roots {
     /// (-b ± √(b² - 4 a c)) / 2a.
@@ -47,10 +48,10 @@ pub enum Roots {
     TwiceA,
 }
 
-/// Normal of a sphere at p.
+/// Formula for the normal of a sphere at a point p.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ball {
-    /// norm(p - center).
+    /// norm(p - center), which is correct.
     #[default]
     Right,
     /// norm(p).
@@ -59,10 +60,10 @@ pub enum Ball {
     Long,
 }
 
-/// Transform of normals from object to world space.
+/// How a student's tracer transforms normals from object to world space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Normals {
-    /// Inverse transpose, normalised.
+    /// Inverse transpose, normalised, which is correct.
     #[default]
     Right,
     /// No transform.
@@ -73,29 +74,29 @@ pub enum Normals {
     ByInverse,
 }
 
-/// Use of the ambient light.
+/// How a student's tracer adds the ambient light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ambient {
-    /// Times the diffuse colour, once.
+    /// Multiplied by the diffuse colour and added once, which is correct.
     #[default]
     Right,
-    /// Once for each light.
+    /// Added once for each light.
     EachLight,
     /// Not multiplied by the diffuse colour.
     Bare,
 }
 
-/// Factor of a diffuse term.
+/// Cosine factor of the diffuse term in a student's tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Cosine {
-    /// max(0, N·L).
+    /// max(0, N·L), which is correct.
     #[default]
     Clamped,
     /// |N·L|.
     TwoSided,
-    /// N·L, negative or not.
+    /// N·L, without clamping.
     Signed,
-    /// 1.
+    /// 1, independent of the direction.
     One,
     /// No diffuse term.
     None,
@@ -111,10 +112,10 @@ pub enum Cosine {
     View,
 }
 
-/// Half vector of Blinn's highlights.
+/// How a student's tracer computes the half vector of Blinn's highlights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HalfVector {
-    /// norm(L + V).
+    /// norm(L + V), which is correct.
     #[default]
     Unit,
     /// L + V.
@@ -123,7 +124,7 @@ pub enum HalfVector {
     Mean,
 }
 
-/// Rays for which hits behind the origin count.
+/// Rays for which a student's tracer accepts hits behind the origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BehindOrigin {
     /// Every ray.
@@ -132,32 +133,32 @@ pub enum BehindOrigin {
     Camera,
 }
 
-/// Accumulation of the lights' contributions.
+/// How a student's tracer adds up the contributions of the lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LightSum {
-    /// Sum, clamped at the very end.
+    /// Sum, clamped only when the pixel is written, which is correct.
     #[default]
     Right,
-    /// Clamped to 1 after each light.
+    /// The sum is clamped to 1 after each light.
     ClampedEach,
     /// Each light's contribution is clamped to 1.
     ClampedLight,
-    /// Clamped to 1 before reflected and transmitted light is added.
+    /// The sum is clamped to 1 before reflected and transmitted light is added.
     ClampedLocal,
-    /// Each light replaces those before it.
+    /// Each light replaces the previous ones.
     LastOnly,
-    /// Each light that is not in shadow replaces those before it.
+    /// Each light that is not in shadow replaces the previous ones.
     LastSeen,
-    /// The greatest of the lights counts, channel by channel.
+    /// Maximum of the lights, for each channel.
     Greatest,
-    /// The greatest of the lights and the ambient light counts, channel by channel.
+    /// Maximum of the lights and the ambient light, for each channel.
     GreatestOfAll,
 }
 
-/// Attenuation of light at distance d, in addition to the factors of the scene.
+/// How a student's tracer attenuates a point light at distance d.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Attenuation {
-    /// Divided by the scene's polynomial.
+    /// Divided by the scene's polynomial, which is correct.
     #[default]
     Right,
     /// Multiplied by the scene's polynomial.
@@ -172,10 +173,10 @@ pub enum Attenuation {
     SquaredTwice,
 }
 
-/// Direction to a point light.
+/// How a student's tracer computes the direction L to a point light, and sometimes the distance d.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PointLightDirection {
-    /// L = norm(position - p).
+    /// L = norm(position - p), which is correct.
     #[default]
     Right,
     /// L = norm(p - position).
@@ -186,14 +187,14 @@ pub enum PointLightDirection {
     MinusPosition,
     /// L = norm(position), and d = |position|.
     PositionAlone,
-    /// L = norm(position - eye); with `true` d = |position - eye| too.
+    /// L = norm(position - eye); with `true`, also d = |position - eye|.
     FromEye(bool),
 }
 
-/// Direction of a reflected ray.
+/// How a student's tracer computes the direction of a reflected ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mirror {
-    /// d - 2 (d·N) N.
+    /// d - 2 (d·N) N, which is correct.
     #[default]
     Right,
     /// The correct direction, negated.
@@ -206,164 +207,164 @@ pub enum Mirror {
     Normal,
 }
 
-/// Direction of a transmitted ray.
+/// How a student's tracer computes the direction of a transmitted ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Glass {
-    /// Snell's law.
+    /// Snell's law, which is correct.
     #[default]
     Right,
-    /// Inverse ratio of indices.
+    /// The ratio of the indices is inverted.
     Inverted,
-    /// The entering ratio also when the ray leaves.
+    /// The ratio for entering is also used when the ray leaves.
     NotSwapped,
-    /// Not refracted.
+    /// The ray is not refracted.
     Straight,
-    /// The outward normal also when the ray leaves.
+    /// The outward normal is also used when the ray leaves.
     Outward,
-    /// The root added instead of subtracted.
+    /// The root is added instead of subtracted.
     RootAdded,
-    /// Indices exchanged, in Fresnel's law too.
+    /// The indices are exchanged, also in Fresnel's law.
     Exchanged,
-    /// The normal component has the wrong sign.
+    /// The component along the normal has the wrong sign.
     SignChanged,
-    /// The root left out.
+    /// The root is left out.
     NoRoot,
-    /// η in place of η² below the root.
+    /// η replaces η² below the root.
     Unsquared,
 }
 
-/// Fresnel term of glass.
+/// Fresnel term of glass in a student's tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Fresnel {
-    /// Schlick's approximation.
+    /// Schlick's approximation, which is correct.
     #[default]
     Right,
     /// R0 at every angle.
     Constant,
-    /// None: both rays count in full.
+    /// None: the reflected and the transmitted ray both have weight 1.
     None,
-    /// This share is reflected at every angle.
+    /// This fraction is reflected at every angle.
     Share(f32),
     /// Reflected and transmitted fractions are exchanged.
     Exchanged,
-    /// Schlick's approximation with the angle of the incoming ray also when it leaves glass.
+    /// Schlick's approximation with the angle of the incoming ray even when it leaves the glass.
     Incoming,
-    /// Schlick's approximation with an R0 that is not squared.
+    /// Schlick's approximation with R0 not squared.
     Unsquared,
-    /// Schlick's approximation with another power than 5.
+    /// Schlick's approximation with this power instead of 5.
     Power(f32),
 }
 
-/// Deviations of the lights.
+/// Mistakes in the direction and attenuation of lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightBugs {
-    /// L of directional lights is the direction as written, not negated.
+    /// L of directional lights is the direction from the file, not its negative.
     pub negated: bool,
-    /// L of all lights has the wrong sign, for shadow rays too.
+    /// L of all lights has the wrong sign, also for shadow rays.
     pub all_negated: bool,
     /// L of directional lights is not normalised.
     pub long: bool,
     /// L of point lights is not normalised.
     pub long_points: bool,
-    /// Attenuation.
+    /// Attenuation of point lights.
     pub fading: Attenuation,
     /// Direction to point lights.
     pub points: PointLightDirection,
 }
 
-/// Deviations of highlights.
+/// Mistakes in the highlights of Blinn's and Phong's models.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HighlightBugs {
-    /// Multiplied by max(0, N·L).
+    /// The highlight is multiplied by max(0, N·L).
     pub times_cosine: bool,
-    /// Multiplied by the diffuse colour.
+    /// The highlight is multiplied by the diffuse colour.
     pub times_diffuse: bool,
-    /// The light's colour, not multiplied by the specular colour.
+    /// The highlight has the light's colour: it is not multiplied by the specular colour.
     pub bare: bool,
     /// Half vector of Blinn's model.
     pub half: HalfVector,
     /// The view direction has the wrong sign.
     pub eye_negated: bool,
-    /// Not multiplied by the light's colour.
+    /// The highlight is not multiplied by the light's colour.
     pub lightless: bool,
-    /// Additional factor.
+    /// The highlight is multiplied by this factor.
     pub factor: Option<f32>,
-    /// Absolute value as the base of the power.
+    /// The base of the power is an absolute value.
     pub two_sided: bool,
-    /// Blinn's highlight also where N·L <= 0.
+    /// Blinn's highlight is also added where N·L <= 0.
     pub everywhere: bool,
-    /// Direction R of Phong's model.
+    /// Direction R in Phong's model.
     pub mirror: Mirror,
 }
 
-/// Direction of shadow rays.
+/// Direction of the shadow rays in a student's tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShadowDirection {
-    /// Towards the light.
+    /// Towards the light, which is correct.
     #[default]
     Light,
-    /// Away from it.
+    /// Away from the light.
     Away,
-    /// Along the normal.
+    /// Along the surface normal.
     Normal,
 }
 
-/// End of shadow rays to a point light at distance d.
+/// End of the shadow rays in a student's tracer, for a point light at distance d.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reach {
-    /// d.
+    /// At d, which is correct.
     #[default]
     Right,
-    /// 1.
+    /// At 1.
     One,
-    /// d²: t ends at d, for a ray direction of length d.
+    /// At d²: `t` ends at d although the ray direction has length d.
     Squared,
 }
 
-/// Deviations of shadow rays.
+/// Mistakes in shadow rays, and in the light that remains in shadow.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShadowBugs {
-    /// Do not end at the light.
+    /// Shadow rays do not end at the light.
     pub endless: bool,
-    /// No ambient light in shadow.
+    /// Ambient light is missing in shadow.
     pub ambient_too: bool,
-    /// Start distance.
+    /// Start distance of shadow rays, if different.
     pub epsilon: Option<f32>,
-    /// Share of a light that remains in its shadow.
+    /// Fraction of a light that remains in its shadow.
     pub left: f32,
-    /// If one light is blocked, later ones are too.
+    /// If one light is blocked, all later lights are missing too.
     pub later_too: bool,
-    /// If any light is blocked, ambient light is missing.
+    /// If any light is blocked, the ambient light is missing.
     pub ambient_of_any: bool,
-    /// Only the light of this index casts shadows.
+    /// Only the light with this index casts shadows.
     pub only_light: Option<usize>,
     /// Transparent objects cast no shadows.
     pub no_glass: bool,
     /// Direction of shadow rays.
     pub way: ShadowDirection,
-    /// Light counts where the ray hits something.
+    /// A light contributes where it is blocked, instead of where it is visible.
     pub inverted: bool,
-    /// Rays to directional lights end at distance 1.
+    /// Shadow rays to directional lights end at distance 1.
     pub short: bool,
     /// Highlights remain in shadow.
     pub highlights_left: bool,
     /// Diffuse light remains in shadow.
     pub diffuse_left: bool,
-    /// Rays start at the eye.
+    /// Shadow rays start at the eye.
     pub from_eye: bool,
-    /// End of rays to point lights at distance d.
+    /// End of the shadow rays to point lights.
     pub reach: Reach,
     /// If one light is blocked, all direct light is missing; with `true`, also reflected and
     /// transmitted light.
     pub black: Option<bool>,
 }
 
-/// Deviations of secondary rays.
+/// Mistakes in reflected and transmitted rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SecondaryBugs {
-    /// Reflected light counts in full.
+    /// Reflected light is not multiplied by the mirror's colour.
     pub mirror_in_full: bool,
-    /// Transmitted light counts in full.
+    /// Transmitted light is not multiplied by the glass's colour.
     pub glass_in_full: bool,
     /// Reflected rays return nothing; the Fresnel term still applies.
     pub no_mirror: bool,
@@ -381,34 +382,35 @@ pub struct SecondaryBugs {
     pub times_diffuse: bool,
     /// Mirrors have no local light.
     pub instead: bool,
-    /// Traced once for each light.
+    /// Secondary rays are traced once for each light.
     pub each_light: bool,
-    /// Misses return black.
+    /// Secondary rays that miss return black.
     pub black_sky: bool,
-    /// Directions are normalised.
+    /// Directions of secondary rays are normalised.
     pub unit: bool,
-    /// Shadows at the first hit only.
+    /// Only the first hit of a camera ray has shadows.
     pub unshadowed: bool,
-    /// Start distance.
+    /// Start distance of secondary rays, if different.
     pub epsilon: Option<f32>,
 }
 
-/// Deviations of a student's tracer. The default is a correct tracer.
+/// The mistakes of a student's tracer ([`BuggyTracer`](super::BuggyTracer)). The default is a
+/// correct tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bugs {
-    /// Hit that is selected.
+    /// The hit that is used along a ray.
     pub pick: HitChoice,
-    /// Rays for which hits behind the origin count.
+    /// Rays for which hits behind the origin count, if any.
     pub behind: Option<BehindOrigin>,
     /// The colour that each ray returns is clamped to 1.
     pub clamped_rays: bool,
-    /// Directions are normalised in object space, so that `t` differs there.
+    /// Ray directions are normalised in object space, so that `t` differs there.
     pub local_unit: bool,
     /// Transform of normals.
     pub normals: Normals,
-    /// Interpolated mesh normals are not normalised.
+    /// Interpolated vertex normals are not normalised.
     pub long_mixed: bool,
-    /// Meshes have one normal per triangle.
+    /// Meshes are shaded with one normal per triangle.
     pub flat: bool,
     /// Triangle normals are negated.
     pub triangles_turned: bool,
@@ -416,72 +418,72 @@ pub struct Bugs {
     pub spheres_turned: bool,
     /// Plane normals are negated.
     pub planes_turned: bool,
-    /// Permutation of the vertex normals of a triangle; 0 is correct.
+    /// Permutation of the vertex normals of a triangle; 0 is the correct order.
     pub mixed_otherwise: usize,
-    /// Shading normals always face the eye.
+    /// Shading normals are flipped to face the eye.
     pub faced: bool,
-    /// Ambient light.
+    /// How ambient light is added.
     pub ambient: Ambient,
-    /// Diffuse term.
+    /// Cosine factor of the diffuse term.
     pub cosine: Cosine,
-    /// The diffuse term lacks the surface's colour.
+    /// The diffuse term is not multiplied by the surface's colour.
     pub plain_diffuse: bool,
-    /// The diffuse term lacks the light's colour.
+    /// The diffuse term is not multiplied by the light's colour.
     pub diffuse_lightless: bool,
-    /// Additional factor of the diffuse term.
+    /// Factor by which the diffuse term is multiplied.
     pub diffuse_factor: Option<f32>,
-    /// The diffuse term counts the diffuse colour twice.
+    /// The diffuse term is multiplied by the diffuse colour twice.
     pub diffuse_twice: bool,
     /// Normals of spheres.
     pub balls: Ball,
-    /// Colour of camera rays that miss, and true if other rays return it too.
+    /// Colour of camera rays that miss; with `true`, other rays return it too.
     pub sky: Option<(Color, bool)>,
-    /// Lights.
+    /// Mistakes in lights.
     pub lights: LightBugs,
-    /// Highlights.
+    /// Mistakes in highlights.
     pub highlights: HighlightBugs,
-    /// Shadow rays.
+    /// Mistakes in shadow rays.
     pub shadows: ShadowBugs,
-    /// Accumulation of lights.
+    /// How the contributions of the lights are added up.
     pub sum: LightSum,
-    /// Secondary rays.
+    /// Mistakes in reflected and transmitted rays.
     pub bounces: SecondaryBugs,
 }
 
-/// Sides of a non-square picture to which the field of view applies.
+/// Which side of a non-square picture a student's camera applies the field of view to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Aspect {
-    /// As in that year's program.
+    /// The side that the dialect's program uses.
     #[default]
     Right,
-    /// The smaller side spans the angle.
+    /// The smaller side spans the field of view.
     Smaller,
     /// The smaller side is scaled by the reciprocal of the correct factor.
     Turned,
 }
 
-/// Deviations of camera rays, in addition to the scene's rules.
+/// Mistakes in the generation of camera rays, in addition to the quirks of the scene's dialect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraBugs {
-    /// Position in the pixel; (0.5, 0.5) is the centre.
+    /// Position of the sample in the pixel; (0.5, 0.5) is the centre.
     pub place: Vec2,
-    /// Scale of the point in the picture.
+    /// Factor for the position on the picture plane.
     pub scale: f32,
-    /// Treatment of non-square pictures.
+    /// How the field of view applies to non-square pictures.
     pub aspect: Aspect,
     /// Number of rays per pixel.
     pub rays: RayCount,
 }
 
-/// Number of rays per pixel.
+/// Number of camera rays per pixel in a student's tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RayCount {
-    /// As in the job.
+    /// The number set in the job.
     #[default]
     Right,
-    /// One.
+    /// One ray through the centre.
     One,
-    /// A regular grid of four by four.
+    /// A regular grid of 4 by 4 rays.
     Sixteen,
 }
 
@@ -492,7 +494,7 @@ impl Default for CameraBugs {
 }
 
 impl CameraBugs {
-    /// Returns the scale of picture points.
+    /// Returns the factors for positions on the picture plane, for each axis.
     pub fn factor(&self, width: u32, height: u32) -> Vec2 {
         let (w, h) = (width as f32, height as f32);
         let ratio = w.max(h) / w.min(h);
@@ -506,68 +508,69 @@ impl CameraBugs {
     }
 }
 
-/// Deviations in the conversion of light to a file.
+/// Mistakes in converting radiance to the eight-bit values of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum OutputBug {
-    /// The transfer curve, which is correct.
+    /// None: the transfer curve is correct.
     #[default]
     Right,
-    /// This many times the value, modulo 256.
+    /// The value times this number, modulo 256.
     Wrapped(u16),
-    /// Divided by the brightest value of the picture.
+    /// Divided by the brightest value in the picture.
     Scaled,
     /// Rounded instead of truncated, or the reverse.
     OtherRounding,
-    /// Raised to the reciprocal of this power; 0 means the sRGB curve.
+    /// Raised to the reciprocal of this power; 0 stands for the sRGB curve.
     CurveMore(f32),
     /// c / (1 + c).
     Toned,
-    /// Times this factor.
+    /// Multiplied by this factor.
     Times(f32),
     /// 1 - c.
     Negative,
-    /// Grey: 0 the mean of the channels, 1 and 2 luma of Rec. 601 and luminance, 3 the maximum, 4
-    /// red, 5 green, 6 blue.
+    /// Grey: 0 is the mean of the channels, 1 the luma of Rec. 601, 2 the luminance, 3 the maximum,
+    /// 4 red, 5 green, 6 blue.
     Grey(u32),
     /// Quantised to this many levels.
     Steps(u32),
-    /// Raised to this power; 0 means without the sRGB curve, or its inverse.
+    /// Raised to this power; 0 stands for omitting the sRGB curve, or applying its inverse.
     CurveLess(f32),
 }
 
-/// Source of a pixel in the file.
+/// How a student's program rearranges the pixels and channels of a picture, for example by
+/// mirroring it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PictureTurn {
-    /// Columns and rows are exchanged, in a square picture.
+    /// Columns and rows are exchanged, if the picture is square.
     pub exchange: bool,
-    /// Columns run backwards.
+    /// The order of the columns is reversed.
     pub columns_back: bool,
-    /// Rows run backwards.
+    /// The order of the rows is reversed.
     pub rows_back: bool,
-    /// Order of the channels: 0 as they are, 1 with red and blue exchanged, then the others of
-    /// [`PictureTurn::ORDERS`].
+    /// Order of the channels, as an index into [`PictureTurn::ORDERS`]: 0 is unchanged, 1 exchanges
+    /// red and blue.
     pub channels: u8,
     /// Shift of the picture in pixels, to the right and down.
     pub moved: (i32, i32),
     /// Pixels without a source are black instead of repeating the border.
     pub black_border: bool,
-    /// Pixels wrap around at the border.
+    /// Pixels that leave the picture on one side enter it on the other.
     pub rolled: bool,
-    /// Blocks of two by two pixels are averaged.
+    /// Blocks of 2 by 2 pixels have the same value.
     pub halved: bool,
 }
 
 impl PictureTurn {
-    /// Source channel of red, green and blue.
+    /// Source channels of red, green and blue, for each order.
     pub const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [2, 1, 0], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1]];
 
-    /// Returns true if no source pixel maps to a position.
+    /// Returns true if the pixel at a position has no source and is black.
     pub fn is_empty(self, width: u32, height: u32, (x, y): (u32, u32)) -> bool {
         let out = |at: u32, by: i32, size: u32| !(0..i64::from(size)).contains(&(i64::from(at) - i64::from(by)));
         self.black_border && (out(x, self.moved.0, width) || out(y, self.moved.1, height))
     }
 
-    /// Returns the source pixel of a position.
+    /// Returns the source of the pixel at a position.
     pub fn source(self, width: u32, height: u32, (x, y): (u32, u32)) -> (u32, u32) {
         let x = if self.columns_back { width - 1 - x } else { x };
         let y = if self.rows_back { height - 1 - y } else { y };

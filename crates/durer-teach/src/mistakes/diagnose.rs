@@ -1,4 +1,5 @@
-//! Finds the mistakes that explain a picture by rendering the table's rows, alone and in pairs.
+//! Finds the mistakes that explain a picture, by rendering with each mistake of the table, alone
+//! and in pairs.
 
 use super::bugs::PictureTurn;
 use super::pictures::View;
@@ -12,30 +13,31 @@ use durer_scene::math::Vec3;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Numbers of pixels for trials: `FEW` for all mistakes, `COARSE` and `FULL` for the best of them.
+/// Number of pixels per trial: `FEW` for all mistakes, then `COARSE` and `FULL` for the best ones.
 const FEW: usize = 400;
 const COARSE: usize = 1600;
 const FULL: usize = 16_000;
-/// Number of pixels for the first trial of pairs, and numbers of pairs that remain at each larger
-/// number of pixels.
+/// Number of pixels in the first round of pairs, and number of pairs that are kept after each
+/// round.
 const FEWEST: usize = 72;
 const KEPT: [usize; 3] = [200, 30, 8];
-/// Number of mistakes that are tried at `COARSE` pixels.
+/// Maximum number of mistakes that are tried at `COARSE` pixels.
 const MAX_SINGLES: usize = 60;
-/// Number of pixels above which a picture is only sampled.
+/// Number of pixels above which the brightest value is not computed and acne is not checked.
 const WHOLE: usize = 160_000;
-/// Number of best trials that are refined and paired with all others.
+/// Number of best trials whose value is refined and which are paired with all other mistakes.
 const BEST: usize = 12;
-/// Only the `CLOSEST` best trials are tried at all pixels, unless they explain more than this.
+/// Only the `CLOSEST` best trials are tried at `FULL` pixels, and those that explain more than
+/// `CLOSE`.
 const CLOSE: f64 = 0.8;
 const CLOSEST: usize = 5;
-/// Half a step of eight bits, and minimum number of pixels with different rounding.
+/// Half a step of an eight-bit value, and minimum number of pixels that must show another rounding.
 const HALF: f32 = 0.5 / 255.0;
 const FEWEST_ROUNDED: usize = 30;
 /// Maximum number of pairs that are tried.
 const MAX_PAIRS: usize = 3000;
 
-/// A trial: mistakes, their picture, and its fit.
+/// Mistakes tried together, the pixels they produce, and how well those match the test picture.
 #[derive(Clone, Debug)]
 struct Trial {
     mistakes: Vec<(&'static Mistake, f32)>,
@@ -43,7 +45,8 @@ struct Trial {
     fit: Fit,
 }
 
-/// A selection of pixels of the three pictures.
+/// Selected pixels of three pictures: the reference, the test picture, and the scene rendered
+/// without mistakes.
 struct Pixels {
     places: Vec<(u32, u32)>,
     reference: Vec<Vec3>,
@@ -65,7 +68,7 @@ impl Explanation {
 }
 
 impl Pixels {
-    /// Keeps the marked pixels.
+    /// Keeps only the marked pixels.
     fn keep(&mut self, kept: &[bool]) {
         fn of<T>(list: &mut Vec<T>, kept: &[bool]) {
             let mut keep = kept.iter();
@@ -76,13 +79,14 @@ impl Pixels {
     }
 }
 
+/// State of a search for mistakes: the pictures, the view, and the scene without mistakes.
 struct Search<'a> {
     question: &'a DiagnosisInput<'a>,
     view: View<'a>,
     base: SceneVariant<'a>,
 }
 
-/// Tries all mistakes. `progress` receives the progress, from 0 to 1.
+/// Tries all mistakes of Whitted's method. `progress` receives values from 0 to 1.
 pub fn diagnose(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     Diagnosis { formulas: Formulas::of(question.scene, question.world.rules()), ..all_tried(question, progress) }
 }
@@ -91,7 +95,7 @@ fn all_tried(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diag
     let (width, height) = (question.job.width, question.job.height);
     let (reference, view, base) = prepared(question);
     let test = values(question.test, view.scale, question.transfer);
-    // Anything that erases the picture would explain a single colour.
+    // A picture of a single colour could be explained by any mistake that erases the picture.
     if test.iter().all(|pixel| *pixel == test[0]) {
         return Diagnosis { off: off(question), ..Diagnosis::default() };
     }
@@ -129,7 +133,7 @@ fn all_tried(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diag
     };
     let (some, coarse) = (few(FEW), few(COARSE));
     let mut singles = search.trials(search.singles(), &some);
-    // A mistake without effect in this scene explains nothing.
+    // Drop mistakes that have no effect in this scene.
     singles.retain(|trial| differing(&trial.made, &some.base) > 0);
     progress(0.2);
     let mut better = search.trials(best(&mut singles, MAX_SINGLES), &coarse);
@@ -154,7 +158,7 @@ fn all_tried(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diag
     progress(0.6);
     let (pairs, tried_pairs) = search.pairs(&better, &singles, [&few(FEWEST), &some, &coarse, &full]);
     progress(1.0);
-    // Two mistakes always explain more than one, so require much more.
+    // Two mistakes always explain more than one, so a pair must explain much more.
     let rest = |named: &[Explanation]| named.first().map_or(1.0, |named| 1.0 - named.explained);
     let named = if rest(&pairs) < 0.35 * rest(&single) { pairs } else { single };
     let tried = [tried, tried_pairs].concat();
@@ -164,7 +168,7 @@ fn all_tried(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diag
     }
 }
 
-/// Returns the trials at all pixels, best first.
+/// Returns up to eight explanations, best first.
 fn tried(trials: &[Trial]) -> Vec<Explanation> {
     let mut all: Vec<Explanation> = trials.iter().map(Trial::named).collect();
     all.sort_by(|a, b| b.explained.total_cmp(&a.explained));
@@ -172,8 +176,8 @@ fn tried(trials: &[Trial]) -> Vec<Explanation> {
     all
 }
 
-/// Returns the share of a sample of pixels in which the scene's own picture differs from the
-/// reference.
+/// Returns the share of the pixels, estimated from a sample, in which a render of the scene differs
+/// from the reference.
 pub fn off(question: &DiagnosisInput) -> f64 {
     let (reference, view, base) = prepared(question);
     let places = sampled(question.job.width, &reference, &reference, 2 * FEW);
@@ -184,15 +188,15 @@ pub fn off(question: &DiagnosisInput) -> f64 {
 }
 
 impl<'a> Search<'a> {
-    /// Returns all mistakes, one at a time, with all their values.
+    /// Returns every mistake on its own, with each of its values.
     fn singles(&self) -> Vec<Vec<(&'static Mistake, f32)>> {
         let lights = self.base.world.lights().len();
         let rows = MISTAKES.iter().copied().flatten();
         rows.flat_map(|row| row.values.numbers(lights).into_iter().map(move |value| vec![(row, value)])).collect()
     }
 
-    /// Marks pixels that do not depend on rounding: they stay the same with a small offset or
-    /// another epsilon.
+    /// Marks pixels that do not depend on rounding: they stay the same if samples are slightly
+    /// offset or epsilon changes.
     fn steady(&self, pixels: &Pixels) -> Vec<bool> {
         let aside = |by: f32| {
             let mut variant = self.base.clone();
@@ -208,7 +212,7 @@ impl<'a> Search<'a> {
                 *steady &= differing(&[*made], &[*base]) == 0;
             }
         }
-        // In a picture that consists of edges, use all pixels.
+        // If most pixels are at edges, use all pixels.
         if steady.iter().filter(|s| **s).count() * 2 < steady.len() { vec![true; steady.len()] } else { steady }
     }
 
@@ -216,15 +220,15 @@ impl<'a> Search<'a> {
         all.into_par_iter().map(|mistakes| self.trial(mistakes, pixels)).collect()
     }
 
-    /// Renders mistakes and measures the fit.
+    /// Renders the scene with mistakes and measures how well it matches the test picture.
     fn trial(&self, mistakes: Vec<(&'static Mistake, f32)>, pixels: &Pixels) -> Trial {
         let mut variant = self.base.clone();
         for (mistake, value) in &mistakes {
             (mistake.make)(&mut variant, *value);
         }
         let mut made = self.view.picture(&variant, &pixels.places);
-        // If the reference differs slightly from the scene's own picture, apply the mistake's
-        // change to the reference.
+        // If the reference differs from the rendered scene at a pixel, add the change caused by the
+        // mistake to the reference.
         if variant.turn == PictureTurn::default() {
             for ((made, base), reference) in made.iter_mut().zip(&pixels.base).zip(&pixels.reference) {
                 if differing(&[*base], &[*reference]) > 0 {
@@ -236,8 +240,8 @@ impl<'a> Search<'a> {
         Trial { mistakes, made, fit }
     }
 
-    /// Returns the mistakes with the best-fitting value: searched at few pixels, and rounded if
-    /// more pixels agree.
+    /// Returns a mistake with the value that fits best. Searches at few pixels, and rounds the
+    /// value if that fits equally well at more pixels.
     fn refined(&self, trial: &Trial, few: &Pixels, more: &Pixels) -> Vec<(&'static Mistake, f32)> {
         let [(mistake, value)] = trial.mistakes[..] else { return trial.mistakes.clone() };
         if !matches!(mistake.values, Values::Numbers(_)) || trial.fit.explained > 0.999 {
@@ -260,8 +264,8 @@ impl<'a> Search<'a> {
         vec![(mistake, if round > 0.0 && fits(round) { round } else { at })]
     }
 
-    /// Tries pairs of the best mistakes with all others, and the best pairs at more and more
-    /// pixels.
+    /// Tries pairs of the best mistakes with all others, and the best pairs with increasing numbers
+    /// of pixels.
     fn pairs(
         &self,
         best_of: &[Trial],
@@ -277,7 +281,8 @@ impl<'a> Search<'a> {
                 let (a, b) = (a.mistakes[0], b.mistakes[0]);
                 let key = |one: (&Mistake, f32)| (one.0.name, one.1.to_bits());
                 let pair = (key(a).min(key(b)), key(a).max(key(b)));
-                // Mistakes that depend on rounding match any picture and explain nothing.
+                // Mistakes that depend on rounding fit any picture, so they explain nothing in a
+                // pair.
                 let shaky = a.0.step == "epsilon" || b.0.step == "epsilon";
                 if a.0.name != b.0.name && !shaky && known.insert(pair) {
                     pairs.push(vec![a, b]);
@@ -296,12 +301,13 @@ impl<'a> Search<'a> {
         let trials = self.trials(pairs, full);
         let tried = tried(&trials);
         let mut named = decided(trials, full, &Thresholds::PAIR);
-        // Both mistakes must be needed.
+        // Keep a pair only if both mistakes are needed.
         named.retain(|named| 1.0 - alone(&named.mistakes) > 2.0 * (1.0 - named.explained) + 0.002);
         (named, tried)
     }
 
-    /// Checks if values that differ by 1/255 match the other rounding.
+    /// If values differ by only 1/255, checks whether they are rounded instead of truncated, or the
+    /// reverse.
     fn rounding(&self, pixels: &Pixels) -> Option<Explanation> {
         let mistake = super::table::of_name("other-rounding")?;
         let made = self.trial(vec![(mistake, 0.0)], pixels).made;
@@ -318,7 +324,7 @@ impl<'a> Search<'a> {
         fits.then(|| Explanation { mistakes: vec![(mistake, 0.0)], explained: share, matched: share })
     }
 
-    /// Checks if the picture shows acne: rays that hit the surface they leave.
+    /// Checks if the picture shows acne, that is, rays that hit the surface they start from.
     fn acne(&self, all: &[(u32, u32)], reference: &[Vec3], test: &[Vec3]) -> Option<Explanation> {
         let lights = self.base.world.lights().len();
         if all.len() > WHOLE || !(1..=4).contains(&lights) || !self.base.settings.shadows {
@@ -327,7 +333,7 @@ impl<'a> Search<'a> {
         let width = self.question.job.width as usize;
         let differ = speckles::speckled(reference, test, width)?;
         let places: Vec<(u32, u32)> = differ.iter().map(|&i| all[i]).collect();
-        // Reflected rays with acne return nothing, or the surface's own light again.
+        // With acne, reflected rays return nothing or hit their own surface again.
         let bounces = if self.base.settings.bounces > 0 { 3 } else { 1 };
         let dark = |of: u32| {
             let (off, way) = (of / bounces, of % bounces);
@@ -353,7 +359,7 @@ fn sort(trials: &mut [Trial]) {
 }
 
 /// Returns the mistakes of the best trials: three quarters by squared difference, the rest by
-/// matching pixels.
+/// number of matching pixels.
 fn best(trials: &mut [Trial], count: usize) -> Vec<Vec<(&'static Mistake, f32)>> {
     sort(trials);
     let (first, others) = trials.split_at_mut(trials.len().min(count - count / 4));
@@ -361,32 +367,33 @@ fn best(trials: &mut [Trial], count: usize) -> Vec<Vec<(&'static Mistake, f32)>>
     first.iter().chain(others.iter().take(count / 4)).map(|trial| trial.mistakes.clone()).collect()
 }
 
-/// Returns the trials that match the most pixels; a few outliers can spoil the squared difference.
+/// Returns the trials that match the most pixels, because a few outliers can dominate the squared
+/// difference.
 fn best_matched(trials: &[Trial]) -> impl Iterator<Item = &Trial> {
     let mut sorted: Vec<&Trial> = trials.iter().collect();
     sorted.sort_by(|a, b| b.fit.matched.total_cmp(&a.fit.matched));
     sorted.into_iter().take(4)
 }
 
-/// Minimum fit of an explanation.
+/// How well a trial must fit to count as an explanation.
 struct Thresholds {
     explained: f64,
     matched: f64,
 }
 
 impl Thresholds {
-    /// Fit of a mistake if the picture has another difference too.
+    /// For one mistake, if the picture also has another difference.
     const NEARLY: Thresholds = Thresholds { explained: 0.985, matched: 0.9 };
-    // The right mistake leaves only rounding differences at edges; a larger rest means another
-    // mistake.
+    // For one mistake. It leaves only rounding differences at edges; a larger difference means that
+    // there is another mistake.
     const SINGLE: Thresholds = Thresholds { explained: 0.99, matched: 0.95 };
-    /// Two mistakes fit more pictures by chance than one.
+    /// For a pair of mistakes, which fits more pictures by chance than a single one.
     const PAIR: Thresholds = Thresholds { explained: 0.995, matched: 0.97 };
-    /// Minimum fit of a mistake with a fitted value.
+    /// For a mistake whose value was fitted.
     const FITTED: Thresholds = Thresholds { explained: 0.999, matched: 0.97 };
-    /// Fit at which the search stops.
+    /// Fit at which the search ends.
     const CLEAR: Thresholds = Thresholds { explained: 0.995, matched: 0.98 };
-    /// Practically perfect fit.
+    /// Practically a perfect fit.
     const PERFECT: Thresholds = Thresholds { explained: 0.998, matched: 0.995 };
 
     fn passes(&self, fit: &Fit) -> bool {
@@ -394,8 +401,8 @@ impl Thresholds {
     }
 }
 
-/// Returns the trials that explain the picture; none if no trial fits, or if two different ones fit
-/// almost equally well.
+/// Returns the explanations that pass the thresholds; none if no trial does, or if trials with
+/// different pictures fit almost equally well.
 fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Thresholds) -> Vec<Explanation> {
     sort(&mut trials);
     trials.dedup_by(|a, b| a.mistakes.len() == b.mistakes.len() && same(&a.mistakes, &b.mistakes));
@@ -410,7 +417,7 @@ fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Thresholds) -> Vec<Ex
             && difference(&best.made, &other.made) <= 0.01 * total
     };
     let rest = |trial: &Trial| 1.0 - trial.fit.explained;
-    // Only near-perfect fits are rivals of a perfect fit.
+    // Only near-perfect fits rival a perfect fit.
     let (slack, off) = if Thresholds::PERFECT.passes(&best.fit) { (0.001, 0.01) } else { (0.01, 0.1) };
     let rival = |other: &&Trial| {
         !equal(other)
@@ -425,12 +432,12 @@ fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Thresholds) -> Vec<Ex
     }
     let mut named: Vec<Explanation> = Vec::new();
     for trial in trials.iter().filter(|trial| equal(trial)).chain(rivals) {
-        // Report a mistake with two values once.
+        // Report a mistake only once, even if several values fit.
         if !named.iter().any(|named| one_kind(&named.mistakes, &trial.mistakes)) {
             named.push(trial.named());
         }
     }
-    // Prefer mistakes that need no fitted value.
+    // Prefer mistakes whose value was not fitted.
     let plain = |named: &Explanation| !named.mistakes.iter().any(|(mistake, value)| mistake.is_fitted(*value));
     if named.iter().any(plain) {
         named.retain(plain);
@@ -438,9 +445,9 @@ fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Thresholds) -> Vec<Ex
     named
 }
 
-/// Returns true if mistakes differ only in their values.
+/// Returns true if two explanations differ only in the values of their mistakes.
 fn one_kind(a: &[(&Mistake, f32)], b: &[(&Mistake, f32)]) -> bool {
-    // Another light counts as another mistake.
+    // The same mistake in another light counts as different.
     let alike =
         |a: &(&Mistake, f32), b: &(&Mistake, f32)| a.0.name == b.0.name && (a.0.values != Values::Lights || a.1 == b.1);
     a.len() == b.len() && a.iter().all(|a| b.iter().any(|b| alike(a, b)))

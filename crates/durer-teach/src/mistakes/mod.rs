@@ -1,9 +1,9 @@
-//! Common mistakes as one table, and their pictures of a scene.
+//! Common mistakes of student programs, and the pictures that they cause.
 //!
-//! A row of [`MISTAKES`] describes an error of a student's program in words and as correct and
-//! wrong code, and changes a [`SceneVariant`] so that a [`BuggyTracer`]'s picture shows it.
-//! [`diagnose()`] renders the rows, alone and in pairs, and names the one that explains a given
-//! picture. The lesson shows some of them. A new mistake is a new row.
+//! A row of [`MISTAKES`] describes an error in words and as correct and wrong code. It changes a
+//! [`SceneVariant`] so that the picture of a [`BuggyTracer`] shows the error. [`diagnose()`]
+//! renders with all rows, alone and in pairs, and returns the ones that explain a given picture.
+//! The lesson shows some of them. To add a mistake, add a row.
 
 mod buggy_tracer;
 pub mod bugs;
@@ -26,7 +26,8 @@ pub use question::{Diagnosis, DiagnosisInput, Explanation};
 pub use table::{Formulas, MISTAKES, Mistake, Values, of_name};
 pub use variant::SceneVariant;
 
-/// Tries all mistakes of the job's method. `reported` receives the progress, from 0 to 1.
+/// Finds the mistakes that explain a picture, with the method of the job. `reported` receives the
+/// progress, from 0 to 1.
 pub fn diagnose(question: &DiagnosisInput, reported: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     match question.job.method.transport() {
         Some(_) => paths::diagnose(question, reported),
@@ -34,8 +35,8 @@ pub fn diagnose(question: &DiagnosisInput, reported: &(dyn Fn(f64) + Sync)) -> D
     }
 }
 
-/// Returns the fraction of the reference in which the scene's own picture differs from it: of a
-/// sample of its pixels, or with path tracing of the blocks that differ by more than noise.
+/// Returns the share of the reference in which a render of the scene differs from it: share of a
+/// sample of pixels or, with path tracing, of the blocks that differ by more than noise.
 pub fn off(question: &DiagnosisInput) -> f64 {
     match question.job.method.transport() {
         Some(_) => paths::off(question),

@@ -1,37 +1,37 @@
-//! Deviations of a path tracer from a correct one.
+//! The mistakes that a student's path tracer can make, as options of its tracer.
 
-/// Factor of the cosine at a surface.
+/// Power of the cosine at a surface in a student's path tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Slant {
-    /// cos.
+    /// cos, which is correct.
     #[default]
     Right,
-    /// Left out.
+    /// No cosine.
     None,
     /// cos².
     Twice,
 }
 
-/// Choice of scattered directions.
+/// How a student's path tracer samples the scattered direction at a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Chosen {
-    /// BSDF sampling, divided by the pdf.
+    /// BSDF sampling, divided by the pdf, which is correct.
     #[default]
     Right,
     /// BSDF sampling, not divided by the pdf.
     Undivided,
-    /// Uniform over the hemisphere, divided by the pdf of cosine sampling.
+    /// Uniform over the hemisphere, but divided by the pdf of cosine sampling.
     Uniform,
-    /// BSDF sampling, with local coordinates used as world space.
+    /// BSDF sampling, but the local coordinates are used as world-space coordinates.
     LocalFrame,
-    /// BSDF sampling, with one random number for both dimensions.
+    /// BSDF sampling with the same random number for both dimensions.
     OneNumber,
 }
 
-/// Factor of a light sample that is left out.
+/// The factor that a student's path tracer omits from a light sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Lacks {
-    /// None.
+    /// None, which is correct.
     #[default]
     Nothing,
     /// 1 / d².
@@ -42,53 +42,53 @@ pub enum Lacks {
     Area,
     /// The division by the probability of choosing the light.
     Choice,
-    /// The division by the pdf.
+    /// The division by the sample's pdf.
     Density,
 }
 
-/// Directions of the environment.
+/// Mistakes in a student's environment light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sky {
-    /// As written.
+    /// None: directions and pdf are correct.
     #[default]
     Right,
-    /// Upside down.
+    /// The environment is upside down.
     UpsideDown,
-    /// Its pdf lacks the sine of the polar angle.
+    /// The pdf lacks the sine of the polar angle.
     NoSine,
 }
 
-/// Value of a pixel from its samples.
+/// How a student's path tracer computes a pixel from its samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mean {
-    /// The mean of light.
+    /// Mean of the radiance, which is correct.
     #[default]
     Light,
-    /// The mean of clamped light.
+    /// Mean of the radiance clamped to [0, 1].
     Clamped,
-    /// The mean of display values.
+    /// Mean of the display values.
     Shown,
 }
 
-/// Deviations of a path tracer. The default is a correct one.
+/// The mistakes of a student's path tracer (`Walker`). The default is a correct tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Paths {
-    /// Cosine at surfaces.
+    /// Power of the cosine at surfaces.
     pub slant: Slant,
-    /// The diffuse lobe lacks 1/π; with `true`, only for light samples.
+    /// The diffuse lobe lacks the factor 1/π; with `true`, only for light samples.
     pub no_pi: Option<bool>,
-    /// Scattered directions.
+    /// Sampling of scattered directions.
     pub chosen: Chosen,
-    /// Light samples.
+    /// Factor omitted from light samples.
     pub lacks: Lacks,
-    /// Both sampling strategies count in full.
+    /// Light and BSDF samples are added without MIS weights.
     pub unweighted: bool,
     /// Paths that survive Russian roulette are not divided by the survival probability.
     pub roulette: bool,
-    /// Emitters emit on both sides.
+    /// One-sided emitters emit on both sides.
     pub two_sided: bool,
-    /// Environment.
+    /// Environment light.
     pub sky: Sky,
-    /// Value of a pixel.
+    /// Computation of a pixel from its samples.
     pub mean: Mean,
 }

@@ -1,4 +1,4 @@
-//! Pixels of a variant's picture.
+//! Renders selected pixels of a scene variant.
 
 use super::bugs::{OutputBug, PictureTurn, RayCount};
 use super::{BuggyTracer, SceneVariant};
@@ -8,21 +8,22 @@ use durer_render::render::{Job, sample_places};
 use durer_scene::math::{Color, LUMINANCE, Vec2, Vec3, fp};
 use rayon::prelude::*;
 
-/// Resolution, sampling and transfer of the pictures.
+/// How the compared pictures are rendered and encoded: size, samples, transfer curve and scale of
+/// the values.
 #[derive(Clone, Debug)]
 pub(super) struct View<'j> {
-    /// Size and samples of the picture.
+    /// Size of the picture and samples per pixel.
     pub job: &'j Job,
-    /// Scale of the values: display or linear light.
+    /// Scale of the values: display values or linear light.
     pub scale: Scale,
     /// Transfer curve for display values.
     pub transfer: Transfer,
-    /// Brightest value of the correct picture.
+    /// Maximum value of the correct picture.
     pub brightest: f32,
 }
 
 impl View<'_> {
-    /// Renders the linear light of pixels.
+    /// Renders pixels in linear light.
     pub fn light(&self, variant: &SceneVariant, places: &[(u32, u32)]) -> Vec<Color> {
         let raster = variant.raster(self.job.width, self.job.height);
         let tracer = BuggyTracer::new(&variant.world, variant.settings, &variant.bugs);
@@ -49,12 +50,12 @@ impl View<'_> {
         places.par_iter().with_min_len(16).map(pixel).collect()
     }
 
-    /// Converts light to the values of a file.
+    /// Converts linear light to file values, including output mistakes.
     pub fn values(&self, output: OutputBug, light: &[Color]) -> Vec<Vec3> {
         light.iter().map(|&light| self.value(output, light)).collect()
     }
 
-    /// Renders the file values of pixels of a variant.
+    /// Renders pixels of a variant and returns their file values.
     pub fn picture(&self, variant: &SceneVariant, places: &[(u32, u32)]) -> Vec<Vec3> {
         let (width, height) = (self.job.width, self.job.height);
         let sources: Vec<(u32, u32)> = places.iter().map(|place| variant.turn.source(width, height, *place)).collect();
@@ -70,7 +71,7 @@ impl View<'_> {
     }
 
     fn value(&self, output: OutputBug, light: Color) -> Vec3 {
-        // Huge values are white, despite the integer overflow of an old program.
+        // Show huge values as white, although an old program overflows there.
         let light = if light.is_finite() { light.min(Color::splat(1e6)) } else { light };
         let light = if output == OutputBug::Toned { light.map(|v| v / (1.0 + v.max(0.0))) } else { light };
         let light = match output {
@@ -90,7 +91,7 @@ impl View<'_> {
         let transfer = match (output, self.transfer) {
             (OutputBug::OtherRounding, Transfer::Course) => Transfer::Linear,
             (OutputBug::OtherRounding, Transfer::Linear) => Transfer::Course,
-            // Leaving the curve out writes linear values.
+            // Without the curve, the file has linear values.
             (OutputBug::CurveLess(0.0), Transfer::Srgb) => Transfer::Linear,
             (_, transfer) => transfer,
         };
@@ -100,7 +101,7 @@ impl View<'_> {
             return light.map(wrapped);
         }
         let eight = |transfer: Transfer, v: Vec3| Vec3::from(transfer.encode_pixel(v).map(f32::from)) / 255.0;
-        // A second curve applies to values before quantisation.
+        // A second curve is applied before quantisation.
         let curved = |v: f32| if transfer == Transfer::Srgb { linear_to_srgb(v.clamp(0.0, 1.0)) } else { v.max(0.0) };
         let plain = if transfer == Transfer::Course { Transfer::Course } else { Transfer::Linear };
         match output {
@@ -115,7 +116,7 @@ impl View<'_> {
     }
 }
 
-/// Converts a colour to grey.
+/// Converts a colour to grey with one of the formulas of [`OutputBug::Grey`].
 fn grey(how: u32, color: Color) -> f32 {
     match how {
         0 => (color.x + color.y + color.z) / 3.0,

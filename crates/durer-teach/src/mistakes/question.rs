@@ -1,4 +1,4 @@
-//! Input and result of a diagnosis.
+//! Input and result of the search for mistakes.
 
 use super::pictures::View;
 use super::table::{Formulas, Mistake};
@@ -10,18 +10,19 @@ use durer_render::world::World;
 use durer_scene::math::Vec3;
 use durer_scene::scene::Scene;
 
-/// Share of pixels in which the scene's own picture may differ from the reference; above it,
-/// nothing is reported.
+/// Maximum share of pixels in which a render of the scene may differ from the reference. Above it,
+/// no mistakes are searched for.
 pub(super) const MAX_OFF: f64 = 0.25;
 
-/// Two pictures, and the scene of the reference.
+/// Input of a search for mistakes: the reference picture, the picture to diagnose, and the scene of
+/// both.
 #[derive(Clone, Copy, Debug)]
 pub struct DiagnosisInput<'a> {
-    /// The scene as written.
+    /// The parsed scene.
     pub scene: &'a Scene,
-    /// The scene compiled with the rules of the reference.
+    /// The scene, compiled with the rules of the dialect that the reference uses.
     pub world: &'a World,
-    /// The job of the reference: the pictures' size, without a crop.
+    /// Options with which the reference was rendered, without a crop.
     pub job: &'a Job,
     /// Transfer curve of the eight-bit pictures.
     pub transfer: Transfer,
@@ -31,44 +32,44 @@ pub struct DiagnosisInput<'a> {
     pub test: &'a Picture,
 }
 
-/// Mistakes that together explain a picture.
+/// One or two mistakes that together explain a picture, and how well they do.
 #[derive(Clone, Debug)]
 pub struct Explanation {
     /// The mistakes, each with its value.
     pub mistakes: Vec<(&'static Mistake, f32)>,
-    /// Share of the squared difference that they explain, without rounding.
+    /// Share of the squared difference that they explain, ignoring rounding.
     pub explained: f64,
     /// Share of the differing pixels that they reproduce.
     pub matched: f64,
 }
 
-/// Result of a diagnosis.
+/// Result of a search for the mistakes in a picture.
 #[derive(Clone, Debug, Default)]
 pub struct Diagnosis {
-    /// Share of the pixels in which the scene's own picture differs from the reference.
+    /// Share of the pixels in which a render of the scene differs from the reference.
     pub off: f64,
-    /// Explanations of the picture, more than one if several give the same picture; empty if none
-    /// does.
+    /// Explanations of the picture. More than one if several mistakes give the same picture; empty
+    /// if there is none.
     pub named: Vec<Explanation>,
-    /// A mistake that reproduces nearly all of the difference, but the picture has another
-    /// difference too. `None` if `named` is not empty.
+    /// A mistake that reproduces nearly all of the difference, if the picture also has another
+    /// difference. `None` if `named` is not empty.
     pub nearly: Option<Explanation>,
-    /// Remark if no mistake is named.
+    /// Remark on the pictures if no mistake is named.
     pub remark: Option<String>,
-    /// The closest trials, including those that do not explain the picture.
+    /// The closest trials, including those that do not pass as explanations.
     pub tried: Vec<Explanation>,
-    /// Formulas for describing the mistakes.
+    /// Formulas of the scene, for describing the mistakes.
     pub formulas: Formulas,
 }
 
 impl Diagnosis {
-    /// Returns true if the scene and the options reproduce the reference.
+    /// Returns true if a render of the scene reproduces the reference.
     pub fn is_of_scene(&self) -> bool {
         self.off <= MAX_OFF
     }
 }
 
-/// Converts a picture's values to a scale.
+/// Returns the pixels of a picture in the given scale.
 pub(super) fn values(picture: &Picture, scale: Scale, transfer: Transfer) -> Vec<Vec3> {
     let pixels = picture.image.pixels.iter();
     match picture.scale == scale {
@@ -77,7 +78,7 @@ pub(super) fn values(picture: &Picture, scale: Scale, transfer: Transfer) -> Vec
     }
 }
 
-/// Returns the reference's values, the view, and the scene without mistakes.
+/// Returns the values of the reference, the view for rendering, and the scene without mistakes.
 pub(super) fn prepared<'a>(question: &DiagnosisInput<'a>) -> (Vec<Vec3>, View<'a>, SceneVariant<'a>) {
     let screen = [question.reference, question.test].iter().any(|picture| picture.scale == Scale::Display);
     let scale = if screen { Scale::Display } else { Scale::Linear };

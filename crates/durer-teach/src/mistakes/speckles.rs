@@ -1,21 +1,21 @@
-//! Acne: rays that hit the surface they leave, at points that depend on rounding.
+//! Detects acne: specks where rays hit the surface that they start from, which depends on rounding.
 
 use super::search::SEEN;
 use durer_scene::math::Vec3;
 
-/// Minimum share of the speckles that must match the hypothesis.
+/// Minimum share of the specks that must be as dark as in shadow.
 const MOST: f64 = 0.94;
-/// Minimum share of neighbour pairs of which only one is a speckle: a constant, and a term for the
-/// border of a few regions with the same number of pixels. One disc has 2.3 / √count.
+/// Minimum share of neighbouring pairs of which only one pixel is a speck: a constant, plus a term
+/// for the borders of a few regions with the same number of pixels. A single disc has 2.3 / √count.
 const BROKEN: f64 = 0.06;
 const BORDERS: f64 = 4.0;
 
-/// Returns the differing pixels if they are isolated speckles, not regions.
+/// Returns the indices of the differing pixels if they are isolated specks rather than regions.
 pub(super) fn speckled(reference: &[Vec3], test: &[Vec3], width: usize) -> Option<Vec<usize>> {
     let differs = |i: usize| (reference[i] - test[i]).abs().max_element() > SEEN;
     let all: Vec<bool> = (0..reference.len()).map(differs).collect();
     let differ: Vec<usize> = (0..all.len()).filter(|i| all[*i]).collect();
-    // A region has an interior; speckles consist of borders.
+    // Regions have an interior; specks consist mostly of borders.
     let (mut pairs, mut broken) = (0_usize, 0_usize);
     for i in 0..reference.len() {
         let right = (i + 1) % width != 0 && i + 1 < all.len();
@@ -31,8 +31,9 @@ pub(super) fn speckled(reference: &[Vec3], test: &[Vec3], width: usize) -> Optio
     (differ.len() * 500 > reference.len() && speckled).then_some(differ)
 }
 
-/// Returns the share of the differing pixels that are as dark as in full shadow of some lights, if
-/// it is at least `MOST`. `shadowed` has these pixels of the pictures with one or more lights off.
+/// Returns the share of the differing pixels that are as dark as in the shadow of some lights, if
+/// it is at least `MOST`. `shadowed` has the values of these pixels in pictures with one or more
+/// lights off.
 pub(super) fn share(test: &[Vec3], differ: &[usize], shadowed: &[Vec<Vec3>]) -> Option<f64> {
     let alike =
         |(at, &i): (usize, &usize)| shadowed.iter().any(|dark| (dark[at] - test[i]).abs().max_element() <= SEEN);

@@ -1,4 +1,4 @@
-//! Tests of the student's tracer without mistakes, and of the table.
+//! Tests of the student's tracer without mistakes, and of the table of mistakes.
 
 use super::pictures::View;
 use super::table::MISTAKES;
@@ -53,7 +53,8 @@ fn job() -> Job {
     Job { settings: durer_render::integrator::WhittedOptions { bounces: 3, least_weight: 0.0, ..job.settings }, ..job }
 }
 
-/// In every dialect, a student's tracer without mistakes returns the rendered picture bit for bit.
+/// Without mistakes, the student's tracer reproduces the rendered picture bit for bit in every
+/// dialect.
 #[test]
 fn variant_without_mistakes_renders_the_correct_picture() {
     for dialect in Dialect::ALL {
@@ -67,7 +68,7 @@ fn variant_without_mistakes_renders_the_correct_picture() {
             for place in job.whole().places() {
                 let ray = center_ray(&variant.world, &raster, place).unwrap();
                 let (own, right) = (tracer.radiance(&ray), whitted.radiance(&ray, &mut ()));
-                // A year's program may divide by zero.
+                // The program of a year may divide by zero.
                 let same = own == right || own.is_nan() && own.is_nan_mask() == right.is_nan_mask();
                 assert!(same, "{} at {place:?}: {own} {right}", dialect.name());
             }
@@ -194,7 +195,7 @@ fn each_usual_mistake_is_named() {
             wrong.push(format!("{name} {value}: {messages:?}"));
         }
     };
-    // Bright enough to clamp, and with little glass, so that every term is visible.
+    // Make the scene bright enough to clamp, with little glass, so that every term is visible.
     let bright = SCENE.replace("0.6 0.5 0.5", "1.1 1.0 1.0");
     for (name, value) in USUAL {
         judge(&bright, job(), name, value);
@@ -251,7 +252,7 @@ fn each_further_mistake_is_named() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// An unrelated picture matches no mistake, and an unrelated reference is reported as such.
+/// An unrelated picture matches no mistake, and an unrelated reference is reported.
 #[test]
 fn unrelated_pictures_match_no_mistake() {
     let (scene, world) = world(Dialect::F04.rules());

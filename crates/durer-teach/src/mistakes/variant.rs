@@ -1,4 +1,4 @@
-//! A scene with its rules, and the deviations of a student's tracer.
+//! A scene with its rules and the mistakes with which it is rendered.
 
 use super::bugs::{Bugs, CameraBugs, OutputBug, PictureTurn};
 use super::path_habits::Paths;
@@ -18,28 +18,29 @@ use durer_scene::shape::{Primitive, Triangle};
 use glam::DAffine3;
 use std::sync::Arc;
 
-/// State that a mistake can change.
+/// A scene with the mistakes of a student's program: rows of the table of mistakes change it before
+/// it is rendered.
 #[derive(Clone, Debug)]
 pub struct SceneVariant<'s> {
-    /// The scene as written.
+    /// The parsed scene.
     pub scene: &'s Scene,
     /// The world: geometry, lights, materials, camera and rules.
     pub world: World,
-    /// Whitted's settings.
+    /// Options of Whitted's method.
     pub settings: WhittedOptions,
-    /// Deviations of the tracer.
+    /// Mistakes of the Whitted tracer.
     pub bugs: Bugs,
-    /// Deviations of camera rays.
+    /// Mistakes in camera rays.
     pub aim: CameraBugs,
-    /// Deviations of the output curve.
+    /// Mistake in the output values.
     pub output: OutputBug,
-    /// Deviations of pixel order.
+    /// Mistakes in the order of pixels and channels.
     pub turn: PictureTurn,
-    /// Deviations of a path tracer.
+    /// Mistakes of the path tracer.
     pub paths: Paths,
 }
 
-/// Returns true if some light is written with three attenuation factors.
+/// Returns true if some light in the scene file has three attenuation coefficients.
 pub fn three_factors(scene: &Scene) -> bool {
     let factors = |light: &Light| match light {
         Light::Point(p) => p.attenuation.is_some() && p.falloff.is_none(),
@@ -48,10 +49,10 @@ pub fn three_factors(scene: &Scene) -> bool {
     scene.lights.iter().flatten().any(|light| factors(&light.value))
 }
 
-/// Scale of a triangle that lacks the test of one side.
+/// Factor by which a triangle is extended if the test of one side is missing.
 const WIDE: f32 = 100.0;
 
-/// Kinds of geometry that the course's programs implement, and can therefore get wrong.
+/// Kind of shape that the course's programs implement, and whose intersection mistakes can affect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TaughtShapes {
     /// `Sphere`.
@@ -60,11 +61,11 @@ pub enum TaughtShapes {
     Plane,
     /// `Triangle`.
     Triangle,
-    /// A mesh of triangles.
+    /// A triangle mesh.
     Mesh,
 }
 
-/// Returns the course's kind of a geometry; `None` if the course has none.
+/// Returns the course's kind of a geometry; `None` if the course's programs do not have it.
 pub fn taught_shapes(geometry: &Geometry) -> Option<TaughtShapes> {
     match geometry {
         Geometry::Mesh(_) => Some(TaughtShapes::Mesh),
@@ -85,7 +86,7 @@ pub fn taught_shapes(geometry: &Geometry) -> Option<TaughtShapes> {
     }
 }
 
-/// Computes the product of a transform's matrices.
+/// Function that multiplies a transform's matrices, correctly or with a mistake.
 pub type Product<'p> = &'p dyn Fn(&[MatrixOp], MatrixRules) -> DAffine3;
 
 impl<'s> SceneVariant<'s> {
@@ -95,7 +96,8 @@ impl<'s> SceneVariant<'s> {
         SceneVariant { scene, world, settings, bugs, aim, output, turn, paths }
     }
 
-    /// Returns the ray of a pixel through a position in pixels from the upper left corner.
+    /// Returns the camera ray of a pixel. `place` is a position in pixels from the upper left
+    /// corner.
     pub fn ray(&self, raster: &Raster, (x, y): (u32, u32), place: Vec2, lens: Vec2) -> Option<Ray> {
         let point =
             |place: Vec2| raster.point(place + self.aim.place - 0.5) * self.aim.factor(raster.width, raster.height);
@@ -103,22 +105,22 @@ impl<'s> SceneVariant<'s> {
         self.world.camera().ray(self.world.camera_frame(), &CameraSample { point: point(place), pixel, lens })
     }
 
-    /// Returns the raster of a picture of a given size.
+    /// Returns the raster of a picture with the given size.
     pub fn raster(&self, width: u32, height: u32) -> Raster {
         raster(&self.world, width, height)
     }
 
-    /// Returns true if some light is written with three attenuation factors.
+    /// Returns true if some light in the scene file has three attenuation coefficients.
     pub fn has_three_factors(&self) -> bool {
         three_factors(self.scene)
     }
 
-    /// Toggles a quirk of the rules.
+    /// Switches a quirk of the dialect on or off.
     pub fn toggle(&mut self, compat: Quirk) {
         self.change_rules(|rules| rules.compat ^= compat.bit());
     }
 
-    /// Changes the dialect's rules. Camera basis, lights, materials and objects stay.
+    /// Changes the dialect's rules. The camera basis, lights, materials and objects stay the same.
     pub fn change_rules(&mut self, change: impl FnOnce(&mut Rules)) {
         let mut rules = self.world.rules().clone();
         change(&mut rules);
@@ -138,7 +140,7 @@ impl<'s> SceneVariant<'s> {
         }
     }
 
-    /// Changes all Phong materials.
+    /// Changes every Phong material.
     pub fn phongs(&mut self, change: impl Fn(&mut Phong)) {
         for material in &mut self.world.edit().materials {
             if let Material::Phong(phong) = material {
@@ -147,7 +149,7 @@ impl<'s> SceneVariant<'s> {
         }
     }
 
-    /// Changes the model of highlights from Blinn's to Phong's and back.
+    /// Switches all highlights from Blinn's model to Phong's, or the reverse.
     pub fn other_highlights(&mut self) {
         let behind = self.world.rules().has(Quirk::HighlightBehind);
         self.phongs(|phong| {
@@ -160,9 +162,10 @@ impl<'s> SceneVariant<'s> {
         });
     }
 
-    /// Adds highlights to materials with a specular colour, in dialects without highlights.
+    /// Adds highlights to materials with a specular colour, if the dialect has no highlights.
     ///
-    /// `form` is 0 for Phong's model, 1 for Phong's on the light's side only, 2 for Blinn's.
+    /// `form` is 0 for Phong's model, 1 for Phong's model on the lit side only, 2 for Blinn's
+    /// model.
     pub fn add_highlights(&mut self, form: f32) {
         if self.world.rules().highlight != Highlight::None {
             return;
@@ -177,7 +180,7 @@ impl<'s> SceneVariant<'s> {
         }
     }
 
-    /// Adds a black highlight to materials that have none.
+    /// Adds a black highlight to every material without a highlight.
     pub fn highlights_everywhere(&mut self) {
         let behind = self.world.rules().has(Quirk::HighlightBehind);
         let model = match self.world.rules().highlight {
@@ -193,14 +196,15 @@ impl<'s> SceneVariant<'s> {
         }
     }
 
-    /// Recomputes the transforms of all objects.
+    /// Recomputes the transforms of all objects with `product`.
     pub fn place(&mut self, product: Product) {
         let rules = matrix_rules(self.world.rules());
         let mut places = Vec::new();
         if let Some(root) = &self.scene.root {
             placed(root, DAffine3::IDENTITY, &|ops| product(ops, rules), &mut places);
         }
-        // Solids are split into pieces; do nothing if objects and transforms do not correspond.
+        // Compilation splits solids into pieces; do nothing if objects and transforms do not
+        // correspond.
         if places.len() != self.world.objects().len() {
             return;
         }
@@ -213,7 +217,7 @@ impl<'s> SceneVariant<'s> {
     }
 
     fn rebuild(&mut self) {
-        // Building a BVH never fails, unlike a grid.
+        // Unlike a grid, a BVH can always be built.
         let _ = compile::rebuild(&mut self.world, AccelKind::Bvh);
     }
 
@@ -240,7 +244,8 @@ impl<'s> SceneVariant<'s> {
         self.rebuild();
     }
 
-    /// Extends every triangle beyond the side opposite a corner, as if that side were not tested.
+    /// Extends every triangle beyond the side opposite a corner, as if the test of that side were
+    /// missing.
     pub fn wedges(&mut self, corner: usize) {
         for object in &mut self.world.edit().objects {
             match &mut object.geometry {
@@ -260,14 +265,14 @@ impl<'s> SceneVariant<'s> {
         self.rebuild();
     }
 
-    /// Changes all objects.
+    /// Changes the geometry of every object.
     pub fn objects(&mut self, change: impl Fn(&mut Geometry)) {
         self.world.edit().objects.iter_mut().for_each(|object| change(&mut object.geometry));
         self.rebuild();
     }
 }
 
-/// Collects the matrices of all objects in the order of compilation.
+/// Collects the matrices of all objects, in the order of compilation.
 fn placed(group: &Group, to_world: DAffine3, product: &dyn Fn(&[MatrixOp]) -> DAffine3, places: &mut Vec<DAffine3>) {
     fn one(
         object: &scene::Object,

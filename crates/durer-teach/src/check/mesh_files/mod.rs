@@ -1,4 +1,4 @@
-//! The mesh files of a scene and the objects that show them.
+//! The meshes of a scene and the objects that use them.
 
 pub(super) mod normals;
 pub(super) mod topology;
@@ -16,21 +16,23 @@ use durer_scene::shape::MeshData;
 use normals::OddNormals;
 use topology::Topology;
 
-/// Size in bytes above which a file is skipped, to keep the check interactive.
+/// Size in bytes above which a mesh file is skipped, so that the checks stay interactive.
 const MAX_BYTES: usize = 64 << 20;
-/// Fraction of reversed or odd triangles that is negligible: modelling programs leave a few.
+/// Fraction of reversed triangles or triangles with wrong normals that is ignored; modelling
+/// programs often leave a few.
 const NEGLIGIBLE: f32 = 0.002;
 
-/// A mesh file and the objects that show it.
+/// A mesh file of the checked scene with its topology, its odd normals and the objects that use it.
 #[derive(Debug)]
 pub(in crate::check) struct MeshFile<'s> {
     pub(super) name: &'s FileName,
-    /// Index among the files that were read.
+    /// Index of the file in the scene's [`Files`](durer_diag::Files); `u32::MAX` for a mesh of a
+    /// model.
     pub(super) file: u32,
     pub(super) objects: Vec<&'s Object>,
     pub(super) data: MeshData,
     pub(super) topology: Topology,
-    /// Normals from the file, if the dialect uses them.
+    /// Triangles whose file normals are wrong; `None` if the dialect ignores normals in files.
     pub(super) odd_normals: Option<OddNormals>,
 }
 
@@ -43,10 +45,10 @@ pub(in crate::check) fn files<'s>(grid: &ProbeGrid<'s>) -> Vec<MeshFile<'s>> {
     uses.into_iter().filter_map(|(name, objects)| read(grid, name, objects)).collect()
 }
 
-/// Number of triangles of a model above which its meshes are not examined.
+/// Maximum number of triangles of a mesh in a model for it to be checked.
 const MAX_MODEL: usize = 300_000;
 
-/// Returns the meshes in memory of a scene that was read from a model.
+/// Returns the meshes of a scene that was read from a model file.
 pub(in crate::check) fn models<'s>(grid: &ProbeGrid<'s>) -> Vec<MeshFile<'s>> {
     let mut uses = Uses::new();
     if let Some(root) = &grid.subject.scene.root {
@@ -60,6 +62,7 @@ pub(in crate::check) fn models<'s>(grid: &ProbeGrid<'s>) -> Vec<MeshFile<'s>> {
     uses.into_iter().filter_map(own).collect()
 }
 
+/// Mesh files of a scene, each with the objects that use it.
 type Uses<'s> = Vec<(&'s FileName, Vec<&'s Object>)>;
 
 fn collect<'s>(group: &'s Group, uses: &mut Uses<'s>) {
@@ -83,7 +86,7 @@ fn read<'s>(grid: &ProbeGrid<'s>, name: &'s FileName, objects: Vec<&'s Object>) 
     let files = grid.subject.files;
     let file = (0..).take_while(|&i| files.name(i).is_some()).find(|&i| files.name(i) == Some(&name.path))?;
     let bytes = files.whole(file).filter(|bytes| bytes.len() <= MAX_BYTES)?;
-    // The loader already reported the file's errors.
+    // The loader has already reported the file's errors.
     let data = read_mesh(bytes, file, &name.path, &mut Diagnostics::default())?;
     Some(MeshFile::new(grid, name, file, objects, data))
 }
@@ -97,12 +100,13 @@ impl<'s> MeshFile<'s> {
 }
 
 impl MeshFile<'_> {
+    /// Returns true if a number of bad triangles is too small a fraction of the mesh to report.
     pub(super) fn is_beyond_notice(&self, count: usize) -> bool {
         count == 0 || (count as f32) <= NEGLIGIBLE * self.data.triangles.len() as f32
     }
 
-    /// Returns the line of a triangle's face in an OBJ file: a face of n corners has n - 2
-    /// triangles.
+    /// Returns the line in an OBJ file of the face that a triangle belongs to. A face of n vertices
+    /// has n - 2 triangles.
     pub(super) fn face(&self, grid: &ProbeGrid, triangle: u32) -> Option<Span> {
         let bytes = grid.subject.files.bytes(self.file)?;
         let (mut start, mut before, mut found) = (0, 0, None);
@@ -121,8 +125,7 @@ impl MeshFile<'_> {
         found.filter(|_| before == self.data.triangles.len())
     }
 
-    /// Places a warning about some triangles at the first of them, or where the scene names the
-    /// file.
+    /// Places a warning about triangles at the first of them, or where the scene names the file.
     pub(super) fn at_triangle(&self, grid: &ProbeGrid, diagnostic: Diagnostic, triangle: u32) -> Diagnostic {
         let corners = self.data.triangles[triangle as usize].map(|i| self.data.positions[i as usize]);
         match self.face(grid, triangle) {
@@ -136,7 +139,7 @@ impl MeshFile<'_> {
         }
     }
 
-    /// Returns the first object of glass that shows the mesh.
+    /// Returns the first glass object that uses the mesh.
     pub(super) fn glass(&self, grid: &ProbeGrid) -> Option<&Object> {
         let materials = grid.world().materials();
         let refracts = |material: u32| match materials.get(material as usize) {
@@ -146,23 +149,24 @@ impl MeshFile<'_> {
         self.objects.iter().find(|object| object.material.is_some_and(refracts)).copied()
     }
 
-    /// Iterates over the compiled objects that show the mesh.
+    /// Iterates over the compiled objects that use the mesh.
     pub(super) fn placed<'w>(&self, grid: &ProbeGrid<'w>) -> impl Iterator<Item = &'w Placed> {
         grid.world().objects().iter().filter(|object| self.is_shown_at(object.span))
     }
 
-    /// Returns true if the object written at `place` shows the mesh.
+    /// Returns true if the object at `place` in the scene file uses the mesh.
     pub(super) fn is_shown_at(&self, place: Span) -> bool {
         self.objects.iter().any(|object| object.span.start == place.start)
     }
 
-    /// Returns true if the camera is inside the mesh, as in a room, whose walls face inwards.
+    /// Returns true if the camera is inside the mesh, for example in a room whose walls face
+    /// inwards.
     pub(super) fn is_room(&self, grid: &ProbeGrid) -> bool {
         let eye = grid.world().camera().pose().center;
         self.placed(grid).filter_map(Placed::bounds).any(|bounds| bounds.holds(eye))
     }
 
-    /// Returns true if the mesh is the inner wall of hollow glass, which faces inwards.
+    /// Returns true if the mesh is the inner wall of a hollow glass object and so faces inwards.
     pub(super) fn is_hollow(&self, grid: &ProbeGrid) -> bool {
         let objects = grid.world().objects();
         let holds = |outer: &Aabb, inner: &Aabb| outer.holds(inner.min) && outer.holds(inner.max);

@@ -1,9 +1,10 @@
-//! The normals of a mesh file.
+//! Checks of the vertex normals stored in a mesh file.
 
 use durer_scene::shape::MeshData;
 use durer_scene::shape::mesh::NO_INDEX;
 
-/// Triangles with odd normals, by index.
+/// Indices of the triangles of a mesh file whose vertex normals are missing, zero or opposed to the
+/// winding.
 #[derive(Debug, Default)]
 pub(in crate::check) struct OddNormals {
     /// Triangles whose normals oppose their winding.
@@ -17,7 +18,7 @@ pub(in crate::check) struct OddNormals {
 }
 
 impl OddNormals {
-    /// Examines a mesh as stored in its file; `None` if it has no normals.
+    /// Examines the normals of a mesh as stored in its file; `None` if it has none.
     pub fn of(data: &MeshData) -> Option<OddNormals> {
         let mut odd_normals = OddNormals::default();
         for (i, triangle) in data.triangles.iter().enumerate() {
@@ -32,7 +33,7 @@ impl OddNormals {
                 odd_normals.zero.push(i as u32);
             }
             let face = (b - a).cross(c - a);
-            // A single smooth normal may lean over an edge; all three never do.
+            // One smooth normal can point to the other side of the face, but not all three.
             if normals.iter().all(|normal| normal.dot(face) < 0.0) {
                 odd_normals.against.push(i as u32);
             }
@@ -40,7 +41,7 @@ impl OddNormals {
         (odd_normals.count > 0).then_some(odd_normals)
     }
 
-    /// Returns true if nearly all normals oppose their winding.
+    /// Returns true if the normals of nearly all triangles oppose their winding.
     pub fn is_against_all(&self) -> bool {
         self.against.len() * 10 > self.count * 9
     }

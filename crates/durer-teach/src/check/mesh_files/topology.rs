@@ -5,30 +5,32 @@ use durer_scene::shape::mesh::place_key;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// Topology of a triangle mesh. Corners at the same position count as one.
+/// Connectivity of a mesh for the checks: open edges, reversed triangles and enclosed volume.
+/// Vertices at the same position count as one.
 #[derive(Debug, Default)]
 pub(in crate::check) struct Topology {
-    /// Triangles without area.
+    /// Triangles with zero area.
     pub degenerate: Vec<u32>,
-    /// Number of edges with one triangle, and with more than two.
+    /// Number of edges with one triangle (`open`), and with more than two (`crowded`).
     pub open: usize,
     pub crowded: usize,
-    /// One of these edges.
+    /// Any such edge.
     pub some_edge: Option<[Vec3; 2]>,
-    /// Triangles that wind the other way than most of their connected piece.
+    /// Triangles whose winding is opposite to that of most triangles in their connected piece.
     pub turned: Vec<u32>,
     /// Number of edges, and volume of the bounding box.
     pub edges: usize,
     pub box_volume: f64,
-    /// Length of the sum of all area vectors, as a share of the sum of their lengths.
+    /// Length of the sum of all area vectors, divided by the sum of their lengths; 0 for a closed
+    /// surface.
     pub opening: f64,
-    /// Six times the enclosed signed volume, measured from the centre of the bounds if the mesh is
-    /// open; negative if triangles wind clockwise seen from outside.
+    /// Six times the signed enclosed volume, relative to the centre of the bounds if the mesh is
+    /// open. Negative if triangles are clockwise seen from outside.
     pub volume: f64,
 }
 
-/// An edge of a triangle: its two corners, the lesser first; true if the triangle runs along it in
-/// that order; the triangle.
+/// An edge of a triangle: key of its two vertices, smaller index first; true if the triangle runs
+/// along it in that order; index of the triangle.
 type Edge = (u64, bool, u32);
 
 impl Topology {
@@ -46,7 +48,7 @@ impl Topology {
             let [a, b, c] = triangle.map(|corner| positions[corner as usize].as_dvec3() - anchor);
             topology.volume += a.dot(b.cross(c));
             let longest = (b - a).length_squared().max((c - a).length_squared()).max((c - b).length_squared());
-            // Collinear corners, up to rounding.
+            // The vertices are collinear, up to rounding.
             let normal = (b - a).cross(c - a);
             (sum, area) = (sum + normal, area + normal.length());
             if normal.length() <= 1e-9 * longest {
@@ -73,28 +75,29 @@ impl Topology {
         topology
     }
 
-    /// Returns true if the surface is closed except for a hole, as at the top of a vase: the area
-    /// vectors of a closed surface sum to 0, its rims are short, and its volume is a fair share of
-    /// the bounds'.
+    /// Returns true if the surface is closed except for a small hole, for example the top of a
+    /// vase: its rims are short, its area vectors nearly sum to 0, and its volume is a fair share
+    /// of its bounds.
     pub fn is_nearly_closed(&self) -> bool {
         let short = self.crowded == 0 && self.open * 10 < self.edges;
         self.is_closed() || short && self.opening < 0.25 && self.volume.abs() > 0.1 * self.box_volume
     }
 
-    /// Returns true if every edge has exactly two triangles.
+    /// Returns true if every edge belongs to exactly two triangles.
     pub fn is_closed(&self) -> bool {
         self.open == 0 && self.crowded == 0
     }
 }
 
-/// Returns for each corner the first one at the same position.
+/// Returns for each vertex the index of the first vertex at the same position.
 fn same_places(positions: &[Vec3]) -> Vec<u32> {
     let mut first: HashMap<[u32; 3], u32> = HashMap::with_capacity(positions.len());
     positions.iter().enumerate().map(|(i, p)| *first.entry(place_key(*p)).or_insert(i as u32)).collect()
 }
 
-/// Flood-fills across edges with two triangles: neighbours that run along their edge in the same
-/// direction wind differently. In each connected piece the minority is reversed.
+/// Returns the reversed triangles. Flood-fills across edges with two triangles: if both run along
+/// their edge in the same direction, their windings differ. In each connected piece the minority
+/// counts as reversed.
 fn turned(edges: &[Edge], count: usize) -> Vec<u32> {
     let pairs = || edges.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 2);
     if pairs().all(|same| same[0].1 != same[1].1) {

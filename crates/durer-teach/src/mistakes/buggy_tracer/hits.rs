@@ -1,4 +1,4 @@
-//! The hit that a student's tracer selects along a ray.
+//! Selects the hit along a ray, with the mistakes of a student's tracer.
 
 use super::BuggyTracer;
 use crate::mistakes::bugs::{BehindOrigin, HitChoice, Roots};
@@ -9,7 +9,7 @@ use durer_scene::shape::Primitive;
 use smallvec::SmallVec;
 
 impl BuggyTracer<'_> {
-    /// Returns the selected hit, and the `t` that the tracer assigns to it.
+    /// Returns the selected hit, and the `t` that the tracer computes for it.
     pub(super) fn closest(&self, ray: &Ray64) -> Option<(Hit, f32)> {
         if self.bugs.local_unit {
             let mut whole = *ray;
@@ -57,20 +57,20 @@ impl BuggyTracer<'_> {
         hit.map(|hit| (hit, hit.t))
     }
 
-    /// Returns the ray with which an object is intersected.
+    /// Returns the ray used for the intersection with an object.
     pub(super) fn own_ray(&self, ray: &Ray64, object: u32) -> Ray64 {
         let object = &self.world.objects()[object as usize];
         if self.bugs.pick != HitChoice::MovedDirection || object.to_world.is_none() {
             return *ray;
         }
-        // M^-1 (d, 1) equals M^-1 (d - t, 0), where t is the translation of M.
+        // The wrong M^-1 (d, 1) equals M^-1 (d - t, 0), where t is the translation of M.
         let by = object.world_point(-object.center);
         let mut own = *ray;
         own.rounded.dir -= by;
         own
     }
 
-    /// Returns the hit of the nearest object. In each mesh, the hit with the smallest key counts.
+    /// Returns the hit of the nearest object. For a mesh it is the hit with the smallest key.
     fn of_meshes(&self, ray: &Ray64, key: impl Fn(&Hit) -> u32) -> Option<Hit> {
         let mut best: SmallVec<[Hit; 16]> = SmallVec::new();
         for hit in self.faces(ray) {
@@ -83,7 +83,7 @@ impl BuggyTracer<'_> {
         best.into_iter().min_by(|a, b| a.t.total_cmp(&b.t))
     }
 
-    /// Returns the nearest hit of an object; spheres use wrong roots.
+    /// Returns the nearest hit of an object, using wrong roots for spheres.
     fn with_roots(&self, ray: &Ray64, object: u32, roots: Roots) -> Option<Hit> {
         let own = &self.world.objects()[object as usize];
         let Geometry::Primitive(Primitive::Sphere(sphere)) = &own.geometry else {
@@ -104,7 +104,7 @@ impl BuggyTracer<'_> {
         Some(Hit { t, uv: Vec2::ZERO, object, part: 0 })
     }
 
-    /// Iterates over the nearest hit of each object, but over all hits of meshes.
+    /// Iterates over the nearest hit of each object; meshes contribute all their hits.
     fn faces<'r>(&'r self, ray: &'r Ray64) -> impl Iterator<Item = Hit> + 'r {
         let mut known = SmallVec::<[u32; 16]>::new();
         self.world.all_hits(ray).filter(move |hit| {
@@ -121,13 +121,13 @@ impl BuggyTracer<'_> {
         taught_shapes(object) == Some(TaughtShapes::Sphere) && self.world.interaction(ray, *hit).inside()
     }
 
-    /// Returns the distance to a hit in object space.
+    /// Returns the distance to a hit, measured in object space.
     fn own_t(&self, ray: &Ray64, hit: &Hit) -> f32 {
         let to_world = self.world.objects()[hit.object as usize].to_world.as_ref();
         hit.t * to_world.map_or(1.0, |to_world| to_world.inverse_ray(ray).dir.length())
     }
 
-    /// Returns true if something is hit along a ray.
+    /// Returns true if the ray hits anything.
     pub(super) fn occluded(&self, ray: &Ray64) -> bool {
         let own_hits = matches!(
             self.bugs.pick,

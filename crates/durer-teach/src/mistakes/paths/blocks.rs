@@ -1,4 +1,4 @@
-//! Means over blocks of a picture, with their variance from noise.
+//! Means of a path-traced picture over blocks of pixels, with the variance due to noise.
 
 use super::walker::Walker;
 use crate::mistakes::path_habits::Mean;
@@ -8,21 +8,22 @@ use durer_render::render::sample_places;
 use durer_scene::math::{Color, Vec2, Vec3};
 use rayon::prelude::*;
 
-/// Number of blocks along the larger side, and maximum number of paths for a picture.
+/// Number of blocks along the larger side, and maximum number of camera paths per picture.
 const BLOCKS: u32 = 20;
 const MOST_PATHS: u32 = 150_000;
 /// Maximum number of samples per pixel.
 const MOST_SAMPLES: u32 = 64;
-/// Variance of rounding to eight bits.
+/// Variance due to rounding to eight bits.
 const ROUNDING: f64 = 1.0 / (12.0 * 255.0 * 255.0);
 
-/// Pixels of a picture, grouped into blocks.
+/// Grid of square blocks over a picture, with the pixels of each block that are rendered and
+/// compared.
 pub struct Blocks {
-    /// Pixels of each block.
+    /// Selected pixels of each block.
     pub pixels: Vec<Vec<(u32, u32)>>,
 }
 
-/// Mean of each block, and the variance of the mean over the channels.
+/// Mean colour of each block of a picture, and the noise variance of that mean.
 #[derive(Clone, Debug)]
 pub struct Means {
     pub mean: Vec<Vec3>,
@@ -30,6 +31,7 @@ pub struct Means {
 }
 
 impl Blocks {
+    /// Divides a picture into blocks and selects pixels, so that the number of paths is limited.
     pub fn new(width: u32, height: u32, samples: u32) -> Self {
         let side = (width.max(height)).div_ceil(BLOCKS).max(2);
         let (columns, rows) = (width.div_ceil(side), height.div_ceil(side));
@@ -45,7 +47,7 @@ impl Blocks {
         Blocks { pixels: (0..columns * rows).map(block).collect() }
     }
 
-    /// Returns the means of a picture; the variance is that of rounding.
+    /// Returns the means of a finished picture; the variance includes only rounding.
     pub fn of_picture(&self, width: u32, values: &[Vec3]) -> Means {
         let mean = |block: &Vec<(u32, u32)>| {
             let sum: Vec3 = block.iter().map(|&(x, y)| values[(y * width + x) as usize]).sum();
@@ -55,12 +57,12 @@ impl Blocks {
         Means { mean: self.pixels.iter().map(mean).collect(), variance }
     }
 
-    /// Renders the means of a variant's picture.
+    /// Renders a variant of the scene and returns the means of its blocks.
     pub fn render(&self, view: &View, variant: &SceneVariant, seed: u64) -> Means {
         let (walker, raster) = (Walker::new(variant), variant.raster(view.job.width, view.job.height));
         let places = sample_places(&variant.world, view.job);
         let exposed = |light: Color| view.values(variant.output, &[light])[0];
-        // Values and their variances, both of a pixel's mean.
+        // Returns the value of a pixel and the variance of that value.
         let pixel = |&(x, y): &(u32, u32)| {
             let (mut all, mut weights) = (Vec::new(), 0.0);
             let mut add = |place: Vec2, lens: Vec2, weight: f32| {
@@ -81,8 +83,7 @@ impl Blocks {
             let count = all.len().max(1) as f32;
             let mean = all.iter().sum::<Color>() / weights.max(1e-6);
             let value = if variant.paths.mean == Mean::Shown { mean } else { exposed(mean) };
-            // Standard error of the mean, propagated through the transfer curve by a finite
-            // difference.
+            // The standard error of the mean is converted to display values by a finite difference.
             let spread = all.iter().map(|light| (*light * count / weights.max(1e-6) - mean).length_squared());
             let error = (spread.sum::<f32>() / (count * (count - 1.0).max(1.0))).sqrt();
             let step = Color::splat(error / 3.0_f32.sqrt());
@@ -101,7 +102,7 @@ impl Blocks {
 }
 
 impl Means {
-    /// Returns `other` with this picture's variance times `ratio` added.
+    /// Returns `other` with its variance increased by `ratio` times the variance of `self`.
     pub fn lend(&self, mut other: Means, ratio: f64) -> Means {
         for (own, other) in self.variance.iter().zip(&mut other.variance) {
             *other += ratio * own;
@@ -110,7 +111,7 @@ impl Means {
     }
 
     /// Returns the squared difference of each block in excess of noise, and true if it is
-    /// significant. `noise` has the variances of the difference.
+    /// significant. `noise` is the variance of the difference of each block.
     pub fn beyond(&self, other: &Means, noise: &[f64]) -> Vec<(f64, bool)> {
         let pairs = self.mean.iter().zip(&other.mean).zip(noise);
         pairs
@@ -122,8 +123,8 @@ impl Means {
     }
 }
 
-/// Squared difference, as a multiple of the noise variance, above which it is significant: about
-/// 3.5 standard errors.
+/// Ratio of the squared difference to the noise variance above which a difference is significant;
+/// about 3.5 standard errors.
 const SIGNIFICANT: f64 = 12.0;
-/// Squared difference that is invisible regardless of noise.
+/// Squared difference that is invisible even without noise.
 const SEEN: f64 = 3.0 * (1.0 / 255.0) * (1.0 / 255.0);

@@ -8,19 +8,22 @@ use crate::mistakes::table::{Formulas, Mistake};
 use crate::mistakes::variant::SceneVariant;
 use durer_scene::math::Vec3;
 
-/// Maximum fraction of blocks that may differ significantly from the scene's own picture. Above
-/// this, nothing is tried.
+/// Maximum share of blocks in which the reference may differ significantly from the rendered scene.
+/// Above it, no mistakes are tried.
 const MAX_OFF: f64 = 0.15;
-/// Minimum fraction of differing blocks that is more than noise.
+/// Minimum share of differing blocks; fewer are attributed to noise.
 const LEAST: f64 = 0.02;
-/// Minimum fit of an explanation: fractions of the squared difference and of the differing blocks.
+/// Minimum fit of an explanation: share of the squared difference, and share of the differing
+/// blocks.
 const EXPLAINED: f64 = 0.95;
 const MATCHED: f64 = 0.9;
-/// An explanation is a rival if its residual is at most this many times that of the best one.
+/// An explanation is a rival if its residual is at most this many times the residual of the best
+/// one.
 const RIVAL: f64 = 3.0;
-/// Ratio of noise variances above which a picture counts as noisier.
+/// Ratio of variances above which one picture counts as noisier than the other.
 const NOISIER: f64 = 1.5;
 
+/// One mistake with its value, its rendered block means, and how well those match the test picture.
 struct Trial {
     mistake: (&'static Mistake, f32),
     made: Means,
@@ -28,7 +31,7 @@ struct Trial {
     matched: f64,
 }
 
-/// Returns the share of the blocks in which the scene's own picture differs from the reference by
+/// Returns the share of the blocks in which a render of the scene differs from the reference by
 /// more than noise.
 pub fn off(question: &DiagnosisInput) -> f64 {
     let (reference, view, base) = prepared(question);
@@ -42,7 +45,7 @@ fn blocks(question: &DiagnosisInput) -> Blocks {
     Blocks::new(question.job.width, question.job.height, question.job.sampling.samples())
 }
 
-/// Returns the variances of the difference of two pictures.
+/// Returns the variance of the difference of two pictures, for each block.
 fn noise(a: &Means, b: &Means) -> Vec<f64> {
     a.variance.iter().zip(&b.variance).map(|(a, b)| a + b).collect()
 }
@@ -52,7 +55,7 @@ fn share_off(base: &Means, reference: &Means) -> f64 {
     beyond.iter().filter(|block| block.1).count() as f64 / beyond.len().max(1) as f64
 }
 
-/// Tries the mistakes of path tracers. `progress` receives the progress, from 0 to 1.
+/// Tries all mistakes of path tracers. `progress` receives values from 0 to 1.
 pub fn diagnose(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     let (reference_pixels, view, base) = prepared(question);
     let test_pixels = values(question.test, view.scale, question.transfer);
@@ -79,7 +82,7 @@ pub fn diagnose(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> D
     Diagnosis { named, ..found }
 }
 
-/// Renders all mistakes and measures how much of the difference they explain.
+/// Renders the scene with each mistake and measures how much of the difference it explains.
 fn trials(
     view: &View,
     base: &SceneVariant,
@@ -110,7 +113,8 @@ fn trials(
     all.into_iter().enumerate().map(trial).collect()
 }
 
-/// Returns the mistakes that explain the picture; none if no mistake fits, or too many do.
+/// Returns the mistakes that explain the picture; none if no mistake fits or if the choice is
+/// ambiguous.
 fn decided(mut trials: Vec<Trial>, test: &Means) -> Vec<Explanation> {
     trials.sort_by(|a, b| b.explained.total_cmp(&a.explained));
     let passes = |trial: &&Trial| trial.explained >= EXPLAINED && trial.matched >= MATCHED;
@@ -118,7 +122,7 @@ fn decided(mut trials: Vec<Trial>, test: &Means) -> Vec<Explanation> {
     let rest = |trial: &Trial| 1.0 - trial.explained;
     let rivals: Vec<&Trial> =
         trials.iter().filter(passes).filter(|trial| rest(trial) <= RIVAL * rest(best) + 0.005).collect();
-    // If rivals have different pictures, any name would be a guess.
+    // If rivals have different pictures, naming one of them would be a guess.
     let alike = |other: &Trial| {
         let noise: Vec<f64> = noise(&best.made, test);
         best.made.beyond(&other.made, &noise).iter().filter(|block| block.1).count() * 20 <= test.mean.len()
@@ -134,10 +138,10 @@ fn decided(mut trials: Vec<Trial>, test: &Means) -> Vec<Explanation> {
     rivals.iter().map(named).collect()
 }
 
-/// Estimates the variance of a picture's noise relative to that of the reference.
+/// Estimates the noise variance of a picture relative to that of the reference.
 fn noise_ratio(reference: &[Vec3], test: &[Vec3], width: usize) -> f64 {
-    // Second differences along rows vanish for smooth shading. Drop the upper quarter, which has
-    // the edges.
+    // Second differences along rows vanish for smooth shading. Drop the largest quarter, which
+    // contains the edges.
     let energy = |pixels: &[Vec3]| {
         let mut all: Vec<f32> = pixels
             .chunks(width)
@@ -150,19 +154,19 @@ fn noise_ratio(reference: &[Vec3], test: &[Vec3], width: usize) -> f64 {
     energy(test) / energy(reference)
 }
 
-/// Compares the noise of two pictures with the same mean.
+/// Describes how the noise of two pictures with the same mean differs.
 fn of_noise(reference: &[Vec3], test: &[Vec3], width: usize) -> String {
     let ratio = noise_ratio(reference, test, width);
     let times = |ratio: f64| if ratio > 20.0 { "far more than ten".to_string() } else { format!("about {ratio:.1}") };
     if ratio > NOISIER {
         format!(
-            "the mean is right, and the noise is not: it has {} times the variance of the reference (fewer samples, or lights \
-             that paths find by chance alone)",
+            "the mean is correct, but the noise has {} times the variance of the reference (fewer samples, or lights \
+             that paths hit only by chance)",
             times(ratio)
         )
     } else if 1.0 / ratio > NOISIER {
-        format!("the mean is right: the reference has {} times the variance (more samples here)", times(1.0 / ratio))
+        format!("the mean is correct, but the reference has {} times the variance (fewer samples)", times(1.0 / ratio))
     } else {
-        "the difference is noise: other random numbers, and nothing else that can be measured".to_string()
+        "the difference is noise from different random numbers; no other difference can be measured".to_string()
     }
 }

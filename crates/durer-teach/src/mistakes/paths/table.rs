@@ -3,13 +3,14 @@
 use crate::mistakes::path_habits::{Chosen, Lacks, Mean, Sky, Slant};
 use crate::mistakes::table::{Mistake, Values, row};
 
+/// Common mistakes of path tracers; [`diagnose`](super::search::diagnose) tries all of them.
 pub const MISTAKES: &[Mistake] = &[
     row(
         "path-depth",
         "bounces",
-        "paths {have one bounce less than asked for|have two bounces less than asked for|have one bounce more than asked for|stop at direct light|have one bounce, not as many as asked for}",
+        "paths {have one bounce too few|have two bounces too few|have one bounce too many|stop at direct light|have only one bounce}",
         "for (depth = 0; depth <= bounces; depth++)",
-        "another end of the loop",
+        "another condition of the loop",
         |v, how| {
             let all = v.settings.bounces;
             v.settings.bounces = match how as u32 {
@@ -34,7 +35,7 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-no-pi",
         "bounces",
-        "the matte surface's value lacks 1/pi{|, for light samples alone}",
+        "the diffuse BSDF lacks the factor 1/pi{|, but only for light samples}",
         "f = albedo / pi",
         "f = albedo",
         |v, lights| v.paths.no_pi = Some(lights > 0.0),
@@ -43,7 +44,7 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-no-pdf",
         "mis",
-        "{scattered light|the light of sampled lights} is not divided by the density",
+        "{scattered light|the contribution of light samples} is not divided by the pdf",
         "throughput *= f * dot(n, wi) / pdf",
         "throughput *= f * dot(n, wi)",
         |v, lights| match lights == 0.0 {
@@ -55,7 +56,7 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-uniform",
         "bounces",
-        "directions are uniform over the hemisphere, and divided by the density of the cosine",
+        "directions are uniform over the hemisphere, but divided by the pdf of cosine sampling",
         "uniform: pdf = 1 / (2 pi); by the cosine: pdf = cos / pi",
         "uniform directions with pdf = cos / pi",
         |v, _| v.paths.chosen = Chosen::Uniform,
@@ -63,7 +64,7 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-local-frame",
         "bounces",
-        "scattered directions are not turned from the surface's frame into the world",
+        "scattered directions are not transformed from the shading frame to world space",
         "wi = x t + y b + z n",
         "wi = (x, y, z)",
         |v, _| v.paths.chosen = Chosen::LocalFrame,
@@ -79,7 +80,7 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-emission-twice",
         "mis",
-        "light is counted twice: by light samples and again where a scattered ray hits the light, without weights",
+        "direct light is counted twice, without weights: by light samples and again where a scattered ray hits the light",
         "light sample: no emission at the next hit; or both with weights that sum to 1",
         "L += Le at every hit, and L += the light sample",
         |v, _| v.paths.unweighted = true,
@@ -87,7 +88,7 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-roulette",
         "bounces",
-        "what survives Russian roulette is not divided by its probability",
+        "paths that survive Russian roulette are not divided by the survival probability",
         "if (random() >= q) break; throughput /= q",
         "if (random() >= q) break",
         |v, _| v.paths.roulette = true,
@@ -95,7 +96,7 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-light-factor",
         "mis",
-        "a light sample lacks {1 / d^2|the cosine at the light|the area of the light|the division by the probability of the light}",
+        "light samples lack {1 / d^2|the cosine at the light|the area of the light|the division by the probability of choosing the light}",
         "L = f cos(n) Le cos(light) area / (d^2 probability)",
         "L = f cos(n) Le {cos(light) area / probability|area / (d^2 probability)|cos(light) / (d^2 probability)|cos(light) area / d^2}",
         |v, how| {
@@ -107,7 +108,7 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-two-sided",
         "soft-shadows",
-        "lights that shine to one side shine to both",
+        "one-sided area lights emit on both sides",
         "Le if dot(n_light, -wi) > 0, else 0",
         "Le",
         |v, _| v.paths.two_sided = true,
@@ -115,7 +116,7 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-sky",
         "mis",
-        "the environment is {upside down|sampled with a density that lacks sin(theta)}",
+        "the environment is {upside down|sampled with a pdf that lacks sin(theta)}",
         "theta from the top, pdf = p(u, v) / (2 pi^2 sin(theta))",
         "{theta from the bottom|pdf = p(u, v) / (2 pi^2)}",
         |v, how| v.paths.sky = if how == 0.0 { Sky::UpsideDown } else { Sky::NoSine },
@@ -141,7 +142,7 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-curve",
         "flat",
-        "the curve of sRGB is {missing|applied twice}",
+        "the sRGB curve is {missing|applied twice}",
         "value = srgb(c) * 255",
         "value = {c|srgb(srgb(c))} * 255",
         |v, more| {
@@ -153,7 +154,7 @@ pub const MISTAKES: &[Mistake] = &[
     row(
         "path-factor",
         "bounces",
-        "the whole picture has {} times the light",
+        "the whole picture is {} times as bright as it should be",
         "L",
         "{} * L",
         |v, factor| {

@@ -1,6 +1,6 @@
-//! A plain path tracer with light and BSDF sampling, weighted by the power heuristic, and with
-//! optional mistakes. It uses the library's surfaces, BSDFs and emitters, and has the same mean as
-//! its path tracer for scenes without fog.
+//! A simple path tracer with optional mistakes. It combines light and BSDF sampling with the power
+//! heuristic. It uses the renderer's surfaces, BSDFs and emitters, and for scenes without fog it
+//! has the same expected value as the renderer's path tracer.
 
 use crate::mistakes::path_habits::{Chosen, Lacks, Paths, Sky, Slant};
 use crate::mistakes::variant::SceneVariant;
@@ -14,7 +14,7 @@ use durer_scene::shape::{Primitive, Shape as _};
 use durer_scene::spectrum::{ColorMode, Lanes, Spectrum};
 use std::f32::consts::PI;
 
-/// Random numbers of a sample.
+/// Random number generator (SplitMix64) for one sample of a pixel.
 struct Numbers(u64);
 
 impl Numbers {
@@ -24,8 +24,8 @@ impl Numbers {
         numbers
     }
 
-    /// Source: Steele, Lea and Flood, *Fast Splittable Pseudorandom Number Generators*, OOPSLA
-    /// 2014.
+    /// Returns a uniform number in [0, 1). Source: Steele, Lea and Flood, *Fast Splittable
+    /// Pseudorandom Number Generators*, OOPSLA 2014.
     fn next(&mut self) -> f32 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut x = self.0;
@@ -39,11 +39,11 @@ impl Numbers {
     }
 }
 
-/// Maximum survival probability of Russian roulette, and the depth at which it starts.
+/// Maximum survival probability of Russian roulette, and the depth at which roulette starts.
 const MAX_SURVIVAL: f32 = 0.95;
 const SURE: u32 = 3;
 
-/// The tracer of a variant.
+/// Simple path tracer that makes the mistakes of a [`SceneVariant`], as a student's program might.
 pub struct Walker<'w> {
     world: &'w World,
     settings: WhittedOptions,
@@ -53,14 +53,14 @@ pub struct Walker<'w> {
 }
 
 impl<'w> Walker<'w> {
-    /// Creates the tracer of a variant.
+    /// Creates a tracer for the world and the mistakes of a variant.
     pub fn new(variant: &'w SceneVariant) -> Self {
         let (world, settings) = (&variant.world, variant.settings);
         let right = Whitted { world, settings, cancel: None };
         Walker { world, settings, bugs: variant.paths, right, lanes: Lanes::new(ColorMode::Rgb, 0.5) }
     }
 
-    /// Returns the radiance along a camera ray, as sample `sample` of a pixel.
+    /// Returns the radiance along a camera ray for one sample of a pixel.
     pub fn radiance(&self, ray: &Ray, seed: u64, pixel: (u32, u32), sample: u32) -> Color {
         let mut numbers = Numbers::new(seed, pixel, sample);
         let color = self.lanes.color(self.walk(ray.into(), &mut numbers));
@@ -71,7 +71,7 @@ impl<'w> Walker<'w> {
         let (world, lanes) = (self.world, &self.lanes);
         let mut media = Media::around(world, ray.rounded.origin);
         let (mut throughput, mut sum) = (Spectrum::ONE, Spectrum::ZERO);
-        // The last vertex whose scattered direction has a pdf, and that pdf.
+        // The last vertex whose scattered direction has a finite pdf, and that pdf.
         let mut last: Option<(Receiver, f32)> = None;
         let mut from_eye = true;
         let (mut depth, mut layers) = (0, 0);
@@ -126,7 +126,7 @@ impl<'w> Walker<'w> {
         sum
     }
 
-    /// Returns the weight of a light that a scattered direction hits.
+    /// Returns the MIS weight of a light that a scattered ray hits.
     fn weight(&self, pdf: f32, light: f32) -> f32 {
         if self.bugs.unweighted { 1.0 } else { power(pdf, light) }
     }
@@ -168,7 +168,7 @@ impl<'w> Walker<'w> {
         weight * self.lanes.light(color)
     }
 
-    /// Returns the contribution of a sampled light, including BSDF and cosine.
+    /// Returns the contribution of one light sample, including BSDF and cosine.
     fn direct(&self, at: &SurfaceInteraction, shading: &Shading, to: &Receiver, numbers: &mut Numbers) -> Spectrum {
         let emitters = self.world.emitters();
         let (choice, u) = (numbers.next(), numbers.pair());
@@ -206,7 +206,7 @@ impl<'w> Walker<'w> {
         true
     }
 
-    /// Returns the error factor of a light sample.
+    /// Returns the factor by which an omitted term changes a light sample.
     fn lacking(&self, light: &LightSample, pdf: f32) -> f32 {
         let extended = light.pdf > 0.0 && light.reach.is_finite();
         match self.bugs.lacks {
@@ -244,7 +244,7 @@ impl<'w> Walker<'w> {
         }
     }
 
-    /// Applies mistakes of the cosine and of 1/π to a value of BSDF · cosine.
+    /// Applies mistakes in the cosine and in 1/π to a value of BSDF times cosine.
     fn scaled(&self, value: Spectrum, shading: &Shading, wi: Vec3, sampled_light: bool) -> Spectrum {
         let cosine = shading.frame.normal.dot(wi).abs().max(1e-3);
         let value = match self.bugs.slant {
@@ -258,7 +258,7 @@ impl<'w> Walker<'w> {
         }
     }
 
-    /// Returns a scattered direction, its weight, and its pdf; 0 for a delta lobe.
+    /// Returns a scattered direction, its weight and its pdf. The pdf is 0 for a delta lobe.
     fn scattered(&self, shading: &Shading, numbers: &mut Numbers) -> Option<(Vec3, Spectrum, f32)> {
         let (choice, mut u) = (numbers.next(), numbers.pair());
         if self.bugs.chosen == Chosen::OneNumber {
@@ -290,7 +290,7 @@ impl<'w> Walker<'w> {
     }
 }
 
-/// The power heuristic.
+/// Returns the weight of the power heuristic for a sample with pdf `a`.
 fn power(a: f32, b: f32) -> f32 {
     if b == 0.0 {
         return 1.0;

@@ -4,6 +4,7 @@ use super::{Mistake, Values, row};
 use crate::mistakes::bugs::{Fresnel, Glass, Mirror};
 use durer_scene::math::Color;
 
+/// Common mistakes in reflection and refraction.
 pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "no-reflection",
@@ -52,7 +53,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "bounce-one",
         "reflection",
-        "there is one level of secondary rays, not as many as asked for",
+        "there is only one level of secondary rays",
         "trace(ray, bounces), and again while bounces > 0",
         "trace(ray, 1)",
         |v, _| v.settings.bounces = v.settings.bounces.min(1),

@@ -1,4 +1,4 @@
-//! Mistakes of the camera and of sample positions.
+//! Mistakes in camera rays and sample positions.
 
 use super::{Mistake, Values, row};
 use crate::mistakes::bugs::{Aspect, RayCount};
@@ -7,6 +7,7 @@ use durer_scene::camera::UpRule;
 use durer_scene::dialect::Quirk;
 use durer_scene::math::{Vec2, Vec3, fp};
 
+/// Common mistakes in camera rays and sample positions.
 pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "pixel-corner",
@@ -208,7 +209,7 @@ fn tan(degrees: f32) -> f32 {
     fp::tan_f64(f64::from(degrees).to_radians()) as f32
 }
 
-/// Widens the picture of a perspective camera by a factor that depends on its angle.
+/// Scales the picture of a perspective camera by a factor that depends on its field of view.
 fn scale(v: &mut super::SceneVariant, factor: impl Fn(f32) -> f32) {
     if let Some(angle) = v.angle() {
         v.aim.scale *= factor(angle);

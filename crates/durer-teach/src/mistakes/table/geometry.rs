@@ -1,4 +1,4 @@
-//! Mistakes of hits, normals and transforms.
+//! Mistakes in intersections, normals and transforms.
 
 use super::{Mistake, Values, row};
 use crate::mistakes::bugs::{Ball, BehindOrigin, HitChoice, Normals, Roots};
@@ -10,6 +10,7 @@ use durer_scene::shape::Primitive;
 use glam::DAffine3;
 use std::sync::Arc;
 
+/// Common mistakes in intersections, normals and transforms.
 pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "normals-local",
@@ -133,7 +134,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "triangle-test",
         "distance",
-        "triangles lack the test {a >= 0, which is b + c <= 1|b >= 0|c >= 0}: they go on beyond that side",
+        "triangles lack the test {a >= 0, which is b + c <= 1|b >= 0|c >= 0}: they extend beyond that side",
         "b >= 0 && c >= 0 && b + c <= 1",
         "{b >= 0 && c >= 0|c >= 0 && b + c <= 1|b >= 0 && b + c <= 1}",
         |v, corner| v.wedges(corner as usize),
@@ -143,7 +144,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "backs-culled",
         "distance",
         "{surfaces|triangles} that are seen from behind are not hit",
-        "every root counts, from whichever side",
+        "hits count from either side",
         "if (dot(N, d) > 0) return false",
         |v, triangles| v.bugs.pick = HitChoice::Fronts(triangles > 0.0),
     )
@@ -151,7 +152,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "mesh-first",
         "distance",
-        "of a mesh the {first|last} triangle that is hit counts, not the nearest",
+        "in a mesh, the {first|last} triangle that is hit is used instead of the nearest",
         "for each triangle if (t < best) best = t",
         "for each triangle {if (hit) return true|if (hit) best = t}",
         |v, last| v.bugs.pick = if last == 0.0 { HitChoice::FirstOfMesh } else { HitChoice::LastOfMesh },
@@ -160,7 +161,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "direction-moved",
         "transforms",
-        "the ray's direction is moved into object space like a point, with the translation",
+        "the ray's direction is transformed to object space like a point, including the translation",
         "d' = M^-1 (d, 0)",
         "d' = M^-1 (d, 1)",
         |v, _| v.bugs.pick = HitChoice::MovedDirection,
@@ -280,7 +281,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "translation-negated",
         "transforms",
-        "translations go the other way",
+        "translations have the wrong sign",
         "translation by (x, y, z)",
         "translation by (-x, -y, -z)",
         |v, _| {
@@ -293,7 +294,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "scale-inverted",
         "transforms",
-        "scales make smaller what they should make larger",
+        "scales are inverted: objects shrink instead of growing",
         "scale by s",
         "scale by 1 / s",
         |v, _| {
@@ -523,13 +524,13 @@ fn exchanged(op: &MatrixOp, a: usize, b: usize) -> MatrixOp {
     [MatrixOp::XRotate(angle), MatrixOp::YRotate(angle), MatrixOp::ZRotate(angle)][turned]
 }
 
-/// Returns the product without some of its matrices.
+/// Returns the product of a transform's matrices without those that `left_out` selects.
 fn without(ops: &[MatrixOp], rules: MatrixRules, left_out: fn(&MatrixOp) -> bool) -> DAffine3 {
     let kept: Vec<MatrixOp> = ops.iter().filter(|op| !left_out(op)).copied().collect();
     MatrixOp::product(&kept, rules)
 }
 
-/// Returns the product with changed rotation angles.
+/// Returns the product of a transform's matrices with rotation angles changed by `change`.
 fn turned(ops: &[MatrixOp], rules: MatrixRules, change: fn(f32) -> f32) -> DAffine3 {
     let change = |op: &MatrixOp| match *op {
         MatrixOp::XRotate(angle) => MatrixOp::XRotate(change(angle)),

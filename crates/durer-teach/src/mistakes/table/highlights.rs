@@ -1,10 +1,11 @@
-//! Mistakes of highlights.
+//! Mistakes in highlights.
 
 use super::{Mistake, Values, row};
 use crate::mistakes::bugs::{HalfVector, Mirror};
 use durer_render::world::HighlightModel;
 use durer_scene::math::Color;
 
+/// Common mistakes in highlights.
 pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "no-highlights",

@@ -1,10 +1,11 @@
-//! Mistakes of local light: ambient, diffuse, lights, sums.
+//! Mistakes in local light: ambient and diffuse terms, lights, and their sum.
 
 use super::{Mistake, Values, row};
 use crate::mistakes::bugs::{Ambient, Attenuation, Cosine, LightSum, PointLightDirection};
 use durer_scene::light::Light;
 use durer_scene::math::{Color, Vec3};
 
+/// Common mistakes in local light.
 pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "no-ambient",
@@ -291,7 +292,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
                 4 => |a| Vec3::new(a.x, a.y, 0.0),
                 _ => |a| Vec3::new(0.0, a.y, 0.0),
             };
-            // A single factor has its own rows.
+            // A single falloff coefficient has its own rows.
             if v.has_three_factors() {
                 points(v.world.edit().lights.iter_mut(), |a| a.map(change));
             }
@@ -368,7 +369,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "cosine-of-view",
         "diffuse",
-        "the diffuse term is times N.V, the direction to the eye, not N.L",
+        "the diffuse term uses N.V, with the direction to the eye, instead of N.L",
         "color += kd * max(0, N.L) * I",
         "color += kd * max(0, N.V) * I",
         |v, _| v.bugs.cosine = Cosine::View,
@@ -376,7 +377,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "diffuse-twice",
         "diffuse",
-        "the diffuse colour counts twice{ in the diffuse term|, in the ambient term too}",
+        "the diffuse colour is applied twice{ in the diffuse term|, in the ambient term too}",
         "color += kd * max(0, N.L) * I",
         "color += kd * kd * max(0, N.L) * I",
         |v, ambient| match ambient == 0.0 {
@@ -388,7 +389,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "greatest-light",
         "diffuse",
-        "the greatest of the lights counts, not their sum{|, the ambient light among them}",
+        "the maximum of the lights is used instead of their sum{|, including the ambient light}",
         "for each light color += ...",
         "for each light color = max(color, ...)",
         |v, all| v.bugs.sum = if all == 0.0 { LightSum::Greatest } else { LightSum::GreatestOfAll },
@@ -472,7 +473,7 @@ fn recolor<'l>(lights: impl Iterator<Item = &'l mut Light>, change: impl Fn(Colo
     lights.for_each(|light| light.recolor(&change));
 }
 
-/// Changes the attenuation factors of the point lights.
+/// Changes the attenuation coefficients of the point lights.
 fn points<'l>(lights: impl Iterator<Item = &'l mut Light>, change: impl Fn(Option<Vec3>) -> Option<Vec3>) {
     lights.for_each(|light| {
         if let Light::Point(light) = light {

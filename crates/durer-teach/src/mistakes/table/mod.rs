@@ -1,5 +1,5 @@
-//! The table of common mistakes, one file per family. Among mistakes with equal pictures, the first
-//! in the table is named.
+//! The table of common mistakes, with one file per family. If several mistakes give the same
+//! picture, the first in the table is reported.
 
 mod bounces;
 mod camera;
@@ -14,52 +14,53 @@ use super::variant::three_factors;
 use durer_scene::dialect::{Falloff, Highlight, Rules};
 use durer_scene::scene::Scene;
 
-/// A common mistake.
+/// A mistake that is common in student programs, with its description, its code, and a function
+/// that makes it.
 #[derive(Clone, Copy, Debug)]
 pub struct Mistake {
-    /// Keyword.
+    /// Stable name of the mistake.
     pub name: &'static str,
-    /// Description of the error, without a full stop; `{}` stands for the value, and `{a|b|c}`
-    /// selects by the value, from 0.
+    /// Description, without a full stop. `{}` stands for the value; `{a|b|c}` selects an
+    /// alternative by the value, from 0.
     pub words: &'static str,
     /// The correct code.
     pub right: &'static str,
     /// The probable wrong code.
     pub wrong: &'static str,
-    /// Name of the lesson step about it.
+    /// Name of the lesson topic about it.
     pub step: &'static str,
-    /// Values to try.
+    /// Values with which the mistake is tried.
     pub values: Values,
-    /// Applies the mistake to a variant.
+    /// Applies the mistake with a value to a variant of the scene.
     pub make: fn(&mut SceneVariant, f32),
 }
 
-/// Values with which a mistake is tried.
+/// Values with which the search tries a mistake, such as factors or indices of lights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Values {
-    /// No value.
+    /// The mistake has no value.
     One,
-    /// These values; the true value can be between them.
+    /// These values, between which the search fits the true value.
     Numbers(&'static [f32]),
     /// Exactly these values.
     Only(&'static [f32]),
-    /// The index of each light, from 0.
+    /// The index of each light, counted from 0.
     Lights,
 }
 
 impl Values {
-    /// Returns the values for a scene with `lights` lights.
+    /// Returns the values to try in a scene with `lights` lights.
     pub fn numbers(self, lights: usize) -> Vec<f32> {
         match self {
             Values::One => vec![0.0],
             Values::Numbers(numbers) | Values::Only(numbers) => numbers.to_vec(),
-            // If there are very many lights, a single one is invisible.
+            // If there are very many lights, a single one makes no visible difference.
             Values::Lights => (0..lights.min(32)).map(|light| light as f32).collect(),
         }
     }
 }
 
-/// Every family.
+/// The mistakes of Whitted's method, by family.
 pub const MISTAKES: [&[Mistake]; 7] = [
     light::MISTAKES,
     highlights::MISTAKES,
@@ -75,7 +76,7 @@ pub fn of_name(name: &str) -> Option<&'static Mistake> {
     MISTAKES.iter().copied().flatten().find(|mistake| mistake.name == name)
 }
 
-/// Builds a row without values.
+/// Builds a row without values to try.
 pub(in crate::mistakes) const fn row(
     name: &'static str,
     step: &'static str,
@@ -93,7 +94,7 @@ impl Mistake {
         Mistake { values, ..self }
     }
 
-    /// Returns true if a value lies between the listed ones.
+    /// Returns true if a value was fitted, so it is not one of the listed values.
     pub fn is_fitted(&self, value: f32) -> bool {
         matches!(self.values, Values::Numbers(numbers) if !numbers.contains(&value))
     }
@@ -103,7 +104,7 @@ impl Mistake {
         filled(self.words, value)
     }
 
-    /// Returns the correct and the probable wrong code in the formulas of a scene.
+    /// Returns the correct code and the probable wrong code, in the formulas of a scene.
     pub fn forms(&self, value: f32, formulas: &Formulas) -> [String; 2] {
         let messages =
             |form| filled(form, value).replace(ATTENUATION, formulas.fading).replace("N.H", formulas.highlight);
@@ -111,10 +112,10 @@ impl Mistake {
     }
 }
 
-/// Attenuation polynomial in the table's code.
+/// Attenuation polynomial in the code of the table.
 const ATTENUATION: &str = "a0 + a1 d + a2 d^2";
 
-/// Formulas of a scene and its dialect, used to describe mistakes.
+/// Attenuation and highlight formulas of a scene's dialect, inserted into the code of mistakes.
 #[derive(Clone, Copy, Debug)]
 pub struct Formulas {
     fading: &'static str,
@@ -128,7 +129,7 @@ impl Default for Formulas {
 }
 
 impl Formulas {
-    /// Returns the formulas of a scene.
+    /// Returns the formulas that apply to a scene.
     pub fn of(scene: &Scene, rules: &Rules) -> Self {
         let fading = match rules.falloff {
             _ if three_factors(scene) => ATTENUATION,
@@ -140,7 +141,7 @@ impl Formulas {
     }
 }
 
-/// Fills a value into a text, and resolves each `{a|b|c}`.
+/// Inserts a value into a text, and resolves each `{a|b|c}`.
 fn filled(words: &str, value: f32) -> String {
     let mut text = String::new();
     let mut rest = words;

@@ -1,12 +1,13 @@
-//! Mistakes in writing light to a file. Flipped pictures and exchanged channels are found from the
-//! pictures alone.
+//! Mistakes in writing the picture to a file. Flipped pictures and exchanged channels are detected
+//! from the pictures alone.
 
 use super::{Mistake, Values, row};
 use crate::mistakes::bugs::{OutputBug, PictureTurn};
 
-/// Usual exponents; 0 is the sRGB curve itself.
+/// Usual gamma exponents; 0 stands for the sRGB curve.
 const POWERS: Values = Values::Only(&[0.0, 2.2, 2.0, 1.8, 2.4]);
 
+/// Common mistakes in writing the picture to a file.
 pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "mirrored",

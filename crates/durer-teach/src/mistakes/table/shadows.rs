@@ -1,8 +1,9 @@
-//! Mistakes of shadows.
+//! Mistakes in shadow rays.
 
 use super::{Mistake, Values, row};
 use crate::mistakes::bugs::{Reach, ShadowDirection};
 
+/// Common mistakes in shadow rays.
 pub(super) const MISTAKES: &[Mistake] = &[
     row("no-shadows", "shadows", "there are no shadows", "if (occluded(p, L, d)) continue", "(nothing)", |v, _| {
         v.settings.shadows = false
@@ -146,7 +147,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
     row(
         "shadows-diffuse",
         "shadows",
-        "diffuse light is there in shadow too: only highlights are missing",
+        "diffuse light remains in shadow: only highlights are missing",
         "if (!occluded) color += diffuse + specular",
         "color += diffuse; if (!occluded) color += specular",
         |v, _| v.bugs.shadows.diffuse_left = true,
