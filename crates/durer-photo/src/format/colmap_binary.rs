@@ -1,10 +1,11 @@
-//! COLMAP's three tables as little-endian binary files.
+//! COLMAP's tables as little-endian binary files.
 
 use super::colmap::{Image, MODELS, Row, Tables, error, features, lens, once, parameters};
 use crate::model::quaternion_of;
 use crate::{Error, Reconstruction};
 
-/// Sequential reader of bytes.
+/// Reader of little-endian numbers from a binary file, which checks the length and reports byte
+/// offsets in errors.
 pub struct Bytes<'b> {
     file: &'b str,
     bytes: &'b [u8],

@@ -1,4 +1,4 @@
-//! COLMAP's three tables as text files.
+//! COLMAP's tables as text files.
 
 use super::colmap::{Image, MODELS, Row, Tables, error, features, lens, once, parameters};
 use super::{Words, joined};
