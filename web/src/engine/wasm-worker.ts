@@ -1,7 +1,6 @@
 import { level } from "./level";
 
-/**
- * Code of the worker: runs the library as WebAssembly in steps, and handles messages in between.
+/** Code of the worker: runs the library as WebAssembly in small steps, and handles messages in between.
  */
 
 interface Wasm {
