@@ -23,9 +23,9 @@ for (const topic of topics) {
   });
 }
 
-/** The words of a figure's equations. */
+/** Returns the text of a figure's equations. */
 const equations = (page) => page.locator(".equations").textContent();
-/** The number that a figure's words hold, once they do. */
+/** Waits until the equations of a figure match, and returns the captured numbers. */
 async function told(page, pattern) {
   await page.waitForFunction(
     (source) => new RegExp(source).test(document.querySelector(".equations").textContent),
@@ -65,11 +65,11 @@ await test("numbers: obscura", wide, async (page) => {
 
 await test("numbers: cameras", wide, async (page) => {
   await open(page, "#/lecture/cameras");
-  const [columns, rows, there] = await told(page, /of (\d+) × (\d+) rays, (\d+) exist/);
+  const [columns, rows, there] = await told(page, /of (\d+) × (\d+) pixels, (\d+) have a ray/);
   // The rays fill a disc in a square.
   near(there / (columns * rows), Math.PI / 4, 0.06, "share of the disc");
   await page.getByRole("button", { name: "Two eyes" }).click();
-  near((await told(page, /they start at (\d+) places/))[0], 2, 0, "eyes");
+  near((await told(page, /they start at (\d+) points/))[0], 2, 0, "eyes");
 });
 
 await test("numbers: epsilon", wide, async (page) => {

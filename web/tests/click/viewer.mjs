@@ -1,4 +1,4 @@
-/** Picture, text, explanation and settings. */
+/** Image, text, explanation and settings. */
 import { finished, middle, narrow, open, scenes, shot, test, wide } from "./harness.mjs";
 
 for (const [width, size] of [
