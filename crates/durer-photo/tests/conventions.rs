@@ -256,13 +256,13 @@ fn ply_and_gltf_errors_name_the_fault() {
         ("end_header", "comment end_header", ": this is not a PLY file"),
         ("ascii", "utf8", ":2:1: `utf8` is not a PLY format"),
         ("vertex 1", "vertex 99999999999", ":3:16: the file is too short for 99999999999 points: 6 bytes follow"),
-        ("vertex 1", "vertex -1", ":3:16: `-1` is not a number of points"),
+        ("vertex 1", "vertex -1", ":3:16: expected a number of points, found `-1`"),
         ("vertex 1", "vertices 1", ":3:1: the element `vertex` must come before `vertices`"),
         ("float z", "float w", ":3:16: these points have no x, y and z"),
         ("float z", "list uchar int z", ":6:10: `list` is not a number type"),
         ("1 2 3", "1 2", ":8:4: the row ends where z should follow"),
-        ("1 2 3", "1 2 x", ":8:5: `x` is not z, a number"),
-        ("1 2 3", "1 2 3 4", ":8:7: the row should end here: it is a point's"),
+        ("1 2 3", "1 2 x", ":8:5: expected z, found `x`"),
+        ("1 2 3", "1 2 3 4", ":8:7: the row should end here, after the properties of a point"),
         ("property float x\nproperty float y\nproperty float z\n", "", ": the file has no points"),
     ] {
         let error = reread("c.ply", &cloud.replace(old, new));
@@ -356,7 +356,7 @@ fn compressed_files_are_decompressed() {
 fn row_errors_have_their_place() {
     let reread = |text: &str| read_control("c", text.as_bytes(), &["a.jpg", "b.jpg"]).err().unwrap().to_string();
     for (text, wanted) in [
-        ("0 0 0 a.jpg 1 2\n0 0 nan b.jpg 1 2\n", "c:2:5: `nan` is not one of X Y Z"),
+        ("0 0 0 a.jpg 1 2\n0 0 nan b.jpg 1 2\n", "c:2:5: expected one of X Y Z, found `nan`"),
         ("0 0 0 a.jpg 1\n1 0 0 b.jpg 1 2\n", "c:1:14: the row ends where one of u v should follow"),
         ("0 0\n0 0 0\n", "c:1:4: the row ends where one of X Y Z should follow"),
         ("0 0 0 a.jpg 1 2 c.jpg 3 4\n", "c:1:17: unknown photograph `c.jpg`"),

@@ -20,7 +20,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     for _ in 0..observations {
         let view = words.index("a camera's number", cameras)?;
         let track: &mut Vec<Observation> = &mut tracks[words.index("a point's number", points)?];
-        let [x, y] = words.numbers("a place in the picture")?;
+        let [x, y] = words.numbers("a pixel position")?;
         track.push(Observation { view, feature: track.len(), pixel: Vector2::new(x, -y) });
     }
     let mut all = Reconstruction::default();

@@ -44,7 +44,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
         for _ in 0..words.count("the number of observations", 8)? {
             let view = words.index("a camera's number", cameras)?;
             let feature = words.parse("a feature's number")?;
-            let [x, y] = words.numbers("a place in the picture")?;
+            let [x, y] = words.numbers("a pixel position")?;
             track.push(Observation { view, feature, pixel: Vector2::new(x, -y) });
         }
         all.points.push(Point { position, color, track });

@@ -39,7 +39,7 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
         let mut list = Vec::new();
         words.skip_line_end();
         while !words.is_at_end_of_line() {
-            list.push(words.numbers("a feature's place")?);
+            list.push(words.numbers("a feature's position")?);
             words.parse::<i64>("a point's id")?;
         }
         let image = Image { quaternion, translation, camera, name, features: list };

@@ -90,7 +90,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
             for (value, (name, _)) in row.iter_mut().zip(&head.properties) {
                 *value = words.number(name)?;
             }
-            words.end_of_row("a point's")?;
+            words.end_of_row("the properties of a point")?;
             add(&row);
         }
     } else {
@@ -100,7 +100,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
             for (value, (name, kind)) in row.iter_mut().zip(&head.properties) {
                 *value = number(*kind, body.take(KINDS[*kind].2)?, head.encoding);
                 if !value.is_finite() {
-                    return Err(body.error(format!("{value} is not {name}, a number")));
+                    return Err(body.error(format!("expected a finite number for {name}, found {value}")));
                 }
             }
             add(&row);

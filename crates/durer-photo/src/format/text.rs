@@ -119,14 +119,14 @@ impl<'t> Words<'t> {
     /// Parses the next word.
     pub fn parse<T: FromStr>(&mut self, what: &str) -> Result<T, Error> {
         let (word, place) = self.word(what)?;
-        word.parse().map_err(|_| Error::at(self.file, place, format!("`{word}` is not {what}")))
+        word.parse().map_err(|_| Error::at(self.file, place, format!("expected {what}, found `{word}`")))
     }
 
     /// Parses the next word as a finite number.
     pub fn number(&mut self, what: &str) -> Result<f64, Error> {
         let (word, place) = self.word(what)?;
         let number: Option<f64> = word.parse().ok().filter(|number: &f64| number.is_finite());
-        number.ok_or_else(|| Error::at(self.file, place, format!("`{word}` is not {what}, a number")))
+        number.ok_or_else(|| Error::at(self.file, place, format!("expected {what}, found `{word}`")))
     }
 
     /// Parses `N` finite numbers.
@@ -143,7 +143,7 @@ impl<'t> Words<'t> {
     pub fn count(&mut self, what: &str, bytes: usize) -> Result<usize, Error> {
         let (word, place) = self.word(what)?;
         let fail = |why: String| Error::at(self.file, place, why);
-        let count: usize = word.parse().map_err(|_| fail(format!("`{word}` is not {what}, a count")))?;
+        let count: usize = word.parse().map_err(|_| fail(format!("expected {what}, found `{word}`")))?;
         if count > self.text.len() / bytes + 1 {
             return Err(fail(format!("{what} is {count}, but the file is too short for that")));
         }
@@ -163,7 +163,7 @@ impl<'t> Words<'t> {
     pub fn end_of_row(&mut self, row: &str) -> Result<(), Error> {
         match self.is_at_end_of_line() {
             true => Ok(()),
-            false => Err(self.error(format!("the row should end here: it is {row}"))),
+            false => Err(self.error(format!("the row should end here, after {row}"))),
         }
     }
 
