@@ -12,6 +12,7 @@ import { firstScene, openLink } from "./viewer/link";
 import { Store, useStore } from "./viewer/store";
 import { Viewer } from "./viewer/viewer";
 
+/** Page that the address selects, and its topic. */
 type Page = { name: "viewer" | "lecture" | "lesson"; topic: string };
 
 function page(): Page {

@@ -29,6 +29,7 @@ impl Axis {
         Some(Axis { index: ["x", "y", "z"].iter().position(|axis| *axis == bare)?, negative })
     }
 
+    /// Returns the unit vector of the axis.
     pub(crate) fn direction(self) -> Vector3<f64> {
         Vector3::ith(self.index, if self.negative { -1.0 } else { 1.0 })
     }

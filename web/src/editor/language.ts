@@ -2,6 +2,7 @@ import { HighlightStyle, StreamLanguage, syntaxHighlighting } from "@codemirror/
 import { tags } from "@lezer/highlight";
 import type { Word } from "../protocol";
 
+/** State of the tokenizer: the nesting depth of braces. */
 interface State {
   depth: number;
 }

@@ -13,9 +13,12 @@ export interface LineEvents {
   closed(why: string): void;
 }
 
+/** Event of a given kind. */
 export type EventOf<K extends Event["kind"]> = Extract<Event, { kind: K }>;
+/** Callback for events and their binary payload. */
 type Handler = (event: Event, bytes: Uint8Array<ArrayBuffer>) => void;
 
+/** Request that waits for an event of a kind. */
 interface Waiting {
   kind: Event["kind"];
   resolve(event: Event, bytes: Uint8Array<ArrayBuffer>): void;

@@ -32,6 +32,7 @@ struct File {
     buffers: Vec<Buffer>,
 }
 
+/// glTF node: a transform with an optional camera or mesh, and child nodes.
 #[derive(Default, Deserialize)]
 #[serde(default)]
 struct Node {
@@ -45,6 +46,7 @@ struct Node {
     scale: Option<[f64; 3]>,
 }
 
+/// glTF camera; orthographic cameras have no `perspective` and are ignored.
 #[derive(Deserialize)]
 struct Camera {
     name: Option<String>,
@@ -53,6 +55,7 @@ struct Camera {
     extras: Value,
 }
 
+/// Field of view and aspect ratio of a glTF perspective camera.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Perspective {
@@ -69,11 +72,13 @@ struct Extras {
     radial: [f64; 2],
 }
 
+/// glTF mesh, of which only points are read.
 #[derive(Deserialize)]
 struct Mesh {
     primitives: Vec<Primitive>,
 }
 
+/// Part of a glTF mesh with one topology.
 #[derive(Deserialize)]
 struct Primitive {
     attributes: Attributes,
@@ -81,6 +86,7 @@ struct Primitive {
     mode: Option<u32>,
 }
 
+/// Accessor indices of a primitive's positions and colours.
 #[derive(Deserialize)]
 struct Attributes {
     #[serde(rename = "POSITION")]
@@ -89,6 +95,7 @@ struct Attributes {
     color: Option<usize>,
 }
 
+/// glTF accessor: the type and number of the elements in a buffer view.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Accessor {
@@ -101,6 +108,7 @@ struct Accessor {
     shape: String,
 }
 
+/// glTF buffer view: a range of bytes in a buffer.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct BufferView {
@@ -111,6 +119,7 @@ struct BufferView {
     byte_stride: Option<usize>,
 }
 
+/// glTF buffer: a data URI, or the binary chunk of a `.glb` file if `uri` is absent.
 #[derive(Deserialize)]
 struct Buffer {
     uri: Option<String>,
