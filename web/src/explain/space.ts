@@ -1,3 +1,4 @@
+/** Point or vector in world space. */
 export type Vec = [number, number, number];
 
 export const add = (a: Vec, b: Vec): Vec => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
@@ -90,6 +91,7 @@ export function projector(view: Frame, width: number, height: number) {
   };
 }
 
+/** Projection of world space to a page; see `projector`. */
 export type Projector = ReturnType<typeof projector>;
 
 /** Returns an eye that frames all points. */

@@ -16,6 +16,7 @@ const scopes = [
   ["row", "Its row"],
   ["picture", "The entire image"],
 ] as const;
+/** What the step-by-step view covers: one pixel, its row, or the entire image. */
 type Scope = (typeof scopes)[number][0];
 
 /** Shows the algorithm step by step, for one pixel, its row, or the entire image. */

@@ -2,6 +2,7 @@ import type { ComponentChildren } from "preact";
 import { useRef } from "preact/hooks";
 import { add, mul, type Projector, type Vec } from "../explain/space";
 
+/** Properties of a line in world space. */
 interface LineProps {
   view: Projector;
   from: Vec;
@@ -112,6 +113,7 @@ export function Dot({
   );
 }
 
+/** Properties of a handle, at page coordinates `x` and `y`. */
 interface HandleProps {
   x: number;
   y: number;

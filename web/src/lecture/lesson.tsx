@@ -8,6 +8,7 @@ import { Equation, Figure } from "./parts";
 import type { Topic } from "./topic";
 import { topics } from "./topics";
 
+/** Block of a lesson that shows a figure or a scene. */
 type Shown = Extract<Block, { kind: "figure" }>;
 
 /** Converts a teacher's lesson in Markdown to topics: each heading of level 1 or 2 begins a step. */

@@ -1,5 +1,6 @@
 import type { ComponentChildren } from "preact";
 
+/** Picked point of an image. */
 interface Place {
   /** Position as fractions of the width and height. */
   x: number;

@@ -6,6 +6,7 @@ import { partOf } from "./zoom";
 /** Minimum width of an image pixel, in page pixels, at which its numbers are shown. */
 const readable = 44;
 
+/** Values of the visible part of the image. */
 interface Numbers {
   part: [number, number, number, number];
   values: (number | null)[];

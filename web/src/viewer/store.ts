@@ -18,6 +18,7 @@ import type {
 } from "../protocol";
 import { cropOf, whole, type Zoom } from "./zoom";
 
+/** Event that states which file was opened. */
 type Opened = Extract<Event, { kind: "opened" }>;
 
 /** State and operations of the viewer, to which its components subscribe. */

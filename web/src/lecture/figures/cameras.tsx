@@ -10,6 +10,7 @@ import { paint, sceneOf } from "../scenes";
 import { Stage } from "../stage";
 import type { Topic } from "../topic";
 
+/** Kind of camera that the figure can show. */
 interface Kind {
   id: string;
   name: string;
