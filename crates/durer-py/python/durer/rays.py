@@ -190,7 +190,8 @@ class Mesh(_Rays):
     immutable. Vertices are stored in single precision; if they are far from the origin compared
     with their extent, relative to the centre of their bounds, so that no precision is lost.
     Triangles with a corner that is not finite are ignored. `preset` is the effort of the build:
-    "fast", "balanced" or "best". The slower "best" pays off for many rays. """,
+    "fast", "balanced" or "best". The slower "best" pays off for many rays.
+    """,
     )
 
     #: Corners of triangles, uint32 of shape (m, 3).
@@ -327,7 +328,8 @@ class Scene(_Rays):
 
     `objects` are meshes, or pairs of a mesh and its matrix to world space, 4 x 4 or 3 x 4, which
     can be any invertible affine map. If several objects are hit at the same `t`, the one with the
-    lowest index wins. """,
+    lowest index wins.
+    """,
     )
 
     #: The mesh of each object.
