@@ -12,6 +12,7 @@ import { firstScene, openLink } from "./viewer/link";
 import { Store, useStore } from "./viewer/store";
 import { Viewer } from "./viewer/viewer";
 
+/** Page that the address selects, and its topic. */
 type Page = { name: "viewer" | "lecture" | "lesson"; topic: string };
 
 function page(): Page {
@@ -19,7 +20,7 @@ function page(): Page {
   return { name: name === "lecture" || name === "lesson" ? name : "viewer", topic: topic ?? "" };
 }
 
-/** The page: a viewer and a lecture over one engine. */
+/** The whole page: the viewer, the lecture and a teacher's lesson, which share one engine. */
 export function App({ engine }: { engine: Engine }) {
   const store = useMemo(() => new Store(engine.session()), [engine]);
   const [at, setAt] = useState<Page>(page);
@@ -81,14 +82,14 @@ function FileName({ store }: { store: Store }) {
   );
 }
 
-/** The scene of the viewer, for the chapter about one's own. */
+/** Returns the viewer's scene, for the lecture's chapter "Your own scene". */
 function own({ opened, text }: Store): OwnScene {
   if (!opened) return { title: "whitted.txt", name: "whitted.txt", text: firstScene };
   if (opened.text !== null) return { title: opened.name, name: opened.name, text };
   return { title: opened.name, name: "", text: null };
 }
 
-/** Opens what the address or the server names; returns the server's lesson. */
+/** Opens the scene in the address, or the server's scene. Returns the server's lesson, if any. */
 async function begin(store: Store): Promise<string | null> {
   const linked = await openLink(location.hash);
   const lesson = hasServer() ? (await store.session.ask({ kind: "lesson" }, "lesson")).text : null;

@@ -11,7 +11,7 @@ describe("a zoom", () => {
     const at = { x: 0.3, y: 0.6 };
     const once = nearer(whole, 4, at, 100);
     expect(once.times).toBe(4);
-    // The pointer's place in the frame is the same before and after.
+    // The point below the pointer keeps its position in the frame.
     expect((at.x - once.x) * once.times).toBeCloseTo(at.x - 0.5, 12);
     expect((at.y - once.y) * once.times).toBeCloseTo(at.y - 0.5, 12);
     expect(nearer(once, 0.01, { x: 0, y: 0 }, 100)).toEqual(whole);

@@ -290,7 +290,7 @@ fn broken_files_are_refused_with_their_place() {
             "p.points",
             "0 0 O 1 2\n",
             "photo camera p.png --points p.points -o c.txt",
-            &["1:5: `O` is not one of X Y Z u v"],
+            &["1:5: expected one of X Y Z u v, found `O`"],
         ),
         (
             "b.out",

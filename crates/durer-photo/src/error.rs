@@ -1,8 +1,9 @@
-//! Errors of inputs, with their positions.
+//! The crate's error type.
 
 use std::fmt;
 
-/// An error message with an optional position in a file.
+/// Error of any operation in this crate: a message, and optionally the file, line, and column that
+/// it concerns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Error {
     /// Description of the problem, as a sentence without a full stop.
@@ -19,7 +20,7 @@ impl Error {
         Error { message: message.into(), file: String::new(), place: None }
     }
 
-    /// Creates an error in a file as a whole.
+    /// Creates an error that concerns an entire file.
     pub fn of(file: &str, message: impl Into<String>) -> Self {
         Error { message: message.into(), file: file.into(), place: None }
     }

@@ -1,11 +1,11 @@
-//! Explanations of the positions of cameras and points: the projection equations with their
-//! numbers.
+//! Explains why a camera or a point is where it is: the projection equations with their numbers.
 
 use crate::adjust::{Options, covariance};
 use crate::{Error, Reconstruction};
 use std::fmt::Write;
 
-/// Explains a point: its rays, and its residual in every photograph that observes it.
+/// Returns an explanation of a point: for each photograph that observes it, the ray and the
+/// residual.
 pub fn point(all: &Reconstruction, number: usize) -> Result<String, Error> {
     let count = all.points.len();
     let point = all.points.get(number).ok_or_else(|| {
@@ -43,7 +43,7 @@ pub fn point(all: &Reconstruction, number: usize) -> Result<String, Error> {
     Ok(text)
 }
 
-/// Finds a photograph by name or number.
+/// Returns the index of the photograph with a name or number.
 pub fn view_of(all: &Reconstruction, name: &str) -> Result<usize, Error> {
     let number = all.views.iter().position(|view| view.name == name).or_else(|| name.parse().ok());
     number.filter(|number| *number < all.views.len()).ok_or_else(|| {
@@ -52,8 +52,8 @@ pub fn view_of(all: &Reconstruction, name: &str) -> Result<usize, Error> {
     })
 }
 
-/// Explains a camera: the equations for its first points, their residuals, and how well the camera
-/// is determined.
+/// Returns an explanation of a camera: the projection equations of its first points, their
+/// residuals, and how well the camera is determined.
 pub fn camera(all: &Reconstruction, view: usize) -> Result<String, Error> {
     let name = &all.views[view].name;
     let pose = all.views[view].pose.ok_or_else(|| Error::new(format!("the pose of {name} is unknown")))?;

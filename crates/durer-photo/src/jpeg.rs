@@ -1,15 +1,15 @@
-//! Completeness check of JPEG files, since decoders fill missing parts with grey.
+//! Detects truncated JPEG files, because decoders fill missing parts with grey.
 
-/// Returns true if the file contains the end marker of the picture, not only that of a thumbnail in
-/// its header.
+/// Returns true if the file contains the end marker of the image itself, not only that of a
+/// thumbnail in its header.
 ///
 /// Source: ITU-T T.81, *Digital Compression and Coding of Continuous-Tone Still Images*, annex B.
 pub fn is_whole(bytes: &[u8]) -> bool {
     const START: u8 = 0xd8;
     const END: u8 = 0xd9;
     let mut at = 0;
-    // In coded data, 0xff is followed by 0 or by a restart marker, 0xd0 to 0xd7. Before a marker it
-    // may be repeated.
+    // In coded data, 0xff is followed by 0 or by a restart marker, 0xd0 to 0xd7. Fill bytes of 0xff
+    // can precede a marker.
     let is_marker = |pair: &[u8]| pair[0] == 0xff && !matches!(pair[1], 0 | 1 | 0xff | 0xd0..=0xd7);
     while let Some(pair) = bytes.get(at..at + 2) {
         at += match pair[1] {

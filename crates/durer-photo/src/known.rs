@@ -1,25 +1,25 @@
-//! Known facts about a photograph or the world in it: points, lines, and control points.
+//! User input about the world in a photograph: points, parallel lines, and control points.
 
 use crate::Observation;
 use nalgebra::{Vector2, Vector3};
 
-/// A world point and its pixel.
+/// World point and the pixel at which a photograph shows it.
 pub type Pair = (Vector3<f64>, Vector2<f64>);
 
-/// A world point and its observations.
+/// Control point: a known position in the world and its observations.
 pub type Control = (Vector3<f64>, Vec<Observation>);
 
-/// A direction along a world axis.
+/// Signed world axis, such as x or -y, towards which a set of vanishing lines leads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Axis {
     /// 0, 1, 2 for x, y, z.
     pub index: usize,
-    /// True if the direction points to smaller values.
+    /// True for the negative direction.
     pub negative: bool,
 }
 
 impl Axis {
-    /// Parses a name: `x`, `-x`, and so on, or `xPositive`, `xNegative` as in fSpy.
+    /// Parses a name: `x`, `-x`, and so on, or fSpy's `xPositive` and `xNegative`.
     pub fn parse(name: &str) -> Option<Self> {
         let (bare, negative) = match name {
             name if name.ends_with("Negative") => (name.trim_end_matches("Negative"), true),
@@ -29,12 +29,14 @@ impl Axis {
         Some(Axis { index: ["x", "y", "z"].iter().position(|axis| *axis == bare)?, negative })
     }
 
+    /// Returns the unit vector of the axis.
     pub(crate) fn direction(self) -> Vector3<f64> {
         Vector3::ith(self.index, if self.negative { -1.0 } else { 1.0 })
     }
 }
 
-/// Lines of a photograph that are parallel in the world, in two perpendicular directions.
+/// Input for computing a camera from vanishing points: two sets of lines in a photograph, each
+/// parallel to a world axis.
 #[derive(Debug, Clone)]
 pub struct VanishingLines {
     /// Width and height in pixels.
@@ -45,6 +47,6 @@ pub struct VanishingLines {
     pub origin: Vector2<f64>,
     /// World axis that leads towards each vanishing point.
     pub axes: [Axis; 2],
-    /// Lines for each axis, given by two of their pixels.
+    /// Lines of each axis. A line is given by two points in pixels.
     pub lines: [Vec<[Vector2<f64>; 2]>; 2],
 }

@@ -1,12 +1,12 @@
-//! Reconstructions: lenses, poses, views, and points.
+//! Types of a reconstruction: lenses, poses, photographs, and points.
 
 use nalgebra::{Matrix3, Rotation3, Vector2, Vector3};
 
-/// Camera model that maps points in the camera frame to pixels, by the [conventions](crate) of this
-/// crate.
+/// Intrinsic camera parameters (focal length, principal point, distortion), which map points in the
+/// camera frame to pixels; see the [conventions](crate) of this crate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lens {
-    /// Width and height of the photographs in pixels; 0 if a format does not store them.
+    /// Width and height of the photographs in pixels; 0 if unknown.
     pub size: [u32; 2],
     /// Focal length in pixels.
     pub focal: f64,
@@ -19,12 +19,13 @@ pub struct Lens {
 }
 
 impl Lens {
-    /// Creates a lens without distortion whose principal point is the centre.
+    /// Creates a lens without distortion whose principal point is the image centre.
     pub fn new(size: [u32; 2], focal: f64) -> Self {
         Lens { size, focal, aspect: 1.0, center: size.map(|side| f64::from(side) / 2.0), radial: [0.0; 2] }
     }
 
-    /// Length of the longer side in pixels; twice the focal length if the size is unknown.
+    /// Returns the length of the longer side in pixels; twice the focal length if the size is
+    /// unknown.
     pub fn longer_side(&self) -> f64 {
         match self.size[0].max(self.size[1]) {
             0 => 2.0 * self.focal,
@@ -40,7 +41,7 @@ impl Lens {
         Vector2::new(self.center[0] + factor * x, self.center[1] + factor * self.aspect * y)
     }
 
-    /// Distortion factor 1 + k1 s + k2 s² for the squared radius s.
+    /// Returns the distortion factor 1 + k1 s + k2 s² for the squared radius s.
     pub fn factor(&self, s: f64) -> f64 {
         1.0 + s * (self.radial[0] + s * self.radial[1])
     }
@@ -54,7 +55,7 @@ impl Lens {
         let mut radius = wanted;
         for _ in 0..30 {
             let s = radius * radius;
-            // Derivative of r (1 + k1 r² + k2 r⁴) by r.
+            // Derivative of r (1 + k1 r² + k2 r⁴) with respect to r.
             let slope = 1.0 + s * (3.0 * self.radial[0] + 5.0 * s * self.radial[1]);
             if slope <= 1e-6 {
                 return None;
@@ -81,7 +82,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Camera at the origin that looks along +z.
+    /// Returns the pose of a camera at the origin that looks along +z.
     pub fn identity() -> Self {
         Pose { rotation: Matrix3::identity(), translation: Vector3::zeros() }
     }
@@ -91,8 +92,8 @@ impl Pose {
         Pose { rotation, translation: -rotation * center }
     }
 
-    /// Creates the pose of a camera at `center` that looks at `target`; `up` points upwards in its
-    /// picture.
+    /// Creates the pose of a camera at `center` that looks at `target`. `up` points upwards in its
+    /// image.
     pub fn look_at(center: &Vector3<f64>, target: &Vector3<f64>, up: &Vector3<f64>) -> Self {
         let forward = (target - center).normalize();
         let right = forward.cross(up).normalize();
@@ -105,12 +106,13 @@ impl Pose {
         self.rotation * point + self.translation
     }
 
-    /// Position of the camera: -Rᵀ t.
+    /// Returns the position of the camera, -Rᵀ t.
     pub fn center(&self) -> Vector3<f64> {
         -self.rotation.transpose() * self.translation
     }
 
-    /// Distance of a point in front of the camera, along the view.
+    /// Returns the depth of a point: its distance along the view direction, negative behind the
+    /// camera.
     pub fn depth(&self, point: &Vector3<f64>) -> f64 {
         self.apply(point).z
     }
@@ -121,11 +123,11 @@ impl Pose {
     }
 }
 
-/// Rotation about an axis by its length in radians (Rodrigues).
+/// Returns the rotation about a vector by its length in radians (Rodrigues' formula).
 pub fn rotation_of(axis_angle: &Vector3<f64>) -> Matrix3<f64> {
     let angle = axis_angle.norm();
     let cross = axis_angle.cross_matrix();
-    // sin(a) / a and (1 - cos(a)) / a², by series that do not divide by zero.
+    // sin(a) / a and (1 - cos(a)) / a², by series near zero to avoid a division by zero.
     let (a, b) = if angle < 1e-4 {
         let s = angle * angle;
         (1.0 - s / 6.0, 0.5 - s / 24.0)
@@ -136,7 +138,8 @@ pub fn rotation_of(axis_angle: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() + a * cross + b * cross * cross
 }
 
-/// Axis and angle of a rotation: the inverse of [`rotation_of`]. The length is at most π.
+/// Returns the axis of a rotation times its angle in radians, at most π: the inverse of
+/// [`rotation_of`].
 pub fn axis_angle_of(rotation: &Matrix3<f64>) -> Vector3<f64> {
     let [w, x, y, z] = quaternion_of(rotation);
     let axis = Vector3::new(x, y, z);
@@ -144,8 +147,8 @@ pub fn axis_angle_of(rotation: &Matrix3<f64>) -> Vector3<f64> {
     if length < 1e-300 { Vector3::zeros() } else { axis * (2.0 * libm::atan2(length, w) / length) }
 }
 
-/// Unit quaternion (w, x, y, z) of a rotation, with w >= 0. Uses the largest component, as proposed
-/// by Shepperd.
+/// Returns the unit quaternion (w, x, y, z) of a rotation, with w >= 0. It is computed from its
+/// largest component, as proposed by Shepperd.
 pub fn quaternion_of(r: &Matrix3<f64>) -> [f64; 4] {
     let (a, b, c) = (r[(0, 0)], r[(1, 1)], r[(2, 2)]);
     let squares = [1.0 + a + b + c, 1.0 + a - b - c, 1.0 - a + b - c, 1.0 - a - b + c];
@@ -165,13 +168,13 @@ pub fn quaternion_of(r: &Matrix3<f64>) -> [f64; 4] {
     q.map(|c| c / norm)
 }
 
-/// Rotation of a quaternion (w, x, y, z), which need not have length 1.
+/// Returns the rotation of a quaternion (w, x, y, z), which need not have length 1.
 pub fn rotation_of_quaternion([w, x, y, z]: [f64; 4]) -> Matrix3<f64> {
     let q = nalgebra::Quaternion::new(w, x, y, z);
     *Rotation3::from(nalgebra::UnitQuaternion::from_quaternion(q)).matrix()
 }
 
-/// Rotation nearest to a matrix in the Frobenius norm, by singular value decomposition.
+/// Returns the rotation nearest to a matrix in the Frobenius norm, by singular value decomposition.
 pub fn nearest_rotation(matrix: &Matrix3<f64>) -> Matrix3<f64> {
     let svd = matrix.svd(true, true);
     let (Some(u), Some(v)) = (svd.u, svd.v_t) else { return Matrix3::identity() };
@@ -179,43 +182,43 @@ pub fn nearest_rotation(matrix: &Matrix3<f64>) -> Matrix3<f64> {
     u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v
 }
 
-/// A photograph.
+/// Photograph of a [`Reconstruction`]: its name, lens, and pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct View {
     /// File name of the photograph, or a number if a format has no names.
     pub name: String,
-    /// Number of the lens, which several photographs may share.
+    /// Index of the lens. Several photographs can share a lens.
     pub lens: usize,
-    /// Pose of the camera; `None` if it is not (yet) known.
+    /// Pose of the camera; `None` if it is unknown.
     pub pose: Option<Pose>,
 }
 
-/// Observation of a point in a photograph.
+/// Observation of a scene point: the photograph, the feature, and its pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
-    /// Number of the photograph.
+    /// Index of the photograph.
     pub view: usize,
-    /// Number of the feature in its photograph.
+    /// Index of the feature in its photograph.
     pub feature: usize,
     /// Position in pixels from the upper left corner.
     pub pixel: Vector2<f64>,
 }
 
-/// A point of the scene.
+/// Scene point of a [`Reconstruction`]: its position, colour, and observations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
     /// Position in the world.
     pub position: Vector3<f64>,
-    /// Red, green, and blue.
+    /// Red, green, and blue, from 0 to 255.
     pub color: [u8; 3],
     /// Observations, in the order of the photographs.
     pub track: Vec<Observation>,
 }
 
-/// A reconstruction of cameras and points.
+/// Cameras and points reconstructed from photographs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Reconstruction {
-    /// Lenses, each of one or more photographs.
+    /// Lenses. Several photographs can share one.
     pub lenses: Vec<Lens>,
     /// Photographs, including those with an unknown pose.
     pub views: Vec<View>,
@@ -223,7 +226,7 @@ pub struct Reconstruction {
     pub points: Vec<Point>,
 }
 
-/// Agreement of cameras and points with the photographs.
+/// Reprojection error of a [`Reconstruction`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Fit {
     /// Number of observations by photographs with a known pose.
@@ -237,20 +240,20 @@ pub struct Fit {
 }
 
 impl Reconstruction {
-    /// Difference between the projection of a point and its observed pixel; `None` if the pose of
-    /// the photograph is unknown.
+    /// Returns the projection of a point minus its observed pixel; `None` if the pose of the
+    /// photograph is unknown.
     pub fn residual(&self, position: &Vector3<f64>, seen: &Observation) -> Option<Vector2<f64>> {
         let view = &self.views[seen.view];
         let pose = view.pose.as_ref()?;
         Some(self.lenses[view.lens].project(&pose.apply(position)) - seen.pixel)
     }
 
-    /// Residuals of the observations by photographs with a known pose.
+    /// Returns the residuals of all observations in photographs with a known pose.
     pub fn residuals(&self) -> impl Iterator<Item = Vector2<f64>> {
         self.points.iter().flat_map(|point| point.track.iter().filter_map(|seen| self.residual(&point.position, seen)))
     }
 
-    /// Computes the agreement of the reconstruction with the photographs.
+    /// Computes the reprojection error.
     pub fn fit(&self) -> Fit {
         let mut fit = Fit::default();
         for square in self.residuals().map(|residual| residual.norm_squared()) {
@@ -262,26 +265,26 @@ impl Reconstruction {
         fit
     }
 
-    /// Standard deviation of a residual's components in pixels, from the median length of the
-    /// residuals, so that outliers do not count. The median length of normal errors is √(2 ln 2)
-    /// times their standard deviation.
+    /// Estimates the standard deviation of a residual's components in pixels from the median
+    /// residual, which is robust to outliers. The median length of normally distributed errors is
+    /// √(2 ln 2) times their standard deviation.
     pub fn noise(&self) -> f64 {
         let mut lengths: Vec<f64> = self.residuals().map(|residual| residual.norm()).collect();
         lengths.sort_by(f64::total_cmp);
         lengths.get(lengths.len() / 2).map_or(0.0, |median| median / 1.1774)
     }
 
-    /// Number of photographs with a known pose.
+    /// Returns the number of photographs with a known pose.
     pub fn registered(&self) -> usize {
         self.views.iter().filter(|view| view.pose.is_some()).count()
     }
 
-    /// Mean number of observations per point.
+    /// Returns the mean number of observations per point.
     pub fn track_length(&self) -> f64 {
         self.points.iter().map(|point| point.track.len()).sum::<usize>() as f64 / self.points.len().max(1) as f64
     }
 
-    /// Largest angle in radians between two rays to a point.
+    /// Returns the largest angle in radians between two rays to a point.
     pub fn angle(&self, point: &Point) -> f64 {
         let toward = |seen: &Observation| {
             let center = self.views[seen.view].pose.as_ref()?.center();
@@ -289,7 +292,7 @@ impl Reconstruction {
         };
         let rays: Vec<Vector3<f64>> = point.track.iter().filter_map(toward).collect();
         let pairs = rays.iter().enumerate().flat_map(|(i, a)| rays[i + 1..].iter().map(move |b| (a, b)));
-        // Computing the angle from the chord of its half keeps small angles precise.
+        // The chord gives small angles precisely, unlike the cosine.
         pairs.map(|(a, b)| 2.0 * libm::asin(((a - b).norm() / 2.0).min(1.0))).fold(0.0, f64::max)
     }
 }

@@ -1,4 +1,4 @@
-//! Photographs as files: pixels and metadata.
+//! Photographs read from files: pixels and EXIF metadata.
 
 use crate::Error;
 use crate::feature::Gray;
@@ -6,10 +6,10 @@ use crate::jpeg::is_whole;
 use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Limits, RgbImage};
 use std::io::Cursor;
 
-/// Maximum length of a photograph's longer side in pixels.
+/// Maximum length in pixels of the longer side of a photograph that is read.
 const LONGEST: u32 = 20_000;
 
-/// A photograph.
+/// Photograph read from a JPEG or PNG file: its pixels and EXIF metadata.
 pub struct Photo {
     /// File name.
     pub name: String,
@@ -19,14 +19,14 @@ pub struct Photo {
     pub exif: Exif,
 }
 
-/// Metadata about the lens.
+/// EXIF metadata of a photograph, as far as it concerns the camera and the focal length.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Exif {
-    /// Make and model.
+    /// Make and model of the camera.
     pub camera: String,
     /// Focal length in pixels, and a description of its source.
     pub focal: Option<(f64, String)>,
-    /// Description of an implausible value.
+    /// Message about an implausible focal length, if any.
     pub doubt: Option<String>,
 }
 
@@ -47,7 +47,7 @@ fn broken(file: &str, error: &ImageError) -> Error {
     Error::of(file, format!("cannot be read as a picture: {}", error.to_string().trim_end()))
 }
 
-/// Width and height of a photograph in pixels, from its header.
+/// Reads the width and height of a photograph in pixels from its header.
 pub fn size(file: &str, bytes: &[u8]) -> Result<[u32; 2], Error> {
     let size = reader(file, bytes)?.into_dimensions();
     let (width, height) = size.map_err(|error| broken(file, &error))?;
@@ -70,13 +70,13 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Photo, Error> {
 }
 
 impl Photo {
-    /// Width and height in pixels.
+    /// Returns the width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         [self.pixels.width(), self.pixels.height()]
     }
 
-    /// Greyscale picture with values from 0 to 1, reduced to a longer side of at most `side`
-    /// pixels, and the number of original pixels per reduced pixel along x and y.
+    /// Returns a greyscale image with values from 0 to 1, reduced to a longer side of at most
+    /// `side` pixels, and the number of original pixels per reduced pixel along x and y.
     pub fn gray(&self, side: u32) -> (Gray, [f64; 2]) {
         let [width, height] = self.size();
         let scale = f64::from(side) / f64::from(width.max(height));
@@ -97,14 +97,14 @@ impl Photo {
         (gray, [f64::from(width) / f64::from(w), f64::from(height) / f64::from(h)])
     }
 
-    /// Colour at a position in pixels.
+    /// Returns the colour at a position in pixels.
     pub fn color(&self, x: f64, y: f64) -> [u8; 3] {
         let [width, height] = self.size();
         self.pixels.get_pixel((x.max(0.0) as u32).min(width - 1), (y.max(0.0) as u32).min(height - 1)).0
     }
 }
 
-/// Reads the EXIF metadata about the lens. Invalid metadata counts as missing, which is common.
+/// Reads the EXIF metadata. Invalid metadata is common, and is treated as missing.
 fn exif(bytes: &[u8], size: [u32; 2]) -> Exif {
     use exif::Tag;
     let mut found = Exif::default();

@@ -1,6 +1,7 @@
-//! Random numbers that depend only on their seed.
+//! Pseudorandom numbers with the same sequence on every platform.
 
-/// SplitMix64 (Steele, Lea, Flood, *Fast Splittable Pseudorandom Number Generators*, OOPSLA 2014).
+/// Pseudorandom number generator for RANSAC and tests: SplitMix64 (Steele, Lea, Flood, *Fast
+/// Splittable Pseudorandom Number Generators*, OOPSLA 2014).
 #[derive(Debug, Clone)]
 pub struct Random(u64);
 
@@ -10,7 +11,7 @@ impl Random {
         Random(seed)
     }
 
-    /// 64 random bits.
+    /// Returns 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -18,18 +19,18 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// Uniform number in [0, 1).
+    /// Returns a uniformly distributed number in [0, 1).
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Normally distributed number with mean 0 and standard deviation 1 (Box and Muller).
+    /// Returns a normally distributed number with mean 0 and standard deviation 1 (Box and Muller).
     pub fn normal(&mut self) -> f64 {
         let (u, v) = (1.0 - self.unit(), self.unit());
         (-2.0 * libm::log(u)).sqrt() * libm::cos(std::f64::consts::TAU * v)
     }
 
-    /// Uniform integer below `end`.
+    /// Returns a uniformly distributed integer below `end`.
     pub fn below(&mut self, end: usize) -> usize {
         ((u128::from(self.bits()) * end as u128) >> 64) as usize
     }

@@ -1,5 +1,5 @@
-//! Camera of a single photograph, from known world points or from lines that are parallel in the
-//! world.
+//! Computes the camera of a single photograph from known world points, or from lines that are
+//! parallel in the world.
 
 use crate::adjust::{Loss, Options};
 use crate::geometry::camera::{linear, spread, take_apart};
@@ -8,7 +8,8 @@ use crate::solve::{pose_of, refined_pose};
 use crate::{Error, Lens, Pose};
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 
-/// Known properties of the lens, and the criterion for outliers.
+/// Input of [`camera`] besides the points: known properties of the lens, and the threshold for
+/// outliers.
 #[derive(Debug, Clone)]
 pub struct LensPriors {
     /// Width and height in pixels.
@@ -21,7 +22,7 @@ pub struct LensPriors {
     pub threshold: f64,
 }
 
-/// An estimated camera.
+/// Camera of a single photograph estimated from known world points, with its inliers and accuracy.
 #[derive(Debug, Clone)]
 pub struct Resection {
     /// Estimated lens.
@@ -32,17 +33,19 @@ pub struct Resection {
     pub inliers: Vec<usize>,
     /// Root mean square residual of the inliers, in pixels.
     pub rms: f64,
-    /// Ratio of the least to the largest singular value of the Jacobian, with columns scaled to the
-    /// same length.
+    /// Ratio of the smallest to the largest singular value of the Jacobian, with columns scaled to
+    /// the same length.
     pub conditioning: f64,
 }
 
-/// Minimum spread of the points in the third direction, relative to the first.
+/// Minimum spread of the points along the third principal axis, relative to the first. Flatter
+/// points count as lying in a plane.
 const FLAT: f64 = 1e-3;
-/// Minimum conditioning.
+/// Minimum of [`Resection::conditioning`] for a camera to count as determined.
 const CONDITIONED: f64 = 1e-6;
 
-/// Estimates the camera, with the principal point in the centre and square pixels.
+/// Estimates the camera from world points and their pixels. The principal point is assumed to be
+/// the image centre, and pixels to be square.
 ///
 /// # Errors
 ///
@@ -86,7 +89,7 @@ pub fn camera(pairs: &[Pair], known: &LensPriors) -> Result<Resection, Error> {
     let mut best: Option<Resection> = None;
     for focal in candidates {
         let lens = Lens::new(known.size, focal);
-        // An inexact focal length gives inexact residuals, too.
+        // A wrong initial focal length enlarges all residuals.
         let wide = if known.focal.is_some() { known.threshold } else { known.threshold.max(0.02 * side) };
         let Some(found) = from_lens(pairs, lens, known, wide) else { continue };
         let better = |best: &Resection| (found.inliers.len(), -found.rms) > (best.inliers.len(), -best.rms);
@@ -94,7 +97,7 @@ pub fn camera(pairs: &[Pair], known: &LensPriors) -> Result<Resection, Error> {
             best = Some(found);
         }
     }
-    // A few of many points agree with some camera by chance.
+    // A few points always agree with some camera by chance, so two thirds must agree.
     let enough = |best: &Resection| best.inliers.len() >= least.max((2 * pairs.len()).div_ceil(3));
     let best = best.filter(enough).ok_or_else(|| {
         let limit = known.threshold;
@@ -114,7 +117,7 @@ pub fn camera(pairs: &[Pair], known: &LensPriors) -> Result<Resection, Error> {
 /// Estimates the camera from an initial focal length.
 fn from_lens(pairs: &[Pair], lens: Lens, known: &LensPriors, wide: f64) -> Option<Resection> {
     let (pose, inliers) = pose_of(pairs, &lens, wide, 0).or_else(|| {
-        // Exactly four points: RANSAC needs one more than its model.
+        // RANSAC needs more points than its sample, so exactly four points are handled separately.
         let all: Vec<usize> = (0..pairs.len()).collect();
         let directions: Option<Vec<_>> = pairs[..3].iter().map(|pair| lens.unproject(&pair.1)).collect();
         let [a, b, c] = directions?.try_into().ok()?;
@@ -171,7 +174,7 @@ fn conditioning(lens: &Lens, pose: &Pose, pairs: &[Pair], inliers: &[usize], foc
     values[columns - 1] / values[0]
 }
 
-/// Intersection of lines: the homogeneous point with the least distances to them.
+/// Returns the vanishing point of lines: the homogeneous point closest to all of them.
 fn meeting(lines: &[[Vector2<f64>; 2]], size: f64) -> Option<Vector3<f64>> {
     let homogeneous = |p: &Vector2<f64>| Vector3::new(p.x / size, p.y / size, 1.0);
     let line = |ends: &[Vector2<f64>; 2]| homogeneous(&ends[0]).cross(&homogeneous(&ends[1])).try_normalize(1e-12);
@@ -183,9 +186,9 @@ fn meeting(lines: &[[Vector2<f64>; 2]], size: f64) -> Option<Vector3<f64>> {
     (values[1] > 1e-9 * values[0]).then(|| Vector3::new(v[0] * size, v[1] * size, v[2]))
 }
 
-/// Estimates the camera with vanishing points v and w: f² = -(v - c)·(w - c). The directions of the
-/// axes are (v - c, f) and (w - c, f). `distance` is the distance of the origin, since photographs
-/// do not determine their scale.
+/// Computes the camera from two vanishing points v and w: f² = -(v - c)·(w - c), where c is the
+/// principal point. The directions of the axes are (v - c, f) and (w - c, f). A photograph does not
+/// determine the scale, so `distance` sets the distance from the camera to the origin.
 ///
 /// Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 /// section 8.6; Guillou and others, *Using Vanishing Points for Camera Calibration and Coarse 3D

@@ -1,14 +1,14 @@
-//! Data for a web page that shows photographs in space.
+//! Data for the web page that shows the photographs and points of a reconstruction in 3D.
 
 use crate::Reconstruction;
 use crate::geometry::camera::spread;
 use nalgebra::{Matrix3, Vector2, Vector3};
 use serde::Serialize;
 
-/// A photograph in space.
+/// Photograph on the tour page: its camera, and the rectangle in space onto which it is projected.
 #[derive(Debug, Clone, Serialize)]
 pub struct TourView {
-    /// Number of the view.
+    /// Index of the photograph in the reconstruction.
     pub view: usize,
     /// File name.
     pub name: String,
@@ -18,17 +18,17 @@ pub struct TourView {
     pub focal: f64,
     /// Position of the camera.
     pub center: [f64; 3],
-    /// Rows: right, down, and forward in the world.
+    /// Rotation matrix by rows: the camera's right, down, and forward directions in the world.
     pub rotation: [[f64; 3]; 3],
-    /// Corners of the photograph on its plane: upper left, upper right, lower right, and lower
+    /// Corners of the photograph in the world: upper left, upper right, lower right, and lower
     /// left.
     pub corners: [[f64; 3]; 4],
-    /// Numbers of the points that it observes.
+    /// Indices of the points that the photograph observes.
     pub points: Vec<usize>,
 }
 
-/// Photographs with a known pose, each on the plane that fits its points or, if that plane is too
-/// oblique, on a plane perpendicular to the view.
+/// Returns the photographs with a known pose. Each is projected onto the plane that fits its points
+/// or, if that plane is too oblique, onto a plane perpendicular to the view direction.
 pub fn shown(all: &Reconstruction) -> Vec<TourView> {
     let mut seen = vec![Vec::new(); all.views.len()];
     for (i, point) in all.points.iter().enumerate() {
@@ -52,7 +52,7 @@ pub fn shown(all: &Reconstruction) -> Vec<TourView> {
         let rays = [ray(0.0, 0.0), ray(width, 0.0), ray(width, height), ray(0.0, height)];
         let on = |(origin, normal): (Vector3<f64>, Vector3<f64>)| {
             let far = rays.map(|ray| (origin - center).dot(&normal) / ray.dot(&normal));
-            // Rays have unit depth, so their lengths compare with depths.
+            // Rays have depth 1, so the distances along them are depths.
             far.iter()
                 .all(|t| (0.3 * depth..3.0 * depth).contains(t))
                 .then(|| [0, 1, 2, 3].map(|i| center + far[i] * rays[i]))
@@ -73,7 +73,8 @@ pub fn shown(all: &Reconstruction) -> Vec<TourView> {
     list
 }
 
-/// Plane that fits points best, as a point and a normal; `None` if the points are not nearly flat.
+/// Returns the plane that fits points best, as a point and a normal; `None` if the points are not
+/// nearly in a plane.
 fn plane(points: &[Vector3<f64>]) -> Option<(Vector3<f64>, Vector3<f64>)> {
     let [_, second, third] = spread(points);
     if points.len() < 8 || third > 0.7 * second {

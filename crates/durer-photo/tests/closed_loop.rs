@@ -1,5 +1,5 @@
-//! Closed-loop tests: synthetic cameras and points are reconstructed exactly, with outliers, and
-//! with errors that match their covariance.
+//! Closed-loop tests with synthetic cameras and points: they are reconstructed despite outliers,
+//! and errors match the computed covariance.
 
 use durer_photo::adjust::{Options as Adjust, adjust, covariance};
 use durer_photo::geometry::align::{Similarity, cameras as aligned};
@@ -22,7 +22,8 @@ fn cameras(count: u32) -> Vec<Pose> {
     (0..count).map(camera).collect()
 }
 
-/// Cameras and points with normally distributed errors of `noise` pixels.
+/// Returns cameras and points whose observations have normally distributed errors of `noise`
+/// pixels.
 fn scene(views: u32, points: usize, noise: f64, seed: u64) -> Reconstruction {
     let random = &mut Random::new(seed);
     let lens = Lens { radial: [-0.08, 0.03], ..Lens::new(SIZE, FOCAL) };
@@ -33,7 +34,7 @@ fn scene(views: u32, points: usize, noise: f64, seed: u64) -> Reconstruction {
         for (view, pose) in poses.iter().enumerate() {
             let error = noise * Vector2::new(random.normal(), random.normal());
             let pixel = lens.project(&pose.apply(&position)) + error;
-            // Points are occluded now and then.
+            // Two fifths of the observations are missing, as if occluded.
             if random.unit() < 0.6 {
                 track.push(Observation { view, feature: 0, pixel });
             }
@@ -45,7 +46,7 @@ fn scene(views: u32, points: usize, noise: f64, seed: u64) -> Reconstruction {
     Reconstruction { lenses: vec![lens], views: poses.iter().enumerate().map(view).collect(), points }
 }
 
-/// Matches of a scene, with a share of false observations.
+/// Returns the matches of a scene, where a fraction `outliers` of the observations is false.
 fn matches(all: &Reconstruction, focal: f64, outliers: f64) -> Matches {
     let random = &mut Random::new(99);
     let track = |point: &Point| {
@@ -77,7 +78,8 @@ fn matches(all: &Reconstruction, focal: f64, outliers: f64) -> Matches {
     Matches { format: FORMAT.into(), pictures: all.views.iter().map(picture).collect(), links, tracks }
 }
 
-/// Maximum distance of cameras and maximum angle in degrees, after the best similarity.
+/// Returns the maximum distance between corresponding cameras, and the maximum angle in degrees,
+/// after alignment by a similarity.
 fn differences(found: &Reconstruction, truth: &Reconstruction) -> (f64, f64) {
     let poses = |all: &Reconstruction| all.views.iter().map(|view| view.pose.unwrap()).collect::<Vec<_>>();
     let (found, truth) = (poses(found), poses(truth));
@@ -118,7 +120,7 @@ fn solution_is_independent_of_threads() {
 fn missing_depth_is_reported() {
     let why =
         |all: &Reconstruction| solve(&matches(all, FOCAL, 0.0), &Options::default(), &|_| {}).err().unwrap().message;
-    // A camera that only rotates.
+    // The camera only rotates.
     let mut turned = scene(4, 300, 0.2, 3);
     let center = turned.views[0].pose.unwrap().center();
     for (i, view) in turned.views.iter_mut().enumerate() {
@@ -130,7 +132,7 @@ fn missing_depth_is_reported() {
         }
     }
     assert!(why(&turned).contains("the camera only rotated"), "{}", why(&turned));
-    // False matches only.
+    // All matches are false.
     let chance = matches(&scene(4, 300, 0.2, 3), FOCAL, 1.0);
     let error = solve(&chance, &Options::default(), &|_| {}).err().unwrap();
     assert!(error.message.contains("enough points that agree"), "{error}");

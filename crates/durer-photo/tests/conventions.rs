@@ -8,20 +8,21 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 use std::path::Path;
 use tempfile::TempDir;
 
-// A picture of 640 x 480 pixels, f = 500, k1 = 0.1. The camera is rotated by a right angle about z,
-// t = (0.5, 1, 5). It sees X = (1, 2, 3) at P = (-1.5, 2, 8): p = (-0.1875, 0.25), r = 1 + 0.1 |p|²
-// = 1.009765625, and so 94.66552734375 pixels left of the centre and 126.220703125 below it.
+// The image has 640 x 480 pixels, f = 500, and k1 = 0.1. The camera is rotated by 90 degrees about
+// z, and t = (0.5, 1, 5). The point X = (1, 2, 3) is at P = (-1.5, 2, 8) in its frame, so p =
+// (-0.1875, 0.25) and r = 1 + 0.1 |p|² = 1.009765625. The pixel is 94.66552734375 pixels left of
+// the centre and 126.220703125 below it.
 const PIXEL: [f64; 2] = [320.0 - 94.66552734375, 240.0 + 126.220703125];
 const CENTER: [f64; 3] = [-1.0, 0.5, -5.0];
 const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// Name of a format in the table, path to read, and files.
+/// Test case of a file format: its name in the table, the path to read, and the files to create.
 type Case = (&'static str, &'static str, Vec<(&'static str, Vec<u8>)>);
 
-/// Files of every format that is read.
+/// Returns the files of every format that can be read.
 fn files() -> Vec<Case> {
     let bundler = "# Bundle file v0.3\n1 1\n500 0.1 0\n0 -1 0\n-1 0 0\n0 0 -1\n0.5 -1 -5\n1 2 3\n10 20 30\n1 0 0 -94.66552734375 -126.220703125\n";
-    // A half turn about (1, -1, 0).
+    // The rotation is by 180 degrees about (1, -1, 0).
     let bal = "1 1 1\n0 0 -94.66552734375 -126.220703125\n2.221441469079183 -2.221441469079183 0\n0.5 -1 -5\n500 0.1 0\n1 2 3\n";
     let opensfm = r#"[{"cameras": {"c": {"projection_type": "perspective", "width": 640, "height": 480, "focal": 0.78125, "k1": 0.1, "k2": 0}},
         "shots": {"a.jpg": {"rotation": [0, 0, 1.5707963267948966], "translation": [0.5, 1, 5], "camera": "c"}},
@@ -50,7 +51,7 @@ fn files() -> Vec<Case> {
     let doubles = |values: &[f64]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>();
     let longs = |values: &[u64]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>();
     let ints = |values: &[u32]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>();
-    // Model 2 is SIMPLE_RADIAL.
+    // Camera model 2 is SIMPLE_RADIAL.
     let cameras_bin = [longs(&[1]), ints(&[1, 2]), longs(&[640, 480]), doubles(&[500.0, 320.0, 240.0, 0.1])].concat();
     let pose = doubles(&[HALF, 0.0, 0.0, HALF, 0.5, 1.0, 5.0]);
     let name = b"a.jpg\0".to_vec();
@@ -90,7 +91,7 @@ fn files() -> Vec<Case> {
     ]
 }
 
-/// Checks that the camera and the point equal the ones computed by hand.
+/// Checks that the camera and the point equal those computed by hand.
 #[track_caller]
 fn is_as_meant(all: &Reconstruction, name: &str) {
     assert_eq!(all.views.len(), usize::from(name != "PLY"), "{name}");
@@ -170,8 +171,7 @@ fn written_files_follow_the_table() {
         value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect::<Vec<f64>>()
     };
     assert!((Vector3::from_iterator(numbers(&node["translation"])) - Vector3::from(CENTER)).norm() < 1e-12);
-    // From the camera frame to the world: -z becomes the world's z, x the world's -y, and y the
-    // world's -x.
+    // The rotation from the camera frame to the world maps -z to z, x to -y, and y to -x.
     let q = numbers(&node["rotation"]);
     let q = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(q[3], q[0], q[1], q[2]));
     for (axis, there) in [(-Vector3::z(), Vector3::z()), (Vector3::x(), -Vector3::y()), (Vector3::y(), -Vector3::x())] {
@@ -256,13 +256,13 @@ fn ply_and_gltf_errors_name_the_fault() {
         ("end_header", "comment end_header", ": this is not a PLY file"),
         ("ascii", "utf8", ":2:1: `utf8` is not a PLY format"),
         ("vertex 1", "vertex 99999999999", ":3:16: the file is too short for 99999999999 points: 6 bytes follow"),
-        ("vertex 1", "vertex -1", ":3:16: `-1` is not a number of points"),
+        ("vertex 1", "vertex -1", ":3:16: expected a number of points, found `-1`"),
         ("vertex 1", "vertices 1", ":3:1: the element `vertex` must come before `vertices`"),
         ("float z", "float w", ":3:16: these points have no x, y and z"),
         ("float z", "list uchar int z", ":6:10: `list` is not a number type"),
         ("1 2 3", "1 2", ":8:4: the row ends where z should follow"),
-        ("1 2 3", "1 2 x", ":8:5: `x` is not z, a number"),
-        ("1 2 3", "1 2 3 4", ":8:7: the row should end here: it is a point's"),
+        ("1 2 3", "1 2 x", ":8:5: expected z, found `x`"),
+        ("1 2 3", "1 2 3 4", ":8:7: the row should end here, after the properties of a point"),
         ("property float x\nproperty float y\nproperty float z\n", "", ": the file has no points"),
     ] {
         let error = reread("c.ply", &cloud.replace(old, new));
@@ -315,13 +315,13 @@ fn binary_gltf_is_read_and_foreign_cameras_have_1000_rows() {
     let head = [&b"glTF"[..], &2_u32.to_le_bytes(), &(12 + chunks.len() as u32).to_le_bytes()].concat();
     put(place.path(), "c.glb", &[head, chunks].concat());
     let all = read(&place.path().join("c.glb")).unwrap();
-    // Both cameras share a lens with a vertical field of view of a right angle.
+    // Both cameras share a lens with a vertical field of view of 90 degrees.
     assert_eq!((all.lenses.len(), all.views.len(), all.lenses[0].size), (1, 2, [1500, 1000]));
     assert!((all.lenses[0].focal - 500.0).abs() < 1e-9 && all.views[0].name == "Camera");
     let centers: Vec<_> = all.views.iter().map(|view| view.pose.unwrap().center()).collect();
     assert_eq!(centers, [Vector3::new(1.0, 2.0, 3.0), Vector3::zeros()]);
-    // The camera looks along -z: a point in front, to the right and higher, is right of the centre
-    // and above it.
+    // The camera looks along -z, so a point in front of it and to the upper right appears to the
+    // upper right of the centre.
     let pixel = all.lenses[0].project(&all.views[1].pose.unwrap().apply(&Vector3::new(1.0, 0.5, -2.0)));
     assert!((pixel - Vector2::new(1000.0, 375.0)).norm() < 1e-9, "{pixel}");
     let positions: Vec<[f64; 3]> = all.points.iter().map(|point| point.position.into()).collect();
@@ -356,7 +356,7 @@ fn compressed_files_are_decompressed() {
 fn row_errors_have_their_place() {
     let reread = |text: &str| read_control("c", text.as_bytes(), &["a.jpg", "b.jpg"]).err().unwrap().to_string();
     for (text, wanted) in [
-        ("0 0 0 a.jpg 1 2\n0 0 nan b.jpg 1 2\n", "c:2:5: `nan` is not one of X Y Z"),
+        ("0 0 0 a.jpg 1 2\n0 0 nan b.jpg 1 2\n", "c:2:5: expected one of X Y Z, found `nan`"),
         ("0 0 0 a.jpg 1\n1 0 0 b.jpg 1 2\n", "c:1:14: the row ends where one of u v should follow"),
         ("0 0\n0 0 0\n", "c:1:4: the row ends where one of X Y Z should follow"),
         ("0 0 0 a.jpg 1 2 c.jpg 3 4\n", "c:1:17: unknown photograph `c.jpg`"),

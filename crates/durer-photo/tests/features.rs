@@ -1,9 +1,9 @@
-//! Tests of salient points: they are found at their positions, and rotate and scale with the
-//! picture.
+//! Tests of feature detection: keypoints are found at the right positions, and rotate and scale
+//! with the image.
 
 use durer_photo::feature::{Gray, features};
 
-/// A round blob, at a position in pixels from the upper left corner.
+/// Returns an image of a Gaussian blob, centred at a position in pixels from the upper left corner.
 fn blot(side: usize, x: f32, y: f32, sigma: f32) -> Gray {
     let value = |i: usize| {
         let (dx, dy) = ((i % side) as f32 + 0.5 - x, (i / side) as f32 + 0.5 - y);
@@ -14,7 +14,7 @@ fn blot(side: usize, x: f32, y: f32, sigma: f32) -> Gray {
 
 #[test]
 fn blobs_are_found_at_their_positions() {
-    // Pictures of up to 1000 pixels are doubled first, larger ones are not. The blobs cover all
+    // Images of up to 1000 pixels are doubled first, larger ones are not. The blobs cover all
     // octaves.
     for (side, x, y, sigma) in [
         (100, 50.3, 47.8, 2.0),

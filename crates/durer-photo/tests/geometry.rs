@@ -1,4 +1,4 @@
-//! Tests of the small solvers: they find the model of their data, and report degenerate data.
+//! Tests of the geometric solvers: they recover the true model, and report degenerate data.
 
 use durer_photo::geometry::align::{Similarity, cameras, similarity};
 use durer_photo::geometry::camera::{linear, take_apart};
@@ -16,7 +16,7 @@ fn vector(random: &mut Random, size: f64) -> Vector3<f64> {
     Vector3::from_fn(|_, _| size * (2.0 * random.unit() - 1.0))
 }
 
-/// A pose that sees the points around (0, 0, 5).
+/// Returns a random pose that sees the points around (0, 0, 5).
 fn pose(random: &mut Random) -> Pose {
     Pose { rotation: rotation_of(&vector(random, 0.3)), translation: vector(random, 1.0) }
 }
@@ -57,7 +57,8 @@ fn two_views_are_found_from_five_seven_and_eight_points() {
         assert!((found.rotation - second.rotation).norm() < 1e-9);
         assert!((found.translation - second.translation.normalize()).norm() < 1e-9);
     }
-    // The polynomial of degree ten loses digits if five points nearly fit a family of motions.
+    // The polynomial of degree ten loses precision if five points are close to a degenerate
+    // configuration.
     assert!(missed <= 3, "{missed}");
 }
 
@@ -91,7 +92,7 @@ fn outliers_are_separated_from_inliers() {
     let search = Search { threshold: 0.5, samples: 20000, seed: 7 };
     let (f, inliers) = ransac(&Pairs(&pairs), &search).unwrap();
     assert!((0..300).filter(|i| i % 5 < 2).all(|i| inliers.contains(&i)));
-    // By chance, some outliers lie on their epipolar lines.
+    // Some outliers lie on their epipolar lines by chance.
     assert!(inliers.len() < 130, "{}", inliers.len());
     assert_eq!(ransac(&Pairs(&pairs), &search).unwrap(), (f, inliers));
 }
@@ -106,7 +107,7 @@ fn similarity_is_recovered() {
     assert!((found.scale - 2.5).abs() < 1e-12 && (found.rotation - rotation).norm() < 1e-12);
     let line: Vec<_> = (0..5).map(|i| Vector3::new(f64::from(i), 0.0, 0.0)).collect();
     assert_eq!(similarity(&line, &line), None);
-    // The rotations of cameras on a line determine the rotation about the line.
+    // For cameras on a line, only their rotations determine the rotation about that line.
     let mut turned = |center: &Vector3<f64>| Pose::at(center, rotation_of(&vector(random, 2.0)));
     let there: Vec<Pose> = line.iter().map(&mut turned).collect();
     let mut all = Reconstruction::default();
@@ -130,7 +131,7 @@ fn rotations_survive_conversion_to_axis_and_angle() {
     assert!((axis_angle_of(&rotation_of(&half)).norm() - std::f64::consts::PI).abs() < 1e-12);
 }
 
-/// Points with the pixels at which a camera sees them.
+/// Returns a random camera, and points with the pixels at which it sees them.
 fn photographed(count: usize, flat: bool) -> (Lens, Pose, Vec<Pair>) {
     let random = &mut Random::new(6);
     let lens = Lens { radial: [-0.1, 0.02], ..Lens::new([800, 600], 750.0) };
@@ -150,18 +151,18 @@ fn known(focal: Option<f64>) -> LensPriors {
 #[test]
 fn one_photograph_of_known_points_gives_its_camera() {
     let (lens, truth, mut pairs) = photographed(20, false);
-    // Two outliers.
+    // Two of the points are outliers.
     pairs[3].1.x += 90.0;
     pairs[11].1.y -= 60.0;
     let found = camera(&pairs, &known(None)).unwrap();
     assert!((found.lens.focal - lens.focal).abs() < 1e-3, "{:?}", found.lens);
     assert!((found.pose.center() - truth.center()).norm() < 1e-5);
     assert!(!found.inliers.contains(&3) && !found.inliers.contains(&11) && found.inliers.len() == 18);
-    // In a plane, with a known focal length.
+    // The points are in a plane, and the focal length is known.
     let (lens, truth, pairs) = photographed(12, true);
     let found = camera(&pairs, &known(Some(lens.focal))).unwrap();
     assert!((found.pose.center() - truth.center()).norm() < 1e-4);
-    // The direct linear transform alone, for a lens without distortion.
+    // For a lens without distortion, the direct linear transform alone is exact.
     let plain = Lens::new([800, 600], 750.0);
     let points: Vec<_> = photographed(8, false).2.into_iter().map(|pair| pair.0).collect();
     let pixels: Vec<_> = points.iter().map(|p| plain.project(&truth.apply(p))).collect();
@@ -190,7 +191,7 @@ fn vanishing_lines_give_the_camera() {
     let lens = Lens::new([1000, 700], 900.0);
     let truth = Pose::look_at(&Vector3::new(4.0, 3.0, 5.0), &Vector3::zeros(), &Vector3::y());
     let pixel = |x: f64, y: f64, z: f64| lens.project(&truth.apply(&Vector3::new(x, y, z)));
-    // Towards -x and -z, which both lie on the far side.
+    // The lines lead towards -x and -z, which are both in front of the camera.
     let lines = [
         vec![[pixel(1.0, 0.0, 0.0), pixel(-2.0, 0.0, 0.0)], [pixel(1.0, 0.0, 1.0), pixel(-2.0, 0.0, 1.0)]],
         vec![[pixel(0.0, 0.0, 1.0), pixel(0.0, 0.0, -2.0)], [pixel(1.0, 0.5, 1.0), pixel(1.0, 0.5, -2.0)]],

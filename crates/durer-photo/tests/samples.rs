@@ -1,5 +1,5 @@
-//! Tests with files of other programs: reprojection gives the figures published by the programs or
-//! their papers.
+//! Tests with files written by other programs: the reprojection errors match the figures that the
+//! programs or their papers published.
 
 use durer_photo::adjust::{Loss, Options, adjust, covariance};
 use durer_photo::format::{Output, read, read_project};
@@ -13,7 +13,7 @@ use durer_photo::{matching, photo};
 use nalgebra::{Cholesky, DMatrix, DVector, Vector3};
 use std::path::{Path, PathBuf};
 
-/// Folder of shared photographs, if it exists.
+/// Returns the folder of shared photographs, if it exists.
 fn samples() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
     let folder = std::env::var_os("DURER_CORPUS").map_or_else(beside, PathBuf::from).join("samples/photos");
@@ -72,7 +72,7 @@ fn adjustment_reaches_the_published_costs() {
         let report = adjust(&mut all, &Options::default());
         assert!(report.converged && all.fit().cost <= before, "{name}");
     }
-    // It has many outliers, to which OpenSfM gives less weight.
+    // This solution has many outliers, to which OpenSfM gives less weight.
     let mut berlin = read(&folder.join("opensfm-berlin/reconstruction_example.json")).unwrap();
     let before = berlin.fit().cost;
     adjust(&mut berlin, &Options { loss: Loss::Huber(3.0), ..Options::default() });
@@ -143,8 +143,8 @@ fn solved(folder: &Path, names: &[String]) -> Reconstruction {
     solve(&matches, &Default::default(), &|_| {}).unwrap().all
 }
 
-/// Maximum distance between corresponding camera centres, as a share of the largest distance
-/// between two centres of `theirs`.
+/// Returns the maximum distance between corresponding camera centres, as a fraction of the largest
+/// distance between two centres of `theirs`.
 fn apart(ours: &Reconstruction, theirs: &Reconstruction) -> f64 {
     let both = ours.views.iter().zip(&theirs.views);
     let (ours, theirs): (Vec<_>, Vec<_>) = both.filter_map(|(a, b)| Some((a.pose?.center(), b.pose?.center()))).unzip();
@@ -176,12 +176,12 @@ fn photographs_become_cameras() {
     stored_places_are_off(&solved, &bundler);
 }
 
-/// Shows that the positions stored by Bundler are off by more than a hundredth of their extent.
-/// Bundler gave each photograph its own focal length, from 638 to 729 pixels, although EXIF
-/// contains only one, and least squares accepted some outliers.
+/// Shows that the camera positions stored by Bundler are off by more than 1 % of their extent.
+/// Bundler gave each photograph its own focal length, from 638 to 729 pixels, although EXIF states
+/// a single one, and its least squares included some outliers.
 fn stored_places_are_off(solved: &Reconstruction, bundler: &Reconstruction) {
-    // Bundler's observations fit our cameras better than its own, although it selected them with
-    // its own.
+    // Bundler's observations fit our cameras better than Bundler's, although it used its own
+    // cameras to select them.
     let (ours, theirs) = (median_residual(solved, bundler), median_residual(bundler, bundler));
     println!("median residual of what Bundler saw: {ours} with our cameras, {theirs} with its own");
     assert!(ours < 0.85 * theirs, "{ours} {theirs}");
@@ -191,8 +191,8 @@ fn stored_places_are_off(solved: &Reconstruction, bundler: &Reconstruction) {
     one.views.iter_mut().for_each(|view| view.lens = 0);
     adjust(&mut one, &Options { loss: Loss::Cauchy(1.0), ..Options::default() });
     assert!(apart(solved, &one) < 0.005, "{}", apart(solved, &one));
-    // So do its observations with its lenses and least squares, except the few that are off by more
-    // than two pixels.
+    // Bundler's lenses and least squares also reproduce our cameras, if the few observations that
+    // are off by more than two pixels are dropped.
     let mut clean = bundler.clone();
     let mut dropped = 0;
     for (point, known) in clean.points.iter_mut().zip(&one.points) {
@@ -207,7 +207,8 @@ fn stored_places_are_off(solved: &Reconstruction, bundler: &Reconstruction) {
     assert!(dropped < 25 && from_ours < 0.01 && from_stored > 0.015, "{dropped} {from_ours} {from_stored}");
 }
 
-/// Median residual of observations, with each point triangulated from the rays of `cameras`.
+/// Returns the median residual of observations, with each point triangulated from the rays of
+/// `cameras`.
 fn median_residual(cameras: &Reconstruction, seen: &Reconstruction) -> f64 {
     let mut all = Vec::new();
     for point in &seen.points {
@@ -224,8 +225,8 @@ fn median_residual(cameras: &Reconstruction, seen: &Reconstruction) -> f64 {
     all[all.len() / 2]
 }
 
-/// Checks the uncertainty of the positions if Bundler's observations have normal errors as large as
-/// their residuals: the median over draws from the covariance.
+/// Checks how uncertain the camera positions are if Bundler's observations have normal errors as
+/// large as their residuals, by drawing positions from the covariance.
 #[test]
 fn bundler_observations_do_not_determine_positions_to_1_percent() {
     let Some(folder) = samples() else { return };
@@ -259,7 +260,7 @@ fn wrong_exif_focal_length_is_corrected() {
     let Some(folder) = samples() else { return };
     let bundler = read(&folder.join("gtsam/Balbianello.out")).unwrap();
     let names: Vec<String> = (1..6).map(|i| format!("BalbianelloMedium-{i}.jpg")).collect();
-    // The photographs were reduced in size, and EXIF contains 3767 pixels.
+    // The photographs were scaled down, but EXIF still gives 3767 pixels.
     let solved = solved(&folder.join("gtsam"), &names);
     assert_eq!(solved.registered(), 5);
     assert!(solved.fit().rms <= 0.6 && (solved.lenses[0].focal - 520.0).abs() < 15.0, "{:?}", solved.lenses[0]);
@@ -275,7 +276,7 @@ fn three_photographs_of_a_phone_become_cameras() {
     let solved = solved(&folder.join("images"), &names);
     assert_eq!(solved.registered(), 3);
     let (ours, theirs) = (solved.fit(), opensfm.fit());
-    // Features are found in photographs reduced by 3264 / 1600.
+    // Features are detected in photographs reduced by a factor of 3264 / 1600.
     println!("{ours:?} {}", apart(&solved, &opensfm));
     assert!(ours.rms <= 0.6 * 3264.0 / 1600.0 && ours.rms < 0.5 * theirs.rms, "{ours:?}");
     assert!(apart(&solved, &opensfm) < 0.01, "{}", apart(&solved, &opensfm));
@@ -286,8 +287,8 @@ fn fspy_cameras_see_their_vanishing_points() {
     let Some(folder) = samples() else { return };
     let all = read(&folder.join("fspy/json_export.json")).unwrap();
     let (lens, pose) = (all.lenses[0], all.views[0].pose.unwrap());
-    // According to the file, -x leads to (1.605, 0.001), z to (-0.652, 0.003), and y to (-0.375,
-    // -436), with the longer side from -1 to 1.
+    // According to the file, the vanishing points are (1.605, 0.001) for -x, (-0.652, 0.003) for z,
+    // and (-0.375, -436) for y, with the longer side from -1 to 1.
     for (axis, x, y) in [
         (-nalgebra::Vector3::x(), 1.6051650133994935_f64, 0.001021010320067342_f64),
         (nalgebra::Vector3::z(), -0.652074716204382, 0.0029610261811691915),
@@ -295,8 +296,8 @@ fn fspy_cameras_see_their_vanishing_points() {
     ] {
         let pixel = lens.project(&(pose.rotation * axis));
         let (u, v) = ((pixel.x - lens.center[0]) / 719.5, (lens.center[1] - pixel.y) / 719.5);
-        // The y axis is almost perpendicular to the view: its vanishing point is far away and less
-        // exact.
+        // The y axis is almost perpendicular to the view, so its vanishing point is far away and
+        // less accurate.
         assert!((u - x).abs() < 1e-3 * (1.0 + y.abs()) && (v - y).abs() < 1e-3 * (1.0 + y.abs()), "{u} {v}");
     }
     let mut found = 0;

@@ -47,21 +47,21 @@ def box(cuts: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def rays(v: np.ndarray, f: np.ndarray, count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Returns rays from points near the centre to edges, and one in eight to vertices, in
-    float32."""
+    """Returns float32 rays from points near the centre. One in eight is aimed at a vertex, all
+    others at points on edges."""
     a, b = v[f[rng.integers(len(f), size=count)][:, :2].T]
     share = rng.uniform(size=(count, 1)).astype("f4")
     share[: count // 8] = 0
     middle, size = (v.max(0) + v.min(0)) / 2, np.ptp(v, axis=0).min()
     o = (middle + 0.2 * size * rng.uniform(-1, 1, (count, 3))).astype("f4")
-    # Some start at round numbers, as people write them.
+    # Some start at round coordinates, as in hand-written tests.
     o[::2] = np.round(o[::2] * 4) / 4
     return o, (a + share * (b - a)) - o
 
 
 def counters(v: np.ndarray, f: np.ndarray) -> dict[str, Rays]:
-    """Returns for each library that can count, a function for the number of triangles that rays
-    cross."""
+    """Returns, for each library that can count crossings, a function that returns the number of
+    triangles that each ray crosses."""
     mesh = durer.Mesh(v, f)
     found: dict[str, Rays] = {"durer": lambda o, d: mesh.count(o, d, progress=False)}
     try:
@@ -88,7 +88,7 @@ def counters(v: np.ndarray, f: np.ndarray) -> dict[str, Rays]:
 
 
 def rivals(v: np.ndarray, f: np.ndarray) -> dict[str, Rays]:
-    """Returns for each library a function that tells which rays hit something."""
+    """Returns, for each installed library, a function that returns which rays hit something."""
     mesh = durer.Mesh(v, f)
     found: dict[str, Rays] = {"durer": lambda o, d: mesh.closest(o, d, progress=False).hit}
     try:

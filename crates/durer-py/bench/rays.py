@@ -1,9 +1,9 @@
-"""Rays per second from Python: Dürer and the installed ones of embreex, trimesh, Open3D and
-Mitsuba, in one run with the same rays.
+"""Measures rays per second from Python, for Dürer and for those of embreex, trimesh, Open3D and
+Mitsuba that are installed. All trace the same rays, in one run.
 
     python crates/durer-py/bench/rays.py [mesh.ply] [millions of rays]
 
-With cargo, also traces the same rays through the kernel from Rust, without Python.
+If cargo is available, the same rays are also traced by the kernel from Rust, without Python.
 """
 
 import shutil
@@ -30,7 +30,7 @@ def ball(cuts: int) -> tuple[np.ndarray, np.ndarray]:
 
 def ways(count: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     side, rng = int(count**0.5), np.random.default_rng(1)
-    # Pixels in tiles of 8 x 8, as renderers order them.
+    # Order the pixels in tiles of 8 x 8, as renderers do.
     tiles = np.arange(side // 8 * 8).reshape(-1, 8)
     y, x = (a.reshape(-1) for a in np.meshgrid(np.arange(side // 8 * 8), np.arange(side // 8 * 8), indexing="ij"))
     order = np.lexsort((x % 8, y % 8, x // 8, y // 8))
@@ -80,7 +80,7 @@ def rivals(v: np.ndarray, f: np.ndarray) -> dict:
     try:
         import mitsuba
 
-        # The compiled variant: all threads, rays as columns.
+        # The compiled variant uses all threads, and takes rays as columns.
         mitsuba.set_variant("llvm_ad_rgb")
         shape = mitsuba.Mesh("mesh", len(v), len(f))
         parameters = mitsuba.traverse(shape)
@@ -136,7 +136,8 @@ def main() -> None:
         for threads in (1, 2) if shutil.which("cargo") else ():
             name = f"durer, {threads} thread{'s' * (threads > 1)}"
             rates, python = [], []
-            # Measured like the kernel's rate: nine rounds in a row without others in between.
+            # Measure as for the kernel: nine rounds in a row, not interleaved with the other
+            # libraries.
             for _ in range(3):
                 rates.append(rust(v, f, o, d, threads))
                 python.append(len(o) / np.median([clock(everyone[name], o, d) for _ in range(9)]) / 1e6)

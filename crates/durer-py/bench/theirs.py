@@ -5,8 +5,8 @@
 
 The test files come from the packages' repositories: `tests/test_intersection.py` of
 trimesh/embreex, and `python/test/t/geometry/test_raycasting_scene.py` of isl-org/Open3D, which
-needs open3d itself for its tensors and meshes. They run unchanged; only the names that they
-import lead to our classes.
+needs open3d itself for its tensors and meshes. They run unchanged, except that the names they
+import refer to Dürer's classes.
 """
 
 import sys
@@ -21,7 +21,7 @@ import durer.open3d
 
 
 def embreex() -> None:
-    """Installs modules named like embreex's, with our classes."""
+    """Installs modules with the names of embreex's, which contain Dürer's classes."""
     for name in ("embreex", "embreex.rtcore", "embreex.rtcore_scene", "embreex.mesh_construction"):
         sys.modules[name] = module = types.ModuleType(name)
         module.__dict__.update(vars(durer.embreex))
@@ -30,7 +30,8 @@ def embreex() -> None:
 
 
 def open3d() -> None:
-    """Replaces Open3D's class with ours; converts tensors to arrays, and answers to tensors."""
+    """Replaces Open3D's class with Dürer's. Converts tensors to arrays, and results back to
+    tensors."""
     import open3d as o3d
 
     def array(value: Any) -> Any:

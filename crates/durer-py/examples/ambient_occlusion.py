@@ -1,4 +1,5 @@
-"""Ambient occlusion, baked to the vertices of a mesh: the share of the sky that each vertex sees.
+"""Ambient occlusion, baked into the vertices of a mesh: the fraction of the sky that each vertex
+sees.
 
     python ambient_occlusion.py [rays for a vertex] [baked.ply]
 """
@@ -24,8 +25,8 @@ def directions_about(normals: np.ndarray, count: int, seed: int = 1) -> np.ndarr
 
 
 def openness(mesh: durer.Mesh, count: int) -> np.ndarray:
-    """Returns the cosine-weighted share of the sky that each vertex sees: 1 if nothing occludes
-    it. The triangles around a vertex each sample their own hemisphere, and share its rays by
+    """Returns the cosine-weighted fraction of the sky that each vertex sees: 1 if nothing occludes
+    it. Each triangle around a vertex samples its own hemisphere, and the results are weighted by
     area."""
     triangles = np.repeat(np.arange(len(mesh.faces)), 3)
     corners = mesh.surface(triangles, np.tile([[0, 0], [1, 0], [0, 1]], (len(mesh.faces), 1)))

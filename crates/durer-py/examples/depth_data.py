@@ -1,7 +1,7 @@
 """A training set: depth, normals, instances and optical flow of random scenes from random cameras,
 with ground truth.
 
-    python depth_data.py [pictures] [folder]
+    python depth_data.py [examples] [folder]
 """
 
 import sys
@@ -17,7 +17,7 @@ WIDTH, HEIGHT, FOCAL = 160, 120, 150.0
 
 
 def some_scene(rng: np.random.Generator) -> durer.Scene:
-    """Returns a floor with some balls and boxes, rotated about z."""
+    """Returns a random scene: a floor with balls and boxes that are rotated about z."""
     shapes = [durer.Mesh(*ball(1, 24)), durer.Mesh(*box((-1, -1, -1), (1, 1, 1)))]
     objects: list = [durer.Mesh(*grid(-12, 12, -12, 12, 1))]
     for _ in range(rng.integers(4, 9)):

@@ -1,6 +1,6 @@
-"""A lidar scan: a sensor with rows of beams that rotates, and the returns it receives.
+"""A lidar scan: the points measured by a rotating sensor with rows of beams.
 
-    python lidar.py [steps of a turn] [scan.ply]
+    python lidar.py [steps per turn] [scan.ply]
 """
 
 import sys
@@ -14,9 +14,9 @@ import durer
 def scan(scene: durer.Scene, place, rows: int = 32, steps: int = 900, reach: float = 60.0, noise: float = 0.0, seed: int = 1):
     """Returns points, object indices and intensities of all beams that hit something within reach.
 
-    Beams go from 25 degrees below the horizon to 15 above it; z is up. Noise is the standard
-    deviation of a range. The intensity from a rough surface falls with the cosine and with the
-    square of the distance.
+    Beams range from 25 degrees below the horizon to 15 above it; z is up. `noise` is the standard
+    deviation of the measured distance. The intensity from a rough surface falls with the cosine and
+    with the square of the distance.
     """
     height = np.radians(np.linspace(-25, 15, rows))[:, None]
     turn = 2 * np.pi * np.arange(steps) / steps

@@ -1,5 +1,5 @@
-"""Writes the notebooks beside this file: the example programs in cells, with their results as
-pictures.
+"""Writes the notebooks beside this file: the example programs as cells, with their results as
+images.
 
     python notebooks.py
 """
@@ -10,12 +10,12 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 
-#: Cells after the functions of a program: calls and pictures.
+#: Cells that follow a program's functions: calls, and images of the results.
 CALLS = {
     "signed_distance": [
         "mesh = durer.Mesh(*together(ball(1.0, 48), box((1.2, -0.5, -0.5), (2.0, 0.5, 0.5))))\n"
         "distances, start, side = signed_distances(mesh, 60)\ndistances.shape, distances.min(), distances.max()",
-        "# A cut through the middle: the surface is where grey is halfway.\n"
+        "# A slice through the middle: the surface is where the grey level is one half.\n"
         "from shapes import Picture\n\nPicture(0.5 + 0.5 * distances[:, :, 30].T[::-1], zoom=5)",
     ],
     "ambient_occlusion": [
@@ -29,21 +29,21 @@ CALLS = {
         "mesh = durer.Mesh(*together(shell, (hollow[0], hollow[1][:, ::-1]), core))\n"
         "x, y = np.meshgrid(np.linspace(-1.2, 1.2, 300), np.linspace(1.2, -1.2, 300))\n"
         "length = thickness(mesh, np.stack([x, y, np.full(x.shape, 5.0)], -1), [0, 0, -1.0])\nlength.max()",
-        "# Beer's and Lambert's law: what is left of the light.\nfrom shapes import Picture\n\nPicture(1 - np.exp(-1.2 * length))",
+        "# The Beer-Lambert law: the light that remains.\nfrom shapes import Picture\n\nPicture(1 - np.exp(-1.2 * length))",
     ],
     "lidar": [
         "parked, tree = durer.Mesh(*box((-2.2, -0.9, 0.2), (2.2, 0.9, 1.5))), durer.Mesh(*ball(1.5, 24, (0, 0, 3.5)))\n"
         "road = durer.Mesh(*grid(-80, 80, -80, 80, 2))\n"
         "scene = durer.Scene([road, (parked, [[1, 0, 0, 6], [0, 1, 0, 3], [0, 0, 1, 0]]), (tree, [[1, 0, 0, 4], [0, 1, 0, -8], [0, 0, 1, 0]])])\n"
         "points, objects, power = scan(scene, (0, 0, 1.8), noise=0.02)\nlen(points), np.bincount(objects)",
-        "# The points from above: 40 metres across, what stands on the road is brighter.\n"
+        "# The points from above, 40 metres across. Objects on the road are brighter than the road.\n"
         "from shapes import Picture\n\nfar = [[-20, 20], [-20, 20]]\n"
         "count, *_ = np.histogram2d(points[:, 0], points[:, 1], 400, far, weights=np.where(objects > 0, 1.0, 0.3))\n"
         "Picture(count.T[::-1])",
     ],
     "depth_data": [
         "one = sample(5)\n{name: array.shape for name, array in one.items()}",
-        "# Depth, how far each pixel moves to the other pose, and the objects.\nfrom shapes import Picture\n\n"
+        "# Depth, the motion of each pixel to the other pose, and the objects.\nfrom shapes import Picture\n\n"
         "parts = [1 / one['depth'] * 4, np.linalg.norm(one['flow'], axis=-1) / 10, (one['instances'] + 1) / 10]\n"
         "Picture(np.concatenate(parts, axis=1), zoom=2)",
     ],
@@ -58,9 +58,9 @@ CALLS = {
     ],
 }
 
-#: A notebook without a program.
+#: Cells of the notebook that belongs to no example program.
 PICTURES = [
-    "# Pictures, and why they are as they are\n\nA scene in code, its picture, what is odd about it, why a pixel has its colour, and a view that goes around it.",
+    "# Images, and why they look as they do\n\nA scene built in code, its image, possible mistakes in it, why a pixel has its colour, and a view that you can orbit.",
     "import durer\n\nred, white = (durer.PhongMaterial(diffuse_color=c) for c in [(0.8, 0.2, 0.1), (0.8, 0.8, 0.8)])\n"
     "world = durer.World(\n"
     "    durer.PerspectiveCamera(center=(0, 2, 8), direction=(0, -0.2, -1), up=(0, 1, 0), angle=35),\n"
@@ -70,7 +70,7 @@ PICTURES = [
     "pictures = world.render(size=(320, 240), samples=16, show='color,depth')\npictures",
     "pictures['depth'].shape, pictures.hash[:16], world.check()",
     "from durer.widget import Explorer\n\nexplorer = Explorer(world, size=(320, 240))\nexplorer",
-    "# What a click on the shadow tells.\nexplorer.explain(90, 138)",
+    "# A click on the shadow gives this explanation.\nexplorer.explain(90, 138)",
 ]
 
 
@@ -86,7 +86,7 @@ def cells_of(name: str) -> list[str]:
         if isinstance(node, ast.If) or isinstance(node, ast.Import) and node.names[0].name == "sys":
             continue
         start = node.lineno - 1
-        # Comments directly above belong to the definition.
+        # Include the comments directly above the definition.
         while lines[start - 1].startswith("#"):
             start -= 1
         is_import = isinstance(node, (ast.Import, ast.ImportFrom))

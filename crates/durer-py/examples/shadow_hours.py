@@ -1,6 +1,6 @@
-"""Hours of sun: how long each point of a square is in the sun on a day, among houses.
+"""Hours of sun: how long each point between the houses of a city is in the sun on a given day.
 
-    python shadow_hours.py [places along a side] [hours.pgm]
+    python shadow_hours.py [points per side] [hours.pgm]
 """
 
 import sys
@@ -15,8 +15,8 @@ TILT = 23.44
 
 
 def sun(latitude: float, day: int, minutes: int = 10) -> np.ndarray:
-    """Returns directions to the sun (east, north, up) every `minutes` while it is up; day 0 is the
-    first of January.
+    """Returns directions to the sun (east, north, up) at intervals of `minutes` while it is above
+    the horizon. Day 0 is the first of January.
 
     The declination follows Cooper's cosine (*Solar Energy* 12, 1969). Time is solar time: at
     noon the sun is due south.

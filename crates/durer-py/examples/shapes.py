@@ -1,4 +1,4 @@
-"""Shared by the examples: meshes as vertices and faces, counterclockwise from outside; and file
+"""Helpers for the examples: meshes as vertices and faces (counterclockwise from outside), and file
 formats."""
 
 import struct
@@ -8,7 +8,7 @@ import numpy as np
 
 
 def ball(radius: float = 1.0, cuts: int = 32, center=(0.0, 0.0, 0.0)):
-    """Returns a sphere of `cuts` rows of triangles from pole to pole."""
+    """Returns a sphere with `cuts` rows of triangles from pole to pole."""
     t, p = np.meshgrid(np.linspace(0, np.pi, cuts + 1)[1:-1], np.arange(2 * cuts) * np.pi / cuts, indexing="ij")
     ring = np.stack([np.sin(t) * np.cos(p), np.sin(t) * np.sin(p), np.cos(t)], -1).reshape(-1, 3)
     vertices = np.concatenate([ring, [[0, 0, 1], [0, 0, -1]]])
@@ -36,7 +36,7 @@ def together(*meshes):
 
 
 def grid(x0: float, x1: float, y0: float, y1: float, cuts: int, z: float = 0.0):
-    """Returns a level square of `cuts` times `cuts` cells that faces up."""
+    """Returns a horizontal grid of `cuts` x `cuts` cells that faces up."""
     x, y = np.meshgrid(np.linspace(x0, x1, cuts + 1), np.linspace(y0, y1, cuts + 1), indexing="ij")
     i = (np.arange(cuts)[:, None] * (cuts + 1) + np.arange(cuts)).reshape(-1)
     up, right = 1, cuts + 1
@@ -57,15 +57,15 @@ def save_ply(path, vertices, faces, gray) -> None:
 
 
 def save_pgm(path, gray) -> None:
-    """Writes a grey picture with values from 0 to 1."""
+    """Writes a greyscale image with values from 0 to 1."""
     shades = np.round(255 * np.clip(gray, 0, 1)).astype(np.uint8)
     with open(path, "wb") as file:
         file.write(f"P5 {shades.shape[1]} {shades.shape[0]} 255\n".encode() + shades.tobytes())
 
 
 class Picture:
-    """A grey picture with values from 0 to 1 for a notebook: a PNG file (ISO/IEC 15948) of eight
-    bits."""
+    """Greyscale image with values from 0 to 1 that a notebook displays, as an 8-bit PNG file
+    (ISO/IEC 15948)."""
 
     def __init__(self, gray, zoom: int = 1) -> None:
         self.gray = np.kron(np.round(255 * np.clip(np.nan_to_num(gray), 0, 1)).astype(np.uint8), np.ones((zoom, zoom), np.uint8))

@@ -1,6 +1,6 @@
 """A grid of signed distances: the distance of each point from a surface, negative inside.
 
-    python signed_distance.py [cells along a side] [distances.npz]
+    python signed_distance.py [cells per side] [distances.npz]
 """
 
 import sys
@@ -12,8 +12,8 @@ import durer
 
 
 def signed_distances(mesh: durer.Mesh, cells: int, margin: float = 0.1):
-    """Returns distances at the corners of cubic cells around a closed mesh, the least corner,
-    and the cell size."""
+    """Returns signed distances at the corners of cubic cells around a closed mesh, the lower corner
+    of the grid, and the cell size."""
     low, high = mesh.bounds.astype(float)
     side = (high - low).max() * (1 + 2 * margin) / cells
     start = (low + high) / 2 - side * cells / 2

@@ -1,6 +1,6 @@
-"""Thickness as X-rays measure it: the length of each ray inside the material.
+"""Thickness of a part, as X-rays measure it: the length of each ray inside the material.
 
-    python xray.py [pixels along a side] [xray.pgm]
+    python xray.py [pixels per side] [xray.pgm]
 """
 
 import sys
@@ -12,11 +12,10 @@ import durer
 
 
 def thickness(mesh: durer.Mesh, origins, directions) -> np.ndarray:
-    """Returns the length inside the closed mesh along each ray, for unit directions. A surface
-    within another with inverted triangles is a hollow."""
+    """Returns the length of each ray inside a closed mesh, for unit directions. An inner surface
+    with inverted triangles encloses a hollow."""
     hits = mesh.all_hits(origins, directions)
-    # The length inside is the sum of exits less the sum of entries: crossings count with their
-    # sign.
+    # The length inside is the sum of the exit distances minus the sum of the entry distances.
     towards = np.broadcast_to(directions, (*hits.count.shape, 3)).reshape(-1, 3)[hits.ray]
     leaving = np.sign((mesh.normals[hits.triangle] * towards).sum(axis=1))
     return np.bincount(hits.ray, leaving * hits.t, hits.count.size).reshape(hits.count.shape)
@@ -28,7 +27,7 @@ def main(side: int = 200, output: str = "xray.pgm") -> None:
     x, y = np.meshgrid(np.linspace(-1.2, 1.2, side), np.linspace(1.2, -1.2, side))
     origins = np.stack([x, y, np.full(x.shape, 5.0)], -1)
     length = thickness(mesh, origins, [0, 0, -1.0])
-    # Beer-Lambert law: the light that is left.
+    # The Beer-Lambert law gives the light that remains.
     save_pgm(output, 1 - np.exp(-1.2 * length))
     print(f"{side} x {side} rays; the longest way inside is {length.max():.3f}; wrote {output}")
 

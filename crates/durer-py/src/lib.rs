@@ -11,8 +11,8 @@ mod world;
 
 use pyo3::prelude::*;
 
-/// Native half of `durer`. Its functions take arguments that `durer` has checked, and may change
-/// without notice.
+/// Native module of `durer`, for internal use. Its functions expect arguments that `durer` has
+/// checked, and may change without notice.
 #[pymodule]
 fn _durer(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;

@@ -1,4 +1,4 @@
-//! Pictures as arrays.
+//! Image files and comparisons, with images as numpy arrays.
 
 use crate::work::install;
 use durer::image::compare::{self as comparing, Options, Picture, Scale};
@@ -14,17 +14,18 @@ fn wrong(error: impl ToString) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// Converts an array of rows, columns and three channels to a picture.
+/// Converts an array of shape (height, width, 3) to an image.
 fn image(array: &PyReadonlyArray3<f32>) -> PyResult<Image> {
     let (shape, values) = (array.as_array().shape().to_vec(), array.as_slice()?);
     let pixels = values.chunks_exact(3).map(Vec3::from_slice).collect();
     Image::from_pixels(shape[1] as u32, shape[0] as u32, pixels).map_err(wrong)
 }
 
-/// A picture, and true if it has display values instead of linear light.
+/// Image to compare, and true if its values are display values instead of linear light.
 type ScaledPicture<'py> = (PyReadonlyArray3<'py, f32>, bool);
 
-/// Compares a picture with a reference; returns JSON, and the FLIP error of each pixel.
+/// Compares an image with a reference. Returns the result as JSON, and the FLIP error of each
+/// pixel.
 #[pyfunction]
 pub fn compare<'py>(
     py: Python<'py>,
@@ -41,10 +42,11 @@ pub fn compare<'py>(
     Ok((report::comparison(&found, &[]).to_string(), found.flip_map.into_pyarray(py)))
 }
 
-/// A picture with its name, its coverage, and true if it is light.
+/// Image to encode: its name, its values, its coverage if it is not 1 everywhere, and true if the
+/// values are linear light.
 type NamedPicture<'py> = (String, PyReadonlyArray3<'py, f32>, Option<Vec<f32>>, bool);
 
-/// Encodes a picture file, by the extension of a name.
+/// Encodes an image file. The extension of `name` selects the format.
 #[pyfunction]
 pub fn encode<'py>(
     py: Python<'py>,
@@ -69,7 +71,7 @@ pub fn encode<'py>(
     Ok(PyBytes::new(py, &bytes))
 }
 
-/// Decodes a picture file: values, width, height, and true for display values.
+/// Decodes an image file. Returns the values, width, height, and true for display values.
 #[pyfunction]
 pub fn decode<'py>(py: Python<'py>, bytes: &[u8], name: &str) -> PyResult<(Bound<'py, PyArray1<f32>>, u32, u32, bool)> {
     let picture = install(py, None, || Picture::read(bytes, name))

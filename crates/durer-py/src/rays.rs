@@ -6,22 +6,22 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Number of rays a job; its copies fit in a near cache.
+/// Number of rays per job, chosen so that their copies fit in the cache.
 pub const JOB: usize = 2048;
 
-/// Rows of three numbers, in either precision.
+/// Numpy array of points or directions, in single or double precision.
 #[derive(FromPyObject)]
 pub enum Array<'py> {
     Single(PyReadonlyArray2<'py, f32>),
     Double(PyReadonlyArray2<'py, f64>),
 }
 
-/// Number of rays, origins, directions, `t_min` and `t_max`; each array has a row for each ray, or
-/// one for all.
+/// Rays as passed from Python: their number, origins, directions, `t_min` and `t_max`. Each array
+/// has one row per ray, or one row for all.
 pub type RayArrays<'py> =
     (usize, Array<'py>, PyReadonlyArray2<'py, f32>, PyReadonlyArray1<'py, f32>, PyReadonlyArray1<'py, f32>);
 
-/// Contiguous points: a row for each element, or one for all.
+/// Points borrowed from a contiguous array, in either precision: one per element, or one for all.
 #[derive(Clone, Copy)]
 pub enum Points<'a> {
     Single(&'a [f32]),
@@ -49,7 +49,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// Returns point `i`, or the only one.
+    /// Returns point `i`, or the only point if there is one for all.
     pub fn at(&self, i: usize) -> DVec3 {
         let at = if self.count() == 1 { 0 } else { 3 * i };
         match self {
@@ -64,7 +64,7 @@ impl<'a> Points<'a> {
     }
 }
 
-/// Rays borrowed from arrays.
+/// Rays of a query, borrowed from numpy arrays and read in jobs of [`JOB`] rays.
 #[derive(Clone, Copy)]
 pub struct Rays<'a> {
     pub count: usize,
@@ -81,7 +81,7 @@ pub fn points<'a>(array: &'a PyReadonlyArray2<'_, f32>) -> PyResult<&'a [f32]> {
 }
 
 impl<'a> Rays<'a> {
-    /// Borrows the rays of arrays after checking their lengths.
+    /// Borrows rays from arrays, after checking the lengths of the arrays.
     pub fn new((count, origins, directions, t_min, t_max): &'a RayArrays) -> PyResult<Self> {
         let wrong = || PyValueError::new_err("rays are numbers, one after the other, one for all or one for each");
         let count = *count;
@@ -92,8 +92,8 @@ impl<'a> Rays<'a> {
         all.then_some(Rays { count, origins, directions, t_min, t_max }).ok_or_else(wrong)
     }
 
-    /// Returns the rays of a job, relative to `center` and rounded once; `first` is the index of
-    /// the first.
+    /// Returns the rays of the job that begins with ray `first`. Origins are relative to `center`
+    /// and rounded once.
     pub fn job(&self, first: usize, center: DVec3) -> Vec<Ray> {
         match self.origins {
             Points::Single(rows) if center == DVec3::ZERO => {
@@ -111,12 +111,12 @@ impl<'a> Rays<'a> {
         }
     }
 
-    /// Returns the rays of a job with origins in double precision.
+    /// Returns the rays of the job that begins with ray `first`, with origins in double precision.
     pub fn exact_job(&self, first: usize) -> Vec<Ray64> {
         self.each(first, |i, dir, t_min, t_max| Ray64::new(self.origins.at(i), dir, t_min, t_max))
     }
 
-    /// Maps the rays of a job.
+    /// Calls `ray` for each ray of a job, and collects the results.
     #[inline(always)]
     fn each<R>(&self, first: usize, ray: impl Fn(usize, Vec3, f32, f32) -> R) -> Vec<R> {
         let step = |list: &[f32], each: usize| if list.len() == each { 0 } else { each };

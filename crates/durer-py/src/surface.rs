@@ -9,9 +9,11 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Hits: objects, if there are several, triangles, and u and v.
+/// Hits as passed from Python: objects (for scenes only), triangles, and u and v.
 pub type HitInput<'py> = (Option<PyReadonlyArray1<'py, i32>>, PyReadonlyArray1<'py, i32>, PyReadonlyArray2<'py, f32>);
 
+/// Hits on a tree, borrowed from numpy arrays, whose points, normals and secondary origins are
+/// computed.
 struct Hits<'a> {
     tree: &'a Tree,
     objects: Option<&'a [i32]>,
@@ -19,7 +21,7 @@ struct Hits<'a> {
     uv: &'a [[f32; 2]],
 }
 
-/// The triangle of a hit in object space, and the object's placement.
+/// Triangle of a hit in object space, with the transform of its object to world space.
 struct Face<'a> {
     corners: [DVec3; 3],
     to_world: Option<&'a Affine>,
@@ -52,18 +54,18 @@ impl<'a> Hits<'a> {
 }
 
 impl Face<'_> {
-    /// Returns the point at barycentric coordinates in the triangle's own space.
+    /// Returns the point at barycentric coordinates, in object space.
     fn point(&self, [u, v]: [f32; 2]) -> DVec3 {
         let ([a, b, c], u, v) = (self.corners, f64::from(u), f64::from(v));
         (1.0 - u - v) * a + u * b + v * c
     }
 
-    /// Transforms a point from the triangle's own space to world space.
+    /// Transforms a point from object space to world space.
     fn placed(&self, point: DVec3) -> DVec3 {
         self.to_world.map_or(point + self.center, |map| map.forward().transform_point3(point))
     }
 
-    /// Returns the unit normal in the triangle's own space; zero if the triangle has no area.
+    /// Returns the unit normal in object space; zero if the triangle has no area.
     fn normal(&self) -> DVec3 {
         let [a, b, c] = self.corners;
         (b - a).cross(c - a).normalize_or_zero()
@@ -71,21 +73,22 @@ impl Face<'_> {
 
     /// Returns the origin of a secondary ray in a direction, on the side of that direction.
     ///
-    /// The kernel computes the hit distance in double precision, and decides the hit in single
-    /// precision. So a ray that starts in front of a triangle's plane, by more than the rounding of
-    /// its origin, does not hit it on the way forwards. `error` bounds the rounding, with a factor
-    /// of two to spare in each part:
+    /// The kernel decides in single precision whether a ray hits, and computes the distance in
+    /// double precision. A ray that starts in front of the triangle's plane, by more than the
+    /// rounding error of its origin, therefore does not hit the triangle. `error` bounds this
+    /// rounding error, with a safety factor of two in each part:
     ///
-    /// - the origin, to single precision in object space;
-    /// - the transform to world space and back, in double precision: a translation to and from the
-    ///   centre of a distant mesh, or a matrix, with the bound of [`Affine::point_error`], or as
-    ///   [`Ray64`] stores it;
-    /// - the surrounding corners, which the kernel sees relative to the origin and sheared, with at
-    ///   most seven roundings. A ray that passes an edge by no more than these might be taken to
-    ///   hit what is behind it.
+    /// - rounding the origin to single precision in object space;
+    /// - the transform to world space and back in double precision: either a translation to and
+    ///   from the centre of a distant mesh, or a matrix, with the bound of [`Affine::point_error`]
+    ///   or the rounding of [`Ray64`];
+    /// - the surrounding corners, which the kernel translates to the ray's origin and shears, with
+    ///   at most seven roundings. A ray that passes an edge more closely than this could otherwise
+    ///   miss the neighbour and hit what is behind it.
     ///
-    /// The origin is off the plane by twice the bound, projected onto the normal, and off the edges
-    /// by eight times: so it is also in front of the neighbours, down to folds of a few degrees.
+    /// The origin is offset from the plane by twice the bound projected onto the normal, and from
+    /// the edges by eight times the bound. It is therefore also in front of the neighbouring
+    /// triangles, unless the fold between them is narrower than a few degrees.
     ///
     /// [`Ray64`]: durer::math::Ray64
     fn leave(&self, uv: [f32; 2], dir: Vec3) -> DVec3 {
@@ -108,8 +111,8 @@ impl Face<'_> {
     }
 }
 
-/// Moves a point of a triangle off its edges by `margin`; to the middle of narrow parts, and by no
-/// more than a few margins.
+/// Moves a point inside a triangle away from its edges until it is `margin` from each, or in the
+/// middle where the triangle is too narrow. The point moves by at most a few margins.
 fn inset(corners: [DVec3; 3], normal: DVec3, point: DVec3, margin: f64) -> DVec3 {
     let [a, b, c] = corners;
     let inward = [(b, c), (c, a), (a, b)].map(|(from, to)| (from, normal.cross(to - from).normalize_or_zero()));
@@ -124,18 +127,18 @@ fn inset(corners: [DVec3; 3], normal: DVec3, point: DVec3, margin: f64) -> DVec3
     if next + step * cosine >= margin {
         return point + step * way;
     }
-    // At a corner: off both sides by the margin.
+    // At a corner, move away from both sides by the margin.
     let (to_other, square) = (margin - next, 1.0 - cosine * cosine);
     let moved = ((step - to_other * cosine) * way + (to_other - step * cosine) * other) / square;
     if moved.length() <= 4.0 * margin {
         return point + moved;
     }
-    // Between two sides that are closer than two margins: in the middle.
+    // Between two sides that are closer than two margins, move to the middle.
     let middle = (next - near) / (1.0 - cosine);
     if middle.is_finite() { point + middle.min(margin) * way } else { point }
 }
 
-/// Computes three numbers for each hit on all threads.
+/// Computes a vector for each hit, on all threads.
 fn rows<T: numpy::Element + Copy + Default + Send + Sync>(
     py: Python,
     hits: &Hits,
@@ -154,7 +157,8 @@ fn rows<T: numpy::Element + Copy + Default + Send + Sync>(
     Ok(values)
 }
 
-/// Returns the hit points, in single precision or `double`; NaN for misses.
+/// Returns the hit points, in double precision if `double` is true, otherwise in single precision;
+/// NaN for misses.
 #[pyfunction]
 pub fn met_points<'py>(
     py: Python<'py>,
@@ -174,8 +178,8 @@ pub fn met_points<'py>(
     })
 }
 
-/// Returns the normals of the triangles that were hit, outwards also for mirrored instances; zero
-/// for misses.
+/// Returns the unit normals of the triangles that were hit, pointing outwards also for mirrored
+/// instances; zero for misses.
 #[pyfunction]
 pub fn met_normals<'py>(
     py: Python<'py>,
@@ -191,7 +195,7 @@ pub fn met_normals<'py>(
     Ok(rows(py, &hits, threads, 0.0, normal)?.into_pyarray(py))
 }
 
-/// Returns the origins of secondary rays at hits, each with its direction.
+/// Returns the origins of secondary rays at hits, one per direction.
 #[pyfunction]
 pub fn met_leave<'py>(
     py: Python<'py>,

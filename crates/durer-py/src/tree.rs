@@ -1,4 +1,4 @@
-//! Trees of triangles, and queries on them.
+//! Ray and point queries on meshes and on scenes of instances.
 
 use crate::rays::{Array, JOB, Points, RayArrays, Rays, points};
 use crate::work::{Pace, each, install};
@@ -11,25 +11,27 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Triangles, or instances of trees of triangles.
+/// BVH behind `durer.Mesh` or `durer.Scene`: a tree of triangles, or a tree of instances of such
+/// trees.
 #[pyclass(frozen, module = "durer._durer")]
 pub struct Tree {
     pub target: Target,
-    /// Origin of a mesh's own coordinates. Single-precision coordinates relative to it are more
-    /// exact for distant meshes.
+    /// Origin in world space of a mesh's coordinates. Distant meshes have coordinates relative to
+    /// their centre, because single precision is more accurate there.
     pub center: DVec3,
 }
 
+/// The BVH of a [`Tree`], by kind.
 pub enum Target {
     Mesh(Arc<TriangleBvh>),
     Placed(InstanceBvh),
 }
 
-/// t, triangle, object, u and v.
+/// Arrays of all hits for Python: t, triangle, object, u and v.
 type HitArrays<'py> =
     (Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f32>>);
 
-/// t, triangle, object (if there are several), u and v.
+/// Arrays of first hits for Python: t, triangle, object (for scenes only), u and v.
 type ClosestArrays<'py> = (
     Bound<'py, PyArray1<f32>>,
     Bound<'py, PyArray1<i32>>,
@@ -37,7 +39,7 @@ type ClosestArrays<'py> = (
     Bound<'py, PyArray1<f32>>,
 );
 
-/// One hit: t, triangle, object, u and v.
+/// One hit: t, triangle, object, u and v; see [`MISS`] for rays that hit nothing.
 #[derive(Clone, Copy)]
 struct Row(f32, i32, i32, [f32; 2]);
 
@@ -114,8 +116,8 @@ impl Tree {
     }
 }
 
-/// Returns the axis-aligned ray that leaves the bounds soonest; a ray that hits nothing if the
-/// point is outside or NaN.
+/// Returns the axis-aligned ray from a point that leaves the bounding box soonest. If the point is
+/// outside or NaN, the ray hits nothing.
 fn outward(tree: &TriangleBvh, point: Vec3) -> Ray {
     let bounds = tree.bounds();
     let inside = point.cmpge(bounds.min).all() && point.cmple(bounds.max).all();
@@ -131,8 +133,8 @@ fn outward(tree: &TriangleBvh, point: Vec3) -> Ray {
     Ray::new(point, if inside { best.1 } else { Vec3::ZERO })
 }
 
-/// Returns `count` zeros, written by all threads if there are many: a single thread takes a tenth
-/// of the time of tracing.
+/// Returns `count` zeros. Long arrays are written by all threads, because a single thread would
+/// take a tenth of the tracing time.
 pub fn zeros<T: Clone + Default + Send>(py: Python, threads: Option<usize>, count: usize) -> Vec<T> {
     match count <= 2 * JOB {
         true => vec![T::default(); count],
@@ -176,7 +178,7 @@ impl Tree {
         faces: PyReadonlyArray2<u32>,
         center: [f64; 3],
     ) -> PyResult<Self> {
-        let Target::Mesh(tree) = &self.target else { return Err(PyValueError::new_err("only meshes are refitted")) };
+        let Target::Mesh(tree) = &self.target else { return Err(PyValueError::new_err("only meshes can be refitted")) };
         let vertices: Vec<Vec3> = points(&vertices)?.chunks_exact(3).map(Vec3::from_slice).collect();
         let faces = faces.as_slice()?.as_chunks().0;
         let refitted = install(py, None, || {
@@ -187,14 +189,14 @@ impl Tree {
         Ok(Tree { target: Target::Mesh(Arc::new(tree)), center: DVec3::from_array(center) })
     }
 
-    /// Builds a tree of instances: for each a matrix of three rows and four columns.
+    /// Builds a tree of instances. `matrices` contains three rows of four numbers per instance.
     #[staticmethod]
     fn placed(trees: Vec<PyRef<Tree>>, matrices: PyReadonlyArray2<f64>) -> PyResult<Self> {
         let rows = matrices.as_slice()?.as_chunks::<12>().0;
         let mut placed = Vec::with_capacity(trees.len());
         for (i, (tree, m)) in trees.iter().zip(rows).enumerate() {
             let (Target::Mesh(mesh), center) = (&tree.target, tree.center) else {
-                return Err(PyValueError::new_err(format!("object {i} is no mesh")));
+                return Err(PyValueError::new_err(format!("object {i} is not a mesh")));
             };
             let column = |j: usize| DVec3::new(m[j], m[j + 4], m[j + 8]);
             let matrix3 = DMat3::from_cols(column(0), column(1), column(2));
@@ -218,7 +220,7 @@ impl Tree {
         let count = rays.count;
         let (mut t, mut uv) = (zeros(py, threads, count), zeros::<f32>(py, threads, 2 * count));
         let mut triangle = zeros(py, threads, count);
-        // A mesh is a single object and needs no array of objects.
+        // A mesh is a single object, so it needs no array of object indices.
         let mut object = zeros(py, threads, if matches!(self.target, Target::Placed(_)) { count } else { 0 });
         let objects = object.chunks_mut(JOB).map(Some).chain(std::iter::repeat_with(|| None));
         let found = t.chunks_mut(JOB).zip(uv.as_chunks_mut().0.chunks_mut(JOB)).zip(triangle.chunks_mut(JOB));
@@ -267,7 +269,7 @@ impl Tree {
         Ok(counts.into_pyarray(py))
     }
 
-    /// Returns all hits of all rays, ray by ray, with the number of hits of each ray.
+    /// Returns the number of hits of each ray, and all hits, ray by ray.
     fn all_hits<'py>(
         &self,
         py: Python<'py>,
@@ -295,7 +297,7 @@ impl Tree {
         Ok((counts.into_pyarray(py), hits))
     }
 
-    /// Returns true for each point that is inside, by parity.
+    /// Returns true for each point that is inside, by the parity of crossings.
     fn contains<'py>(
         &self,
         py: Python<'py>,
@@ -313,7 +315,8 @@ impl Tree {
         Ok(answers.into_pyarray(py))
     }
 
-    /// Returns the nearest point of a mesh for each point: distance, triangle, point, u and v.
+    /// Returns, for each query point, the nearest point on a mesh: distance, triangle, point, u and
+    /// v.
     #[allow(clippy::type_complexity)]
     fn nearest<'py>(
         &self,
@@ -349,7 +352,7 @@ impl Tree {
         Ok((distance.into_pyarray(py), triangle.into_pyarray(py), near.into_pyarray(py), uv.into_pyarray(py)))
     }
 
-    /// Returns the bounds relative to the centre: least and greatest corner.
+    /// Returns the lower and upper corner of the bounding box, relative to `center`.
     fn bounds(&self) -> ([f32; 3], [f32; 3]) {
         let bounds = match &self.target {
             Target::Mesh(tree) => tree.bounds(),

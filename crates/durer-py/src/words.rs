@@ -1,13 +1,13 @@
-//! The list of options, and the command itself.
+//! The list of render options, and the `durer` command itself.
 
 use durer::options::{OptionGroup, statements};
 use pyo3::prelude::*;
 
-/// An option: name, help, name of its value, allowed words, and subject: `reading`, `picture` or
-/// `work`.
+/// Render option as passed to Python: its name, help, name of its value, allowed values, and group:
+/// `reading`, `picture` or `work`.
 type Statement = (&'static str, String, Option<String>, Vec<&'static str>, &'static str);
 
-/// Returns the options of a render.
+/// Returns all render options.
 #[pyfunction]
 pub fn options() -> Vec<Statement> {
     let group = |group| match group {
@@ -18,8 +18,8 @@ pub fn options() -> Vec<Statement> {
     statements().into_iter().map(|o| (o.name, o.help, o.value, o.words, group(o.group))).collect()
 }
 
-/// Runs the command with the words of a command line, the first of which is the program's name, and
-/// returns the exit code. It may end the process.
+/// Runs the command with the words of a command line, beginning with the program's name, and
+/// returns the exit code. Some commands end the process instead.
 #[pyfunction]
 pub fn command(py: Python, words: Vec<std::ffi::OsString>) -> u8 {
     py.detach(|| durer_cli::run(words, |code| std::process::exit(i32::from(code))))

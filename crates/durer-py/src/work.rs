@@ -18,10 +18,11 @@ use std::time::{Duration, Instant};
 /// Interval between checks for signals and progress reports.
 pub const LOOK: Duration = Duration::from_millis(50);
 
-/// A process, its requested number of threads, and the pool.
+/// Entry of the cache of thread pools: the process id, the requested number of threads, and the
+/// pool.
 type KnownPool = (u32, Option<usize>, Option<Arc<ThreadPool>>);
 
-/// Cached pools. They belong to one process: after a fork, their threads no longer exist.
+/// Cached thread pools. Each belongs to one process, because its threads do not exist after a fork.
 static POOLS: Mutex<Vec<KnownPool>> = Mutex::new(Vec::new());
 
 /// Returns the shared pool of this process with the requested number of threads; `None` if threads
@@ -37,7 +38,7 @@ pub fn pool(asked: Option<usize>) -> Option<Arc<ThreadPool>> {
     pool
 }
 
-/// Runs work on a number of threads without the interpreter's lock.
+/// Runs work on a number of threads, without holding the interpreter's lock.
 pub fn install<R: Send>(py: Python, asked: Option<usize>, work: impl FnOnce() -> R + Send) -> R {
     py.detach(|| match pool(asked) {
         Some(pool) => pool.install(work),
@@ -45,7 +46,7 @@ pub fn install<R: Send>(py: Python, asked: Option<usize>, work: impl FnOnce() ->
     })
 }
 
-/// Checks signals, and reports progress to `watch`.
+/// Checks for signals such as Ctrl-C, and reports progress to the Python function `watch`.
 pub fn look(watch: Option<&Py<PyAny>>, done: u64, all: u64) -> PyResult<()> {
     Python::attach(|py| {
         py.check_signals()?;
@@ -53,12 +54,12 @@ pub fn look(watch: Option<&Py<PyAny>>, done: u64, all: u64) -> PyResult<()> {
     })
 }
 
-/// Tells a job whether to continue. A single item may take milliseconds, so jobs check for every
-/// item or every few items.
+/// Passed to each job of [`each`] so that it can check whether to stop. A single item can take
+/// milliseconds, so jobs check after every item or every few items.
 pub struct Pace<'a> {
     stop: &'a AtomicBool,
-    /// For work on the calling thread, which checks signals itself: the time of the last check, and
-    /// its result.
+    /// If the job runs on the calling thread, which must check signals itself: the time and the
+    /// result of the last check.
     own: Option<RefCell<(Instant, PyResult<()>)>>,
 }
 
@@ -69,7 +70,7 @@ impl Pace<'_> {
             let mut own = own.borrow_mut();
             if own.0.elapsed() > LOOK && own.1.is_ok() {
                 *own = (Instant::now(), look(None, 0, 0));
-                // The check may take time too.
+                // The check itself can take time.
                 own.0 = Instant::now();
                 self.stop.store(own.1.is_err(), Relaxed);
             }
@@ -77,7 +78,8 @@ impl Pace<'_> {
         !self.stop.load(Relaxed)
     }
 
-    /// Divides items into ranges, which are small if items take long.
+    /// Divides items into ranges and calls `work` for each, until the job should stop. Ranges
+    /// become smaller if items take long.
     pub fn ranges(&self, count: usize, mut work: impl FnMut(Range<usize>)) {
         const MOST: usize = 128;
         let (mut from, mut step) = (0, 8);
@@ -90,7 +92,7 @@ impl Pace<'_> {
     }
 }
 
-/// Runs all jobs; stops after Ctrl-C or an exception of `watch`.
+/// Runs all jobs on the threads of a pool. Stops after Ctrl-C or an exception in `watch`.
 pub fn each<J: Send>(
     py: Python,
     asked: Option<usize>,
@@ -104,7 +106,7 @@ pub fn each<J: Send>(
         jobs.into_iter().take_while(|_| pace.goes_on()).for_each(|job| work(job, &pace));
         pace.own.map_or(Ok(()), |own| own.into_inner().1)
     };
-    // Too little work for several threads.
+    // A single job is not worth a thread pool.
     if jobs.len() <= 1 {
         py.detach(|| alone(std::mem::take(&mut jobs)))?;
         return py.check_signals();

@@ -1,4 +1,4 @@
-//! Described scenes and their renders.
+//! Scenes and partial renders, behind `durer.World` and `durer.Part`.
 
 use crate::rays::{self, JOB, Rays};
 use crate::work::{LOOK, each, install, look, pool};
@@ -22,14 +22,14 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, mpsc};
 
-create_exception!(durer, SceneError, PyValueError, "A scene of which no picture can be made; says where and why.");
-create_exception!(durer, RenderError, PyException, "A picture that could not be made, or a part that cannot be used.");
+create_exception!(durer, SceneError, PyValueError, "Raised if a scene cannot be rendered; states the reason and the position in the file.");
+create_exception!(durer, RenderError, PyException, "Raised if a render fails, or if a part cannot be used.");
 
 fn failed(error: impl ToString) -> PyErr {
     RenderError::new_err(error.to_string())
 }
 
-/// A compiled scene.
+/// Scene that was read and compiled, with the diagnostics of reading it.
 #[pyclass(frozen, module = "durer._durer")]
 pub struct World {
     loaded: LoadedScene,
@@ -38,14 +38,17 @@ pub struct World {
     read: Diagnostics,
 }
 
-/// Number of integers of a hit, and of other values.
+/// Number of integers per hit: object, triangle and material.
 const NUMBERS: usize = 3;
+/// Number of floats per hit: t, point, geometric normal and shading normal.
 const VALUES: usize = 10;
-/// Number of doubles of a hit: the point, and the offset at which a secondary ray starts.
+/// Number of doubles per hit: the point, and the offset at which a secondary ray starts.
 const PLACES: usize = 4;
+/// Arrays of first hits for Python: integers, floats and doubles of each hit, as counted by
+/// [`NUMBERS`], [`VALUES`] and [`PLACES`].
 type NearestArrays<'py> = (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<f64>>);
 
-/// The outputs of some rays.
+/// Slices of the output arrays for some consecutive rays: integers, floats and doubles.
 type Row<'a> = ((&'a mut [i32], &'a mut [f32]), &'a mut [f64]);
 
 /// Formats diagnostics as lines: `file:line:column: error: message`.
@@ -67,7 +70,7 @@ fn lines(files: &Files, read: &Diagnostics, wanted: impl Fn(Severity) -> bool) -
 fn unreadable(error: &SourceError, path: &Path) -> PyErr {
     let number = match error {
         SourceError::Io { error, .. } => error.raw_os_error(),
-        // ENOENT on every system.
+        // ENOENT is 2 on every system.
         SourceError::Missing { .. } => Some(2),
         _ => None,
     };
@@ -109,7 +112,7 @@ impl World {
                 Some(text) => load_text(&path, text.into(), &options, &mut files, &mut read),
                 None => load(&path, &options, &mut files, &mut read).map_err(|e| unreadable(&e, &path))?,
             };
-            // Use the current pool.
+            // Load in the current thread pool.
             options.threads = None;
             let world = loaded.as_ref().and_then(|loaded| loaded.compile(&options, &mut files, &mut read));
             match (loaded, world) {
@@ -138,17 +141,17 @@ impl World {
         self.world.digest().to_string()
     }
 
-    /// Returns the paths of its files.
+    /// Returns the paths of all files that were read.
     fn sources(&self) -> Vec<PathBuf> {
         self.loaded.files()
     }
 
-    /// Returns the description as JSON.
+    /// Returns the scene description as JSON.
     fn description(&self) -> String {
         durer::format::json::write(&self.loaded.scene, self.loaded.dialect)
     }
 
-    /// Creates an empty part of a picture.
+    /// Creates an empty part of the render with these options.
     fn part(&self, py: Python, pairs: Pairs) -> PyResult<Part> {
         let options = options(&pairs)?;
         let job = options.resolve(&self.loaded).map_err(PyValueError::new_err)?;
@@ -157,7 +160,7 @@ impl World {
         Ok(Part(Arc::new(part)))
     }
 
-    /// Continues a part; returns true if it is finished.
+    /// Continues a part. Returns true if it is finished.
     fn render(&self, py: Python, part: &Part, pairs: Pairs, watch: Option<Py<PyAny>>) -> PyResult<bool> {
         let (control, part) = (options(&pairs)?.control(), part.0.clone());
         let (stop, interrupted) = py.detach(|| {
@@ -223,8 +226,7 @@ impl World {
                 values[4..7].copy_from_slice(&surface.n_geo.to_array());
                 values[7..].copy_from_slice(&surface.n_shade.to_array());
                 place[..3].copy_from_slice(&surface.point().to_array());
-                // Same offset as in the renderer: see `durer::integrator`, where rays leave
-                // surfaces.
+                // Use the same offset as the renderer's secondary rays; see `durer::integrator`.
                 place[3] = f64::from(2.0 * surface.n_geo.abs().dot(surface.error));
             }
         })?;
@@ -270,23 +272,24 @@ impl World {
     }
 }
 
-/// A partial render.
+/// Partial render: a shard, an unfinished render or a finished image.
 #[pyclass(frozen, module = "durer._durer")]
 pub struct Part(Arc<render::PartialRender>);
 
-/// A picture: name, width, height, values, and coverage if it is not 1 everywhere.
+/// Rendered image for Python: its name, width, height, values, and coverage if it is not 1
+/// everywhere.
 type Picture<'py> = (String, u32, u32, Bound<'py, PyArray1<f32>>, Option<Bound<'py, PyArray1<f32>>>);
 
 #[pymethods]
 impl Part {
-    /// Reads a part from the bytes of a file.
+    /// Reads a part from the bytes of a `.part` file.
     #[staticmethod]
     fn read(py: Python, bytes: &[u8]) -> PyResult<Part> {
         let part = install(py, None, || render::PartialRender::read(bytes)).map_err(failed)?;
         Ok(Part(Arc::new(part)))
     }
 
-    /// Returns the bytes of a file.
+    /// Returns the part as the bytes of a `.part` file.
     fn write<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         let bytes = install(py, None, || self.0.write());
         PyBytes::new(py, &bytes)
@@ -297,12 +300,12 @@ impl Part {
         install(py, None, || self.0.hash().to_string())
     }
 
-    /// Returns the hash of everything that determines the picture.
+    /// Returns the hash of everything that determines the image.
     fn identity(&self) -> String {
         self.0.identity().to_string()
     }
 
-    /// Returns the shard.
+    /// Returns the index and the number of shards, for example `3/16`.
     fn shard(&self) -> String {
         self.0.shard().to_string()
     }
@@ -328,7 +331,8 @@ impl Part {
         (statistics.samples, statistics.rays, statistics.rejected)
     }
 
-    /// Returns the pictures: values as in floating-point files, or display values if `shown`.
+    /// Returns the images, with values as in floating-point files, or display values if `shown` is
+    /// true.
     fn pictures<'py>(&self, py: Python<'py>, shown: bool) -> PyResult<Vec<Picture<'py>>> {
         let rendered = install(py, None, || self.0.pictures()).map_err(failed)?;
         let layers = if shown { rendered.pictures } else { rendered.layers };
@@ -340,14 +344,14 @@ impl Part {
         Ok(layers.into_iter().map(picture).collect())
     }
 
-    /// Returns the names and descriptions of all kinds of pictures other than colour.
+    /// Returns the names and descriptions of all images other than colour.
     #[staticmethod]
     fn kinds() -> Vec<(&'static str, &'static str)> {
         durer::film::aov::AOVS.iter().map(|aov: &Aov| (aov.name, aov.doc)).collect()
     }
 }
 
-/// Merges named parts.
+/// Merges parts, given as a name for messages and the bytes of the file.
 #[pyfunction]
 pub fn merge(py: Python, parts: Vec<(String, Vec<u8>)>) -> PyResult<Part> {
     let whole = install(py, None, || {

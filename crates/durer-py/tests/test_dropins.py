@@ -34,7 +34,7 @@ def test_open3d_calls_answer():
     near = scene.compute_closest_points(points)
     assert near["geometry_ids"].tolist()[2] == 1 and np.allclose(near["points"][2], [3.5, 0.5, 1])
     inner, outer = [[10, 0, 4], [0, 10, 3], [0, 0, 1]], np.eye(4)
-    # The shapes of rays are those of answers, and all hits are told in a row.
+    # Results have the shape of the rays, except lists of all hits, which are flat.
     many = np.broadcast_to(rays, (2, 4, 3, 6)).copy()
     assert {name: answer.shape[3:] for name, answer in scene.cast_rays(many).items() if answer.shape[:3] == (2, 4, 3)} == {
         "t_hit": (), "geometry_ids": (), "primitive_ids": (), "primitive_uvs": (2,), "primitive_normals": (3,)
@@ -67,7 +67,7 @@ def test_embreex_calls_answer():
     assert scene.run(o, d, query="OCCLUDED").tolist() == [0, -1]
     assert scene.run(o, d, query="DISTANCE").tolist() == [1, np.float32(1e37)]
     assert set(scene.run(o, d, output=True)) == {"u", "v", "Ng", "tfar", "primID", "geomID"}
-    # Rays that meet nothing end where they should, and have nothing of the surface.
+    # Rays that miss keep their end, and have no surface attributes.
     told = scene.run(o, d, output=True, dists=100)
     assert told["tfar"].tolist() == [1, 100] and told["primID"][1] == told["geomID"][1] == -1
     assert told["u"][1] == told["v"][1] == 0 and told["Ng"].tolist() == [[-1, 0, 0], [0, 0, 0]]
@@ -85,7 +85,8 @@ def test_elements_are_closed_and_seen_from_outside():
         durer.embreex.ElementMesh(scene, corners, np.arange(len(corners))[None])
         (mesh,) = scene.meshes
         a, b, c = (mesh.vertices[mesh.faces[:, i]].astype(float) for i in range(3))
-        # By the divergence theorem, which counts faces that are seen from inside as negative.
+        # The divergence theorem gives the volume; faces with the wrong orientation would count as
+        # negative.
         assert mesh.is_closed and np.isclose((a * np.cross(b, c)).sum() / 6, volume)
     with pytest.raises(NotImplementedError, match="4 or 8 corners"):
         durer.embreex.ElementMesh(scene, cube, [[0, 1, 2]])
@@ -109,7 +110,7 @@ def test_trimesh_takes_our_rays():
     o, d = 3 * directions(400, 21), directions(400, 22)
     d[:200] = -o[:200] + 0.3 * directions(200, 23)
     assert (ours.intersects_any(o, d) == theirs.intersects_any(o, d)).all()
-    # However long directions are.
+    # Directions can have any length.
     for scale in (1e-300, 1e-20, 1e20, 1e300):
         assert (ours.intersects_first(o, scale * d) == ours.intersects_first(o, d)).all()
     assert (ours.intersects_first(o, d) == theirs.intersects_first(o, d)).all()

@@ -49,7 +49,7 @@ def test_distances_of_a_ball():
     found, start, side = example["signed_distances"](mesh, 20)
     axis = [s + side * np.arange(21) for s in start]
     true = np.sqrt(sum(a**2 for a in np.meshgrid(*axis, indexing="ij"))) - 1
-    # The facets are inside the sphere by 1 - cos of half their angle.
+    # Facets lie inside the sphere by up to 1 - cos of half their angle.
     assert np.abs(found - true).max() < 0.002 and (np.sign(found) == np.sign(true)).mean() > 0.999
 
 
@@ -57,8 +57,8 @@ def test_a_floor_before_a_wall_sees_half_of_the_sky():
     shapes, example = of("shapes"), of("ambient_occlusion")
     ball = example["openness"](durer.Mesh(*shapes["ball"](1.0, 16)), 32)
     assert (ball == 1).all()
-    # Cosine-weighted, an infinite wall leaves (1 + cos a) / 2 of the sky, where a is its elevation.
-    # This one is long.
+    # An infinite wall leaves (1 + cos a) / 2 of the cosine-weighted sky, where a is its elevation
+    # angle. This wall is long.
     floor, wall = shapes["grid"](-1, 1, 0, 2, 2), shapes["box"]((-500, -1, -1), (500, 0, 500))
     seen = example["openness"](durer.Mesh(*shapes["together"](floor, wall)), 20_000)
     at = (floor[0][:, 0] == 0) & (floor[0][:, 1] == 1)
@@ -83,7 +83,7 @@ def test_a_scan_lies_on_what_it_met():
     assert np.abs(points[objects == 0][:, 2]).max() < 1e-4
     off = np.linalg.norm(points[objects == 1] - (8, 0, 1), axis=1) - 2
     assert (objects == 1).sum() > 50 and np.abs(off).max() < 0.01 and (power > 0).all()
-    # The ball is in front of some of the floor: no point is in its shadow.
+    # The ball hides a part of the floor, so no point lies in its shadow.
     assert np.linalg.norm(points, axis=1).max() <= 60.1
 
 
@@ -104,8 +104,8 @@ def test_the_sun_shines_for_half_of_the_day_at_the_equinox():
     shapes, example = of("shapes"), of("shadow_hours")
     house = durer.Mesh(*shapes["box"]((-10, 0, 0), (10, 10, 20)))
     far, south, north = example["hours"](house, [(0, 5000, 0), (0, -0.01, 0), (0, 10.01, 0)], 45.0, 81)
-    # The house hides the northern half of the sky, which has no sun at the equinox; north of it
-    # little light is left.
+    # South of the house, the house hides only the northern half of the sky, where the sun never is
+    # at the equinox. North of it, little sun remains.
     assert abs(far - 12) < 0.4 and abs(south - far) < 0.7 and north < 0.5
     long, short = (example["hours"](house, (0, 5000, 0), 60.0, day) for day in (172, 355))
     assert abs(long - 18.5) < 0.4 and abs(short - 5.5) < 0.4

@@ -30,7 +30,7 @@ def test_dask_makes_the_same_bits_whoever_dies(scenes, killed, after):
             nonlocal left
             if left and done > after:
                 left -= 1
-                # Kill each only once: Dask removes ended workers meanwhile.
+                # Kill each worker only once: Dask removes dead workers in the meantime.
                 workers = [w.process.process for w in cluster.workers.values() if w.process]
                 random_.choice([process for process in workers if process and process.is_alive()]).kill()
 
@@ -79,7 +79,8 @@ def test_templates_are_whole(engine, scenes):
 
 
 def program(folder):
-    """A folder with the command `durer`, for templates that call it."""
+    """Creates a `durer` command in a folder, for templates that call it, and returns an environment
+    that finds it."""
     (folder / "bin").mkdir()
     there = folder / "bin/durer"
     there.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m durer "$@"\n')
@@ -96,7 +97,8 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}
 
 @pytest.mark.parametrize("engine", ["slurm", "k8s", "openjd", "dask"])
 def test_frames_are_what_the_command_makes(engine, tmp_path):
-    """Runs the jobs of templates as their engines would: each task by its index, then the merge."""
+    """Runs the jobs of the templates as their engines would: each task with its index, then the
+    merge."""
     for frame in (3, 5, 7):
         (tmp_path / f"walk.{frame:02}.txt").write_text(WALK.format((frame - 5) / 4))
     words = ["--size", "48x32", "--samples", "4"]
@@ -117,7 +119,7 @@ def test_frames_are_what_the_command_makes(engine, tmp_path):
         for task in range(6):
             run(*container["command"], *container["args"], JOB_COMPLETION_INDEX=str(task))
     if engine in ("slurm", "k8s"):
-        # The commands in the template's comment.
+        # The commands for merging are in the template's comment.
         merge = [line.removeprefix("#") for line in job.stdout.splitlines() if line.startswith("#   ")]
         assert len(merge) == 3
         run("bash", "-c", "\n".join(merge))

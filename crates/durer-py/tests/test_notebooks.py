@@ -1,4 +1,4 @@
-"""Tests that the example notebooks run in a kernel and show pictures."""
+"""Tests that the example notebooks run in a kernel and show images."""
 
 import runpy
 from pathlib import Path

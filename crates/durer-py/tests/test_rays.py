@@ -20,7 +20,7 @@ CUBE_FACES = [
 
 
 def sphere(cuts: int = 24) -> tuple[np.ndarray, np.ndarray]:
-    """A closed sphere of radius 1 around the origin, of latitudes and longitudes."""
+    """Returns a closed sphere of radius 1 around the origin, divided by latitude and longitude."""
     theta, phi = np.linspace(0, np.pi, cuts + 1)[1:-1], np.linspace(0, 2 * np.pi, 2 * cuts, endpoint=False)
     t, p = np.meshgrid(theta, phi, indexing="ij")
     ring = np.stack([np.sin(t) * np.cos(p), np.sin(t) * np.sin(p), np.cos(t)], -1).reshape(-1, 3)
@@ -216,7 +216,7 @@ def test_progress_is_told_and_what_it_raises_stops(ball):
 
 
 def test_the_lock_is_released(ball):
-    """Another thread continues while rays are traced."""
+    """Another Python thread continues to run while rays are traced."""
     ticks, stop = [], threading.Event()
     counter = threading.Thread(target=lambda: [ticks.append(1) or time.sleep(0.001) for _ in iter(stop.is_set, True)])
     d = directions(1_000_000)
@@ -249,7 +249,8 @@ except KeyboardInterrupt:
 
 @pytest.mark.parametrize("query", ["count(points, [0, 0, 1])", "nearest(points)"])
 def test_control_c_stops_a_few_slow_rays(query):
-    """Fewer rays than a thread takes at once, each through thousands of triangles that lie on each other."""
+    """Traces fewer rays than a thread takes at once, each through thousands of stacked
+    triangles."""
     code = f"""
 import durer, numpy as np
 corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], dtype=np.float32)
@@ -270,7 +271,7 @@ except KeyboardInterrupt:
     start = time.monotonic()
     process.send_signal(signal.SIGINT)
     assert process.communicate(timeout=60)[0] == "stopped\n"
-    # An idle machine takes a tenth of a second.
+    # On an idle machine, this takes a tenth of a second.
     assert time.monotonic() - start < 2
 
 

@@ -11,7 +11,7 @@ import durer
 
 
 def bumpy() -> tuple[np.ndarray, np.ndarray]:
-    """A closed mesh with hollows and folds."""
+    """Returns a closed mesh with hollows and folds."""
     vertices, faces = sphere(32)
     return vertices * (1 + 0.3 * np.sin(7 * vertices).prod(1))[:, None], faces
 
@@ -20,7 +20,7 @@ SHAPES = {"ball": sphere(), "cube": (2 * CUBE - 1, np.array(CUBE_FACES)), "bumpy
 
 
 def goes_on(scene, middle, seed):
-    """Secondary rays in any direction start on the side of their direction."""
+    """Checks that secondary rays in any direction start on the side of their direction."""
     middle = np.asarray(middle, np.float64)
     for way in (directions(20_000, seed), None):
         origins = middle if way is None else middle + 3 * way
@@ -155,7 +155,8 @@ def test_what_is_not_finite_or_there_twice_is_open():
     assert twice.open_edges == 18 and not twice.is_closed
     one = durer.Mesh(CUBE, np.concatenate([faces, faces[:1], faces[:1]]))
     assert one.open_edges == 3
-    # Opposite orientations: a sheet without thickness, whose inside is empty.
+    # Two triangles with opposite orientations form a closed sheet without thickness, whose inside
+    # is empty.
     sheet = durer.Mesh(CUBE, [[0, 1, 3], [3, 1, 0]])
     assert sheet.is_closed and not sheet.contains([[0, 0.3, 0.5]]).any()
     assert durer.Mesh(np.zeros((0, 3)), np.zeros((0, 3), int)).is_closed

@@ -44,7 +44,7 @@ def test_flow_of_a_turned_camera_is_its_projection():
     assert np.isnan(flow[view.instances < 0]).all() and seen.any() and not seen[view.instances < 0].any()
     y, x = 24, 30
     assert np.allclose(flow[y, x] + [x, y], second.project(view.points[y, x]))
-    # A point that both see has the second picture's depth there.
+    # For a point that both cameras see, its depth is that in the second image.
     there = np.round(flow[y, x] + [x, y]).astype(int)
     turn, shift = second._outer()
     assert seen[y, x] and (turn @ view.points[y, x] + shift)[2] == pytest.approx(second.view(scene).depth[there[1], there[0]], rel=0.02)

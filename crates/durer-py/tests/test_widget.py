@@ -1,4 +1,4 @@
-"""Tests of the notebook widget: its camera, its explanations, in a Jupyter kernel, and its page
+"""Tests of the notebook widget: its camera and its explanations, in a Jupyter kernel, and its page
 in a browser."""
 
 import json
@@ -39,20 +39,20 @@ def test_the_camera_goes_around_what_it_looks_at(explorer):
     explorer._hear({**STILL, "turn": [0.5, 0]})
     there, looks = camera(explorer.world)
     assert explorer.picture != first and explorer.made == 1 and explorer.word.startswith("seen from")
-    # A quarter of a full turn about the vertical: same height and distance, at a right angle.
+    # A quarter turn about the vertical keeps the height and the distance.
     flat = np.array([1, 0, 1])
     assert abs(there[1] - eye[1]) < 1e-4 and abs(np.linalg.norm(there - target) - far) < 1e-4 * far
     assert abs(((eye - target) * flat) @ ((there - target) * flat)) < 1e-3
     assert np.allclose(np.cross(looks, target - there), 0, atol=1e-4)
     explorer._hear({**STILL, "turn": [-0.5, 0]})
     assert np.allclose(camera(explorer.world)[0], eye, atol=1e-4)
-    # Dragging to the right turns the scene with the hand: the eye moves left.
+    # Dragging to the right turns the scene to the right, so the camera moves left.
     explorer._hear({**STILL, "turn": [0.05, 0]})
     right = np.cross(along, [0, 1, 0])
     assert (camera(explorer.world)[0] - eye) @ right < 0
     explorer._hear({**STILL, "nearer": 0.5})
     assert abs(np.linalg.norm(camera(explorer.world)[0] - target) - far / 2) < 1e-3
-    # It never turns upside down.
+    # The camera never turns upside down.
     for _ in range(9):
         explorer._hear({**STILL, "turn": [0, 0.3]})
     assert "Error" not in explorer.word and camera(explorer.world)[0][1] > target[1]
@@ -88,7 +88,7 @@ def test_worlds_in_code_and_with_comments_have_their_camera_found():
 def test_what_cannot_be_gone_around_is_told(scenes, tmp_path):
     camera = durer.ProjectiveCamera(matrix=[[100, 0, -50, 0], [0, -100, -50, 0], [0, 0, -1, 0]], width=100, height=100)
     measured = durer.World(camera, [durer.Sphere(center=(0, 0, -3), radius=1)])
-    with pytest.raises(ValueError, match="a camera without `center` cannot go around: ProjectiveCamera"):
+    with pytest.raises(ValueError, match="a camera without `center` cannot orbit: ProjectiveCamera"):
         Explorer(measured)
     with pytest.raises(ValueError, match="no camera in the scene language"):
         (tmp_path / "model.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")

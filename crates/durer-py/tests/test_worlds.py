@@ -1,4 +1,4 @@
-"""Tests of scenes, pictures and parts against the command, which comes with the package."""
+"""Tests of scenes, images and parts against the `durer` command, which is part of the package."""
 
 import asyncio
 import copy
@@ -76,7 +76,7 @@ def test_shards_merge_to_one_run(whitted, tmp_path):
     damaged[-40] ^= 1
     with pytest.raises(durer.RenderError, match="damaged"):
         durer.Part.read(bytes(damaged))
-    # The version follows the magic and the format's number.
+    # The program's version follows the magic number and the format's version.
     assert parts[0].shard == "1/3" and parts[0].is_finished and parts[0].job["width"] == 48
 
 
@@ -274,9 +274,9 @@ def test_a_part_is_gone_on_with_as_it_was_begun(whitted):
     part = whitted.part(size=(40, 30), samples=2)
     for wrong in ({"size": (20, 15)}, {"samples": 3}, {"show": "depth"}, {"shard": (1, 2)}, {"threads": 1, "seed": 4}):
         name = list(wrong)[-1]
-        with pytest.raises(ValueError, match=f"the part is of another picture than {name} asks for"):
+        with pytest.raises(ValueError, match=f"the part belongs to a different image than {name} would give"):
             whitted.render(part=part, **wrong)
-    with pytest.raises(ValueError, match="another picture than size, samples asks for"):
+    with pytest.raises(ValueError, match="a different image than size, samples would give"):
         whitted.render(part=durer.Part.read(part.bytes()), size=(40, 30), samples=3)
     same = whitted.render(part=part, size="40x30", threads=1, time_limit=100)
     assert same.hash == whitted.render(size=(40, 30), samples=2).hash

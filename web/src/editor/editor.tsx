@@ -20,7 +20,7 @@ import { toOffsets } from "./offsets";
 
 const severities = { error: "error", warning: "warning", note: "info" } as const;
 
-/** The scene's text. */
+/** Text editor for the scene. */
 export function Editor({ store }: { store: Store }) {
   useStore(store);
   const place = useRef<HTMLDivElement>(null);

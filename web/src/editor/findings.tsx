@@ -2,7 +2,7 @@ import { type Store, useStore } from "../viewer/store";
 
 const words = { error: "Error", warning: "Warning", note: "Note" } as const;
 
-/** Errors, warnings and notes of the scene; a click shows the place in the text. */
+/** List of the scene's errors, warnings and notes. A click shows the position in the text. */
 export function Findings({ store }: { store: Store }) {
   useStore(store);
   if (store.findings.length === 0) return null;

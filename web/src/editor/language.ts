@@ -2,11 +2,12 @@ import { HighlightStyle, StreamLanguage, syntaxHighlighting } from "@codemirror/
 import { tags } from "@lezer/highlight";
 import type { Word } from "../protocol";
 
+/** State of the tokenizer: the nesting depth of braces. */
 interface State {
   depth: number;
 }
 
-/** Highlighting of the scene language, with the keywords of the library. */
+/** Syntax highlighting of the scene language, with the keywords that the library lists. */
 export function sceneLanguage(words: Word[]) {
   const begins = new Set(words.map((word) => word.word));
   const fields = new Set(words.flatMap((word) => word.fields.map((field) => field.word)));

@@ -10,7 +10,7 @@ import {
 
 const number = /[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?/g;
 
-/** Finds the number at a column of a line: its range and value. */
+/** Returns the range and value of the number at a column of a line. */
 export function numberAt(line: string, column: number): { from: number; to: number; value: number } | null {
   for (const found of line.matchAll(number)) {
     const to = found.index + found[0].length;

@@ -1,7 +1,7 @@
 import type { Answer, Ask, Event, Request } from "../protocol";
 import { decode } from "./wire";
 
-/** Transport of messages to an engine: a server or a worker. */
+/** Transport of messages to an engine, which is a server or a worker. */
 export interface Line {
   send(ask: Ask): void;
   close(): void;
@@ -13,16 +13,19 @@ export interface LineEvents {
   closed(why: string): void;
 }
 
+/** Event of a given kind. */
 export type EventOf<K extends Event["kind"]> = Extract<Event, { kind: K }>;
+/** Callback for events and their binary payload. */
 type Handler = (event: Event, bytes: Uint8Array<ArrayBuffer>) => void;
 
+/** Request that waits for an event of a kind. */
 interface Waiting {
   kind: Event["kind"];
   resolve(event: Event, bytes: Uint8Array<ArrayBuffer>): void;
   reject(error: Error): void;
 }
 
-/** Connection to the ray tracer, native or WebAssembly. */
+/** Connection to the ray tracer, native or WebAssembly, that all sessions of the page share. */
 export class Engine {
   readonly name: string;
   #line: Line;
@@ -41,7 +44,7 @@ export class Engine {
     });
   }
 
-  /** Opens a session: one scene, camera and picture. */
+  /** Opens a session with its own scene, camera and image. */
   session(): Session {
     const id = this.#next++;
     const session = new Session(id, this.#line, () => this.#sessions.delete(id));
@@ -49,7 +52,7 @@ export class Engine {
     return session;
   }
 
-  /** Registers a callback for the loss of the engine. */
+  /** Registers a callback that is called if the connection to the engine is lost. */
   onLost(tell: (why: string) => void) {
     this.#lost.push(tell);
   }
@@ -60,7 +63,7 @@ export class Engine {
   }
 }
 
-/** A scene, its camera and its picture. */
+/** Session with the ray tracer: one scene with its camera and its image. */
 export class Session {
   readonly id: number;
   #line: Line;
@@ -80,7 +83,7 @@ export class Session {
     this.#line.send({ session: this.id, id: this.#next++, request });
   }
 
-  /** Sends a request and resolves with the first event of a kind that answers it. */
+  /** Sends a request, and resolves with the first event of a kind that answers it. */
   ask<K extends Event["kind"]>(request: Request, kind: K): Promise<EventOf<K>> {
     return this.askBytes(request, kind).then(([event]) => event);
   }

@@ -1,7 +1,7 @@
 import type { Ask } from "../protocol";
 import type { Line, LineEvents } from "./engine";
 
-/** Transport to the server of the page. The token is part of the page's address. */
+/** WebSocket transport to the page's server. The token is part of the page's address. */
 export function socket(address: string, events: LineEvents): Line {
   const socket = new WebSocket(address);
   const early: string[] = [];
@@ -11,7 +11,7 @@ export function socket(address: string, events: LineEvents): Line {
     early.length = 0;
   };
   socket.onmessage = (message) => events.message(message.data as ArrayBuffer);
-  socket.onclose = () => events.closed("the server has ended");
+  socket.onclose = () => events.closed("the server has stopped");
   return {
     send(ask: Ask) {
       const text = JSON.stringify(ask);

@@ -1,6 +1,6 @@
 import type { Answer } from "../protocol";
 
-/** An answer and its payload. */
+/** Decoded message of the engine: an event and its binary payload. */
 export interface Message {
   answer: Answer;
   bytes: Uint8Array<ArrayBuffer>;

@@ -1,14 +1,14 @@
 import type { Ask } from "../protocol";
 import type { Line, LineEvents } from "./engine";
 
-/** Transport to the library as WebAssembly in a worker. */
+/** Transport to a worker that runs the library as WebAssembly. */
 export function worker(events: LineEvents): Line {
   const worker = new Worker(new URL("./wasm-worker.ts", import.meta.url), { type: "module", name: "durer" });
   worker.onmessage = ({ data }: MessageEvent<ArrayBuffer | string>) => {
     if (typeof data === "string") events.closed(data);
     else events.message(data);
   };
-  worker.onerror = (error) => events.closed(error.message || "the worker has ended");
+  worker.onerror = (error) => events.closed(error.message || "the worker has stopped");
   return {
     send: (ask: Ask) => worker.postMessage(JSON.stringify(ask)),
     close: () => worker.terminate(),

@@ -1,6 +1,6 @@
 import { code } from "./steps";
 
-/** The algorithm, with the line that runs. */
+/** Pseudocode of the algorithm, with the current line highlighted. */
 export function Code({ line }: { line: number }) {
   return (
     <ol class="code">
@@ -13,7 +13,7 @@ export function Code({ line }: { line: number }) {
   );
 }
 
-/** Back, next, play, and a slider over all moments. */
+/** Controls of the step-by-step view: back, next, play, and a slider over all steps. */
 export function Player({
   at,
   count,

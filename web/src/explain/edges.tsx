@@ -1,12 +1,12 @@
 import type { BoxState } from "../protocol";
 import type { Projector, Vec } from "./space";
 
-/** Pairs of corners that an edge joins: those that differ in one bit. */
+/** Edges of a box as pairs of corner indices, which differ in one bit. */
 export const edges: [number, number][] = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((a) =>
   [1, 2, 4].filter((bit) => (a & bit) === 0).map((bit): [number, number] => [a, a | bit]),
 );
 
-/** The edges of boxes as lines in space. */
+/** Returns the edges of boxes as lines in space. */
 export function lines(boxes: BoxState[]): [Vec, Vec][] {
   return boxes.flatMap(({ corners }) =>
     edges.map(([a, b]): [Vec, Vec] => [
@@ -16,7 +16,7 @@ export function lines(boxes: BoxState[]): [Vec, Vec][] {
   );
 }
 
-/** Boxes in space as one path. */
+/** Draws boxes in space as a single path. */
 export function Boxes({
   view,
   boxes,

@@ -64,7 +64,7 @@ function Tab({ name, on, choose }: { name: string; on: boolean; choose(): void }
   );
 }
 
-/** The boxes of the trees in the view, level by level. */
+/** Controls that show the bounding boxes of the trees in the view, level by level. */
 function BoxLevels({ store }: { store: Store }) {
   const { boxes, boxLevel } = store;
   const most = boxes.at(-1)?.level ?? 0;

@@ -1,6 +1,6 @@
 import type { Row } from "../protocol";
 
-/** List of formulas with their numbers. */
+/** Table of formulas with their numbers. */
 export function Rows({ rows }: { rows: Row[] }) {
   if (rows.length === 0) return null;
   return (

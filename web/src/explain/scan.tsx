@@ -4,7 +4,7 @@ import { short } from "../ui/slider";
 import type { Store } from "../viewer/store";
 import { Code, Player } from "./code";
 
-/** The algorithm for a row, pixel by pixel, or for the picture, row by row: the picture fills as it does. */
+/** Runs the algorithm for a row, pixel by pixel, or for the image, row by row, while the image fills. */
 export function Scan({ store, scope }: { store: Store; scope: "row" | "picture" }) {
   const [width, height] = [store.head?.full_width ?? 1, store.head?.full_height ?? 1];
   const count = scope === "row" ? width : height;
@@ -54,7 +54,7 @@ export function Scan({ store, scope }: { store: Store; scope: "row" | "picture" 
         plays={plays}
         go={(to) => setAt(Math.min(count - 1, Math.max(0, to)))}
         play={setPlays}
-        unit={scope === "row" ? "Pixel of the row" : "Row of the picture"}
+        unit={scope === "row" ? "Pixel of the row" : "Row of the image"}
       />
       <p class="sentence" aria-live={plays ? "off" : "polite"}>
         {scope === "row" ? pixelWords(store, x, y, ray) : rowWords(y, rays)}
@@ -66,13 +66,13 @@ export function Scan({ store, scope }: { store: Store; scope: "row" | "picture" 
 }
 
 function pixelWords(store: Store, x: number, y: number, ray: RayAccount | null): string {
-  if (!ray) return `pixel ${x}, ${y}: the camera has no ray here`;
-  if (ray.t === null) return `pixel ${x}, ${y}: nothing is hit, so it is the background`;
+  if (!ray) return `pixel ${x}, ${y}: the camera has no ray for this pixel`;
+  if (ray.t === null) return `pixel ${x}, ${y}: nothing is hit, so the pixel shows the background`;
   const name = store.contents?.objects[ray.object ?? -1]?.name ?? `object ${ray.object}`;
   return `pixel ${x}, ${y}: ${name} is the closest, at t = ${short(ray.t)}`;
 }
 
-/** What became of the rays of a row. */
+/** Describes the results of the rays of a row. */
 export function rowWords(y: number, rays: (RayAccount | null)[]): string {
   const hits = rays.filter((ray) => ray !== null && ray.t !== null).length;
   const there = rays.filter((ray) => ray !== null).length;

@@ -2,7 +2,7 @@ import type { CameraState, PixelAccount, Role, Segment, Term } from "../protocol
 import type { Vec } from "./space";
 import { add, mul } from "./space";
 
-/** A term with its path in the tree. */
+/** Term of a pixel's colour with its path in the tree, such as `0.2.1`. */
 export interface Place {
   path: string;
   term: Term;
@@ -21,7 +21,7 @@ export function segments(pixel: PixelAccount | null): { path: string; segment: S
   );
 }
 
-/** Names of rays in legends. */
+/** Names of the kinds of rays, for legends. */
 export const roles: Record<Role, string> = {
   camera: "camera ray",
   reflected: "mirrored ray",
@@ -31,18 +31,18 @@ export const roles: Record<Role, string> = {
   shadowed: "shadow ray, occluded",
 };
 
-/** Points that the view should contain: hits, the camera, and nearby lights. */
+/** Returns the points that the view should contain: hits, the camera, and nearby lights. */
 export function points(pixel: PixelAccount | null, camera: CameraState | null): Vec[] {
   const all: Vec[] = camera ? [camera.eye] : [];
   for (const { segment } of segments(pixel)) {
     all.push(segment.from);
-    // Leave out far lights, which would make everything else small.
+    // Skip distant lights, which would make everything else small.
     if (!segment.escapes && segment.role !== "lit") all.push(segment.to);
   }
   return all;
 }
 
-/** Edges of a camera's view pyramid up to a distance. */
+/** Returns the edges of a camera's view pyramid up to a distance. */
 export function frustum(camera: CameraState, aspect: number, reach: number): [Vec, Vec][] {
   const [x, y] = aspect >= 1 ? [1, 1 / aspect] : [aspect, 1];
   const corner = (sx: number, sy: number): Vec => {

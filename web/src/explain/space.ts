@@ -1,3 +1,4 @@
+/** Point or vector in world space. */
 export type Vec = [number, number, number];
 
 export const add = (a: Vec, b: Vec): Vec => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
@@ -16,14 +17,14 @@ export const unit = (a: Vec): Vec => {
 };
 export const mix = (a: Vec, b: Vec, t: number): Vec => add(a, mul(t, sub(b, a)));
 
-/** A projected point in page pixels, and its depth from the eye. */
+/** Projected point in page pixels, and its depth along the view direction. */
 export interface Seen {
   x: number;
   y: number;
   depth: number;
 }
 
-/** An eye that orbits a target. */
+/** Viewpoint of a 3D drawing, which orbits a target. */
 export interface Eye {
   target: Vec;
   distance: number;
@@ -35,7 +36,7 @@ export interface Eye {
   angle: number;
 }
 
-/** Position and axes of an eye. */
+/** Position and axes of an eye in world space. */
 export interface Frame {
   eye: Vec;
   forward: Vec;
@@ -54,7 +55,7 @@ export function frame({ target, distance, yaw, pitch, angle }: Eye): Frame {
 
 const near = 1e-3;
 
-/** Projects world space to a page of some size, like the library's perspective camera. */
+/** Returns functions that project world space to a page of this size, like the library's perspective camera. */
 export function projector(view: Frame, width: number, height: number) {
   const larger = Math.max(width, height) / 2;
   const local = (p: Vec): Vec => {
@@ -67,12 +68,12 @@ export function projector(view: Frame, width: number, height: number) {
     depth: z,
   });
   return {
-    /** Projects a point; `null` behind the eye. */
+    /** Projects a point; `null` if it is behind the eye. */
     point(p: Vec): Seen | null {
       const at = local(p);
       return at[2] > near ? page(at) : null;
     },
-    /** Projects the part of a line in front of the eye. */
+    /** Projects the part of a line that is in front of the eye. */
     line(a: Vec, b: Vec): [Seen, Seen] | null {
       let [p, q] = [local(a), local(b)];
       if (p[2] <= near && q[2] <= near) return null;
@@ -90,9 +91,10 @@ export function projector(view: Frame, width: number, height: number) {
   };
 }
 
+/** Projection of world space to a page; see `projector`. */
 export type Projector = ReturnType<typeof projector>;
 
-/** Returns an eye that frames some points. */
+/** Returns an eye that frames all points. */
 export function eyeAround(points: Vec[], yaw: number, pitch: number, angle = 34): Eye {
   if (points.length === 0) return { target: [0, 0, 0], distance: 5, yaw, pitch, angle };
   const least: Vec = [0, 1, 2].map((i) => Math.min(...points.map((p) => p[i] ?? 0))) as Vec;
@@ -102,7 +104,7 @@ export function eyeAround(points: Vec[], yaw: number, pitch: number, angle = 34)
   return { target: mix(least, most, 0.5), distance, yaw, pitch, angle };
 }
 
-/** Orbits the eye after a drag over the page. */
+/** Returns the eye after a drag over the page has orbited it. */
 export function orbit(eye: Eye, right: number, up: number): Eye {
   const limit = Math.PI / 2 - 0.02;
   return { ...eye, yaw: eye.yaw - right, pitch: Math.min(limit, Math.max(-limit, eye.pitch + up)) };

@@ -8,28 +8,29 @@ import { Scan } from "./scan";
 import { flat } from "./segments";
 import { type Step, steps } from "./steps";
 
-/** Maximum number of rays in the step-by-step view. */
+/** Maximum number of rays that the step-by-step view follows. */
 const most = 24;
 
 const scopes = [
   ["pixel", "This pixel"],
   ["row", "Its row"],
-  ["picture", "The whole picture"],
+  ["picture", "The entire image"],
 ] as const;
+/** What the step-by-step view covers: one pixel, its row, or the entire image. */
 type Scope = (typeof scopes)[number][0];
 
-/** The algorithm, step by step: for one pixel, its row, or the whole picture. */
+/** Shows the algorithm step by step, for one pixel, its row, or the entire image. */
 export function Stepper({ store }: { store: Store }) {
   const [scope, setScope] = useState<Scope>("pixel");
   return (
     <section class="stepper" aria-label="Step by step">
-      <Choice label="Steps of" value={scope} values={scopes} change={(next) => setScope(next)} />
+      <Choice label="Steps for" value={scope} values={scopes} change={(next) => setScope(next)} />
       {scope === "pixel" ? <PixelSteps store={store} /> : <Scan key={scope} store={store} scope={scope} />}
     </section>
   );
 }
 
-/** The algorithm for one pixel. */
+/** Shows the steps of the algorithm for one pixel. */
 function PixelSteps({ store }: { store: Store }) {
   const [all, setAll] = useState<Step[]>([]);
   const [at, setAt] = useState(0);

@@ -20,17 +20,17 @@ export const code = [
   "    return color",
 ] as const;
 
-/** A step of the algorithm. */
+/** Step of the algorithm for a pixel, as the step-by-step view shows it. */
 export interface Step {
   /** Index of the current line of the pseudocode. */
   line: number;
-  /** Description with numbers. */
+  /** Description of the step, with its numbers. */
   words: string;
-  /** Path of the term in the tree. */
+  /** Path in the tree of the term that the step computes. */
   path: string;
-  /** Number of the object that is tested. */
+  /** Index of the object that is tested. */
   object?: number;
-  /** Least t so far. */
+  /** Smallest t so far. */
   closest?: number;
 }
 

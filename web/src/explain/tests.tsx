@@ -13,8 +13,7 @@ const words: Record<Verdict, string> = {
   missed: "missed",
 };
 
-/**
- * Intersection tests of the selected ray with every object, and why each is not the closest hit.
+/** Lists the intersection tests of the selected ray with all objects, and why each is not the closest hit.
  */
 export function Tests({ store }: { store: Store }) {
   const [open, setOpen] = useState<number | null>(null);

@@ -4,10 +4,10 @@ import { short } from "../ui/slider";
 import type { Store } from "../viewer/store";
 import { Rows } from "./rows";
 
-/** Terms with a smaller share of the pixel are folded. */
+/** Terms that contribute a smaller fraction of the pixel are folded. */
 const little = 0.01;
 
-/** Tree of a pixel's terms, largest first. */
+/** Tree of the terms of a pixel's colour, largest first. */
 export function Tree({ store }: { store: Store }) {
   const tree = store.pixel?.tree;
   if (!tree) return <p class="hint">The camera sees nothing through this pixel.</p>;

@@ -7,23 +7,23 @@ import type { CastAccount, Event, PixelAccount, Request, Setting } from "../prot
 /** The engine that all figures share. */
 export const EngineContext = createContext<Engine | null>(null);
 
-/** The scene that is open in the viewer. */
+/** Scene that is open in the viewer, for the chapter "Your own scene". */
 export interface OwnScene {
-  /** What it is called. */
+  /** Displayed name. */
   title: string;
-  /** Name of its file; empty for that of the server. */
+  /** File name; empty for the server's scene. */
   name: string;
-  /** `null` for a file that the server reads. */
+  /** Text of the scene; `null` for a file that the server reads. */
   text: string | null;
 }
 
-/** The scene of the chapter about one's own. */
+/** Passes the viewer's scene to the chapter "Your own scene". */
 export const OwnSceneContext = createContext<OwnScene>({ title: "", name: "", text: null });
 
-/** Options for figures: few samples, so that pictures finish soon. */
+/** Render options of figures: few samples, so that images finish quickly. */
 const few: Setting[] = [{ name: "samples", value: "4" }];
 
-/** Opens a session with the scene of a figure; the text may change. */
+/** Opens a session with the scene of a figure. If the text changes, the session gets the new text. */
 export function useScene(text: string, options: Setting[] = few): Session {
   const engine = useContext(EngineContext);
   if (!engine) throw new Error("figures need an `EngineContext`");
@@ -41,7 +41,7 @@ export function useScene(text: string, options: Setting[] = few): Session {
   useEffect(
     () =>
       session.on((event) => {
-        // Report errors: a figure with a wrong scene would silently show an old one.
+        // Report errors. Otherwise a figure with an invalid scene would silently show the old one.
         if (event.kind !== "scene" || event.contents) return;
         console.error(event.findings.map((finding) => finding.message).join("; "));
       }),
@@ -51,10 +51,10 @@ export function useScene(text: string, options: Setting[] = few): Session {
   return session;
 }
 
-/** A session with a scene by its name, and a size for the lecture hall with its proportions. */
+/** Opens a session with a scene by name, and fits the size of its image to the figure. */
 export function useOpened(scene: OwnScene, options: Setting[], picture: string) {
   const engine = useContext(EngineContext);
-  if (!engine) throw new Error("a figure stands in a lecture");
+  if (!engine) throw new Error("figures need an `EngineContext`");
   const session = useMemo(() => engine.session(), [engine]);
   const [size, setSize] = useState<[number, number]>([480, 360]);
   const [refused, setRefused] = useState<string | null>(null);
@@ -81,7 +81,7 @@ function fitted([width, height]: [number, number]): [number, number] {
   return [Math.max(1, Math.round(width * scale)), Math.max(1, Math.round(height * scale))];
 }
 
-/** Returns the latest answer to a request, which is sent again after it or the scene changes. */
+/** Returns the latest answer to a request, which is sent again if it or the scene changes. */
 export function useAnswer<K extends Event["kind"]>(
   session: Session,
   request: Request,
@@ -100,17 +100,17 @@ export function useAnswer<K extends Event["kind"]>(
   return answer;
 }
 
-/** What all objects of a scene say of a ray. */
+/** Returns the results of intersecting a ray with all objects of a scene. */
 export function useCast(session: Session, origin: Vec, direction: Vec, scene: string): CastAccount | null {
   return useAnswer(session, { kind: "cast", origin, direction, t_max: null }, "cast", scene)?.cast ?? null;
 }
 
-/** Explains the colour of a pixel of a session's picture. */
+/** Returns the explanation of a pixel of a session's image. */
 export function usePixel(session: Session, x: number, y: number, key: string): PixelAccount | null {
   return useAnswer(session, { kind: "explain", x, y, sample: null }, "explained", key)?.pixel ?? null;
 }
 
-/** Explains the colour of a ray, as the single pixel of a camera that looks along it. */
+/** Returns the explanation of the light along a ray, as the single pixel of a camera that looks along it. */
 export function useTrace(session: Session, from: Vec, direction: Vec, key: string): PixelAccount | null {
   const [pixel, setPixel] = useState<PixelAccount | null>(null);
   const latest = useRef(0);
@@ -133,7 +133,7 @@ export function numberOf(cast: CastAccount | null, object: number, name: string)
   return test?.rows.find((row) => row.name === name)?.value ?? null;
 }
 
-/** Page background in linear RGB, for the background of rendered figures. */
+/** Returns the page's background in linear RGB, which is also the background of rendered figures. */
 export function usePaper(): string {
   const [dark, setDark] = useState(isDark);
   useEffect(() => {

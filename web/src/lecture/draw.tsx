@@ -2,6 +2,7 @@ import type { ComponentChildren } from "preact";
 import { useRef } from "preact/hooks";
 import { add, mul, type Projector, type Vec } from "../explain/space";
 
+/** Properties of a line in world space. */
 interface LineProps {
   view: Projector;
   from: Vec;
@@ -12,7 +13,7 @@ interface LineProps {
   arrow?: boolean;
 }
 
-/** A line in world space. */
+/** Draws a line in world space. */
 export function Line({ view, from, to, color, width = 2.5, dashed, arrow }: LineProps) {
   const seen = view.line(from, to);
   if (!seen) return null;
@@ -25,20 +26,20 @@ export function Line({ view, from, to, color, width = 2.5, dashed, arrow }: Line
   );
 }
 
-/** An arrowhead in page coordinates. */
+/** Draws an arrowhead in page coordinates. */
 export function Head({ x, y, angle, size }: { x: number; y: number; angle: number; size: number }) {
   const corner = (turn: number) =>
     `${x + size * Math.cos(angle + turn)},${y + size * Math.sin(angle + turn)}`;
   return <polygon points={`${x},${y} ${corner(2.68)} ${corner(-2.68)}`} stroke="none" />;
 }
 
-/** A vector drawn from a point. */
+/** Draws a vector as an arrow from a point. */
 export function Arrow(props: Omit<LineProps, "to" | "arrow"> & { dir: Vec; length?: number }) {
   const { dir, length = 1, ...rest } = props;
   return <Line {...rest} to={add(props.from, mul(length, dir))} arrow />;
 }
 
-/** A closed or open polyline. */
+/** Draws a closed or open polyline. */
 export function Path({
   view,
   points,
@@ -67,7 +68,7 @@ export function Path({
   );
 }
 
-/** A label beside a point in world space. */
+/** Draws a label beside a point in world space. */
 export function Name({
   view,
   at,
@@ -92,7 +93,7 @@ export function Name({
   );
 }
 
-/** A point in world space. */
+/** Draws a point in world space. */
 export function Dot({
   view,
   at,
@@ -112,6 +113,7 @@ export function Dot({
   );
 }
 
+/** Properties of a handle, at page coordinates `x` and `y`. */
 interface HandleProps {
   x: number;
   y: number;
@@ -124,7 +126,7 @@ interface HandleProps {
   end?(): void;
 }
 
-/** A point that can be dragged, or moved by arrow keys. */
+/** Handle that can be dragged, or moved with the arrow keys. */
 export function Handle({ x, y, color, label, drag, nudge, end }: HandleProps) {
   const held = useRef<{ dx: number; dy: number } | null>(null);
   const place = (event: PointerEvent & { currentTarget: Element }) => {

@@ -13,12 +13,12 @@ interface Props {
   width: number;
   height: number;
   label: string;
-  /** Changes with the picture. */
+  /** Key of the image; a change asks for a new explanation. */
   scene: string;
   told?(head: PictureHead): void;
 }
 
-/** A picture, and beside it the terms of the pixel that was clicked last. */
+/** Rendered image, with the terms of the last clicked pixel beside it. */
 export function Explained({ session, width, height, label, scene, told }: Props) {
   const [place, setPlace] = useState({ x: 0.5, y: 0.5 });
   const [hash, setHash] = useState("");

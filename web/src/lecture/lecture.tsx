@@ -9,11 +9,11 @@ interface Props {
   /** Name of the page in the address. */
   name: string;
   topics: Topic[];
-  /** Where it is open. */
+  /** Id of the topic that is shown. */
   topic: string;
 }
 
-/** The lecture: a book whose figures run the ray tracer, and slides with the same content. */
+/** The lecture, as a book whose figures run the ray tracer, or as slides with the same content. */
 export function Lecture({ engine, name, topics, topic }: Props) {
   const [presents, setPresents] = useState(false);
   const place = useRef<HTMLElement>(null);

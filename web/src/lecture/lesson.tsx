@@ -8,9 +8,10 @@ import { Equation, Figure } from "./parts";
 import type { Topic } from "./topic";
 import { topics } from "./topics";
 
+/** Block of a lesson that shows a figure or a scene. */
 type Shown = Extract<Block, { kind: "figure" }>;
 
-/** A teacher's own lesson: each heading of level 1 or 2 begins a step. */
+/** Converts a teacher's lesson in Markdown to topics: each heading of level 1 or 2 begins a step. */
 export function lesson(text: string): Topic[] {
   const steps: { title: string; blocks: Block[] }[] = [];
   for (const block of blocks(text)) {
@@ -67,7 +68,7 @@ function prose(block: Block, key: number): ComponentChild {
   }
 }
 
-/** A figure by its name: one of the lecture, or a scene beside the lesson. */
+/** Shows a figure by its name: a figure of the lecture, or a scene file beside the lesson. */
 function Named({ label, source, options }: Shown) {
   const id = /^figure:(.+)$/.exec(source)?.[1];
   if (id === undefined) return <SceneFigure label={label} name={source} options={options} />;
@@ -80,7 +81,7 @@ function Named({ label, source, options }: Shown) {
   );
 }
 
-/** A scene that is rendered, and whose pixels are explained. */
+/** Renders a scene file, and explains the pixels that are clicked. */
 function SceneFigure({ label, name, options }: { label: string; name: string; options: string }) {
   const given = settings(options);
   const picture = given.find((option) => option.name === "show")?.value ?? "color";
@@ -118,7 +119,7 @@ function SceneFigure({ label, name, options }: { label: string; name: string; op
   );
 }
 
-/** Options such as `samples=16 show=normals`. */
+/** Parses render options such as `samples=16 show=normals`. */
 export function settings(text: string): Setting[] {
   return text
     .split(/\s+/)

@@ -1,6 +1,6 @@
 import type { ComponentChild } from "preact";
 
-/** A part of a lesson. */
+/** Block of a lesson's Markdown: a heading, paragraph, list, code, figure or question. */
 export type Block =
   | { kind: "heading"; level: number; text: string }
   | { kind: "paragraph"; text: string }
@@ -11,7 +11,7 @@ export type Block =
 
 const figure = /^!\[([^\]]*)\]\(\s*(\S+?)\s*(?:"([^"]*)")?\s*\)$/;
 
-/** Reads the Markdown of a lesson: headings, paragraphs, lists, code, figures, and questions with their answers. */
+/** Parses the Markdown of a lesson into blocks. */
 export function blocks(text: string): Block[] {
   const all: Block[] = [];
   const lines = text.replaceAll("\r\n", "\n").split("\n");
@@ -56,7 +56,7 @@ export function blocks(text: string): Block[] {
       const words = run(
         (inner) => inner.trim() !== "" && !/^(#{1,6}\s|```|!\[|\?\s|([-*]|\d+\.)\s)/.test(inner.trim()),
       );
-      // A line that begins like something else, and is not, is text.
+      // A line that begins like another kind of block but is invalid is text.
       if (words.length === 0) words.push(lines[at++] ?? "");
       all.push({ kind: "paragraph", text: words.map((inner) => inner.trim()).join(" ") });
     }
@@ -66,7 +66,7 @@ export function blocks(text: string): Block[] {
 
 const inline = /\*\*(.+?)\*\*|\*(.+?)\*|`([^`]+)`|\[([^\]]+)\]\((https?:\/\/[^)\s]+|#[^)\s]*)\)/;
 
-/** The words of a line: strong, emphasised, code, and links. */
+/** Converts the inline Markdown of a line: strong, emphasised, code, and links. */
 export function words(text: string): ComponentChild[] {
   const all: ComponentChild[] = [];
   let rest = text;

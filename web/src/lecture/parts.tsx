@@ -4,7 +4,7 @@ import { useState } from "preact/hooks";
 export { Choice } from "../ui/choice";
 export { Switch } from "../ui/switch";
 
-/** A figure: a drawing, its controls, and its equations. */
+/** Layout of a figure: a drawing, its controls, and its equations. */
 export function Figure({
   stage,
   controls,
@@ -23,7 +23,7 @@ export function Figure({
   );
 }
 
-/** An equation in symbols and in the numbers of the figure. */
+/** Equation in symbols, and with the current numbers of the figure. */
 export function Equation({
   children,
   numbers,
@@ -39,7 +39,7 @@ export function Equation({
   );
 }
 
-/** A symbol, in the colour of its counterpart in the figure. */
+/** Symbol of an equation, in the colour that it has in the figure. */
 export function Sym({
   children,
   color,
@@ -56,7 +56,7 @@ export function Sym({
   );
 }
 
-/** A question with an answer that can be unfolded. */
+/** Question with an answer that can be unfolded. */
 export function Question({ ask, children }: { ask: ComponentChildren; children: ComponentChildren }) {
   const [open, setOpen] = useState(false);
   return (

@@ -1,12 +1,13 @@
 import type { ComponentChildren } from "preact";
 
+/** Picked point of an image. */
 interface Place {
-  /** Shares of width and height. */
+  /** Position as fractions of the width and height. */
   x: number;
   y: number;
 }
 
-/** A picture of which a point is picked: by a click, or by arrow keys. */
+/** Wraps an image so that a point in it can be picked by a click or with the arrow keys. */
 export function Picked({
   place,
   pick,

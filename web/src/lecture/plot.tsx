@@ -1,7 +1,7 @@
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 
-/** Maps the plane of a figure to page coordinates. */
+/** Mapping from the plane of a figure to page coordinates. */
 export interface Scale {
   x(x: number): number;
   y(y: number): number;
@@ -14,7 +14,7 @@ export interface Scale {
 }
 
 interface Props {
-  /** Visible range at least, in units: from -x to x and from -y to y around the middle. */
+  /** Minimum visible range in units: from -x to x and from -y to y around the middle. */
   reach: [number, number];
   middle?: [number, number];
   label: string;
@@ -22,7 +22,7 @@ interface Props {
   children(scale: Scale): ComponentChildren;
 }
 
-/** A drawing in the plane. */
+/** Two-dimensional drawing of a figure. */
 export function Plot({ reach, middle = [0, 0], label, aspect = 16 / 9, children }: Props) {
   const box = useRef<HTMLDivElement>(null);
   const [size, setSize] = useState({ width: 0, height: 0 });
@@ -53,7 +53,7 @@ export function Plot({ reach, middle = [0, 0], label, aspect = 16 / 9, children 
   );
 }
 
-/** An arrow in the plane. */
+/** Draws an arrow in the plane. */
 export function PlaneArrow({
   scale,
   from,
@@ -91,7 +91,7 @@ export function PlaneArrow({
   );
 }
 
-/** A label on a drawing. */
+/** Draws a label in the plane. */
 export function PlaneName({
   scale,
   at,

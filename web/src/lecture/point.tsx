@@ -8,11 +8,11 @@ interface Props {
   label: string;
   move(to: Vec): void;
   end?(): void;
-  /** Normal of the plane in which it moves; by default parallel to the page. */
+  /** Normal of the plane in which the point moves; by default, the plane is parallel to the page. */
   plane?: Vec;
 }
 
-/** A point in space that can be dragged within a plane. */
+/** Point in space that can be dragged within a plane. */
 export function Point3({ view, at, color, label, move, end, plane }: Props) {
   const seen = view.point(at);
   if (!seen) return null;

@@ -13,7 +13,7 @@ interface Props {
   told?(head: PictureHead): void;
 }
 
-/** The rendered picture of a session's camera. */
+/** Shows the image that a session renders. */
 export function Rendered({ session, width, height, label, squares = false, told }: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const tell = useRef(told);
@@ -22,7 +22,7 @@ export function Rendered({ session, width, height, label, squares = false, told 
     session.tell({ kind: "size", width, height });
     return session.on((event, bytes) => {
       if (event.kind !== "picture" || !canvas.current) return;
-      // Skip coarse pictures: with so few pixels they would only flicker.
+      // Skip coarse previews, which would only flicker at so few pixels.
       if (squares && event.head.width < width) return;
       draw(canvas.current, event.head.width, event.head.height, bytes);
       tell.current?.(event.head);

@@ -1,6 +1,6 @@
-/** Parts of a figure's scene: few objects, soft light, and the page's background colour. */
+/** Parts of a figure's scene, which `sceneOf` combines: background, lights, materials and objects. */
 export interface Parts {
-  /** Background colour: see `usePaper`. */
+  /** Background colour; see `usePaper`. */
   paper: string;
   materials: string[];
   group: string;
@@ -10,7 +10,7 @@ export interface Parts {
 
 const sun = "DirectionalLight { direction -0.55 -1 -0.45 color 0.72 0.71 0.68 }";
 
-/** Returns the text of a scene. The figure replaces its camera. */
+/** Returns the text of a scene. Its camera is replaced by the figure. */
 export function sceneOf({
   paper,
   materials,

@@ -14,7 +14,7 @@ interface Props {
   children(view: Projector, size: { width: number; height: number }): ComponentChildren;
 }
 
-/** A rendered scene with a drawing over it; dragging orbits the camera. */
+/** Rendered scene with a drawing on top. Dragging orbits the camera. */
 export function Stage({ session, eye, setEye, label, aspect = 16 / 9, children }: Props) {
   const box = useRef<HTMLDivElement>(null);
   const canvas = useRef<HTMLCanvasElement>(null);

@@ -1,8 +1,8 @@
 import type { ComponentChild, ComponentType } from "preact";
 
-/** A topic of the lecture. */
+/** Topic of the lecture or of a lesson: its text, figure and questions. */
 export interface Topic {
-  /** Part of the page's address. */
+  /** Identifier in the page's address. */
   id: string;
   title: string;
   /** One sentence, shown on slides. */

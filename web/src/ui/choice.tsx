@@ -1,4 +1,4 @@
-/** Buttons of which one is chosen. */
+/** Row of buttons, exactly one of which is selected. */
 export function Choice<T extends string>({
   label,
   value,

@@ -12,7 +12,7 @@ interface Props {
   change(value: number, moving: boolean): void;
 }
 
-/** A number that is changed by dragging sideways or by arrow keys. */
+/** Number that is changed by dragging sideways or with the arrow keys. */
 export function Dragged({ label, value, step, decimals, min = -Infinity, max = Infinity, change }: Props) {
   const from = useRef<{ x: number; value: number } | null>(null);
   const clamp = (x: number) => Math.min(max, Math.max(min, x));

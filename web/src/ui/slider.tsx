@@ -11,7 +11,7 @@ interface Props {
   change(value: number): void;
 }
 
-/** A slider with its label and value. */
+/** Slider with its label and value. */
 export function Slider({ label, value, min, max, step, text, change }: Props) {
   const id = useId();
   return (

@@ -1,4 +1,4 @@
-/** A switch, often for the usual mistake. */
+/** On/off switch with a label. */
 export function Switch({ label, on, change }: { label: string; on: boolean; change(on: boolean): void }) {
   return (
     <label class="switch">

@@ -3,7 +3,7 @@ import { gallery } from "./gallery";
 import { linkOf } from "./link";
 import { type Store, useStore } from "./store";
 
-/** Opens, saves and shares scenes. */
+/** Controls that open, save and share scenes. */
 export function FileMenu({ store }: { store: Store }) {
   useStore(store);
   const input = useRef<HTMLInputElement>(null);
@@ -58,7 +58,7 @@ export function FileMenu({ store }: { store: Store }) {
 
 const scenes = /\.(txt|json|gltf|glb|obj|ply|stl|pbrt|xml|3mf|rad|oct)$/i;
 
-/** Uploads files: opens the last scene or model among them; the scene may refer to the others. */
+/** Uploads files, and opens the last scene or model among them. It can refer to the other files. */
 export async function giveFiles(store: Store, files: File[]) {
   const main = files.findLast((file) => scenes.test(file.name));
   for (const file of files.filter((file) => file !== main)) {

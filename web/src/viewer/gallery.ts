@@ -1,4 +1,4 @@
-/** Scenes that need no other files. */
+/** Texts of the example scenes, which need no other files. */
 const texts = import.meta.glob<string>(
   [
     "../../../scenes/whitted.txt",
@@ -24,7 +24,7 @@ const texts = import.meta.glob<string>(
   { query: "?raw", import: "default", eager: true },
 );
 
-/** Names and texts, in alphabetical order. */
+/** Example scenes by name, in alphabetical order. */
 export const gallery: { name: string; text: string }[] = Object.entries(texts)
   .map(([path, text]) => ({ name: path.split("/").at(-1) ?? path, text }))
   .sort((a, b) => a.name.localeCompare(b.name));

@@ -6,9 +6,7 @@ interface Point {
   y: number;
 }
 
-/**
- * Translates mouse, touch and keyboard input over a picture to camera motions; returns a cleanup
- * function.
+/** Translates mouse, touch and keyboard input over an image to camera motions. Returns a cleanup function.
  */
 export function gestures(element: HTMLElement, store: Store, most: () => number): () => void {
   const pointers = new Map<number, Point>();
@@ -17,7 +15,7 @@ export function gestures(element: HTMLElement, store: Store, most: () => number)
   let wheel = 0;
   const frame = () => (element.parentElement ?? element).getBoundingClientRect();
   const size = () => Math.max(1, frame().height);
-  /** A place of the page in the picture, as shares of its sides. */
+  /** Returns a position on the page as fractions of the image's width and height. */
   const share = (x: number, y: number) => {
     const { left, top, width, height } = frame();
     const { zoom } = store;
@@ -26,7 +24,7 @@ export function gestures(element: HTMLElement, store: Store, most: () => number)
       y: zoom.y + ((y - top) / height - 0.5) / zoom.times,
     };
   };
-  /** The pixel at a place of the page. */
+  /** Returns the pixel at a position on the page. */
   const pixel = (x: number, y: number): [number, number] => {
     const at = share(x, y);
     const { full_width, full_height } = store.head ?? { full_width: 1, full_height: 1 };

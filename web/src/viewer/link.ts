@@ -5,9 +5,7 @@ export const firstScene: string = whitted;
 
 const mark = "#/scene/";
 
-/**
- * Returns a link that contains a whole scene, compressed, in the fragment of the URL, which servers
- * never receive.
+/** Returns a link that contains the entire scene, compressed, in the URL's fragment, which servers never receive.
  */
 export async function linkOf(text: string): Promise<string> {
   const stream = new Blob([text]).stream().pipeThrough(new CompressionStream("deflate-raw"));
@@ -18,7 +16,7 @@ export async function linkOf(text: string): Promise<string> {
   return `${location.href.split("#")[0]}${mark}${code}`;
 }
 
-/** Returns the scene of a link; `null` if there is none or it is damaged. */
+/** Returns the scene that a link contains; `null` if there is none or it is damaged. */
 export async function openLink(hash: string): Promise<string | null> {
   if (!hash.startsWith(mark)) return null;
   try {

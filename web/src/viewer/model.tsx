@@ -6,7 +6,7 @@ import { give } from "./settings";
 import { type Store, useStore } from "./store";
 import { zip } from "./zip";
 
-/** What a model holds, which has no text: its objects, and its materials with their fields. */
+/** Shows a model, which has no text, as a tree of its objects, and its materials with their fields. */
 export function Model({ store }: { store: Store }) {
   useStore(store);
   const { contents, tree } = store;
@@ -136,7 +136,7 @@ function MaterialField({ field, set }: { field: FieldState; set(values: number[]
   );
 }
 
-/** Linear light as the eight bits of a page, and back. */
+/** Converts linear RGB to a CSS colour. */
 export function hex(values: number[]): string {
   const eight = (x: number) => {
     const clear = Math.min(1, Math.max(0, x));
@@ -148,6 +148,7 @@ export function hex(values: number[]): string {
   return `#${values.map(eight).join("")}`;
 }
 
+/** Converts a CSS colour to linear RGB. */
 export function linear(color: string): number[] {
   return [1, 3, 5].map((at) => {
     const curve = Number.parseInt(color.slice(at, at + 2), 16) / 255;
@@ -161,7 +162,7 @@ function swatch({ fields }: MaterialState): string {
   return color?.values.length === 3 ? hex(color.values) : "var(--solid)";
 }
 
-/** The model as a scene of the language with its files, in one archive. */
+/** Saves the model as a scene in the scene language with its files, in one ZIP archive. */
 async function pack(store: Store) {
   try {
     const [{ names, sizes }, bytes] = await store.session.askBytes({ kind: "pack" }, "packed");

@@ -4,10 +4,10 @@ import { PixelNumbers } from "./pixel-numbers";
 import { type Store, useStore } from "./store";
 import { nearer, whole } from "./zoom";
 
-/** A pixel is at most so many pixels of the page wide. */
+/** Maximum width of an image pixel, in page pixels. */
 const widest = 96;
 
-/** The picture: dragged to go around, clicked to be explained, and seen larger down to single pixels. */
+/** The rendered image. Drag to orbit, click a pixel to explain it, and zoom in to see single pixels. */
 export function Picture({ store }: { store: Store }) {
   useStore(store);
   const box = useRef<HTMLDivElement>(null);
@@ -41,7 +41,7 @@ export function Picture({ store }: { store: Store }) {
     if (canvas.current && head && pixels) draw(canvas.current, head.width, head.height, pixels);
   }, [head, pixels]);
 
-  // Pixels of the page for a pixel of the picture, and where its upper left corner is.
+  // Page pixels per image pixel, and the position of the image's upper left corner.
   const scale = (width * zoom.times) / fullWidth;
   const corner = [width / 2 - zoom.x * fullWidth * scale, height / 2 - zoom.y * fullHeight * scale] as const;
   const place = (left: number, top: number, columns: number, rows: number) => ({
@@ -60,7 +60,7 @@ export function Picture({ store }: { store: Store }) {
           role="img"
           class={scale > 2 ? "squares" : ""}
           aria-label={
-            "The picture. Drag or use arrow keys to go around, w a s d to walk, plus and minus to come nearer, z to see it larger, click to explain a pixel."
+            "The image. Drag or use the arrow keys to orbit, w a s d to walk, plus and minus to move closer or farther, z to zoom into the image, click to explain a pixel."
           }
           style={place(...region)}
         />
@@ -82,7 +82,7 @@ export function Picture({ store }: { store: Store }) {
           />
         )}
       </div>
-      <div class="zoom row" role="group" aria-label="See the picture larger">
+      <div class="zoom row" role="group" aria-label="Zoom into the image">
         {zoom.times > 1 && (
           <button type="button" class="button" onClick={() => store.look(whole)}>
             Whole
@@ -111,7 +111,7 @@ export function Picture({ store }: { store: Store }) {
   );
 }
 
-/** Where it becomes larger: at the pixel that is explained, if it is seen. */
+/** Returns the centre of a zoom by the buttons: the explained pixel, if it is visible. */
 function middle({ pixel, head, zoom }: Store) {
   if (!pixel || !head) return zoom;
   const at = { x: (pixel.x + 0.5) / head.full_width, y: (pixel.y + 0.5) / head.full_height };
@@ -119,7 +119,7 @@ function middle({ pixel, head, zoom }: Store) {
   return seen ? at : zoom;
 }
 
-/** Draws pixels onto a canvas of their size. */
+/** Draws pixels onto a canvas, which gets the size of the image. */
 export function draw(
   canvas: HTMLCanvasElement,
   width: number,

@@ -3,15 +3,16 @@ import { short } from "../ui/slider";
 import { type Store, useStore } from "./store";
 import { partOf } from "./zoom";
 
-/** From this width of a pixel on, its numbers are written into it. */
+/** Minimum width of an image pixel, in page pixels, at which its numbers are shown. */
 const readable = 44;
 
+/** Values of the visible part of the image. */
 interface Numbers {
   part: [number, number, number, number];
   values: (number | null)[];
 }
 
-/** The numbers of the pixels that are seen, once they are large enough. */
+/** Shows the numbers of the visible pixels, if the pixels are large enough. */
 export function PixelNumbers({
   store,
   scale,
@@ -72,7 +73,7 @@ export function PixelNumbers({
   return <div class="cells">{cells}</div>;
 }
 
-/** One number where all three are the same, as for distances. */
+/** Formats the values of a pixel; a single number if all three are equal, as for depth. */
 export function told(values: (number | null)[]): string[] {
   const [r, g, b] = values;
   const all = r === g && g === b ? [r] : values;

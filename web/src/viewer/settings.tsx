@@ -5,7 +5,7 @@ import { Switch } from "../ui/switch";
 import { type Store, useStore } from "./store";
 import { whole } from "./zoom";
 
-/** Settings of the camera, the display and the renderer. */
+/** Panel with the settings of the camera, the display and the renderer. */
 export function Settings({ store }: { store: Store }) {
   useStore(store);
   return (
@@ -113,7 +113,7 @@ function Display({ store }: { store: Store }) {
           ))}
         </select>
       </div>
-      <Switch label="Denoise the finished picture" on={store.denoises} change={(on) => store.denoise(on)} />
+      <Switch label="Denoise the finished image" on={store.denoises} change={(on) => store.denoise(on)} />
       <div class="row">
         {["picture.png", "picture.exr"].map((name) => (
           <button key={name} type="button" class="button" onClick={() => download(store, name)}>
@@ -135,7 +135,7 @@ async function download(store: Store, name: string) {
   }
 }
 
-/** Gives bytes as a file to the one before the page. */
+/** Lets the browser download bytes as a file. */
 export function give(name: string, bytes: Uint8Array<ArrayBuffer>) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(new Blob([bytes]));

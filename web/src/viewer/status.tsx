@@ -1,7 +1,7 @@
 import { short } from "../ui/slider";
 import { type Store, useStore } from "./store";
 
-/** Progress of the picture, and its hash when it is finished. */
+/** Status line: the progress of the render, and the hash of the finished image. */
 export function Status({ store }: { store: Store }) {
   useStore(store);
   const { head, refused } = store;
@@ -23,7 +23,7 @@ export function Status({ store }: { store: Store }) {
       <span>{time(head.ms)}</span>
       {head.left_ms !== null && <span>{time(head.left_ms)} left</span>}
       {head.noise !== null && (
-        <span title="Visible error of the pixels: what --noise-threshold limits">
+        <span title="Visible error of the pixels, which --noise-threshold limits">
           error {short(head.noise, 2)}
         </span>
       )}
@@ -34,7 +34,7 @@ export function Status({ store }: { store: Store }) {
       )}
       <Under store={store} />
       {head.hash && (
-        <span class="hash" title={`Hash of the picture, as durer render --hash prints it: ${head.hash}`}>
+        <span class="hash" title={`Hash of the image, as durer render --hash prints it: ${head.hash}`}>
           {head.hash.slice(0, 16)}
         </span>
       )}
@@ -42,7 +42,7 @@ export function Status({ store }: { store: Store }) {
   );
 }
 
-/** The pixel below the pointer and its eight bits. */
+/** Shows the pixel below the pointer and its 8-bit values. */
 function Under({ store }: { store: Store }) {
   const { under, head, pixels } = store;
   if (!under || !head || !pixels) return null;

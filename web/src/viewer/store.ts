@@ -18,14 +18,15 @@ import type {
 } from "../protocol";
 import { cropOf, whole, type Zoom } from "./zoom";
 
+/** Event that states which file was opened. */
 type Opened = Extract<Event, { kind: "opened" }>;
 
-/** State and operations of the viewer. */
+/** State and operations of the viewer, to which its components subscribe. */
 export class Store {
   readonly session: Session;
   opened: Opened | null = null;
   text = "";
-  /** Number of texts that did not come from the editor. */
+  /** Number of times that the text was replaced from outside the editor. */
   textVersion = 0;
   edited = false;
   diskText: string | null = null;
@@ -47,13 +48,13 @@ export class Store {
   lamps: Lamp[] = [];
   words: Word[] = [];
   refused: string | null = null;
-  /** The pixel up to which the algorithm has come, and its ray. */
+  /** The pixel that the step-by-step view has reached, and its ray. */
   scan: { x: number; y: number; ray: RayAccount | null } | null = null;
-  /** Part of the picture that is seen, as shares of its sides. */
+  /** The visible part of the image. */
   zoom: Zoom = whole;
   denoises = false;
   under: [number, number] | null = null;
-  /** Boxes of the trees, and the level up to which they are drawn. */
+  /** Bounding boxes of the trees that are drawn. */
   boxes: BoxState[] = [];
   boxLevel: number | null = null;
   tree: Extract<Event, { kind: "tree" }> | null = null;
@@ -121,7 +122,7 @@ export class Store {
     this.changed();
   }
 
-  /** Sees a part of the picture larger. A part of less than half of it is rendered alone. */
+  /** Zooms to a part of the image. From a zoom of two, only that part is rendered. */
   look(zoom: Zoom) {
     this.zoom = zoom;
     const { full_width, full_height } = this.head ?? { full_width: 1, full_height: 1 };
@@ -133,7 +134,7 @@ export class Store {
     this.changed();
   }
 
-  /** The pixel below the pointer. */
+  /** Sets the pixel below the pointer. */
   point(pixel: [number, number] | null) {
     if (this.under?.join() === pixel?.join()) return;
     this.under = pixel;
@@ -146,7 +147,7 @@ export class Store {
     this.changed();
   }
 
-  /** Draws the boxes of the trees up to a level; `null` for none. */
+  /** Draws the bounding boxes of the trees up to a level; `null` hides them. */
   async showBoxes(level: number | null) {
     this.boxLevel = level;
     if (level !== null && this.boxes.length === 0) await this.#askBoxes();
@@ -176,7 +177,7 @@ export class Store {
     });
   }
 
-  /** Ends a motion, so that the full picture is rendered. */
+  /** Ends a motion, so that the image is rendered with all samples. */
   settle() {
     requestAnimationFrame(() =>
       this.session.tell({
@@ -222,7 +223,7 @@ export class Store {
     this.changed();
   }
 
-  /** Accepts a text that another program wrote. */
+  /** Replaces the text with the one that another program wrote to the file. */
   takeDisk(text: string) {
     this.diskText = null;
     this.replace(text);

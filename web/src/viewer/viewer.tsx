@@ -11,7 +11,7 @@ import { type Store, useStore } from "./store";
 
 type Side = "explain" | "settings";
 
-/** The scene's text, its picture, and the explanation of a pixel. */
+/** The viewer: panes with the scene's text, its image, and the explanation of a pixel. */
 export function Viewer({ store }: { store: Store }) {
   useStore(store);
   const [side, setSide] = useState<Side>("explain");
@@ -53,7 +53,7 @@ export function Viewer({ store }: { store: Store }) {
         )}
         <Findings store={store} />
       </section>
-      <section class="pane view" aria-label="Picture">
+      <section class="pane view" aria-label="Image">
         <div class="pane-head">
           <PictureTabs store={store} />
         </div>

@@ -4,21 +4,21 @@ const table = Uint32Array.from({ length: 256 }, (_, n) => {
   return c;
 });
 
-/** The checksum of a ZIP archive. */
+/** Returns the CRC-32 checksum of bytes, as ZIP archives need it. */
 export function crc(bytes: Uint8Array): number {
   let c = 0xffffffff;
   for (const byte of bytes) c = (table[(c ^ byte) & 255] ?? 0) ^ (c >>> 8);
   return (c ^ 0xffffffff) >>> 0;
 }
 
-/** A ZIP archive whose files are stored as they are. */
+/** Creates a ZIP archive with uncompressed files. */
 export function zip(files: { name: string; bytes: Uint8Array }[]): Uint8Array<ArrayBuffer> {
   const parts: Uint8Array[] = [];
   const directory: Uint8Array[] = [];
   let at = 0;
   for (const { name, bytes } of files) {
     const title = new TextEncoder().encode(name);
-    // Version 2.0, names in UTF-8, stored, and 1 January 1980.
+    // Version 2.0, UTF-8 names, no compression, and the date 1 January 1980.
     const common = [20, 0x0800, 0, 0, 0x21].map(short);
     const sizes = [crc(bytes), bytes.length, bytes.length].map(long);
     const lengths = [short(title.length), short(0)];

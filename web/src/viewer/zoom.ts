@@ -1,4 +1,4 @@
-/** The part of a picture that is seen: its middle as shares of the sides, and how many times larger it is. */
+/** Visible part of an image: its centre as fractions of the width and height, and the magnification. */
 export interface Zoom {
   x: number;
   y: number;
@@ -7,7 +7,7 @@ export interface Zoom {
 
 export const whole: Zoom = { x: 0.5, y: 0.5, times: 1 };
 
-/** A zoom whose part lies within the picture. */
+/** Returns the zoom, limited to `most` and shifted so that the visible part lies within the image. */
 export function kept({ x, y, times }: Zoom, most: number): Zoom {
   const size = Math.min(most, Math.max(1, times));
   const half = 0.5 / size;
@@ -15,14 +15,14 @@ export function kept({ x, y, times }: Zoom, most: number): Zoom {
   return { x: within(x), y: within(y), times: size };
 }
 
-/** Sees a picture larger or smaller, with a point of it staying where it is. */
+/** Returns the zoom changed by a factor, such that a point of the image stays in place. */
 export function nearer(zoom: Zoom, factor: number, at: { x: number; y: number }, most: number): Zoom {
   const times = Math.min(most, Math.max(1, zoom.times * factor));
   const stays = zoom.times / times;
   return kept({ x: at.x + (zoom.x - at.x) * stays, y: at.y + (zoom.y - at.y) * stays, times }, most);
 }
 
-/** The part in pixels: first column, first row, width and height, with a border of a pixel. */
+/** Returns the visible part in pixels, rounded outwards: first column, first row, width and height. */
 export function partOf(
   { x, y, times }: Zoom,
   width: number,
@@ -37,7 +37,7 @@ export function partOf(
   return [left, top, columns, rows];
 }
 
-/** What is rendered of a picture: all of it, unless much less is seen. */
+/** Returns the part of the image to render; `null` for the entire image, below a zoom of two. */
 export function cropOf(zoom: Zoom, width: number, height: number): [number, number, number, number] | null {
   return zoom.times < 2 ? null : partOf(zoom, width, height);
 }

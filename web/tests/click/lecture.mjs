@@ -23,9 +23,9 @@ for (const topic of topics) {
   });
 }
 
-/** The words of a figure's equations. */
+/** Returns the text of a figure's equations. */
 const equations = (page) => page.locator(".equations").textContent();
-/** The number that a figure's words hold, once they do. */
+/** Waits until the equations of a figure match, and returns the captured numbers. */
 async function told(page, pattern) {
   await page.waitForFunction(
     (source) => new RegExp(source).test(document.querySelector(".equations").textContent),
@@ -59,17 +59,17 @@ await test("numbers: obscura", wide, async (page) => {
     /z\) = (\d+\.\d{3})(\d+) of (\d+) rays.*spot ([\d.]+) high/,
   );
   if (!(passed > 0 && passed < all)) throw new Error(`${passed} of ${all}`);
-  // Rays that pass are a tenth of the hole's radius apart.
+  // The rays are spaced by a tenth of the hole's radius.
   if (!(spot <= wanted && spot > 0.7 * wanted)) throw new Error(`spot ${spot}, ${wanted} at most`);
 });
 
 await test("numbers: cameras", wide, async (page) => {
   await open(page, "#/lecture/cameras");
-  const [columns, rows, there] = await told(page, /of (\d+) × (\d+) rays, (\d+) exist/);
-  // A disc in a square.
+  const [columns, rows, there] = await told(page, /of (\d+) × (\d+) pixels, (\d+) have a ray/);
+  // The rays fill a disc in a square.
   near(there / (columns * rows), Math.PI / 4, 0.06, "share of the disc");
   await page.getByRole("button", { name: "Two eyes" }).click();
-  near((await told(page, /they start at (\d+) places/))[0], 2, 0, "eyes");
+  near((await told(page, /they start at (\d+) points/))[0], 2, 0, "eyes");
 });
 
 await test("numbers: epsilon", wide, async (page) => {
@@ -84,7 +84,7 @@ await test("numbers: epsilon", wide, async (page) => {
     { timeout: 30_000 },
   );
   await shot(page, "epsilon-leaks");
-  await page.getByRole("switch", { name: "Exact starts, no epsilon" }).click();
+  await page.getByRole("switch", { name: "Exact origins, no epsilon" }).click();
   await page.waitForFunction(
     () => /(^|\D)0 of 76,800/.test(document.querySelector(".equations").textContent),
     null,
@@ -148,7 +148,7 @@ for (const topic of (process.env.NARROW ?? "").split(",").filter(Boolean)) {
   }
 }
 
-// `durer lesson web/tests/lesson/monday.md` is behind this address.
+// This address serves `durer lesson web/tests/lesson/monday.md`.
 if (process.env.LESSON) {
   await test("a lesson of one's own", wide, async (page) => {
     await page.goto(process.env.LESSON.split("#")[0] + "#/lesson");

@@ -1,4 +1,4 @@
-/** Picture, text, explanation and settings. */
+/** Image, text, explanation and settings. */
 import { finished, middle, narrow, open, scenes, shot, test, wide } from "./harness.mjs";
 
 for (const [width, size] of [
@@ -64,7 +64,7 @@ await test("step by step", wide, async (page) => {
   await shot(page, "steps");
 });
 
-await test("a row and the whole picture, step by step", wide, async (page) => {
+await test("a row and the entire image, step by step", wide, async (page) => {
   await open(page);
   await finished(page);
   const box = await page.locator(".picture canvas").boundingBox();
@@ -77,9 +77,9 @@ await test("a row and the whole picture, step by step", wide, async (page) => {
   );
   await page.waitForTimeout(2500);
   await shot(page, "steps-row");
-  await page.getByRole("button", { name: "The whole picture" }).click();
+  await page.getByRole("button", { name: "The entire image" }).click();
   await page.getByRole("button", { name: "Pause" }).click();
-  await page.getByLabel("Row of the picture").fill("200");
+  await page.getByLabel("Row of the image").fill("200");
   const words = /^row 200: (\d+) rays, (\d+) hit something, (\d+) the background$/;
   await page.waitForFunction(
     (source) => new RegExp(source).test(document.querySelector(".sentence").textContent),
@@ -103,7 +103,7 @@ await test("the picture is seen down to its pixels and their numbers", wide, asy
   await page.waitForSelector(".cell");
   await finished(page);
   await page.waitForTimeout(400);
-  // The number in the pixel is the one that its explanation has.
+  // The number shown in the pixel is that of its explanation.
   const [, x, y] = /Pixel (\d+), (\d+)/.exec(await page.locator("header.pixel").textContent());
   const cell = page.locator(".cell", { hasText: `${x}, ${y}` }).first();
   const shown = await cell.locator("b").allTextContents();
@@ -149,7 +149,7 @@ await test("denoised, and noise and time are told", wide, async (page) => {
   await finished(page);
   await page.waitForFunction(() => /error 0\.\d+/.test(document.querySelector(".status").textContent));
   const hash = await page.locator(".status .hash").textContent();
-  await page.getByRole("switch", { name: "Denoise the finished picture" }).click();
+  await page.getByRole("switch", { name: "Denoise the finished image" }).click();
   await page.waitForFunction(() => /denoised/.test(document.querySelector(".status").textContent), null, {
     timeout: 60_000,
   });
@@ -162,7 +162,7 @@ await test("settings", wide, async (page) => {
   await finished(page);
   await page.getByRole("tab", { name: "Camera and render" }).click();
   await page.getByRole("tab", { name: "Normals", exact: true }).click();
-  // The picture turns from red, yellow and blue to that of upward normals.
+  // The image changes from red, yellow and blue to the colour of upward normals.
   await page.waitForFunction(() => {
     const canvas = document.querySelector(".picture canvas");
     const [r, g, b] = canvas

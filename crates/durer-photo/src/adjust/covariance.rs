@@ -1,10 +1,10 @@
 //! Covariance of estimated cameras.
 //!
-//! Near the solution, the errors of all parameters have the covariance σ² (Jᵀ J)⁻¹, for errors of σ
-//! pixels in each component of each observation. The covariance of the cameras is σ² times the
-//! inverse of the reduced matrix. Photographs do not determine the position, orientation, and scale
-//! of the whole. These are fixed by the pose of the first photograph and by the largest component
-//! of the relative translation of the photograph farthest from it.
+//! If each component of each observation has an error of σ pixels, the parameters near the solution
+//! have the covariance σ² (Jᵀ J)⁻¹. The covariance of the cameras is σ² times the inverse of the
+//! reduced matrix. Photographs do not determine the position, orientation, and scale of the
+//! reconstruction. They are fixed by keeping the pose of the first photograph, and the largest
+//! component of the translation from it to the most distant photograph.
 //!
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! sections 5.2 and A6.
@@ -13,28 +13,31 @@ use super::{Loss, Options, System};
 use crate::{Error, Reconstruction};
 use nalgebra::{Cholesky, DMatrix, Matrix6};
 
-/// Covariance of all cameras.
+/// Covariance matrix of all camera and lens parameters of a reconstruction, computed by
+/// [`covariance`] from the residuals.
 pub struct Covariance {
-    /// Standard deviation of an observation's components in pixels, estimated from the residuals.
+    /// Standard deviation in pixels of one component of an observation, estimated from the
+    /// residuals.
     pub sigma: f64,
-    /// Photograph number of each known pose, and the start of its six columns: a rotation ω, which
-    /// replaces R by exp(\[ω\]×) R, followed by the translation.
+    /// For each known pose, its photograph number and the first of its six columns: a rotation ω
+    /// that replaces R by exp(\[ω\]×) R, followed by the translation.
     pub views: Vec<(usize, usize)>,
     /// Covariance matrix of all cameras: six rows per pose, then three per lens (f, k1, k2). Zero
     /// for fixed parameters.
     pub matrix: DMatrix<f64>,
-    /// Rows of the free parameters.
+    /// Indices of the free parameters' rows in `matrix`.
     pub free: Vec<usize>,
 }
 
 impl Covariance {
-    /// Covariance of a photograph's pose.
+    /// Returns the 6x6 covariance of a photograph's pose, rotation first; `None` if its pose is
+    /// unknown.
     pub fn pose(&self, view: usize) -> Option<Matrix6<f64>> {
         let (_, at) = *self.views.iter().find(|(number, _)| *number == view)?;
         Some(self.matrix.fixed_view::<6, 6>(at, at).into_owned())
     }
 
-    /// Standard deviation of a photograph's position, as a length.
+    /// Returns the standard deviation of a camera's position, as a length in world units.
     pub fn place(&self, all: &Reconstruction, view: usize) -> Option<f64> {
         let (pose, covariance) = (all.views[view].pose?, self.pose(view)?);
         let turn = pose.rotation.transpose();
@@ -46,12 +49,12 @@ impl Covariance {
     }
 }
 
-/// Computes the covariance of the cameras of a solution. `options` must be the options of the
+/// Computes the covariance of the cameras after bundle adjustment. `options` must be those of the
 /// adjustment.
 ///
 /// # Errors
 ///
-/// If the photographs do not determine a camera.
+/// If the observations do not determine all cameras, or if fewer than two poses are known.
 pub fn covariance(all: &Reconstruction, options: &Options) -> Result<Covariance, Error> {
     let options = Options { loss: Loss::Squared, ..*options };
     // A point with a single observation does not constrain the cameras, and its own position is

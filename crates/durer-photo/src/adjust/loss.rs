@@ -1,20 +1,20 @@
-//! Loss functions.
+//! Loss functions for bundle adjustment.
 
-/// Loss function ρ of the squared length s of a residual, in square pixels. The cost is half the
-/// sum of ρ.
+/// Loss function ρ(s) that weights residuals in bundle adjustment. s is the squared length of a
+/// residual in square pixels, and the cost is half the sum of ρ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Loss {
     /// ρ = s: least squares.
     Squared,
-    /// Huber loss with length d: s up to d², then 2 d √s - d², which grows linearly with the
-    /// residual.
+    /// Huber loss with threshold d in pixels: s up to d², then 2 d √s - d², which grows linearly
+    /// with the residual.
     Huber(f64),
-    /// Cauchy loss with length c: c² ln(1 + s / c²). Outliers count very little.
+    /// Cauchy loss with scale c in pixels: c² ln(1 + s / c²). Outliers have little weight.
     Cauchy(f64),
 }
 
 impl Loss {
-    /// Returns ρ and its derivative by s.
+    /// Returns ρ(s) and its derivative.
     pub(super) fn at(self, s: f64) -> (f64, f64) {
         match self {
             Loss::Huber(d) if s > d * d => (2.0 * d * s.sqrt() - d * d, d / s.sqrt()),

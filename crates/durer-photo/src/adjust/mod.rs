@@ -1,9 +1,10 @@
 //! Bundle adjustment: moves cameras and points together until the projections match the
 //! observations.
 //!
-//! Uses the Levenberg-Marquardt method: the diagonal of the normal equations is multiplied by 1 +
-//! λ, a step is accepted if the cost decreases, and λ depends on how well the decrease was
-//! predicted. The position, orientation, and scale of the whole are free; damping holds them.
+//! The method is Levenberg-Marquardt: the diagonal of the normal equations is multiplied by 1 + λ,
+//! a step is accepted if it decreases the cost, and λ is adapted to how well the decrease was
+//! predicted. The position, orientation, and scale of the reconstruction are not constrained;
+//! damping keeps them from drifting.
 //!
 //! Sources: Nocedal, Wright, *Numerical Optimisation*, 2nd edition, 2006, chapter 10; for λ:
 //! Madsen, Nielsen, Tingleff, *Methods for Non-Linear Least Squares Problems*, 2004, section 3.2.
@@ -20,10 +21,10 @@ use crate::Reconstruction;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use system::{State, System};
 
-/// Options of bundle adjustment.
+/// Options of bundle adjustment: the loss function, which parameters are free, and when to stop.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
-    /// Loss function of a residual.
+    /// Loss function applied to each residual.
     pub loss: Loss,
     /// True if focal lengths are free. Photographs with the same lens share one.
     pub focal: bool,
@@ -43,10 +44,10 @@ impl Default for Options {
     }
 }
 
-/// Report of a bundle adjustment.
+/// Result of [`adjust`]: the cost after each step, and whether the adjustment converged.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
-    /// Cost at the start and after each tried step: half the sum of the losses.
+    /// Cost at the start and after each attempted step: half the sum of the losses.
     pub costs: Vec<f64>,
     /// True if the adjustment converged, false if it reached the maximum number of steps.
     pub converged: bool,
@@ -57,7 +58,7 @@ pub fn adjust(all: &mut Reconstruction, options: &Options) -> Report {
     adjust_watched(all, options, &|_, _| {})
 }
 
-/// Adjusts as [`adjust`] does, and calls `watch` with the number and the cost of each step.
+/// Runs [`adjust`], and calls `watch` with the number and the cost of each step.
 pub fn adjust_watched(all: &mut Reconstruction, options: &Options, watch: &dyn Fn(usize, f64)) -> Report {
     let (system, mut state, views) = System::new(all, *options);
     let mut cost = system.cost(&state);
@@ -70,14 +71,14 @@ pub fn adjust_watched(all: &mut Reconstruction, options: &Options, watch: &dyn F
                 let next_cost = system.cost(next);
                 let fall = cost - next_cost;
                 let ratio = fall / foreseen;
-                // NaN, if a step led through a camera, does not count as a decrease.
+                // The cost is NaN if a point passed through a camera; this test then fails.
                 if ratio > 1e-3 && fall > 0.0 {
                     let bend = 2.0 * ratio - 1.0;
                     damping = (damping * (1.0 - bend * bend * bend).max(1.0 / 3.0)).max(1e-16);
                     growth = 2.0;
                     (true, fall)
                 } else {
-                    // Limit of double precision.
+                    // The step is at the limit of double precision.
                     report.converged = foreseen.abs() <= 1e-14 * cost;
                     (false, fall)
                 }
@@ -102,7 +103,7 @@ pub fn adjust_watched(all: &mut Reconstruction, options: &Options, watch: &dyn F
         report.costs.push(cost);
     }
     views.iter().zip(state.poses).for_each(|(view, pose)| {
-        // Many small rotations accumulate rounding errors.
+        // The product of many small rotations drifts away from a rotation.
         let rotation = crate::model::nearest_rotation(&pose.rotation);
         all.views[*view].pose = Some(crate::Pose { rotation, ..pose });
     });
@@ -111,7 +112,8 @@ pub fn adjust_watched(all: &mut Reconstruction, options: &Options, watch: &dyn F
     report
 }
 
-/// Derivatives of a pixel by its camera: rotation, translation, f, k1, and k2.
+/// Returns the derivatives of a pixel with respect to its camera: rotation, translation, f, k1, and
+/// k2.
 pub(crate) fn camera_jacobian(
     lens: &crate::Lens,
     pose: &crate::Pose,
@@ -123,7 +125,7 @@ pub(crate) fn camera_jacobian(
 /// Computes a damped step, and the decrease of the cost that it predicts.
 fn attempt(system: &System, state: &State, damping: f64) -> Option<(State, f64)> {
     let mut reduced = system.reduce(state, damping);
-    // Decouple fixed parameters and those without influence.
+    // A parameter that is fixed or has no influence gets the equation 1 · dx = 0.
     let held: DVector<f64> = reduced.diagonal.map(|d| if d > 0.0 { damping * d } else { 1.0 });
     (0..system.size).for_each(|i| reduced.matrix[(i, i)] += held[i]);
     let step = solve(reduced.matrix, &reduced.right)?;

@@ -17,7 +17,7 @@ use crate::{Lens, Pose, Reconstruction};
 use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix3, SMatrix, Vector2, Vector3};
 use rayon::prelude::*;
 
-/// Free parameters.
+/// Parameters that bundle adjustment estimates: poses, lenses, and points.
 #[derive(Clone)]
 pub struct State {
     pub poses: Vec<Pose>,
@@ -25,28 +25,30 @@ pub struct State {
     pub points: Vec<Vector3<f64>>,
 }
 
-/// An observation by a photograph with a known pose: pixel, pose, and lens.
+/// Observed pixel in a photograph with a known pose, with the indices of its pose and lens in a
+/// [`State`].
 struct SystemObservation {
     pixel: Vector2<f64>,
     pose: usize,
     lens: usize,
 }
 
-/// Observations and the layout of the parameters.
+/// Nonlinear least-squares problem of bundle adjustment: the observations of each point, and the
+/// layout of the camera parameters.
 pub struct System {
     options: Options,
     seen: Vec<SystemObservation>,
-    /// Start of each point's observations, and the end.
+    /// Index of each point's first observation in `seen`, followed by the number of observations.
     starts: Vec<usize>,
-    /// Runs of points with similar numbers of observations. The number of runs depends only on the
-    /// problem, so that the order of summation does, too.
+    /// Consecutive points that are summed by one task, with similar numbers of observations. The
+    /// division depends only on the problem, so the order of summation does too.
     runs: Vec<std::ops::Range<usize>>,
     poses: usize,
     /// Number of camera parameters: six per pose, then three per lens.
     pub size: usize,
 }
 
-/// Reduced equations and intermediate results.
+/// Normal equations of the cameras, after the points have been eliminated by the Schur complement.
 pub struct Reduced {
     /// U - W V⁻¹ Wᵀ, with undamped U.
     pub matrix: DMatrix<f64>,
@@ -58,14 +60,15 @@ pub struct Reduced {
     pub diagonal: DVector<f64>,
 }
 
-/// Weighted residual and derivatives of an observation.
+/// Weighted residual of an observation, and its derivatives with respect to the camera and the
+/// point.
 struct Row {
     residual: Vector2<f64>,
     by_camera: CameraJacobian,
     by_point: Matrix2x3<f64>,
 }
 
-/// Damped normal equations of a point.
+/// Damped 3x3 normal equations of one point, and the rows of its observations.
 struct PointBlock {
     rows: Vec<Row>,
     inverse: Matrix3<f64>,
@@ -101,8 +104,8 @@ impl System {
         (System { options, seen, starts, runs, poses: views.len(), size }, state, views)
     }
 
-    /// Ranges of an observation's nine columns: for each, start in the row, count, and start in the
-    /// system; first for the pose, then for the lens.
+    /// Returns the ranges of an observation's nine columns, first of the pose, then of the lens:
+    /// the start in its row, the length, and the start in the system.
     fn columns(&self, seen: &SystemObservation) -> [(usize, usize, usize); 2] {
         [(0, 6, 6 * seen.pose), (6, 3, 6 * self.poses + 3 * seen.lens)]
     }
@@ -111,7 +114,7 @@ impl System {
         &self.seen[self.starts[point]..self.starts[point + 1]]
     }
 
-    /// Half the sum of the losses.
+    /// Returns half the sum of the losses.
     pub fn cost(&self, state: &State) -> f64 {
         let run = |run: &std::ops::Range<usize>| {
             let one = |i: usize| {
@@ -144,7 +147,7 @@ impl System {
         let (lens, pose) = (&state.lenses[seen.lens], &state.poses[seen.pose]);
         let (pixel, mut by_camera, by_point) = project(lens, pose, &state.points[point]);
         let residual = pixel - seen.pixel;
-        // Apply the loss as a weight: Triggs' correction without its second derivative.
+        // The loss becomes a weight: Triggs' correction without the term of the second derivative.
         let weight = self.options.loss.at(residual.norm_squared()).1.sqrt();
         for (column, free) in [(6, self.options.focal), (7, self.options.radial), (8, self.options.radial)] {
             if !free {
@@ -239,7 +242,7 @@ impl System {
         (parts.into_iter().flat_map(|part| part.0).collect(), fall)
     }
 
-    /// Cameras after a step.
+    /// Returns the poses and lenses after a step.
     pub fn moved(&self, state: &State, step: &DVector<f64>) -> (Vec<Pose>, Vec<Lens>) {
         let (mut poses, mut lenses) = (state.poses.clone(), state.lenses.clone());
         let three = |at: usize| Vector3::new(step[at], step[at + 1], step[at + 2]);
@@ -256,7 +259,7 @@ impl System {
         (poses, lenses)
     }
 
-    /// Number of components of all residuals.
+    /// Returns the number of residual components: two for each observation.
     pub fn residuals(&self) -> usize {
         2 * self.seen.len()
     }

@@ -6,17 +6,18 @@ use std::f32::consts::{PI, TAU};
 
 /// Number of bins of the orientation histogram.
 const BINS: usize = 36;
-/// Number of cells of a descriptor along each axis, and number of bins per cell.
+/// Number of cells of a descriptor along each axis.
 const CELLS: usize = 4;
+/// Number of orientation bins per cell.
 const TURNS: usize = 8;
-/// Width of a cell, relative to the scale.
+/// Width of a cell, as a multiple of the feature's scale.
 const CELL: f32 = 3.0;
 
-/// Features of a point, one for each of its orientations, in pixels of the picture.
+/// Returns the features of an extremum, one for each of its orientations, with positions in pixels
+/// of the image.
 pub fn describe(octaves: &[Octave], point: &Point, doubled: bool) -> Vec<(Feature, [u8; LENGTH])> {
     let gray = &octaves[point.octave].blurs[point.level];
-    // Pixels of the picture per pixel of the octave. Halving keeps the centre of the first pixel in
-    // place.
+    // Image pixels per octave pixel. Halving keeps the centre of the first pixel in place.
     let of_base = (1 << point.octave) as f32;
     let base = if doubled { 0.5 } else { 1.0 };
     let feature = |angle: f32| Feature {
@@ -29,7 +30,7 @@ pub fn describe(octaves: &[Octave], point: &Point, doubled: bool) -> Vec<(Featur
     orientations(gray, point).into_iter().map(|angle| (feature(angle), descriptor(gray, point, angle))).collect()
 }
 
-/// Length and direction of the gradient.
+/// Returns the length and the direction of the gradient at a pixel.
 fn gradient(gray: &Gray, x: usize, y: usize) -> (f32, f32) {
     let (dx, dy) = (gray.at(x + 1, y) - gray.at(x - 1, y), gray.at(x, y + 1) - gray.at(x, y - 1));
     ((dx * dx + dy * dy).sqrt(), libm::atan2f(dy, dx))
@@ -48,8 +49,8 @@ fn around(gray: &Gray, point: &Point, radius: f32, mut each: impl FnMut(usize, u
     }
 }
 
-/// Finds at most two orientations: peaks of the gradient histogram that reach four fifths of the
-/// highest.
+/// Returns at most two orientations: the peaks of the gradient histogram that reach four fifths of
+/// the highest one.
 fn orientations(gray: &Gray, point: &Point) -> Vec<f32> {
     let sigma = 1.5 * point.scale;
     let mut bins = [0.0_f32; BINS];
@@ -71,7 +72,7 @@ fn orientations(gray: &Gray, point: &Point) -> Vec<f32> {
     for i in 0..BINS {
         let (left, here, right) = (bins[(i + BINS - 1) % BINS], bins[i], bins[(i + 1) % BINS]);
         if here > left && here > right && here >= 0.8 * largest {
-            // Vertex of the parabola through the centres of three bins.
+            // Position of the vertex of the parabola through three bins.
             let shift = 0.5 * (left - right) / (left - 2.0 * here + right);
             peaks.push((here, (i as f32 + 0.5 + shift) / BINS as f32 * TAU - PI));
         }
@@ -81,7 +82,8 @@ fn orientations(gray: &Gray, point: &Point) -> Vec<f32> {
     peaks.into_iter().map(|peak| peak.1).collect()
 }
 
-/// Gradient histograms of the cells. Each gradient is distributed to neighbouring cells and bins.
+/// Computes the SIFT descriptor: the gradient histograms of all cells. Each gradient is distributed
+/// over the neighbouring cells and bins by linear interpolation.
 fn descriptor(gray: &Gray, point: &Point, angle: f32) -> [u8; LENGTH] {
     let width = CELL * point.scale;
     let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
@@ -89,7 +91,7 @@ fn descriptor(gray: &Gray, point: &Point, angle: f32) -> [u8; LENGTH] {
     let mut bins = [0.0_f32; LENGTH];
     around(gray, point, width * (half + 0.5) * std::f32::consts::SQRT_2, |x, y, dx, dy| {
         let (u, v) = ((cos * dx + sin * dy) / width, (cos * dy - sin * dx) / width);
-        // Relative to the centre of the first cell.
+        // Coordinates relative to the centre of the first cell.
         let (column, row) = (u + half - 0.5, v + half - 0.5);
         if column <= -1.0 || row <= -1.0 || column >= CELLS as f32 || row >= CELLS as f32 {
             return;
@@ -112,7 +114,7 @@ fn descriptor(gray: &Gray, point: &Point, angle: f32) -> [u8; LENGTH] {
             }
         }
     });
-    // Clamp large gradients, which lighting causes, to a fifth of the whole.
+    // Clamp large gradients caused by lighting to a fifth of the descriptor's length.
     let length = bins.iter().map(|b| b * b).sum::<f32>().sqrt().max(1e-12);
     bins.iter_mut().for_each(|b| *b = (*b / length).min(0.2));
     let sum = bins.iter().sum::<f32>().max(1e-12);

@@ -4,25 +4,27 @@ use super::Gray;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-/// Number of scales per octave that are searched.
+/// Number of scales per octave that are searched for extrema.
 pub const LEVELS: usize = 3;
-/// Blur of the first picture of an octave.
+/// Standard deviation of the blur of an octave's first image, in pixels.
 pub const FIRST: f32 = 1.6;
-/// Assumed blur of a photograph.
+/// Assumed standard deviation of the blur of a photograph, in pixels.
 const OWN: f32 = 0.5;
-/// Minimum difference of Gaussians, for values from 0 to 1, and maximum ratio of curvatures.
+/// Minimum difference of Gaussians of an extremum, for pixel values from 0 to 1.
 const WEAKEST: f32 = 0.02 / LEVELS as f32;
+/// Maximum ratio of the two curvatures of an extremum; extrema on edges have a larger one.
 const EDGE: f32 = 10.0;
 /// Width of the border that is not searched, in pixels.
 const BORDER: usize = 5;
 
-/// Pictures of the same size with increasing blur.
+/// Level of the scale-space pyramid: images of one size with increasing blur, and their
+/// differences.
 pub struct Octave {
     pub blurs: Vec<Gray>,
     differences: Vec<Gray>,
 }
 
-/// An extremum.
+/// Extremum of the difference of Gaussians in scale space: a candidate for a SIFT feature.
 #[derive(Debug, Clone, Copy)]
 pub struct Point {
     pub octave: usize,
@@ -42,7 +44,7 @@ fn power(levels: f32) -> f32 {
     libm::exp2f(levels / LEVELS as f32)
 }
 
-/// Builds all octaves, down to the smallest useful size.
+/// Builds the scale-space pyramid, down to the smallest useful size.
 pub fn octaves(gray: &Gray, doubled: bool) -> Vec<Octave> {
     let (start, own) = if doubled { (gray.doubled(), 2.0 * OWN) } else { (gray.clone(), OWN) };
     let mut first = start.blurred((FIRST * FIRST - own * own).sqrt());
@@ -90,8 +92,8 @@ fn in_row(d: &[Gray], octave: usize, level: usize, row: usize) -> Vec<Point> {
     (BORDER..width - BORDER).filter(extreme).filter_map(|column| refined(d, octave, level, row, column)).collect()
 }
 
-/// Refines an extremum by a quadratic fit to its neighbours; `None` if the extremum is far away,
-/// weak, or on an edge.
+/// Refines an extremum by a quadratic fit to its neighbours; `None` if the fit moves away, or if
+/// the extremum is weak or on an edge.
 fn refined(d: &[Gray], octave: usize, mut level: usize, mut row: usize, mut column: usize) -> Option<Point> {
     for _ in 0..5 {
         let at = |dx: isize, dy: isize, dl: isize| {

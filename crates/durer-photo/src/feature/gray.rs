@@ -1,8 +1,8 @@
-//! Single-channel pictures.
+//! Greyscale images.
 
 use rayon::prelude::*;
 
-/// A greyscale picture.
+/// Greyscale image with one `f32` per pixel, in which features are detected.
 #[derive(Debug, Clone)]
 pub struct Gray {
     /// Width in pixels.
@@ -14,12 +14,13 @@ pub struct Gray {
 }
 
 impl Gray {
-    /// Value of a pixel.
+    /// Returns the value of a pixel.
     pub fn at(&self, x: usize, y: usize) -> f32 {
         self.values[y * self.width + x]
     }
 
-    /// Applies a Gaussian blur. Beyond the borders, the edge pixels are repeated.
+    /// Applies a Gaussian blur with standard deviation `sigma` in pixels. Edge pixels are repeated
+    /// beyond the border.
     pub fn blurred(&self, sigma: f32) -> Gray {
         let radius = (4.0 * sigma).ceil() as usize;
         let weight = |i: usize| libm::expf(-((i * i) as f32) / (2.0 * sigma * sigma));
@@ -55,7 +56,7 @@ impl Gray {
     /// Doubles the size, with linear interpolation between pixel centres.
     pub fn doubled(&self) -> Gray {
         let (width, height) = (2 * self.width, 2 * self.height);
-        // The centre of pixel i is at (i + 1/2) / 2 in the smaller picture.
+        // The centre of pixel i is at (i + 1/2) / 2 in the smaller image.
         let between = |i: usize, end: usize| {
             let near = i / 2;
             let far = if i.is_multiple_of(2) { near.saturating_sub(1) } else { (near + 1).min(end - 1) };
@@ -77,7 +78,7 @@ impl Gray {
         Gray { width, height, values }
     }
 
-    /// Difference of two pictures of the same size.
+    /// Returns the pixel-wise difference from an image of the same size.
     pub fn minus(&self, other: &Gray) -> Gray {
         let values = self.values.iter().zip(&other.values).map(|(a, b)| a - b).collect();
         Gray { values, ..*self }

@@ -1,8 +1,8 @@
-//! SIFT features: salient points and their descriptors.
+//! SIFT features: keypoints and their descriptors.
 //!
-//! Points are extrema of the difference of two Gaussian blurs in position and scale. Each gets one
-//! or two orientations, and a descriptor of the gradients around it, relative to its scale and
-//! orientation.
+//! Keypoints are the extrema, over position and scale, of the difference of two Gaussian blurs.
+//! Each gets one or two orientations, and a descriptor of the gradients around it, relative to its
+//! scale and orientation.
 //!
 //! Sources: Lowe, *Distinctive Image Features from Scale-Invariant Keypoints*, IJCV 60(2), 2004;
 //! for the square roots in the descriptor: Arandjelović, Zisserman, *Three Things Everyone Should
@@ -19,24 +19,24 @@ use rayon::prelude::*;
 /// Length of a descriptor in bytes.
 pub const LENGTH: usize = 128;
 
-/// A salient point.
+/// Keypoint of a photograph found by SIFT: its position, scale, and orientation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Feature {
     /// Horizontal position in pixels from the left.
     pub x: f32,
     /// Vertical position in pixels from the top.
     pub y: f32,
-    /// Scale: the standard deviation of the blur at which the point is salient, in pixels.
+    /// Scale: the standard deviation in pixels of the blur at which the difference is extremal.
     pub scale: f32,
-    /// Orientation in radians, from right to down.
+    /// Orientation in radians, from x (right) towards y (down).
     pub angle: f32,
-    /// Strength: the difference of the blurs.
+    /// Strength: the difference of the two blurs at the extremum, positive or negative.
     pub strength: f32,
 }
 
-/// Finds the strongest features of a picture and their descriptors, strongest first.
+/// Finds at most `most` features of an image and their descriptors, strongest first.
 pub fn features(gray: &Gray, most: usize) -> Vec<(Feature, [u8; LENGTH])> {
-    // Small pictures yield more features when doubled; large ones have enough.
+    // Small images yield more features when doubled; large ones have enough.
     let doubled = gray.width.max(gray.height) <= 1000;
     let octaves = detect::octaves(gray, doubled);
     let mut points = detect::points(&octaves);

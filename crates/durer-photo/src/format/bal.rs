@@ -1,4 +1,4 @@
-//! Problems of *Bundle Adjustment in the Large*, a benchmark of solvers.
+//! Problem files of *Bundle Adjustment in the Large* (BAL), a benchmark for solvers.
 //!
 //! Source: Agarwal, Snavely, Seitz, Szeliski, *Bundle Adjustment in the Large*, ECCV 2010, and the
 //! web page of its data.
@@ -9,8 +9,8 @@ use crate::{Error, Lens, Observation, Point, Pose, Reconstruction, View};
 use nalgebra::{Vector2, Vector3};
 use std::fmt::Write;
 
-/// Reads a file. The format contains neither picture sizes nor colours: pixels are relative to the
-/// centre, and points are grey.
+/// Reads a BAL problem. The format contains neither image sizes nor colours: pixels are relative to
+/// the image centre, and points are grey.
 pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let mut words = Words::new(file, bytes)?;
     let cameras = words.count("the number of cameras", 18)?;
@@ -20,7 +20,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     for _ in 0..observations {
         let view = words.index("a camera's number", cameras)?;
         let track: &mut Vec<Observation> = &mut tracks[words.index("a point's number", points)?];
-        let [x, y] = words.numbers("a place in the picture")?;
+        let [x, y] = words.numbers("a pixel position")?;
         track.push(Observation { view, feature: track.len(), pixel: Vector2::new(x, -y) });
     }
     let mut all = Reconstruction::default();
@@ -43,7 +43,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     Ok(all)
 }
 
-/// Writes a file. Leaves out photographs without a pose.
+/// Writes a BAL problem. Photographs without a pose are omitted.
 pub fn write(all: &Reconstruction) -> Result<Vec<u8>, Error> {
     let mut numbers = vec![None; all.views.len()];
     let mut cameras = String::new();

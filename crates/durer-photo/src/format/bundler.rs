@@ -8,8 +8,8 @@ use crate::{Error, Lens, Observation, Point, Pose, Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
 use std::fmt::Write;
 
-/// Reads a file. The format contains no picture sizes: pixels are relative to the centre until
-/// [`Reconstruction::set_picture`] sets the size.
+/// Reads a Bundler file. The format contains no image sizes: pixels are relative to the image
+/// centre until [`Reconstruction::set_picture`] sets the size.
 pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let mut words = Words::new(file, bytes)?;
     if !words.next_line('#') {
@@ -44,7 +44,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
         for _ in 0..words.count("the number of observations", 8)? {
             let view = words.index("a camera's number", cameras)?;
             let feature = words.parse("a feature's number")?;
-            let [x, y] = words.numbers("a place in the picture")?;
+            let [x, y] = words.numbers("a pixel position")?;
             track.push(Observation { view, feature, pixel: Vector2::new(x, -y) });
         }
         all.points.push(Point { position, color, track });
@@ -53,7 +53,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     Ok(all)
 }
 
-/// Writes a file.
+/// Writes a Bundler file, version 0.3.
 pub fn write(all: &Reconstruction) -> Result<Vec<u8>, Error> {
     let mut text = format!("# Bundle file v0.3\n{} {}\n", all.views.len(), all.points.len());
     for view in &all.views {

@@ -1,5 +1,5 @@
-//! COLMAP folders with `cameras`, `images`, and `points3D`: the common part of
-//! [text](super::colmap_text) and [binary](super::colmap_binary) files.
+//! COLMAP folders with `cameras`, `images`, and `points3D`: the part shared by the
+//! [text](super::colmap_text) and [binary](super::colmap_binary) formats.
 //!
 //! Source: Schönberger, *COLMAP* manual, "Output Format" and "Camera Models".
 
@@ -40,7 +40,7 @@ pub fn parameters(lens: &Lens) -> (usize, Vec<f64>) {
     }
 }
 
-/// A row of the `images` table.
+/// Row of COLMAP's `images` table: the pose, name, and features of one photograph.
 pub struct Image {
     pub quaternion: [f64; 4],
     pub translation: [f64; 3],
@@ -50,7 +50,7 @@ pub struct Image {
     pub features: Vec<[f64; 2]>,
 }
 
-/// A row of the `points3D` table.
+/// Row of COLMAP's `points3D` table: a point and its observations.
 pub struct Row {
     pub position: [f64; 3],
     pub color: [u8; 3],
@@ -58,7 +58,7 @@ pub struct Row {
     pub track: Vec<(u32, usize)>,
 }
 
-/// Tables of a folder, by id.
+/// Contents of a COLMAP folder: cameras, images, and points by their ids in the files.
 #[derive(Default)]
 pub struct Tables {
     pub cameras: BTreeMap<u32, Lens>,
@@ -66,7 +66,7 @@ pub struct Tables {
     pub points: BTreeMap<u64, Row>,
 }
 
-/// Inserts a row. Returns an error if the id exists already.
+/// Inserts a row into a table. Returns an error if the id is already present.
 pub fn once<Id: Ord + Copy + Display, T>(into: &mut BTreeMap<Id, T>, id: Id, row: T) -> Result<(), String> {
     match into.insert(id, row) {
         None => Ok(()),
@@ -75,7 +75,7 @@ pub fn once<Id: Ord + Copy + Display, T>(into: &mut BTreeMap<Id, T>, id: Id, row
 }
 
 impl Tables {
-    /// Converts the tables to a reconstruction. Ids become numbers in the same order.
+    /// Converts the tables to a reconstruction. Ids become consecutive indices in the same order.
     pub fn into_reconstruction(self, file: &str) -> Result<Reconstruction, Error> {
         let fail = |why: String| Error::of(file, why);
         let lens_of: BTreeMap<u32, usize> = self.cameras.keys().enumerate().map(|(i, id)| (*id, i)).collect();
@@ -105,11 +105,11 @@ impl Tables {
     }
 }
 
-/// Features of a photograph: positions and ids of points.
+/// Features of a photograph that observe a point: the pixel, and the id of the point.
 pub type Features = Vec<(Vector2<f64>, usize)>;
 
-/// Features of each photograph in written order, and the feature numbers of each point's
-/// observations.
+/// Returns the features of each photograph in the order in which they are written, and for each
+/// point, the feature numbers of its observations.
 pub fn features(all: &Reconstruction) -> (Vec<Features>, Vec<Vec<usize>>) {
     let mut features = vec![Vec::new(); all.views.len()];
     let mut numbers = Vec::new();
@@ -123,7 +123,7 @@ pub fn features(all: &Reconstruction) -> (Vec<Features>, Vec<Vec<usize>>) {
     (features, numbers)
 }
 
-/// Mean length of a point's residuals.
+/// Returns the mean length of a point's residuals in pixels.
 pub fn error(all: &Reconstruction, point: &Point) -> f64 {
     let lengths: Vec<f64> =
         point.track.iter().filter_map(|seen| Some(all.residual(&point.position, seen)?.norm())).collect();

@@ -1,10 +1,11 @@
-//! COLMAP's three tables as little-endian binary files.
+//! COLMAP's tables as little-endian binary files.
 
 use super::colmap::{Image, MODELS, Row, Tables, error, features, lens, once, parameters};
 use crate::model::quaternion_of;
 use crate::{Error, Reconstruction};
 
-/// Sequential reader of bytes.
+/// Reader of little-endian numbers from a binary file, which checks the length and reports byte
+/// offsets in errors.
 pub struct Bytes<'b> {
     file: &'b str,
     bytes: &'b [u8],
@@ -12,6 +13,7 @@ pub struct Bytes<'b> {
 }
 
 impl<'b> Bytes<'b> {
+    /// Creates a reader of a file's bytes. `file` is the name for messages.
     pub fn new(file: &'b str, bytes: &'b [u8]) -> Self {
         Bytes { file, bytes, at: 0 }
     }
@@ -21,6 +23,7 @@ impl<'b> Bytes<'b> {
         Error::of(self.file, format!("at byte {}: {}", self.at, why.as_ref()))
     }
 
+    /// Reads the next `count` bytes.
     pub fn take(&mut self, count: usize) -> Result<&'b [u8], Error> {
         let taken = self.at.checked_add(count).and_then(|end| self.bytes.get(self.at..end));
         let taken = taken.ok_or_else(|| self.error("the file ends too early"))?;
@@ -28,16 +31,19 @@ impl<'b> Bytes<'b> {
         Ok(taken)
     }
 
+    /// Reads the next `N` bytes as an array.
     pub fn array<const N: usize>(&mut self) -> Result<[u8; N], Error> {
         let mut array = [0; N];
         array.copy_from_slice(self.take(N)?);
         Ok(array)
     }
 
+    /// Reads a 32-bit integer.
     pub fn u32(&mut self) -> Result<u32, Error> {
         Ok(u32::from_le_bytes(self.array()?))
     }
 
+    /// Reads a 64-bit integer.
     pub fn u64(&mut self) -> Result<u64, Error> {
         Ok(u64::from_le_bytes(self.array()?))
     }
@@ -48,6 +54,7 @@ impl<'b> Bytes<'b> {
         if number.is_finite() { Ok(number) } else { Err(self.error(format!("{number} is not finite"))) }
     }
 
+    /// Reads `N` finite numbers.
     pub fn numbers<const N: usize>(&mut self) -> Result<[f64; N], Error> {
         let mut numbers = [0.0; N];
         for number in &mut numbers {

@@ -1,4 +1,4 @@
-//! COLMAP's three tables as text files.
+//! COLMAP's tables as text files.
 
 use super::colmap::{Image, MODELS, Row, Tables, error, features, lens, once, parameters};
 use super::{Words, joined};
@@ -39,7 +39,7 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
         let mut list = Vec::new();
         words.skip_line_end();
         while !words.is_at_end_of_line() {
-            list.push(words.numbers("a feature's place")?);
+            list.push(words.numbers("a feature's position")?);
             words.parse::<i64>("a point's id")?;
         }
         let image = Image { quaternion, translation, camera, name, features: list };

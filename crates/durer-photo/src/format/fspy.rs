@@ -1,10 +1,10 @@
 //! fSpy projects (`.fspy`) and exported cameras (`.json`): the camera of a single photograph from
 //! vanishing lines.
 //!
-//! A project consists of `fspy`, a version, the lengths of its JSON state and of its photograph,
-//! and both. Its points range from 0 to 1 across the photograph, y downwards. The points of an
-//! exported camera lie in the image plane instead: the longer side ranges from -1 to 1, y upwards,
-//! and the camera looks down -z.
+//! A project consists of the word `fspy`, a version, the lengths of the JSON state and the
+//! photograph, the state, and the photograph. Coordinates range from 0 to 1 across the photograph,
+//! with y down. An exported camera uses coordinates in the image plane instead: the longer side
+//! ranges from -1 to 1, with y up, and the camera looks down -z.
 //!
 //! Source: documentation of fSpy-Blender, *The fSpy project file format*.
 
@@ -16,17 +16,20 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 use serde::Deserialize;
 use serde_json::Value;
 
+/// 4x4 matrix in an exported camera's JSON, by rows.
 #[derive(Deserialize)]
 struct Rows {
     rows: [[f64; 4]; 4],
 }
 
+/// Point in fSpy's JSON.
 #[derive(Deserialize)]
 struct Place {
     x: f64,
     y: f64,
 }
 
+/// JSON of a camera exported by fSpy.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Exported {
@@ -87,7 +90,7 @@ pub fn read_project<'b>(file: &'b str, content: &'b [u8]) -> Result<(VanishingLi
     };
     let first = lines(&base["firstVanishingPoint"]);
     let second = match state["calibrationSettings2VP"]["quadModeEnabled"].as_bool() {
-        // The second pair joins the ends of the first pair of lines.
+        // In quad mode, the lines of the second pair connect the ends of the first pair.
         Some(true) => first.as_ref().map(|lines| vec![[lines[0][0], lines[1][0]], [lines[0][1], lines[1][1]]]),
         _ => lines(&two["secondVanishingPoint"]),
     };

@@ -2,9 +2,9 @@
 //! binary (`.glb`).
 //!
 //! glTF cameras look down -z with y up, have no distortion, and their principal point is the
-//! centre. Other properties of a lens and the size of its photographs are stored as `extras`, which
-//! other programs ignore. Without them, photographs are assumed to have 1000 rows. The world is not
-//! flipped: its y axis stays the y axis.
+//! centre. All other lens parameters and the size of the photographs are stored in `extras`, which
+//! other programs ignore. Without `extras`, photographs are assumed to have 1000 rows. World axes
+//! are the same in both.
 //!
 //! Source: Khronos, *glTF 2.0 Specification*, sections 3.6, 3.10, 4.4 and 5.12.
 
@@ -17,9 +17,10 @@ use nalgebra::{Matrix3, Matrix4, Vector3};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// Assumed number of rows of a photograph with an unknown size.
+/// Assumed number of rows of a photograph whose size is unknown.
 const ROWS: f64 = 1000.0;
 
+/// JSON of a glTF file, as far as it is read.
 #[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 struct File {
@@ -31,6 +32,7 @@ struct File {
     buffers: Vec<Buffer>,
 }
 
+/// glTF node: a transform with an optional camera or mesh, and child nodes.
 #[derive(Default, Deserialize)]
 #[serde(default)]
 struct Node {
@@ -44,6 +46,7 @@ struct Node {
     scale: Option<[f64; 3]>,
 }
 
+/// glTF camera; orthographic cameras have no `perspective` and are ignored.
 #[derive(Deserialize)]
 struct Camera {
     name: Option<String>,
@@ -52,6 +55,7 @@ struct Camera {
     extras: Value,
 }
 
+/// Field of view and aspect ratio of a glTF perspective camera.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Perspective {
@@ -59,7 +63,7 @@ struct Perspective {
     aspect_ratio: Option<f64>,
 }
 
-/// Properties of a [`Lens`] beyond the field of view.
+/// Lens parameters that a glTF camera lacks, stored in its `extras`.
 #[derive(Serialize, Deserialize)]
 struct Extras {
     width: u32,
@@ -68,18 +72,21 @@ struct Extras {
     radial: [f64; 2],
 }
 
+/// glTF mesh, of which only points are read.
 #[derive(Deserialize)]
 struct Mesh {
     primitives: Vec<Primitive>,
 }
 
+/// Part of a glTF mesh with one topology.
 #[derive(Deserialize)]
 struct Primitive {
     attributes: Attributes,
-    /// Topology: 0 for points; triangles by default.
+    /// Topology: 0 for points; absent for triangles.
     mode: Option<u32>,
 }
 
+/// Accessor indices of a primitive's positions and colours.
 #[derive(Deserialize)]
 struct Attributes {
     #[serde(rename = "POSITION")]
@@ -88,6 +95,7 @@ struct Attributes {
     color: Option<usize>,
 }
 
+/// glTF accessor: the type and number of the elements in a buffer view.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Accessor {
@@ -100,6 +108,7 @@ struct Accessor {
     shape: String,
 }
 
+/// glTF buffer view: a range of bytes in a buffer.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct BufferView {
@@ -110,12 +119,14 @@ struct BufferView {
     byte_stride: Option<usize>,
 }
 
+/// glTF buffer: a data URI, or the binary chunk of a `.glb` file if `uri` is absent.
 #[derive(Deserialize)]
 struct Buffer {
     uri: Option<String>,
 }
 
-/// Reads cameras and points, and ignores the rest of the file. The format contains no observations.
+/// Reads the cameras and points of a glTF file, and ignores everything else. The format contains no
+/// observations.
 pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let fail = |why: String| Error::of(name, why);
     let (json, binary) =
@@ -165,7 +176,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     Ok(all)
 }
 
-/// JSON of a file, and the data chunk of a binary file.
+/// Splits a file into its JSON and, for a binary file, its data chunk.
 fn chunks(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     if !bytes.starts_with(b"glTF") {
         return Some((bytes, &[]));
@@ -180,7 +191,7 @@ fn chunks(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     Some((json, binary))
 }
 
-/// World transforms of the nodes, parents first.
+/// Returns the indices and world transforms of all nodes, parents first.
 fn placed(file: &File) -> Result<Vec<(usize, Matrix4<f64>)>, String> {
     let count = file.nodes.len();
     let mut is_child = vec![false; count];
@@ -201,7 +212,7 @@ fn placed(file: &File) -> Result<Vec<(usize, Matrix4<f64>)>, String> {
     if all.len() == count { Ok(all) } else { Err("some nodes are their own ancestors".into()) }
 }
 
-/// Transform of a node relative to its parent.
+/// Returns the transform of a node relative to its parent.
 fn local(node: &Node) -> Matrix4<f64> {
     if let Some(matrix) = node.matrix {
         return Matrix4::from_column_slice(&matrix);
@@ -213,7 +224,7 @@ fn local(node: &Node) -> Matrix4<f64> {
     matrix
 }
 
-/// Pose of a camera from its world transform. Scaling does not affect cameras.
+/// Converts the world transform of a camera node to a pose. Scaling does not affect cameras.
 fn pose(world: &Matrix4<f64>) -> Option<Pose> {
     let axes = world.fixed_view::<3, 3>(0, 0).into_owned();
     let is_turn = axes.determinant() > 0.0 && world.iter().all(|value| value.is_finite());
@@ -237,7 +248,7 @@ fn lens(perspective: &Perspective, extras: &Value) -> Result<Lens, String> {
     };
     let vertical = f64::from(beyond.height) / (2.0 * half);
     let aspect = ratio * f64::from(beyond.height) / f64::from(beyond.width);
-    // Square pixels have an aspect of exactly 1, up to rounding.
+    // Remove rounding errors, so that square pixels have an aspect of exactly 1.
     let aspect = if (aspect - 1.0).abs() < 1e-12 { 1.0 } else { aspect };
     let size = [beyond.width, beyond.height];
     if size.contains(&0) {
@@ -246,7 +257,8 @@ fn lens(perspective: &Perspective, extras: &Value) -> Result<Lens, String> {
     Ok(Lens { size, focal: vertical / aspect, aspect, center: beyond.center, radial: beyond.radial })
 }
 
-/// Reads three components of an attribute per point. Integers are normalised by their maximum.
+/// Reads the first three components of a vertex attribute. Integers are normalised by their
+/// maximum.
 fn column(
     file: &File,
     buffers: &mut [Option<Vec<u8>>],
@@ -284,7 +296,7 @@ fn column(
     let bytes = bytes.get(view.byte_offset..).and_then(|bytes| bytes.get(..view.byte_length)).ok_or_else(short)?;
     let bytes = bytes.get(accessor.byte_offset..).ok_or_else(short)?;
     let stride = view.byte_stride.unwrap_or(width * size).max(1);
-    // Limits the allocation to the size of the data.
+    // Limit the allocation to the size of the data.
     if accessor.count > bytes.len() {
         return Err(short());
     }
@@ -305,7 +317,7 @@ fn column(
     }
 }
 
-/// Writes cameras and points.
+/// Writes cameras and points as one self-contained glTF file.
 pub fn write(all: &Reconstruction) -> Result<Vec<u8>, Error> {
     let (mut nodes, mut cameras) = (Vec::new(), Vec::new());
     for view in &all.views {
@@ -365,7 +377,7 @@ pub fn write(all: &Reconstruction) -> Result<Vec<u8>, Error> {
     serde_json::to_vec_pretty(&gltf).map_err(|error| Error::new(error.to_string()))
 }
 
-/// glTF quaternion (x, y, z, w) from the camera frame to the world.
+/// Returns the glTF quaternion (x, y, z, w) from the camera frame to the world.
 fn rotation(pose: &Pose) -> [f64; 4] {
     let [w, x, y, z] = quaternion_of(&pose.rotation.transpose());
     [x, y, z, w]

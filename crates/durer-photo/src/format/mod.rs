@@ -1,4 +1,4 @@
-//! Formats of other programs.
+//! Reads and writes the camera and point files of other programs.
 
 mod bal;
 mod bundler;
@@ -26,11 +26,12 @@ pub use fspy::read_project;
 pub use handwritten::{read_control, read_lines, read_points};
 pub use scene::projective_camera;
 
-/// Conventions of a format.
+/// Row of the table of file formats: the coordinate conventions of one format, as text for the
+/// manual.
 pub struct Convention {
     /// Name of the format.
     pub name: &'static str,
-    /// Recognition of its files.
+    /// Extensions by which its files are recognised.
     pub files: &'static str,
     /// Supported directions: in, out, or both.
     pub way: &'static str,
@@ -38,7 +39,7 @@ pub struct Convention {
     pub frame: &'static str,
     /// Representation of rotations.
     pub rotation: &'static str,
-    /// Meaning of the translation.
+    /// Formula or meaning of the translation.
     pub translation: &'static str,
     /// Units and origin of pixels.
     pub pixels: &'static str,
@@ -46,7 +47,7 @@ pub struct Convention {
     pub lens: &'static str,
 }
 
-/// Conventions of all formats.
+/// Coordinate conventions of all formats, as shown in docs/photographs.md.
 pub const CONVENTIONS: [Convention; 9] = {
     const fn row(f: [&'static str; 8]) -> Convention {
         let [name, files, way, frame, rotation, translation, pixels, lens] = f;
@@ -106,8 +107,7 @@ pub const CONVENTIONS: [Convention; 9] = {
     ]
 };
 
-/// Converts between poses of cameras that look down -z with y up and cameras that look along +z
-/// with y down.
+/// Converts a pose between the two camera frames: -z forward with y up, and +z forward with y down.
 fn opposite(pose: &Pose) -> Pose {
     let turn = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
     Pose { rotation: turn * pose.rotation, translation: turn * pose.translation }
@@ -122,7 +122,7 @@ fn joined<T: Display>(values: impl IntoIterator<Item = T>) -> String {
     text::joined(values)
 }
 
-/// Rejects lenses with non-square pixels, for formats that do not support them.
+/// Returns an error if a lens has non-square pixels, which `format` does not support.
 fn square(lens: &Lens, format: &str) -> Result<(), Error> {
     if lens.aspect == 1.0 {
         return Ok(());
@@ -130,15 +130,15 @@ fn square(lens: &Lens, format: &str) -> Result<(), Error> {
     Err(Error::new(format!("{format} supports square pixels only, but a lens has the aspect {}", lens.aspect)))
 }
 
-/// Function that returns the bytes of the file at a path.
+/// Callback that returns the bytes of the file at a path.
 pub type Open<'a> = dyn FnMut(&Path) -> Result<Arc<[u8]>, Error> + 'a;
 
-/// Reads a file and decompresses it if it was compressed by gzip or bzip2.
+/// Reads a file, and decompresses gzip and bzip2.
 fn bytes(path: &Path, open: &mut Open) -> Result<Arc<[u8]>, Error> {
     packed::unpacked(&path.to_string_lossy(), open(path)?)
 }
 
-/// Files that [`read`] reads for a path.
+/// Returns the files that [`read`] opens for a path.
 pub fn inputs(path: &Path) -> Vec<PathBuf> {
     if path.is_dir() {
         let end = if path.join("cameras.bin").exists() { "bin" } else { "txt" };
@@ -147,7 +147,7 @@ pub fn inputs(path: &Path) -> Vec<PathBuf> {
     tracks_of(path).into_iter().chain([path.to_path_buf()]).collect()
 }
 
-/// Tracks that belong to an OpenSfM reconstruction: the same name with `tracks` instead of
+/// Returns the path of the tracks of an OpenSfM reconstruction: its name with `tracks` instead of
 /// `reconstruction`.
 fn tracks_of(path: &Path) -> Option<PathBuf> {
     let name = path.file_name()?.to_str()?;
@@ -164,8 +164,7 @@ pub fn read(path: &Path) -> Result<Reconstruction, Error> {
     })
 }
 
-/// Reads cameras and points as [`read`] does. `open` reads the files, which are those of
-/// [`inputs`].
+/// Reads cameras and points like [`read`], but opens the files with `open`; see [`inputs`].
 pub fn read_by(path: &Path, open: &mut Open) -> Result<Reconstruction, Error> {
     let file = path.to_string_lossy();
     if path.is_dir() {
@@ -200,14 +199,14 @@ pub fn read_by(path: &Path, open: &mut Open) -> Result<Reconstruction, Error> {
     }
 }
 
-/// Returns true if a file was written by [`Matches::to_json`](crate::matching::Matches::to_json),
-/// according to its first line.
+/// Returns true if the first line shows that
+/// [`Matches::to_json`](crate::matching::Matches::to_json) wrote the file.
 pub fn is_matches(content: &[u8]) -> bool {
     let head = String::from_utf8_lossy(&content[..content.len().min(80)]);
     head.contains("\"format\"") && head.contains(crate::matching::FORMAT)
 }
 
-/// An output format for cameras and points.
+/// File format in which cameras and points are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Output {
     /// Bundler's `.out` file.
@@ -227,7 +226,8 @@ pub enum Output {
 }
 
 impl Output {
-    /// Finds the output format for a path. A path without an extension is a folder.
+    /// Returns the output format for a path, from its extension. A path without an extension is a
+    /// folder.
     pub fn of(path: &Path, binary: bool) -> Result<Self, Error> {
         Ok(match path.extension().and_then(|end| end.to_str()) {
             None if binary => Output::ColmapBinary,
@@ -250,7 +250,7 @@ impl Output {
         matches!(self, Output::ColmapText | Output::ColmapBinary)
     }
 
-    /// Paths of the files, in the order of [`Output::write`].
+    /// Returns the paths of the files, in the order of [`Output::write`].
     pub fn files(self, path: &Path) -> Vec<PathBuf> {
         let table = |end: &str| ["cameras", "images", "points3D"].map(|name| path.join(format!("{name}.{end}"))).into();
         match self {
@@ -268,7 +268,7 @@ impl Output {
         }
     }
 
-    /// Creates the contents of the files.
+    /// Returns the contents of the files.
     pub fn write(self, all: &Reconstruction) -> Result<Vec<Vec<u8>>, Error> {
         Ok(match self {
             Output::Bundler => vec![bundler::write(all)?],
@@ -283,8 +283,8 @@ impl Output {
 }
 
 impl Reconstruction {
-    /// Sets the size and the name of a photograph if its format does not contain them. Pixels are
-    /// then relative to the upper left corner.
+    /// Sets the name and the size of a photograph that was read from a format without them. Its
+    /// pixels are then relative to the upper left corner instead of the image centre.
     pub fn set_picture(&mut self, view: usize, name: &str, size: [u32; 2]) {
         self.views[view].name = name.to_string();
         let lens = self.views[view].lens;

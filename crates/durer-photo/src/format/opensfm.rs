@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+/// Camera of OpenSfM's JSON: a lens, shared by its shots.
 #[derive(Serialize, Deserialize)]
 struct Camera {
     projection_type: String,
@@ -22,6 +23,7 @@ struct Camera {
     k2: f64,
 }
 
+/// Photograph of OpenSfM's JSON: a pose and the name of its camera.
 #[derive(Serialize, Deserialize)]
 struct Shot {
     rotation: [f64; 3],
@@ -29,12 +31,14 @@ struct Shot {
     camera: String,
 }
 
+/// Point of OpenSfM's JSON.
 #[derive(Serialize, Deserialize)]
 struct Place {
     color: [f64; 3],
     coordinates: [f64; 3],
 }
 
+/// One of the reconstructions in OpenSfM's JSON.
 #[derive(Serialize, Deserialize)]
 struct Part {
     cameras: BTreeMap<String, Camera>,
@@ -42,8 +46,8 @@ struct Part {
     points: BTreeMap<String, Place>,
 }
 
-/// Reads a reconstruction and its tracks, if any. Of several parts, the one with the most shots is
-/// read.
+/// Reads a reconstruction and its tracks, if any. If the file contains several reconstructions, the
+/// one with the most shots is used.
 pub fn read(file: &str, json: &[u8], tracks: Option<(&str, &[u8])>) -> Result<Reconstruction, Error> {
     let parts: Vec<Part> = serde_json::from_slice(json)
         .map_err(|error| Error::at(file, (error.line(), error.column()), format!("OpenSfM's JSON: {error}")))?;
@@ -85,8 +89,8 @@ pub fn read(file: &str, json: &[u8], tracks: Option<(&str, &[u8])>) -> Result<Re
     Ok(all)
 }
 
-/// Adds the observations. Skips rows of unknown photographs and points, since not every track
-/// becomes a point.
+/// Adds the observations from `tracks.csv`. Skips rows with unknown photographs or points, since
+/// some tracks have no point.
 fn read_tracks(
     file: &str,
     bytes: &[u8],
@@ -116,7 +120,7 @@ fn read_tracks(
     Ok(())
 }
 
-/// Writes reconstruction.json and tracks.csv. Leaves out photographs without a pose.
+/// Writes reconstruction.json and tracks.csv. Photographs without a pose are omitted.
 pub fn write(all: &Reconstruction) -> Result<[String; 2], Error> {
     let name = |lens: usize| format!("camera {}", lens + 1);
     let mut part = Part { cameras: BTreeMap::new(), shots: BTreeMap::new(), points: BTreeMap::new() };
@@ -143,7 +147,7 @@ pub fn write(all: &Reconstruction) -> Result<[String; 2], Error> {
             let lens = all.lenses[view.lens];
             let p = (seen.pixel - Vector2::from(lens.center)) / lens.longer_side();
             let [r, g, b] = point.color;
-            // Sizes of features are not stored; 0.001 is OpenSfM's default.
+            // The feature's size is unknown; 0.001 is OpenSfM's default.
             let row = (&view.name, i, seen.feature, p.x, p.y);
             let _ =
                 writeln!(tracks, "{}\t{}\t{}\t{}\t{}\t0.001\t{r}\t{g}\t{b}\t-1\t-1", row.0, row.1, row.2, row.3, row.4);

@@ -5,7 +5,8 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Maximum length of a decompressed file, since a small file could fill the memory otherwise.
+/// Maximum length of a decompressed file in bytes, because a small malicious file could otherwise
+/// fill the memory.
 const LONGEST: u64 = 4 << 30;
 
 /// Decompresses a file if it begins with the signature of gzip or bzip2.
@@ -24,7 +25,7 @@ pub fn unpacked(file: &str, bytes: Arc<[u8]>) -> Result<Arc<[u8]>, Error> {
     Ok(plain.into())
 }
 
-/// Removes the extension of gzip or bzip2 from a path.
+/// Removes `.gz` or `.bz2` from a path.
 pub fn plain(path: &Path) -> PathBuf {
     match path.extension().and_then(|end| end.to_str()) {
         Some("gz" | "bz2") => path.with_extension(""),

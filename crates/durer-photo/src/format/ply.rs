@@ -11,10 +11,10 @@ use super::colmap_binary::Bytes;
 use crate::{Error, Point, Reconstruction};
 use nalgebra::Vector3;
 
-/// Start of the comment with the number of cameras.
+/// Text of the header comment that precedes the number of cameras.
 const CAMERAS: &str = "cameras at the end:";
 
-/// Number types: both names, and the size in bytes.
+/// Number types of PLY: the old and the new name, and the size in bytes.
 const KINDS: [(&str, &str, usize); 8] = [
     ("char", "int8", 1),
     ("uchar", "uint8", 1),
@@ -26,7 +26,7 @@ const KINDS: [(&str, &str, usize); 8] = [
     ("double", "float64", 8),
 ];
 
-/// Encoding of the rows.
+/// Encoding of a PLY file's vertex rows.
 #[derive(Clone, Copy, PartialEq)]
 enum Encoding {
     Text,
@@ -34,19 +34,20 @@ enum Encoding {
     Big,
 }
 
-/// Header of a file.
+/// Header of a PLY file, as far as it is needed to read the points.
 struct Head {
     encoding: Encoding,
-    /// Number of points, and the position of that number in the header.
+    /// Number of points.
     count: usize,
     place: (usize, usize),
-    /// Number of the last points that are camera positions.
+    /// Number of points at the end of the file that are camera positions.
     cameras: usize,
     /// Name and type (index into [`KINDS`]) of each property.
     properties: Vec<(String, usize)>,
 }
 
-/// Reads points, which are grey if the file has no colours. The format contains no observations.
+/// Reads the points of a PLY file. They are grey if the file has no colours. The format contains no
+/// observations.
 pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let is_end = |line: &&[u8]| line.trim_ascii_end() == b"end_header";
     let lines = bytes.split_inclusive(|byte| *byte == b'\n').filter(|_| bytes.starts_with(b"ply"));
@@ -55,7 +56,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     end.ok_or_else(|| Error::of(file, "this is not a PLY file: it needs a header from `ply` to `end_header`"))?;
     let head = head(file, &bytes[..length])?;
     let (size, rest) = (head.properties.iter().map(|(_, kind)| KINDS[*kind].2).sum::<usize>(), bytes.len() - length);
-    // A number in text takes at least two bytes, including the separator.
+    // In text, a number takes at least two bytes, including the separator.
     let row = if head.encoding == Encoding::Text { 2 * head.properties.len() } else { size };
     if head.count > rest / row + 1 {
         let why = format!("the file is too short for {} points: {rest} bytes follow the header", head.count);
@@ -89,7 +90,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
             for (value, (name, _)) in row.iter_mut().zip(&head.properties) {
                 *value = words.number(name)?;
             }
-            words.end_of_row("a point's")?;
+            words.end_of_row("the properties of a point")?;
             add(&row);
         }
     } else {
@@ -99,7 +100,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
             for (value, (name, kind)) in row.iter_mut().zip(&head.properties) {
                 *value = number(*kind, body.take(KINDS[*kind].2)?, head.encoding);
                 if !value.is_finite() {
-                    return Err(body.error(format!("{value} is not {name}, a number")));
+                    return Err(body.error(format!("expected a finite number for {name}, found {value}")));
                 }
             }
             add(&row);
@@ -162,7 +163,7 @@ fn head(file: &str, text: &[u8]) -> Result<Head, Error> {
     Ok(head)
 }
 
-/// Decodes a number of a type, given by its index into [`KINDS`].
+/// Decodes a number. `kind` is the index of its type in [`KINDS`].
 fn number(kind: usize, bytes: &[u8], encoding: Encoding) -> f64 {
     let mut all = [0; 8];
     all[..bytes.len()].copy_from_slice(bytes);

@@ -4,7 +4,8 @@ use crate::{Lens, Pose};
 use nalgebra::Matrix3;
 use std::fmt::Write;
 
-/// Block `ProjectiveCamera`: P = K [R | t], with the centre of the upper left pixel at (0, 0).
+/// Returns a `ProjectiveCamera` block with the matrix P = K [R | t], where the centre of the upper
+/// left pixel is at (0, 0).
 pub fn projective_camera(lens: &Lens, pose: &Pose) -> String {
     let [cx, cy] = lens.center;
     let k = Matrix3::new(lens.focal, 0.0, cx - 0.5, 0.0, lens.focal * lens.aspect, cy - 0.5, 0.0, 0.0, 1.0);

@@ -1,17 +1,17 @@
-//! Tokeniser of words and numbers, with their lines and columns.
+//! Tokenizer for text files, which tracks lines and columns.
 
 use crate::Error;
 use std::fmt::Display;
 use std::str::FromStr;
 
-/// A text that is read word by word.
+/// Reader of the whitespace-separated words of a text file, with line and column for errors.
 pub struct Words<'t> {
     file: &'t str,
     text: &'t str,
-    /// Position in bytes from which the next word is searched.
+    /// Byte offset at which the search for the next word begins.
     at: usize,
     line: usize,
-    /// Start of the line in bytes.
+    /// Byte offset of the current line.
     start: usize,
     /// True if each line is a row.
     rows: bool,
@@ -29,8 +29,8 @@ impl<'t> Words<'t> {
         Ok(Words { file, text, at: 0, line: 1, start: 0, rows: false })
     }
 
-    /// Creates a reader of a file in which each line is a row. Missing words of a row are not taken
-    /// from the next one.
+    /// Creates a reader of a file in which each line is a row. A word missing from a row is an
+    /// error, and is not taken from the next line.
     pub fn in_rows(file: &'t str, bytes: &'t [u8]) -> Result<Self, Error> {
         Ok(Words { rows: true, ..Words::new(file, bytes)? })
     }
@@ -39,7 +39,7 @@ impl<'t> Words<'t> {
         (self.line, 1 + self.text[self.start..self.at].chars().count())
     }
 
-    /// Line and column of the next word.
+    /// Returns the line and column of the next word.
     pub fn next_place(&mut self) -> (usize, usize) {
         self.advance(true);
         self.place()
@@ -93,7 +93,7 @@ impl<'t> Words<'t> {
         }
     }
 
-    /// Skips to the next line that is neither empty nor a comment, which begins with `comment`.
+    /// Skips to the next line that is neither empty nor a comment. Comments begin with `comment`.
     pub fn next_line(&mut self, comment: char) -> bool {
         while self.advance(true) {
             if !self.text[self.at..].starts_with(comment) {
@@ -119,14 +119,14 @@ impl<'t> Words<'t> {
     /// Parses the next word.
     pub fn parse<T: FromStr>(&mut self, what: &str) -> Result<T, Error> {
         let (word, place) = self.word(what)?;
-        word.parse().map_err(|_| Error::at(self.file, place, format!("`{word}` is not {what}")))
+        word.parse().map_err(|_| Error::at(self.file, place, format!("expected {what}, found `{word}`")))
     }
 
     /// Parses the next word as a finite number.
     pub fn number(&mut self, what: &str) -> Result<f64, Error> {
         let (word, place) = self.word(what)?;
         let number: Option<f64> = word.parse().ok().filter(|number: &f64| number.is_finite());
-        number.ok_or_else(|| Error::at(self.file, place, format!("`{word}` is not {what}, a number")))
+        number.ok_or_else(|| Error::at(self.file, place, format!("expected {what}, found `{word}`")))
     }
 
     /// Parses `N` finite numbers.
@@ -139,11 +139,11 @@ impl<'t> Words<'t> {
     }
 
     /// Parses a number of entries, each of which takes at least `bytes` bytes of text. Rejects
-    /// impossible numbers before memory is allocated.
+    /// numbers that the rest of the file cannot contain, before memory is allocated.
     pub fn count(&mut self, what: &str, bytes: usize) -> Result<usize, Error> {
         let (word, place) = self.word(what)?;
         let fail = |why: String| Error::at(self.file, place, why);
-        let count: usize = word.parse().map_err(|_| fail(format!("`{word}` is not {what}, a count")))?;
+        let count: usize = word.parse().map_err(|_| fail(format!("expected {what}, found `{word}`")))?;
         if count > self.text.len() / bytes + 1 {
             return Err(fail(format!("{what} is {count}, but the file is too short for that")));
         }
@@ -163,7 +163,7 @@ impl<'t> Words<'t> {
     pub fn end_of_row(&mut self, row: &str) -> Result<(), Error> {
         match self.is_at_end_of_line() {
             true => Ok(()),
-            false => Err(self.error(format!("the row should end here: it is {row}"))),
+            false => Err(self.error(format!("the row should end here, after {row}"))),
         }
     }
 

@@ -1,4 +1,4 @@
-//! Alignment of point sets.
+//! Alignment of points, cameras, and reconstructions by similarity transforms.
 //!
 //! Source: Umeyama, *Least-Squares Estimation of Transformation Parameters Between Two Point
 //! Patterns*, PAMI 13(4), 1991.
@@ -7,7 +7,8 @@ use crate::model::nearest_rotation;
 use crate::{Pose, Reconstruction};
 use nalgebra::{Matrix3, Vector3};
 
-/// A similarity transform: X' = scale rotation X + shift.
+/// Similarity transform of world space, X' = scale · rotation · X + shift, which aligns two
+/// reconstructions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Similarity {
     /// Scale factor.
@@ -35,8 +36,8 @@ impl Similarity {
     }
 }
 
-/// Means of both sets, the rotation from the singular vectors of their covariance, and the sum of
-/// the singular values; `None` if the points are on a line.
+/// Returns the means of both point sets, the rotation from the singular vectors of their
+/// covariance, and the sum of the singular values; `None` if the points are on a line.
 fn turned(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<([Vector3<f64>; 2], Matrix3<f64>, f64)> {
     let count = from.len().min(to.len()) as f64;
     let mean = |points: &[Vector3<f64>]| points.iter().sum::<Vector3<f64>>() / count;
@@ -52,8 +53,8 @@ fn turned(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<([Vector3<f64>; 
     Some((means, u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v, d[0] + d[1] + sign * d[2]))
 }
 
-/// Similarity that best maps points to others; `None` for fewer than three points, or points on a
-/// line.
+/// Computes the similarity that best maps the points `from` to `to`; `None` for fewer than three
+/// points, or points on a line.
 pub fn similarity(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<Similarity> {
     if from.len() < 3 || from.len() != to.len() {
         return None;
@@ -64,9 +65,9 @@ pub fn similarity(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<Similari
     Some(Similarity { scale, rotation, shift: means[1] - scale * (rotation * means[0]) })
 }
 
-/// Similarity that best maps cameras to others: the rotation nearest to all relative rotations, and
-/// the scale and translation that align the centres. The centres alone hardly determine a rotation
-/// about a line close to all of them.
+/// Computes the similarity that best maps the cameras `from` to `to`: the mean of the relative
+/// rotations, and the scale and translation that align the centres. Rotations are used because
+/// centres near a line would leave the rotation about that line uncertain.
 pub fn cameras(from: &[Pose], to: &[Pose]) -> Option<Similarity> {
     let count = from.len() as f64;
     if from.len() < 2 || from.len() != to.len() {
@@ -86,14 +87,14 @@ pub fn cameras(from: &[Pose], to: &[Pose]) -> Option<Similarity> {
     (scale.is_finite() && scale > 0.0).then(|| Similarity { scale, rotation, shift: means[1] - scale * means[0] })
 }
 
-/// Pose that best maps world points to points in the camera frame.
+/// Computes the pose that best maps world points to points in the camera frame.
 pub fn rigid(world: &[Vector3<f64>], camera: &[Vector3<f64>]) -> Option<Pose> {
     let (means, rotation, _) = turned(world, camera)?;
     Some(Pose { rotation, translation: means[1] - rotation * means[0] })
 }
 
-/// Similarity that maps triangulated control points to their known positions, and the remaining
-/// distance of each.
+/// Computes the similarity that maps triangulated control points to their known positions, and the
+/// remaining distance of each point.
 ///
 /// # Errors
 ///

@@ -1,5 +1,5 @@
-//! Direct linear transform: the camera of world points and their pixels, without knowledge of the
-//! lens.
+//! Direct linear transform (DLT): computes a camera from world points and their pixels. The lens
+//! need not be known.
 //!
 //! x ~ P X with a 3x4 matrix P. Each point gives two equations that are linear in P. In P = K [R |
 //! t], K is upper triangular.
@@ -10,17 +10,17 @@
 use super::{normalization, null_vector};
 use nalgebra::{DMatrix, Matrix3, Matrix3x4, Matrix4, Vector2, Vector3};
 
-/// Projection matrix and its conditioning.
+/// Result of the direct linear transform: a 3x4 projection matrix and the singular values of its
+/// equations.
 pub struct Linear {
     /// Matrix P, up to scale.
     pub matrix: Matrix3x4<f64>,
-    /// Singular values of the equations in Hartley's normalised coordinates, in falling order. The
-    /// last is the residual of the equations. If the one before it is zero, the matrix is not
-    /// unique.
+    /// Singular values of the equations in Hartley's normalised coordinates, in decreasing order.
+    /// The last one is the residual. If the second to last is zero, the matrix is not unique.
     pub singular: Vec<f64>,
 }
 
-/// Standard deviations of points along their principal axes, in falling order.
+/// Returns the standard deviations of points along their principal axes, in decreasing order.
 pub fn spread(points: &[Vector3<f64>]) -> [f64; 3] {
     let mean = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
     let covariance = points.iter().map(|p| (p - mean) * (p - mean).transpose()).sum::<Matrix3<f64>>();
@@ -30,7 +30,7 @@ pub fn spread(points: &[Vector3<f64>]) -> [f64; 3] {
     values
 }
 
-/// Estimates the matrix that best fulfils the equations of six or more points.
+/// Computes the least-squares projection matrix of six or more points.
 pub fn linear(points: &[Vector3<f64>], pixels: &[Vector2<f64>]) -> Option<Linear> {
     if points.len() < 6 || points.len() != pixels.len() {
         return None;
@@ -59,8 +59,8 @@ pub fn linear(points: &[Vector3<f64>], pixels: &[Vector2<f64>]) -> Option<Linear
     matrix.iter().all(|c| c.is_finite()).then_some(Linear { matrix, singular })
 }
 
-/// Decomposes P into K, with 1 in its last element, R, and t. The sign is chosen so that depths are
-/// positive.
+/// Decomposes P into K, R, and t. The last element of K is 1, and signs are chosen so that depths
+/// are positive.
 pub fn take_apart(p: &Matrix3x4<f64>) -> Option<(Matrix3<f64>, Matrix3<f64>, Vector3<f64>)> {
     let left = p.fixed_columns::<3>(0).into_owned();
     let p = if left.determinant() < 0.0 { -p } else { *p };

@@ -1,5 +1,5 @@
-//! Essential matrix of two photographs with known lenses: five correspondences give up to ten
-//! solutions.
+//! Essential matrix of two photographs with known lenses, from five correspondences (up to ten
+//! solutions).
 //!
 //! q'ᵀ E q = 0 for the directions q and q' in which two cameras see a point, where E = \[t\]× R and
 //! (R, t) is the pose of the second camera in the frame of the first. E lies in the null space of
@@ -44,18 +44,19 @@ const MONOMIALS: [[usize; 3]; 20] = [
 /// Coefficients of a polynomial in x, y, z of degree at most three.
 type Cubic = [f64; 20];
 
-/// Index of a monomial by its exponents.
+/// Returns the index of a monomial in [`MONOMIALS`].
 fn place(exponents: [usize; 3]) -> usize {
     MONOMIALS.iter().position(|m| *m == exponents).unwrap_or(usize::MAX)
 }
 
-/// Indices of the products of monomials; [`usize::MAX`] if the degree exceeds three.
+/// Returns the index of the product of each pair of monomials; [`usize::MAX`] if its degree exceeds
+/// three.
 fn products() -> [[usize; 20]; 20] {
     let product = |a: usize, b: usize| place([0, 1, 2].map(|i| MONOMIALS[a][i] + MONOMIALS[b][i]));
     std::array::from_fn(|a| std::array::from_fn(|b| product(a, b)))
 }
 
-/// Arithmetic of cubics with a table of products.
+/// Multiplication of cubic polynomials, using a table of the products of monomials.
 struct Algebra([[usize; 20]; 20]);
 
 impl Algebra {
@@ -69,7 +70,7 @@ impl Algebra {
         product
     }
 
-    /// Sum of three products.
+    /// Returns the sum of three products.
     fn dot(&self, pairs: [(&Cubic, &Cubic); 3]) -> Cubic {
         pairs.iter().fold([0.0; 20], |sum, (a, b)| plus(&sum, &self.multiply(a, b), 1.0))
     }
@@ -79,7 +80,7 @@ fn plus(a: &Cubic, b: &Cubic, factor: f64) -> Cubic {
     std::array::from_fn(|i| a[i] + factor * b[i])
 }
 
-/// Essential matrices of five pairs of directions (x, y, 1).
+/// Computes up to ten essential matrices from five pairs of directions (x, y, 1).
 pub fn five_point(pairs: &[Pair; 5]) -> Vec<Matrix3<f64>> {
     solutions(pairs).unwrap_or_default()
 }
@@ -152,8 +153,8 @@ fn solutions(pairs: &[Pair; 5]) -> Option<Vec<Matrix3<f64>>> {
     let mut found = Vec::new();
     for z in real_roots(&whole) {
         let m = Matrix3::from_fn(|i, j| at(&polynomials[i][j], z));
-        // (x, y, 1) is orthogonal to all rows; the cross product of the two most different rows is
-        // the most exact.
+        // (x, y, 1) is orthogonal to all rows. The largest cross product of two rows is the most
+        // accurate.
         let crosses = [(0, 1), (0, 2), (1, 2)].map(|(i, j)| m.row(i).transpose().cross(&m.row(j).transpose()));
         let best = crosses.into_iter().fold(Vector3::zeros(), |a, b| if b.norm() > a.norm() { b } else { a });
         let (x, y) = (best.x / best.z, best.y / best.z);
@@ -165,11 +166,11 @@ fn solutions(pairs: &[Pair; 5]) -> Option<Vec<Matrix3<f64>>> {
     Some(found)
 }
 
-/// Four possible poses of the second camera, with a translation of length 1.
+/// Returns the four possible poses of the second camera, with a translation of length 1.
 pub fn poses(e: &Matrix3<f64>) -> Option<[Pose; 4]> {
     let svd = e.svd(true, true);
     let (mut u, mut v) = (svd.u?, svd.v_t?);
-    // The least singular value, which is nearly 0, is the last. Both matrices must be rotations.
+    // The smallest singular value is the last and nearly 0. Both matrices must be rotations.
     if u.determinant() < 0.0 {
         u.column_mut(2).neg_mut();
     }
@@ -182,7 +183,7 @@ pub fn poses(e: &Matrix3<f64>) -> Option<[Pose; 4]> {
     Some([pose(a, t), pose(a, -t), pose(b, t), pose(b, -t)])
 }
 
-/// Pose with the most points in front of both cameras, and their number.
+/// Returns the pose that puts the most points in front of both cameras, and their number.
 pub fn pose_before(e: &Matrix3<f64>, pairs: &[Pair]) -> Option<(Pose, usize)> {
     let before = |pose: &Pose| {
         let in_front = |pair: &&Pair| {
@@ -195,7 +196,8 @@ pub fn pose_before(e: &Matrix3<f64>, pairs: &[Pair]) -> Option<(Pose, usize)> {
     counted.reduce(|best, next| if next.1 > best.1 { next } else { best })
 }
 
-/// Pairs of directions (x, y, 1), including outliers.
+/// RANSAC problem of the essential matrix: corresponding directions (x, y, 1) in two photographs,
+/// including outliers.
 pub struct Directions<'p>(pub &'p [Pair]);
 
 impl Estimate<5> for Directions<'_> {
@@ -212,7 +214,7 @@ impl Estimate<5> for Directions<'_> {
     fn refined(&self, inliers: &[usize], _: &Matrix3<f64>) -> Option<Matrix3<f64>> {
         let e = eight_point(&inliers.iter().map(|i| self.0[*i]).collect::<Vec<_>>())?;
         let svd = e.svd(true, true);
-        // The singular values of the nearest essential matrix are 1, 1, 0.
+        // Project onto the essential matrices, whose singular values are 1, 1, 0.
         let mut values = Vector3::new(1.0, 1.0, 1.0);
         values[svd.singular_values.imin()] = 0.0;
         Some(svd.u? * Matrix3::from_diagonal(&values) * svd.v_t?)

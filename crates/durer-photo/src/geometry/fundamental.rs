@@ -1,5 +1,5 @@
-//! Fundamental matrix of two photographs: seven correspondences give one to three solutions, eight
-//! or more give one.
+//! Fundamental matrix of two photographs, from seven correspondences (one to three solutions) or at
+//! least eight (one solution).
 //!
 //! x'ᵀ F x = 0 for pixels x and x' of the same point in the first and the second photograph.
 //!
@@ -11,15 +11,15 @@ use super::ransac::Estimate;
 use super::{normalization, null_vector};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};
 
-/// Positions of a point in two photographs.
+/// Correspondence: the positions of a scene point in two photographs.
 pub type Pair = (Vector2<f64>, Vector2<f64>);
 
 fn homogeneous(p: &Vector2<f64>) -> Vector3<f64> {
     Vector3::new(p.x, p.y, 1.0)
 }
 
-/// Squared Sampson distance: the distance by which a pair must move to fulfil the equation, to
-/// first order.
+/// Returns the squared Sampson distance: to first order, the squared distance that the two
+/// positions must move to satisfy the epipolar equation.
 pub fn sampson(f: &Matrix3<f64>, (a, b): &Pair) -> f64 {
     let (a, b) = (homogeneous(a), homogeneous(b));
     let (fa, fb) = (f * a, f.transpose() * b);
@@ -27,7 +27,8 @@ pub fn sampson(f: &Matrix3<f64>, (a, b): &Pair) -> f64 {
     product * product / (fa.xy().norm_squared() + fb.xy().norm_squared())
 }
 
-/// Equations of pairs that are normalised by `(scale, mean)` in each photograph.
+/// Returns the linear equations for F, one row per pair. Positions are normalised by the
+/// `(scale, mean)` of each photograph.
 fn equations(pairs: &[Pair], [one, two]: [(f64, Vector2<f64>); 2]) -> DMatrix<f64> {
     DMatrix::from_fn(pairs.len(), 9, |row, column| {
         let (a, b) = pairs[row];
@@ -44,15 +45,14 @@ fn matrix_of(v: &DVector<f64>) -> Matrix3<f64> {
     Matrix3::from_row_slice(v.as_slice())
 }
 
-/// Converts the matrix for normalised pixels to one for pixels.
+/// Converts F from normalised coordinates to pixels.
 fn denormalized(f: Matrix3<f64>, [one, two]: [(f64, Vector2<f64>); 2]) -> Matrix3<f64> {
     let matrix = |(s, m): (f64, Vector2<f64>)| Matrix3::new(s, 0.0, -s * m.x, 0.0, s, -s * m.y, 0.0, 0.0, 1.0);
     let f = matrix(two).transpose() * f * matrix(one);
     f / f.norm()
 }
 
-/// Estimates the matrix of rank 2 that best fulfils the equations of eight or more pairs, in
-/// Hartley's normalised coordinates.
+/// Estimates F from eight or more pairs with the normalised eight-point algorithm (Hartley).
 pub fn eight_point(pairs: &[Pair]) -> Option<Matrix3<f64>> {
     if pairs.len() < 8 {
         return None;
@@ -67,13 +67,13 @@ pub fn eight_point(pairs: &[Pair]) -> Option<Matrix3<f64>> {
     Some(denormalized(f, normal)).filter(|f| f.iter().all(|c| c.is_finite()))
 }
 
-/// Matrices of rank 2 that fulfil the equations of seven pairs.
+/// Computes the one to three fundamental matrices of seven pairs.
 pub fn seven_point(pairs: &[Pair; 7]) -> Vec<Matrix3<f64>> {
     let normal = normalizations(pairs);
     let svd = super::padded(&equations(pairs, normal)).svd(false, true);
     let Some(v) = svd.v_t else { return Vec::new() };
     let row = |i: usize| matrix_of(&v.row(i).transpose());
-    // Singular values are in falling order, so the last two rows span the null space.
+    // Singular values are in decreasing order, so the last two rows span the null space.
     let (a, b) = (row(7), row(8));
     // det(a + x b) is a cubic; four values determine its coefficients.
     let at = |x: f64| (a + x * b).determinant();
@@ -83,7 +83,8 @@ pub fn seven_point(pairs: &[Pair; 7]) -> Vec<Matrix3<f64>> {
     real_roots(&[c0, c1, c2, c3]).into_iter().map(|x| denormalized(a + x * b, normal)).collect()
 }
 
-/// Pairs of pixels, including outliers.
+/// RANSAC problem of the fundamental matrix: corresponding pixels in two photographs, including
+/// outliers.
 pub struct Pairs<'p>(pub &'p [Pair]);
 
 impl Estimate<7> for Pairs<'_> {

@@ -1,4 +1,5 @@
-//! Homography of two photographs: the mapping of pixels for a planar scene or a rotating camera.
+//! Homography between two photographs: maps pixels from one to the other if the scene is planar or
+//! the camera only rotated.
 //!
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! section 4.1.
@@ -8,13 +9,13 @@ use super::ransac::Estimate;
 use super::{normalization, null_vector};
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 
-/// Maps a pixel.
+/// Maps a pixel by a homography.
 pub fn mapped(h: &Matrix3<f64>, p: &Vector2<f64>) -> Vector2<f64> {
     let q = h * Vector3::new(p.x, p.y, 1.0);
     Vector2::new(q.x / q.z, q.y / q.z)
 }
 
-/// Estimates the homography of four or more pairs by the direct linear transform.
+/// Estimates the homography from four or more pairs by the direct linear transform.
 pub fn homography(pairs: &[Pair]) -> Option<Matrix3<f64>> {
     if pairs.len() < 4 {
         return None;
@@ -38,7 +39,8 @@ pub fn homography(pairs: &[Pair]) -> Option<Matrix3<f64>> {
     h.iter().all(|c| c.is_finite()).then_some(h)
 }
 
-/// Pairs of pixels, including some from other planes.
+/// RANSAC problem of a homography: corresponding pixels in two photographs, including outliers from
+/// other planes.
 pub struct Planar<'p>(pub &'p [Pair]);
 
 impl Estimate<4> for Planar<'_> {

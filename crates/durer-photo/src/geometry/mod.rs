@@ -1,4 +1,5 @@
-//! Solvers for corresponding points: minimal solvers for small samples, and least-squares solvers.
+//! Multiple-view geometry: minimal and least-squares solvers for camera matrices and poses, and
+//! RANSAC.
 
 pub mod align;
 pub mod camera;
@@ -12,9 +13,10 @@ pub mod triangulate;
 
 use nalgebra::{DMatrix, DVector, Vector2};
 
-/// Unit vector v that minimises |A v|, and the singular values of A in falling order.
+/// Returns the unit vector v that minimises |A v|, and the singular values of A in decreasing
+/// order.
 pub fn null_vector(matrix: &DMatrix<f64>) -> (DVector<f64>, Vec<f64>) {
-    // Eigenvectors of AᵀA would lose half of the digits. A QR step reduces the matrix instead.
+    // A QR step makes the matrix small. The eigenvectors of AᵀA would lose half of the digits.
     let square = if matrix.nrows() > matrix.ncols() { matrix.clone().qr().r() } else { padded(matrix) };
     let svd = square.svd(false, true);
     let mut order: Vec<usize> = (0..svd.singular_values.len()).collect();
@@ -30,8 +32,9 @@ fn padded(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     matrix.clone().resize(side, matrix.ncols(), 0.0)
 }
 
-/// Hartley's normalisation: the scale and the mean that give points mean 0 and a mean distance of
-/// √2 from it. Source: Hartley, *In Defense of the Eight-Point Algorithm*, PAMI 19(6), 1997.
+/// Returns the scale and the mean of Hartley's normalisation, which gives points mean 0 and a mean
+/// distance of √2 from it. Source: Hartley, *In Defense of the Eight-Point Algorithm*, PAMI 19(6),
+/// 1997.
 pub fn normalization(points: impl Iterator<Item = Vector2<f64>> + Clone) -> (f64, Vector2<f64>) {
     let count = points.clone().count().max(1) as f64;
     let mean = points.clone().sum::<Vector2<f64>>() / count;

@@ -1,8 +1,8 @@
-//! Pose of a camera from three points and their directions: up to four solutions.
+//! Pose of a camera from three world points and their directions (P3P): up to four solutions.
 //!
 //! With the angles α, β, γ between the directions and the sides a, b, c of the triangle, the
-//! distances s₁, s₂ = u s₁, s₃ = v s₁ fulfil three laws of cosines. Eliminating u leaves a quartic
-//! in v.
+//! distances s₁, s₂ = u s₁, s₃ = v s₁ satisfy the law of cosines in three triangles. Eliminating u
+//! leaves a quartic in v.
 //!
 //! Source: Grunert's solution as in Haralick, Lee, Ottenberg, Nölle, *Review and Analysis of
 //! Solutions of the Three Point Perspective Pose Estimation Problem*, IJCV 13(3), 1994, section
@@ -13,7 +13,8 @@ use super::polynomial::real_roots;
 use crate::Pose;
 use nalgebra::Vector3;
 
-/// Poses for which three world points lie in three directions, which need not have length 1.
+/// Returns the poses from which three world points are seen in three directions. The directions
+/// need not have length 1.
 pub fn p3p(points: &[Vector3<f64>; 3], directions: &[Vector3<f64>; 3]) -> Vec<Pose> {
     let [j1, j2, j3] = directions.map(|direction| direction.normalize());
     let [p1, p2, p3] = points;

@@ -1,13 +1,13 @@
 //! Real roots of polynomials.
 
-/// Evaluates a polynomial; coefficients from the constant upwards.
+/// Evaluates a polynomial. Coefficients start with the constant.
 fn value(coefficients: &[f64], x: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
 }
 
-/// Real roots in rising order. Between two extrema, which are the roots of the derivative, there is
-/// at most one root, which bisection finds. A double root, which rounding may lift off the axis, is
-/// found if the polynomial is zero at an extremum up to rounding.
+/// Returns the real roots in increasing order. Between two extrema (the roots of the derivative)
+/// there is at most one root, which is found by bisection. An extremum where the polynomial is zero
+/// up to rounding counts as a double root.
 pub fn real_roots(coefficients: &[f64]) -> Vec<f64> {
     let largest = coefficients.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
     let degree = coefficients.iter().rposition(|c| c.abs() > 1e-14 * largest).unwrap_or(0);

@@ -1,29 +1,30 @@
 //! RANSAC with local optimisation, for data with outliers.
 //!
-//! Models are computed from small samples. The one that explains the data best is kept and fitted
-//! again to all its inliers. Models are compared by their sum of truncated squares (MSAC). The
-//! search ends when a better sample has become unlikely.
+//! Models are computed from random minimal samples and compared by their sum of truncated squared
+//! errors (MSAC). The best one is fitted again to all its inliers. The search ends when a better
+//! sample has become unlikely.
 //!
 //! Sources: Fischler, Bolles, *Random Sample Consensus*, CACM 24(6), 1981; Torr, Zisserman,
 //! *MLESAC*, CVIU 78, 2000; Chum, Matas, Kittler, *Locally Optimized RANSAC*, DAGM 2003.
 
 use crate::random::Random;
 
-/// A problem for RANSAC with samples of `N` data.
+/// Estimation problem that [`ransac`] solves, such as finding a fundamental matrix from pairs of
+/// pixels. `N` is the size of a minimal sample.
 pub trait Estimate<const N: usize> {
-    /// Model of the data.
+    /// Model to estimate, for example a matrix or a pose.
     type Model: Clone;
-    /// Number of data.
+    /// Returns the number of data.
     fn count(&self) -> usize;
-    /// Models of a sample.
+    /// Returns all models that fit a minimal sample, given by indices.
     fn minimal(&self, sample: &[usize; N]) -> Vec<Self::Model>;
-    /// Model fitted to many data, starting from a model near it.
+    /// Returns the model fitted to all inliers. `model` is the initial estimate.
     fn refined(&self, inliers: &[usize], model: &Self::Model) -> Option<Self::Model>;
-    /// Squared error of a datum.
+    /// Returns the squared error of a datum.
     fn error(&self, model: &Self::Model, datum: usize) -> f64;
 }
 
-/// Parameters of the search.
+/// Parameters of a RANSAC search.
 #[derive(Debug, Clone, Copy)]
 pub struct Search {
     /// Maximum error of an inlier.
@@ -34,7 +35,8 @@ pub struct Search {
     pub seed: u64,
 }
 
-/// Finds the best model and its inliers; `None` if no model has more inliers than its sample.
+/// Returns the best model and the indices of its inliers; `None` if no model has more inliers than
+/// its sample.
 pub fn ransac<const N: usize, E: Estimate<N>>(problem: &E, search: &Search) -> Option<(E::Model, Vec<usize>)> {
     let count = problem.count();
     if count < N {
@@ -60,7 +62,8 @@ pub fn ransac<const N: usize, E: Estimate<N>>(problem: &E, search: &Search) -> O
     (inliers.len() > N).then_some((model, inliers))
 }
 
-/// Number of samples that, with probability 0.9999, include one without outliers.
+/// Returns the number of samples of which, with probability 0.9999, at least one is without
+/// outliers.
 fn samples_for<const N: usize>(share: f64, most: usize) -> usize {
     let good = (0..N).map(|_| share).product::<f64>();
     if good <= 1e-12 {
@@ -69,7 +72,7 @@ fn samples_for<const N: usize>(share: f64, most: usize) -> usize {
     if good >= 1.0 { 1 } else { (libm::log(1e-4) / libm::log1p(-good)).ceil().max(8.0).min(most as f64) as usize }
 }
 
-/// Sum of truncated errors; `None` if it reaches a bound.
+/// Returns the sum of truncated squared errors; `None` if it reaches `bound`.
 fn loss<const N: usize, E: Estimate<N>>(problem: &E, model: &E::Model, limit: f64, bound: f64) -> Option<f64> {
     let mut sum = 0.0;
     for datum in 0..problem.count() {
@@ -87,7 +90,7 @@ fn inliers<const N: usize, E: Estimate<N>>(problem: &E, model: &E::Model, limit:
     (0..problem.count()).filter(|datum| problem.error(model, *datum) < limit).collect()
 }
 
-/// Fits the model repeatedly to its inliers, from twice the threshold down to it.
+/// Fits the model repeatedly to its inliers, while the threshold decreases from `start` to `limit`.
 fn improved<const N: usize, E: Estimate<N>>(problem: &E, model: E::Model, start: f64, limit: f64) -> (f64, E::Model) {
     let (mut best, mut current) = ((start, model.clone()), model);
     for widened in [4.0, 2.0, 1.0, 1.0] {

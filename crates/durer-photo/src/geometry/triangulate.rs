@@ -7,8 +7,8 @@ use super::fundamental::Pair;
 use crate::Pose;
 use nalgebra::{Matrix3, Vector3};
 
-/// Point nearest to some rays (origin and unit direction) in the sum of squared distances; `None`
-/// if they are parallel.
+/// Returns the point with the smallest sum of squared distances to rays (origin and unit
+/// direction); `None` if the rays are parallel.
 pub fn nearest_to_rays(rays: &[(Vector3<f64>, Vector3<f64>)]) -> Option<Vector3<f64>> {
     let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
     for (origin, direction) in rays {
@@ -20,8 +20,8 @@ pub fn nearest_to_rays(rays: &[(Vector3<f64>, Vector3<f64>)]) -> Option<Vector3<
     point.iter().all(|c| c.is_finite()).then_some(point)
 }
 
-/// Point that two cameras see in the directions (x, y, 1), with the first camera at the origin. NaN
-/// if the rays are parallel.
+/// Returns the point that two cameras see in the directions (x, y, 1). The first camera is at the
+/// origin. NaN if the rays are parallel.
 pub fn two_views(second: &Pose, (a, b): &Pair) -> Vector3<f64> {
     let ray = |pose: &Pose, x: f64, y: f64| (pose.center(), pose.outwards(&Vector3::new(x, y, 1.0)).normalize());
     let rays = [ray(&Pose::identity(), a.x, a.y), ray(second, b.x, b.y)];

@@ -1,4 +1,4 @@
-//! Matching of photographs: tracks of the same scene points in several photographs.
+//! Matches features between photographs, and joins the matches of each scene point to a track.
 
 mod pairs;
 mod tracks;
@@ -12,22 +12,22 @@ use pairs::{Descriptors, alike, verified};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Options for matching photographs.
+/// Options of feature detection and matching.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Maximum number of features per photograph.
     pub features: usize,
-    /// Maximum length of the longer side in pixels; larger photographs are reduced.
+    /// Maximum length of a photograph's longer side in pixels; larger photographs are reduced.
     pub side: u32,
-    /// Maximum ratio of the distances of the nearest and the second nearest feature.
+    /// Maximum ratio of the descriptor distances to the nearest and the second nearest feature.
     pub ratio: f64,
     /// Maximum distance from the epipolar line, in pixels of the reduced photograph.
     pub threshold: f64,
-    /// Minimum number of matches that agree with the same geometry.
+    /// Minimum number of matches between two photographs that agree with one fundamental matrix.
     pub least: usize,
-    /// Horizontal field of view in degrees for photographs without EXIF data.
+    /// Horizontal field of view in degrees, used for photographs without EXIF data.
     pub field: f64,
-    /// Ignores focal lengths from EXIF.
+    /// True if focal lengths from EXIF data are ignored.
     pub ignore_exif: bool,
     /// Seed of the random numbers.
     pub seed: u64,
@@ -40,7 +40,8 @@ impl Default for Options {
     }
 }
 
-/// A matched photograph.
+/// Photograph in the output of matching: its name, size, initial focal length, and number of
+/// features.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Picture {
     /// File name.
@@ -49,35 +50,35 @@ pub struct Picture {
     pub size: [u32; 2],
     /// Initial focal length in pixels.
     pub focal: f64,
-    /// Source of the focal length.
+    /// Description of where the focal length comes from.
     pub focal_from: String,
-    /// Number of the lens. Photographs with the same camera, size, and focal length share one.
+    /// Index of the lens. Photographs with the same camera, size, and focal length share one.
     pub lens: usize,
     /// Number of features.
     pub features: usize,
 }
 
-/// Two photographs that show the same scene.
+/// Pair of photographs that show the same part of the scene, with statistics of their matches.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Link {
-    /// Numbers of the photographs.
+    /// Indices of the two photographs.
     pub pictures: [usize; 2],
-    /// Number of features with similar descriptors.
+    /// Number of feature pairs with similar descriptors.
     pub alike: usize,
-    /// Number of these that agree with the same fundamental matrix.
+    /// Number of these pairs that agree with one fundamental matrix.
     pub matches: usize,
     /// Share of the matches that a single homography explains.
     pub planar: f64,
-    /// Median distance between the positions in both pictures, in pixels.
+    /// Median distance between the positions in both photographs, in pixels.
     pub moved: f64,
 }
 
-/// Observation of a point: number of the photograph, number of the feature, and position in pixels
+/// Observation in a track: index of the photograph, index of the feature, and x and y in pixels
 /// from the upper left corner.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sighting(pub usize, pub usize, pub f64, pub f64);
 
-/// A scene point with an unknown position.
+/// Features in several photographs that show the same scene point, whose position is not yet known.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Track {
     /// Mean colour.
@@ -86,14 +87,15 @@ pub struct Track {
     pub seen: Vec<Sighting>,
 }
 
-/// Result of matching.
+/// Result of matching, the input of [`solve`](crate::solve): photographs, pairs that match, and
+/// tracks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Matches {
     /// Format identifier of the file.
     pub format: String,
     /// Photographs.
     pub pictures: Vec<Picture>,
-    /// Links between photographs.
+    /// Pairs of photographs that match.
     pub links: Vec<Link>,
     /// Tracks of scene points.
     pub tracks: Vec<Track>,
@@ -105,7 +107,8 @@ pub const GUESS: &str = "a guess";
 /// Value of [`Matches::format`].
 pub const FORMAT: &str = "durer matches 1";
 
-/// Features of a photograph.
+/// Features of one photograph with their descriptors and colours, computed by [`describe`] and
+/// matched by [`match_all`].
 pub struct ImageFeatures {
     picture: Picture,
     camera: String,
@@ -115,7 +118,7 @@ pub struct ImageFeatures {
     scale: f64,
 }
 
-/// Finds the features of a photograph. The photograph is then no longer needed.
+/// Detects the features of a photograph. The pixels are not needed afterwards.
 pub fn describe(photo: &Photo, options: &Options) -> ImageFeatures {
     let (gray, scale) = photo.gray(options.side);
     let mut found = features(&gray, options.features);
@@ -138,7 +141,7 @@ pub fn describe(photo: &Photo, options: &Options) -> ImageFeatures {
     }
 }
 
-/// Matches all pairs of photographs. `progress` receives the finished share.
+/// Matches all pairs of photographs. `progress` receives the finished fraction, from 0 to 1.
 ///
 /// # Errors
 ///
@@ -219,7 +222,7 @@ fn place(feature: &Feature) -> Vector2<f64> {
 }
 
 impl Matches {
-    /// Initial lenses.
+    /// Returns the initial lenses, from the focal lengths of the photographs.
     pub fn lenses(&self) -> Vec<Lens> {
         let first = |lens: usize| self.pictures.iter().find(|picture| picture.lens == lens);
         (0..self.pictures.len()).map_while(first).map(|picture| Lens::new(picture.size, picture.focal)).collect()

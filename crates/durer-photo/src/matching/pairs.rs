@@ -1,4 +1,5 @@
-//! Pairwise matching of features, by descriptors and geometry.
+//! Matches the features of two photographs by their descriptors, and verifies the matches by
+//! geometry.
 
 use crate::feature::LENGTH;
 use crate::geometry::fundamental::{Pair, Pairs};
@@ -6,14 +7,15 @@ use crate::geometry::homography::{Planar, mapped};
 use crate::geometry::ransac::{Search, ransac};
 use nalgebra::{Matrix3, Vector2};
 
-/// Descriptors in a layout for fast multiplication.
+/// SIFT descriptors of all features of one photograph, as 16-bit integers with their squared
+/// lengths, for fast distance computation.
 pub struct Descriptors {
     values: Vec<[i16; LENGTH]>,
     squares: Vec<i32>,
 }
 
 impl Descriptors {
-    /// Creates the descriptors of all features of a photograph.
+    /// Converts the descriptors of all features of a photograph.
     pub fn new<'d>(all: impl Iterator<Item = &'d [u8; LENGTH]>) -> Self {
         let values: Vec<[i16; LENGTH]> = all.map(|descriptor| descriptor.map(i16::from)).collect();
         let squares = values.iter().map(|v| dot(v, v)).collect();
@@ -21,14 +23,15 @@ impl Descriptors {
     }
 }
 
-/// Integer arithmetic gives the same result on all processors. 128 products of bytes cannot
-/// overflow, and without overflow checks the loop is vectorised.
+/// Returns the dot product of two descriptors. The sum of 128 products of bytes cannot overflow;
+/// wrapping arithmetic lets the compiler vectorise the loop. Integers give the same result on all
+/// processors.
 fn dot(a: &[i16; LENGTH], b: &[i16; LENGTH]) -> i32 {
     a.iter().zip(b).fold(0, |sum, (a, b)| sum.wrapping_add(i32::from(*a).wrapping_mul(i32::from(*b))))
 }
 
-/// Pairs of features that are each other's nearest, and whose distance is less than `ratio` times
-/// the distance to the second nearest. Lowe, section 7.1.
+/// Returns pairs of features that are each other's nearest neighbours, and whose distance is less
+/// than `ratio` times the distance to the second nearest (Lowe, section 7.1).
 pub fn alike(a: &Descriptors, b: &Descriptors, ratio: f64) -> Vec<(usize, usize)> {
     let mut back = vec![(i32::MAX, usize::MAX); b.values.len()];
     let mut forth = Vec::with_capacity(a.values.len());
@@ -54,24 +57,26 @@ pub fn alike(a: &Descriptors, b: &Descriptors, ratio: f64) -> Vec<(usize, usize)
     forth.into_iter().enumerate().filter(|(_, row)| row.2 != usize::MAX).filter_map(clear).collect()
 }
 
-/// Common geometry of two photographs.
+/// Result of verifying the matches of two photographs: the inliers of a fundamental matrix, and
+/// statistics about them.
 pub struct Geometry {
-    /// Indices of the matches that agree with it.
+    /// Indices of the matches that agree with the fundamental matrix.
     pub inliers: Vec<usize>,
     /// Share of these that a single homography explains. If it is near 1, the scene is flat or the
     /// camera only rotated.
     pub planar: f64,
-    /// Median distance in pixels between the positions in both pictures.
+    /// Median distance in pixels between the positions in both photographs.
     pub moved: f64,
 }
 
-/// Returns true if `agree` of `all` matches may agree on a geometry by chance: a few percent of
-/// false matches lie near any line.
+/// Returns true if `agree` of `all` matches can agree on a geometry by chance. A few percent of
+/// false matches always lie near their epipolar lines.
 pub fn by_chance(agree: usize, all: usize) -> bool {
     agree * 5 < all
 }
 
-/// Finds the matches that agree with a rigid scene; `None` if there are not enough.
+/// Finds the matches that agree with one fundamental matrix; `None` if there are fewer than
+/// `least`, or so few that they could agree by chance.
 pub fn verified(places: &[Pair], threshold: f64, least: usize, seed: u64) -> Option<Geometry> {
     let search = Search { threshold, samples: 5000, seed };
     let (_, inliers) = ransac(&Pairs(places), &search)?;

@@ -1,10 +1,10 @@
 //! Tracks: features matched across photographs, ideally of the same scene point.
 
-/// A feature: the number of its photograph, and its number there.
+/// Feature, given by the index of its photograph and its index in that photograph.
 pub type Member = (usize, usize);
 
-/// Connected components of matched features, each in the order of photographs. A component with two
-/// features in the same photograph cannot be a single point and is dropped.
+/// Returns the connected components of the graph of matched features, each sorted by photograph. A
+/// component with two features in one photograph cannot be a single point, and is dropped.
 pub fn tracks(counts: &[usize], matches: impl Iterator<Item = (Member, Member)>) -> Vec<Vec<Member>> {
     let mut starts = vec![0];
     counts.iter().for_each(|count| starts.push(starts[starts.len() - 1] + count));
@@ -18,7 +18,7 @@ pub fn tracks(counts: &[usize], matches: impl Iterator<Item = (Member, Member)>)
     }
     for (a, b) in matches {
         let (a, b) = (root(&mut parents, starts[a.0] + a.1), root(&mut parents, starts[b.0] + b.1));
-        // The smaller number becomes the root, regardless of the order of matches.
+        // The smaller index becomes the root, so the result is independent of the order of matches.
         parents[a.max(b)] = a.min(b);
     }
     let mut lists: Vec<Vec<Member>> = vec![Vec::new(); parents.len()];

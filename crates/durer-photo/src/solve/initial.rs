@@ -1,4 +1,4 @@
-//! Selection of the initial two photographs.
+//! Selects the two photographs from which the reconstruction starts.
 
 use super::Solver;
 use crate::geometry::essential::{Directions, pose_before};
@@ -9,7 +9,7 @@ use crate::{Error, Pose};
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
-/// Number of links that are tried, in falling order of matches.
+/// Number of photograph pairs to try, in decreasing order of matches.
 const TRIED: usize = 30;
 
 impl Solver<'_> {
@@ -28,7 +28,8 @@ impl Solver<'_> {
                 turned += 1;
                 continue;
             }
-            // Angles beyond ten degrees are not better. A planar scene does not determine the lens.
+            // Angles of ten degrees or more are equally good. Planar scenes do not determine the
+            // lens.
             let score = count as f64 * (angle.to_degrees() / 10.0).min(1.0) * (1.2 - link.planar);
             if best.as_ref().is_none_or(|best| score > best.0) {
                 best = Some((score, link.pictures, pose));
@@ -51,8 +52,8 @@ impl Solver<'_> {
         Ok([a, b])
     }
 
-    /// Pose of the second photograph in the frame of the first, number of points in front of both,
-    /// and median angle between the rays.
+    /// Returns the pose of the second photograph in the frame of the first, the number of points in
+    /// front of both, and the median angle between the rays.
     fn relative(&self, [a, b]: [usize; 2]) -> Option<(Pose, usize, f64)> {
         let lenses = [a, b].map(|view| self.lenses[self.views[view].lens]);
         let mut pairs = Vec::new();

@@ -1,8 +1,8 @@
-//! Incremental reconstruction: cameras and points from tracks.
+//! Incremental structure from motion: computes cameras and points from tracks.
 //!
-//! Starts with two photographs (`initial`). The photograph that observes the most known points
-//! comes next (`register`), its new points are triangulated (`structure`), and everything is
-//! adjusted again. Outliers are dropped on the way.
+//! Starts with two photographs (`initial`). Then, repeatedly, the photograph that observes the most
+//! known points is added (`register`), its new points are triangulated (`structure`), and bundle
+//! adjustment refines everything. Outliers are dropped along the way.
 //!
 //! Source: Snavely, Seitz, Szeliski, *Photo Tourism: Exploring Photo Collections in 3D*, SIGGRAPH
 //! 2006, section 4.2.
@@ -19,22 +19,22 @@ use crate::matching::{GUESS, Matches};
 use crate::{Error, Lens, Observation, Point, Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-/// Scale of the Cauchy loss in standard deviations. It loses a twentieth of the efficiency for
-/// normal errors (Holland, Welsch, *Robust Regression Using Iteratively Reweighted Least-Squares*,
-/// 1977), but gains much for other distributions: half of the coordinates of salient points are off
-/// by a tenth of a pixel or less, and some by two pixels.
+/// Scale of the Cauchy loss in standard deviations. For normally distributed errors it is 95 %
+/// efficient (Holland, Welsch, *Robust Regression Using Iteratively Reweighted Least-Squares*,
+/// 1977). Errors of keypoints have much heavier tails: half of the coordinates are off by a tenth
+/// of a pixel or less, and some by two pixels.
 const CAUCHY: f64 = 2.385;
-/// Minimum standard deviation of a salient point in pixels.
+/// Minimum standard deviation of a keypoint's position in pixels.
 const FINEST: f64 = 0.02;
 
-/// Options of the solver.
+/// Options of incremental reconstruction by [`solve`].
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// Keeps focal lengths fixed.
+    /// True if focal lengths are kept fixed.
     pub fixed_focal: bool,
-    /// Keeps k1 and k2 at 0.
+    /// True if k1 and k2 are kept at 0.
     pub no_distortion: bool,
-    /// Gives each photograph its own lens.
+    /// True if each photograph has a separate lens.
     pub own_lenses: bool,
     /// Maximum residual of an observation in pixels, for photographs of up to 1600 pixels;
     /// proportionally more for larger ones.
@@ -54,41 +54,43 @@ impl Default for Options {
     }
 }
 
-/// A track that may become a point.
+/// Track during reconstruction: its observations, and its position once it is triangulated.
 struct CandidateTrack {
     color: [u8; 3],
     seen: Vec<Observation>,
-    /// Flags of the observations that fit.
+    /// For each observation, true if its residual is within the threshold.
     fits: Vec<bool>,
     position: Option<Vector3<f64>>,
 }
 
-/// State of an incremental reconstruction.
+/// State of an incremental reconstruction: photographs, lenses, and tracks.
 struct Solver<'o> {
     options: &'o Options,
     views: Vec<View>,
     lenses: Vec<Lens>,
-    /// Initial lenses, to reset lenses that diverge.
+    /// Initial lenses, which replace lenses that diverge.
     first: Vec<Lens>,
     tracks: Vec<CandidateTrack>,
-    /// Tracks of each photograph, with the index of its observation in the track.
+    /// For each photograph, the tracks that it observes and the index of its observation in each.
     of_view: Vec<Vec<(usize, usize)>>,
 }
 
-/// Result of the solver.
+/// Result of [`solve`]: the reconstruction, and notes for the user.
 pub struct Solution {
     /// Cameras and points.
     pub all: Reconstruction,
-    /// Notes for the user: photographs that were left out and the reason, and focal lengths far
-    /// from EXIF.
+    /// Notes for the user: photographs that were left out, with the reason, and focal lengths that
+    /// differ much from EXIF.
     pub notes: Vec<String>,
 }
 
-/// Reconstructs cameras and points. `progress` receives the number of registered photographs.
+/// Reconstructs cameras and points from matches. `progress` receives the number of registered
+/// photographs.
 ///
-/// With a wrong focal length, such as that in the EXIF data of photographs that were reduced in
-/// size, few photographs fit, or the focal length moves far. In that case, solves again from the
-/// resulting focal length or from a typical one, and returns the better result.
+/// If the initial focal length is wrong (for example, because the photographs were scaled down and
+/// EXIF was not updated), few photographs fit, or the focal length changes considerably. In that
+/// case, the function solves again from the resulting focal length or from a typical one, and
+/// returns the better result.
 ///
 /// # Errors
 ///
@@ -125,13 +127,14 @@ fn moved(ratio: f64) -> bool {
 }
 
 impl Solution {
-    /// Focal length of a photograph's lens.
+    /// Returns the focal length of a photograph's lens in pixels.
     fn focal(&self, view: usize) -> f64 {
         self.all.lenses[self.all.views[view].lens].focal
     }
 }
 
-/// Solves once. Notes compare focal lengths with the ones in `written`.
+/// Solves once from the focal lengths in `matches`. Notes compare the result with the focal lengths
+/// in `written`.
 fn attempt(
     matches: &Matches,
     written: &Matches,
@@ -149,12 +152,12 @@ fn attempt(
             refused[view] = true;
             continue;
         }
-        // Other photographs may fit now.
+        // Photographs that were refused may fit now.
         refused.fill(false);
         solver.extend();
         let known = solver.registered();
         progress(known);
-        // With many photographs, one more makes little difference.
+        // Adjust only after the number of photographs has grown by a tenth.
         if known > last_adjusted + last_adjusted / 10 {
             solver.adjust(false);
             solver.drop_misfits();
@@ -212,13 +215,13 @@ impl<'o> Solver<'o> {
         self.views.iter().filter(|view| view.pose.is_some()).count()
     }
 
-    /// Maximum residual in a photograph.
+    /// Returns the maximum residual of an inlier in a photograph, in pixels.
     fn threshold(&self, view: usize) -> f64 {
         self.options.threshold * (self.lenses[self.views[view].lens].longer_side() / 1600.0).max(1.0)
     }
 
-    /// Known points with the observations that fit, and the track of each point. Without `all`,
-    /// points with fewer than two observations are kept, too.
+    /// Returns the known points with the observations that fit, and the track index of each point.
+    /// If `all` is false, points with fewer than two observations are included.
     fn reconstruction(&self, all: bool) -> (Reconstruction, Vec<usize>) {
         let mut points = Vec::new();
         let mut tracks = Vec::new();
@@ -235,7 +238,7 @@ impl<'o> Solver<'o> {
         (Reconstruction { lenses: self.lenses.clone(), views: self.views.clone(), points }, tracks)
     }
 
-    /// Alternates between adjusting and dropping outliers, at most `times` times.
+    /// Alternates between bundle adjustment and dropping outliers, at most `times` times.
     fn settle(&mut self, times: usize) {
         for _ in 0..times {
             self.adjust(false);
@@ -249,7 +252,8 @@ impl<'o> Solver<'o> {
         self.drop_misfits();
     }
 
-    /// Adjusts everything; unless `thoroughly`, only as far as the next step requires.
+    /// Runs bundle adjustment. If `thoroughly` is false, it stops at the accuracy that adding
+    /// another photograph requires.
     fn adjust(&mut self, thoroughly: bool) {
         let (mut all, tracks) = self.reconstruction(false);
         let known = self.registered();
@@ -285,8 +289,9 @@ impl<'o> Solver<'o> {
     }
 }
 
-/// Normalises orientation, position, and scale: the mean up direction of the photographs becomes y,
-/// the median of the points the origin, and the mean distance of the cameras 1.
+/// Normalises the orientation, position, and scale of the world: the mean up direction of the
+/// photographs becomes y, the median of the points becomes the origin, and the mean distance of the
+/// cameras becomes 1.
 fn upright(all: &mut Reconstruction) {
     let poses: Vec<_> = all.views.iter().filter_map(|view| view.pose).collect();
     let up: Vector3<f64> = poses.iter().map(|pose| -pose.rotation.row(1).transpose()).sum();

@@ -1,4 +1,4 @@
-//! Registration of photographs that observe known points.
+//! Registration: computes the pose of a photograph that observes known points.
 
 use super::Solver;
 use crate::adjust::{Loss, Options, adjust};
@@ -7,7 +7,8 @@ use crate::geometry::ransac::{Estimate, Search, ransac};
 use crate::{Lens, Observation, Point, Pose, Reconstruction, View};
 use nalgebra::{Vector2, Vector3};
 
-/// World points and their pixels, including outliers, with a known lens.
+/// RANSAC problem of a camera's pose: world points and their pixels, including outliers, with a
+/// known lens.
 struct PosePairs<'k> {
     lens: &'k Lens,
     pairs: &'k [(Vector3<f64>, Vector2<f64>)],
@@ -21,7 +22,7 @@ impl Estimate<4> for PosePairs<'_> {
         self.pairs.len()
     }
 
-    /// Three points give up to four poses; the fourth point selects one.
+    /// Computes up to four poses from three points, and selects one by the fourth point.
     fn minimal(&self, sample: &[usize; 4]) -> Vec<Pose> {
         let [Some(a), Some(b), Some(c), _] = sample.map(|i| self.directions[i]) else { return Vec::new() };
         let points = [0, 1, 2].map(|k| self.pairs[sample[k]].0);
@@ -42,7 +43,7 @@ impl Estimate<4> for PosePairs<'_> {
     }
 }
 
-/// Adjusts a single camera.
+/// Adjusts the pose and lens of a single camera.
 pub fn refined_pose(
     pairs: &[(Vector3<f64>, Vector2<f64>)],
     lens: &Lens,
@@ -62,8 +63,8 @@ pub fn refined_pose(
     Some((one.views[0].pose?, one.lenses[0]))
 }
 
-/// Estimates the pose of a camera with a known lens, and the pairs that agree; `None` if at most
-/// four do.
+/// Estimates the pose of a camera with a known lens. Also returns the indices of the inliers;
+/// `None` if there are at most four.
 pub fn pose_of(
     pairs: &[(Vector3<f64>, Vector2<f64>)],
     lens: &Lens,
@@ -75,13 +76,14 @@ pub fn pose_of(
 }
 
 impl Solver<'_> {
-    /// Registers a photograph. Returns true on success.
+    /// Estimates the pose of a photograph and adds it to the reconstruction. Returns true on
+    /// success.
     pub(super) fn register(&mut self, view: usize) -> bool {
         let known = self.of_view[view].iter().filter_map(|(t, k)| Some((*t, *k, self.tracks[*t].position?)));
         let known: Vec<(usize, usize, Vector3<f64>)> = known.collect();
         let pairs: Vec<_> = known.iter().map(|(t, k, position)| (*position, self.tracks[*t].seen[*k].pixel)).collect();
         let number = self.views[view].lens;
-        // If no registered photograph has the same lens, the focal length in EXIF may be wrong.
+        // The focal length may still be wrong if no registered photograph has the same lens.
         let alone = !self.views.iter().any(|other| other.lens == number && other.pose.is_some());
         let free = alone && !self.options.fixed_focal;
         let factors: &[f64] = if free { &[1.0, 0.8, 1.25, 0.6, 1.6] } else { &[1.0] };

@@ -5,11 +5,12 @@ use crate::geometry::triangulate::nearest_to_rays;
 use crate::{Observation, Pose};
 use nalgebra::Vector3;
 
-/// Maximum number of pairs of rays that are tried for a point.
+/// Maximum number of ray pairs from which a point is triangulated.
 const TRIED: usize = 12;
 
 impl Solver<'_> {
-    /// Residual of an observation by a registered photograph; infinite behind the camera.
+    /// Returns the residual of an observation in pixels; infinite behind the camera, `None` if the
+    /// photograph is not registered.
     fn residual(&self, position: &Vector3<f64>, seen: &Observation) -> Option<f64> {
         let view = &self.views[seen.view];
         let p = view.pose.as_ref()?.apply(position);
@@ -44,7 +45,7 @@ impl Solver<'_> {
         added
     }
 
-    /// Rays of the registered photographs to a track's point.
+    /// Returns the rays from the registered photographs to a track's point.
     fn rays(&self, track: &CandidateTrack) -> Vec<(Vector3<f64>, Vector3<f64>)> {
         let ray = |seen: &Observation| {
             let view = &self.views[seen.view];
@@ -55,15 +56,15 @@ impl Solver<'_> {
         track.seen.iter().filter_map(ray).collect()
     }
 
-    /// Triangulates a track from the pair of rays whose point agrees with the most observations, at
-    /// a sufficient angle.
+    /// Triangulates a track from the pair of rays, at a sufficient angle, whose point agrees with
+    /// the most observations.
     fn triangulated(&self, track: &CandidateTrack) -> Option<Vector3<f64>> {
         let rays = self.rays(track);
         let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
         for i in 0..rays.len() {
             pairs.extend((0..i).map(|j| (rays[i].1.dot(&rays[j].1), j, i)));
         }
-        // Widest angles first.
+        // Try the widest angles first.
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         let widest = libm::cos(self.options.angle.to_radians());
         let mut best: Option<(usize, Vector3<f64>)> = None;
@@ -80,8 +81,8 @@ impl Solver<'_> {
         best.map(|best| best.1)
     }
 
-    /// Drops observations with too large residuals, and points with fewer than two observations or
-    /// too small an angle. Returns the number of dropped observations.
+    /// Drops observations with large residuals, and points with fewer than two observations or a
+    /// small angle between their rays. Returns the number of dropped observations.
     pub(super) fn drop_misfits(&mut self) -> usize {
         let mut dropped = 0;
         let widest = libm::cos(self.options.angle.to_radians());

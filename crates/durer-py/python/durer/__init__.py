@@ -1,5 +1,4 @@
-"""Dürer for Python: watertight ray queries, and pictures that are exact, explainable and
-reproducible.
+"""Dürer for Python: watertight ray queries, and reproducible images whose pixels can be explained.
 
     import durer
 
@@ -29,7 +28,7 @@ __all__ = [
     "kinds", "load", "options", "read", *words.__all__,
 ]  # fmt: skip
 
-#: Modules that need other packages or are rarely used; imported on first access.
+#: Modules that are imported on first access, because they are rarely used or need other packages.
 _LATER = ("embreex", "farm", "open3d", "trimesh", "vision", "widget")
 
 

@@ -1,5 +1,5 @@
-"""The command `durer`, which comes with the package: `python -m durer render scene.txt -o
-picture.png`."""
+"""Runs the `durer` command, which is part of the package:
+`python -m durer render scene.txt -o picture.png`."""
 
 import sys
 

@@ -1,5 +1,5 @@
-"""Converts anything that numpy can read into arrays of the required shape and type. Copies only
-if type or layout differ."""
+"""Converts arguments to numpy arrays of the required shape and type. Copies only if the type or the
+layout differs."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def seen(name: str, value: Any) -> npt.NDArray[Any]:
 
 
 def vectors(name: str, value: Any, width: int = 3) -> Floats:
-    """Converts to rows of `width` float32: shape (..., width)."""
+    """Converts a value to float32 of shape (..., width)."""
     array = seen(name, value)
     if array.ndim == 0 or array.shape[-1] != width:
         raise ValueError(f"{name} must have the shape (..., {width}), but has {array.shape}")
@@ -42,7 +42,7 @@ def vectors(name: str, value: Any, width: int = 3) -> Floats:
 
 
 def places(name: str, value: Any) -> Places:
-    """Converts points: shape (..., 3); float32 stays float32, everything else becomes float64."""
+    """Converts points of shape (..., 3). Float32 stays float32, all other types become float64."""
     array = seen(name, value)
     if array.ndim == 0 or array.shape[-1] != 3:
         raise ValueError(f"{name} must have the shape (..., 3), but has {array.shape}")
@@ -50,12 +50,12 @@ def places(name: str, value: Any) -> Places:
 
 
 def rows(array: npt.NDArray[Any], width: int) -> npt.NDArray[Any]:
-    """Returns an array as a contiguous list of rows."""
+    """Returns an array as a contiguous array of shape (n, width)."""
     return np.ascontiguousarray(array.reshape(-1, width))
 
 
 def indices(name: str, value: Any, width: int = 3) -> npt.NDArray[np.uint32]:
-    """Converts to rows of `width` non-negative integers: shape (n, width). A copy."""
+    """Converts a value to non-negative integers of shape (n, width). Always copies."""
     array = seen(name, value)
     if array.ndim != 2 or array.shape[1] != width:
         raise ValueError(f"{name} must have the shape (n, {width}), but has {array.shape}")
@@ -67,7 +67,7 @@ def indices(name: str, value: Any, width: int = 3) -> npt.NDArray[np.uint32]:
 
 
 def scalars(name: str, value: Any, shape: tuple[int, ...]) -> Floats:
-    """Converts to one float32, or to one for each element of a shape."""
+    """Converts a value to a single float32, or to float32 of the given shape."""
     if type(value) is float:
         return np.array([value], np.float32)
     array = seen(name, value)
@@ -93,6 +93,6 @@ def matrix(name: str, value: Any) -> Doubles:
 
 
 def finite(array: npt.NDArray[Any]) -> Bools:
-    """Returns a mask of the finite rows."""
+    """Returns a mask of the rows whose numbers are all finite."""
     answer: Bools = np.logical_and.reduce(np.isfinite(array), axis=-1)
     return answer

@@ -1,4 +1,4 @@
-"""The native half of `durer`."""
+"""Types of the native module behind `durer`, which is written in Rust (`crates/durer-py/src`)."""
 
 import os
 from typing import Callable, Optional

@@ -1,4 +1,5 @@
-"""The exception for errors in a scene, and messages about options in Python's spelling."""
+"""The exception for errors in a scene, and conversion of option names in messages to Python
+keywords."""
 
 from __future__ import annotations
 
@@ -12,9 +13,9 @@ T = TypeVar("T")
 
 
 class SceneError(_durer.SceneError):
-    """A scene that cannot be rendered. The text is the command's message. `file`, `line` and
-    `column` are those of the first error with a place, else None; `findings` lists all
-    diagnostics, as `durer check --json` does."""
+    """Raised if a scene cannot be rendered. The text is the command's message. `file`, `line` and
+    `column` give the position of the first error that has one, else None. `findings` lists all
+    diagnostics, like `durer check --json`."""
 
     def __init__(self, message: str, findings: str = "[]") -> None:
         super().__init__(message, findings)
@@ -33,14 +34,15 @@ SceneError.__module__ = "durer"
 
 
 def spoken(work: Callable[[], T]) -> T:
-    """Calls `work`; spells options in its errors as keywords."""
+    """Calls `work`, and replaces `--option-name` by `option_name` in the messages of its errors."""
     try:
         return work()
     except _durer.SceneError as error:
         said: ValueError = SceneError(*error.args)
     except ValueError as error:
         said = ValueError(_python(str(error)))
-    # Raised outside of `except`: the native exception as context could not be pickled.
+    # Raise outside of `except`, because the native exception would become the context and cannot be
+    # pickled.
     raise said
 
 

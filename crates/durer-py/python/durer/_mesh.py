@@ -1,4 +1,4 @@
-"""Vertices and edges of meshes."""
+"""Centring of vertices far from the origin, and open edges of meshes."""
 
 from __future__ import annotations
 
@@ -7,15 +7,16 @@ import numpy.typing as npt
 
 from ._arrays import Bools, Doubles, Floats, Places, finite
 
-#: Distance from the origin, in extents of the mesh, beyond which vertices are stored relative to
-#: the mesh's centre: it costs five of the 24 bits of single precision.
+#: Distance from the origin, as a multiple of the mesh's extent, beyond which vertices are stored
+#: relative to the mesh's centre. At this distance, five of the 24 bits of single precision are
+#: lost.
 FAR = 32
 
 
 def _center(vertices: Places) -> Doubles:
-    """Returns the centre of the vertices' bounds, in single precision, along the axes along
-    which it is far away, and 0 along the others. Differences of single-precision coordinates and
-    this centre are exact in single precision."""
+    """Returns the centre of the vertices' bounds along the axes along which it is far away, and 0
+    along the others. The centre is rounded to single precision, so subtracting it from
+    single-precision coordinates is exact."""
     if not np.isfinite(vertices).all():
         vertices = vertices[finite(vertices)]
     if not len(vertices):
@@ -28,7 +29,7 @@ def _center(vertices: Places) -> Doubles:
 
 
 def centered(given: Places) -> tuple[Floats, Doubles]:
-    """Returns a copy of the vertices relative to a centre, in single precision; and the centre."""
+    """Returns a single-precision copy of the vertices relative to a centre, and the centre."""
     center = _center(given)
     with np.errstate(over="ignore", invalid="ignore"):
         own = np.array(given - center if center.any() else given, np.float32, order="C")
@@ -40,14 +41,14 @@ def centered(given: Places) -> tuple[Floats, Doubles]:
 
 
 def _is_even(corners: npt.NDArray[np.int64]) -> Bools:
-    """Returns a mask of triangles whose corner indices are in ascending order up to rotation."""
+    """Returns a mask of the triangles whose corner indices are a rotation of ascending order."""
     a, b, c = corners.T
     is_even: Bools = (a < b) == ((b < c) == (a < c))
     return is_even
 
 
 def open_edges(vertices: Floats, triangles: npt.NDArray[np.uint32]) -> int:
-    """Returns the number of open edges: see `Mesh.open_edges`."""
+    """Returns the number of open edges, as defined by `Mesh.open_edges`."""
     is_finite = finite(vertices)
     _, place = np.unique(np.where(is_finite[:, None], vertices + np.float32(0), 0), axis=0, return_inverse=True)
     faces = triangles.astype(np.int64)
@@ -55,8 +56,8 @@ def open_edges(vertices: Floats, triangles: npt.NDArray[np.uint32]) -> int:
     pairs = np.sort(np.stack([corners, np.roll(corners, -1, 1)], -1), -1)
     edges, first, times = np.unique(pairs.reshape(-1, 2), axis=0, return_inverse=True, return_counts=True)
     is_open = times % 2 == 1
-    # Triangles with the same corners and opposite orientation cancel to a sheet without thickness;
-    # any excess is open.
+    # Two triangles with the same corners and opposite orientation form a closed sheet without
+    # thickness. If one orientation occurs more often, its edges are open.
     ways = np.where(_is_even(corners), 1, -1)
     _, which = np.unique(np.sort(corners, 1), axis=0, return_inverse=True)
     which = which.reshape(-1)

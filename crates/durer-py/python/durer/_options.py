@@ -1,5 +1,5 @@
-"""Converts options of a render from keywords or a command line to pairs of name and text for the
-library."""
+"""Converts render options from keywords or a command line to pairs of name and text, as the library
+expects them."""
 
 from __future__ import annotations
 
@@ -12,56 +12,56 @@ import numpy as np
 
 from . import _durer
 
-#: Options in the library's form: name without dashes, and text, which is empty for a flag.
+#: Options as pairs: the name without leading dashes, and the value as text, empty for a flag.
 Pairs = list[tuple[str, str]]
 
 
 @dataclass(frozen=True)
 class Statement:
-    """The library's statement of an option."""
+    """Description of a render option, from the library's table."""
 
     help: str
     #: Name of its value; None for a flag.
     value: Optional[str]
-    #: Allowed words, if only some are allowed.
+    #: Allowed values; empty if any value is allowed.
     words: Sequence[str]
-    #: Subject: "reading", "picture" or "work".
+    #: What the option affects: "reading" the scene, the "picture", or only the "work".
     group: str
 
 
 STATEMENTS = {name: Statement(help, value, words, group) for name, help, value, words, group in _durer.options()}
 
-#: Old names of options.
+#: Old names of options and their current names.
 _ALIASES = {"weight": "min-throughput", "noise": "noise-threshold", "time": "time-limit"}
-#: Options of several integers: their meaning and number.
+#: Options that take several integers: the meaning and number of the integers.
 _NUMBERS = {"size": ("width and height", 2), "crop": ("left, top, width and height", 4), "shard": ("number and count", 2)}
 #: Separators between the parts of a value.
 _JOINED = {"show": ",", "compat": ",", "shard": "/", "depth-range": " ", "light-range": " "}
 
 
 def option_name(keyword: str) -> str:
-    """Returns the library's name of a keyword."""
+    """Returns the library's name of the option that a keyword sets."""
     name = keyword.replace("_", "-")
     return _ALIASES.get(name, name)
 
 
 def is_reading(keyword: str) -> bool:
-    """Returns True if a keyword concerns reading a scene."""
+    """Returns True if a keyword affects how a scene is read."""
     stated = STATEMENTS.get(option_name(keyword))
     return stated is not None and stated.group == "reading"
 
 
 def is_work(keyword: str) -> bool:
-    """Returns True if a keyword changes no bit of a finished picture, such as the number of
-    threads. Shards have different pictures."""
+    """Returns True if a keyword does not change the finished image, such as the number of threads.
+    `shard` does change it."""
     name = option_name(keyword)
     return name in STATEMENTS and STATEMENTS[name].group == "work" and not name.startswith("shard")
 
 
 def pairs(options: Mapping[str, Any], reading: bool) -> Pairs:
-    """Converts keywords to pairs: `size=(640, 480)` becomes `("size", "640x480")`. With
-    `reading`, those about reading a scene, and `size`, which the framing of a model depends on;
-    otherwise all others."""
+    """Converts keywords to pairs: `size=(640, 480)` becomes `("size", "640x480")`. If `reading` is
+    true, only options about reading a scene are accepted, and `size`, because it affects how a
+    model is framed; otherwise only the others."""
     found: Pairs = []
     for keyword, value in options.items():
         name = option_name(keyword)
@@ -75,7 +75,7 @@ def pairs(options: Mapping[str, Any], reading: bool) -> Pairs:
 
 
 def parsed(words: Optional[Sequence[str]]) -> Pairs:
-    """Converts options as they follow `durer render SCENE` to pairs."""
+    """Converts command line options, as written after `durer render SCENE`, to pairs."""
     found: Pairs = []
     rest = iter(words or [])
     for word in rest:
@@ -94,7 +94,7 @@ def parsed(words: Optional[Sequence[str]]) -> Pairs:
 
 
 def _texts(keyword: str, name: str, value: Any) -> list[str]:
-    """Returns the texts of a keyword's value: none if it is left out, several if an option is
+    """Returns the value of a keyword as texts: none if the option is not set, several if it is
     repeated."""
     takes = STATEMENTS[name].value
     if name == "studio" and value in (None, False, True):

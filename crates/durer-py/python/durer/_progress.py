@@ -1,4 +1,5 @@
-"""Progress of long work: a line on standard error, on a terminal, after the first second."""
+"""Shows the progress of long operations as a line on standard error, if it is a terminal, after the
+first second."""
 
 from __future__ import annotations
 
@@ -10,13 +11,13 @@ Watch: TypeAlias = Callable[[int, int], object]
 Progress: TypeAlias = Union[None, bool, Watch]
 
 
-#: Number of items below which work finishes before a user could notice.
+#: Number of items below which an operation finishes so quickly that no progress is shown.
 _LITTLE = 1 << 14
 
 
 def watch(progress: Progress, count: int = _LITTLE) -> Optional[Watch]:
-    """Returns the progress callback: the given function, or a line on a terminal unless there
-    are few items."""
+    """Returns the progress callback: `progress` if it is a function, otherwise one that draws a
+    line on the terminal; None if there are few items or no terminal."""
     if callable(progress):
         return progress
     if progress is False or progress is None and count < _LITTLE or progress is None and not sys.stderr.isatty():

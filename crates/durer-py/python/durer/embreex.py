@@ -1,5 +1,5 @@
-"""The interface of `embreex`, implemented by Dürer: `EmbreeDevice`, `EmbreeScene`,
-`TriangleMesh`, `ElementMesh`, `scene.run`. Normals, `Ng`, are unit length here."""
+"""Drop-in replacement for `embreex`: `EmbreeDevice`, `EmbreeScene`, `TriangleMesh`, `ElementMesh`,
+`scene.run`. Unlike embreex's, the normals `Ng` have unit length."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from .rays import Mesh, Scene, _Rays
 
 
 class EmbreeDevice:
-    """Accepted for compatibility; does nothing."""
+    """Placeholder for embreex's device; does nothing."""
 
 
 class EmbreeScene:
-    """Meshes that `TriangleMesh` adds. The tree is built by the first query. `device` and
-    `robust` are ignored."""
+    """Scene to which `TriangleMesh` and `ElementMesh` add meshes. The first query builds its tree.
+    `device` and `robust` are ignored."""
 
     def __init__(self, device: Optional[EmbreeDevice] = None, robust: bool = False) -> None:
         self.meshes: list[Mesh] = []
@@ -31,10 +31,10 @@ class EmbreeScene:
         query: str = "INTERSECT",
         output: Any = None,
     ) -> Any:
-        """Runs a query. `INTERSECT` returns the triangle of each ray, or -1; `OCCLUDED` 0 for a
-        hit, else -1; `DISTANCE` the distance, or the end of the ray if nothing is hit. `dists`
-        are the ends of rays, 1e37 by default. With `output`, returns a dictionary of everything,
-        with zeros where nothing is hit."""
+        """Runs a query. `INTERSECT` returns the triangle that each ray hits, or -1; `OCCLUDED`
+        returns 0 for a hit and -1 for a miss; `DISTANCE` returns the distance, or the end of the
+        ray for a miss. `dists` sets the ends of the rays, 1e37 by default. If `output` is set, the
+        result is a dictionary of all attributes, with zeros for misses."""
         if self._built is None:
             self._built = self.meshes[0] if len(self.meshes) == 1 else Scene(self.meshes)
         far: npt.ArrayLike = np.float32(1e37) if dists is None else dists
@@ -61,9 +61,9 @@ class TriangleMesh:
         scene._built = None
 
 
-# The faces of elements, counterclockwise from outside; those of hexahedra as two triangles. Corners
-# of hexahedra are numbered as in T. Tautges, "Canonical numbering systems for finite-element
-# codes", 2010.
+# Faces of finite elements as triangles, counterclockwise from outside; a face of a hexahedron is
+# two triangles. Corners of hexahedra are numbered as in T. Tautges, "Canonical numbering systems
+# for finite-element codes", 2010.
 _TETRAHEDRON = ((0, 1, 3), (2, 3, 1), (0, 3, 2), (0, 2, 1))
 _HEXAHEDRON = (
     (0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4),

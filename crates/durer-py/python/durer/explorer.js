@@ -1,5 +1,5 @@
-// The browser side of `durer.widget.Explorer`: shows its picture, and sends drags, wheel, keys and
-// clicks.
+// The browser side of `durer.widget.Explorer`: shows the image, and sends drags, wheel turns, keys
+// and clicks.
 const element = (name, inside, text) => {
   const made = document.createElement(name);
   if (text !== undefined) made.textContent = text;
@@ -7,7 +7,7 @@ const element = (name, inside, text) => {
   return made;
 };
 
-// A node of the explanation: its display colour, its description, and its terms below.
+// Adds a node of the explanation: its display colour, its description, and its terms below it.
 const branch = (node, inside, open) => {
   const leaf = !node.terms.length;
   const box = element(leaf ? "div" : "details", inside), head = leaf ? box : element("summary", box);
@@ -23,7 +23,7 @@ const branch = (node, inside, open) => {
 function render({ model, el }) {
   el.classList.add("durer");
   const image = element("img", el), word = element("p", el), tree = element("div", el);
-  Object.assign(image, { tabIndex: 0, draggable: false, alt: "the scene: drag or use the arrow keys to go around it, plus and minus to come nearer, click a pixel to explain it" });
+  Object.assign(image, { tabIndex: 0, draggable: false, alt: "the scene: drag or use the arrow keys to orbit, plus and minus to zoom, click a pixel to explain it" });
   word.setAttribute("role", "status");
   const draw = () => {
     URL.revokeObjectURL(image.src);
@@ -35,7 +35,7 @@ function render({ model, el }) {
     word.textContent = model.get("word");
     if (told.terms) branch(told, tree, true);
   };
-  // Only one request is sent at a time; further input is accumulated meanwhile.
+  // Send one request at a time, and accumulate further input until it is answered.
   let busy = false, turn = [0, 0], nearer = 1, ask = null;
   const send = () => {
     if (busy || (!turn[0] && !turn[1] && nearer === 1 && !ask)) return;

@@ -1,4 +1,5 @@
-"""Renders on a Dask cluster: shards as tasks, merged to the same bits as on one machine."""
+"""Renders on a Dask cluster. Shards are tasks, and the merged image has the same bits as on one
+machine."""
 
 from __future__ import annotations
 
@@ -17,7 +18,8 @@ from .world import Part, PathLike, Pictures, World, load
 
 
 def _files(world: World) -> dict[str, bytes]:
-    """Returns all files of a scene, by their names below its folder; the scene's own file first."""
+    """Returns the contents of a scene's files by their names relative to its folder. The scene file
+    is the first."""
     files, folder = world.files, world.path.parent.resolve()
     for source in world._world.sources():
         path = Path(source).resolve()
@@ -31,7 +33,7 @@ def _files(world: World) -> dict[str, bytes]:
 
 @functools.lru_cache(maxsize=4)
 def _opened(files: tuple[tuple[str, bytes], ...], reading: tuple[tuple[str, str], ...]) -> _durer.World:
-    """Opens a scene from its files, once in each worker."""
+    """Loads a scene from its files. The cache makes each worker load it once."""
     with tempfile.TemporaryDirectory() as folder:
         for name, content in files:
             path = Path(folder) / name
@@ -41,7 +43,7 @@ def _opened(files: tuple[tuple[str, bytes], ...], reading: tuple[tuple[str, str]
 
 
 def shard(files: tuple[tuple[str, bytes], ...], reading: tuple[tuple[str, str], ...], options: Pairs, index: int, count: int) -> bytes:
-    """Renders one shard in a worker, and returns the bytes of its part."""
+    """Renders one shard in a worker, and returns its part as bytes."""
     world = _opened(files, reading)
     own = [*options, ("threads", "1"), ("shard", f"{index}/{count}")]
     part = world.part(own)
@@ -50,27 +52,28 @@ def shard(files: tuple[tuple[str, bytes], ...], reading: tuple[tuple[str, str], 
 
 
 def _whole(names: Sequence[str], contents: Sequence[bytes], reading: tuple[tuple[str, str], ...], options: Pairs, index: int, count: int) -> bytes:
-    """Renders one shard from files whose contents were sent one by one."""
+    """Renders one shard, with the contents of each file as a separate argument, so that Dask sends
+    each file once."""
     return shard(tuple(zip(names, contents)), reading, options, index, count)
 
 
 def _given(content: bytes) -> bytes:
-    """Returns a file's contents, as a task."""
+    """Returns `content`: the task that holds a file's contents on the cluster."""
     return content
 
 
 class _Frame:
-    """A picture whose shards are with the workers."""
+    """An image whose shards are being rendered by the workers."""
 
     def __init__(
         self, world: World, client: Any, shards: int, asked: Pairs, sent: dict[bytes, Any]
     ) -> None:
-        # Check the options before anything is sent.
+        # Report wrong options before anything is sent.
         world._world.part([*asked, ("shard", f"1/{shards}")])
         files = _files(world)
-        # Files are tasks that return them, not scattered data: Dask keeps one copy of those, which
-        # is lost with its worker. They are held until the end: other workers need them when a
-        # worker dies with finished shards.
+        # Each file is a task that returns its contents, which Dask can run again. Scattered data
+        # would be lost with the worker that has the only copy. The tasks are held until the end,
+        # because shards that are lost with a worker must be rendered again.
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", "Sending large graph")
             for content in files.values():
@@ -105,13 +108,13 @@ def render(
     progress: Progress = None,
     **options: Any,
 ) -> Pictures:
-    """Renders a scene with the workers of a `distributed.Client`, and merges the shards: the same
-    bits and hash as on one machine.
+    """Renders a scene on the workers of a `distributed.Client`, and merges the shards. The image
+    has the same bits and hash as on one machine.
 
-    The scene's files are sent once to each worker. A worker that dies costs only its shards,
-    which others render again; workers that join meanwhile take part. Options are those of
-    `World.render`, or `words` as on the command line, for a scene's file those of reading it
-    too. The merge refuses a worker with another version of durer.
+    The scene's files are sent once to each worker. If a worker dies, other workers render its
+    shards again. Workers can join during the render. Options are those of `World.render`, or
+    `words` as on the command line. If `scene` is a path, options about reading are accepted too.
+    The merge refuses results of workers with a different version of durer.
     """
     from distributed import as_completed
 
@@ -134,10 +137,9 @@ def render(
 def frames(
     scenes: Iterable[Union[World, PathLike]], *, client: Any, shards: int = 4, ahead: int = 8, **options: Any
 ) -> Iterator[Pictures]:
-    """Renders scenes one after the other, such as the frames of an animation whose camera or
-    objects move, and yields their pictures in order. Each is rendered in shards, as `render`
-    does; up to `ahead` of them are in progress at once, and files that frames share are sent
-    once."""
+    """Renders a sequence of scenes, such as the frames of an animation, and yields their images in
+    order. Each is rendered in shards, like `render`. Up to `ahead` frames are in progress at once,
+    and files shared between frames are sent once."""
     waiting: deque[_Frame] = deque()
     sent: dict[bytes, Any] = {}
     try:

@@ -1,4 +1,4 @@
-"""Results of ray queries: points, normals, and starts of secondary rays."""
+"""Results of ray queries: hits, with points, normals, and origins of secondary rays."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ import numpy.typing as npt
 from . import _durer
 from ._arrays import Bools, Doubles, Floats, Ints, Places, rows, vectors
 
-#: Type of the elements that `ray` returns.
+#: Type of the array elements that `Mesh.ray` and `Scene.ray` return.
 RECORD = np.dtype(
     [("t", "f4"), ("triangle", "i4"), ("object", "i4"), ("uv", "f4", 2), ("normal", "f4", 3), ("point", "f4", 3)]
 )
 
 
 class _Source(Protocol):
-    """The target of a query: a mesh or a scene."""
+    """The mesh or scene that was queried."""
 
     _tree: _durer.Tree
     #: True if it is so far from the origin that points in single precision are too coarse.
@@ -27,7 +27,8 @@ class _Source(Protocol):
 
 
 class _Met:
-    """Attributes of the points where rays hit a surface."""
+    """Attributes of hits that are computed on demand: points, normals, and origins of secondary
+    rays."""
 
     triangle: Ints
     uv: Floats
@@ -35,31 +36,33 @@ class _Met:
     _threads: Optional[int]
 
     def _flat(self, shape: tuple[int, ...]) -> tuple[Optional[Ints], Ints, Floats]:
-        """Returns objects, if any, triangles, and u and v, as if the hits had this shape."""
+        """Returns the objects (if the target is a scene), the triangles, and u and v, broadcast to
+        a shape and flattened."""
         raise NotImplementedError
 
     @cached_property
     def point(self) -> Places:
-        """Hit points from the triangles' corners; NaN for misses. Float32, or float64 if the
-        mesh or scene is far from the origin. Use `leave` for the start of secondary rays."""
+        """Hit points, interpolated from the triangles' corners; NaN for misses. Float32, or float64
+        if the mesh or scene is far from the origin. Use `leave` for origins of secondary rays."""
         shape, source = self.triangle.shape, self._source
         return _durer.met_points(source._tree, self._flat(shape), source._far, self._threads).reshape(*shape, 3)
 
     @cached_property
     def normal(self) -> Floats:
-        """Unit normals of the triangles, on the side from which the corners are counterclockwise
-        in the mesh (outwards), also for mirrored instances; 0 for misses."""
+        """Unit normals of the triangles, on the side from which the mesh's corners are
+        counterclockwise (outwards), also for mirrored instances; 0 for misses."""
         shape = self.triangle.shape
         return _durer.met_normals(self._source._tree, self._flat(shape), self._threads).reshape(*shape, 3)
 
     def leave(self, directions: npt.ArrayLike) -> Doubles:
-        """Returns origins for secondary rays in the given directions: off the surface, on the side
-        of each direction, by no more than the rounding error. So no ray hits the surface that it
-        leaves, and no epsilon has to be chosen.
+        """Returns origins for secondary rays in the given directions. Each origin is off the
+        surface, on the side that the ray goes to, by no more than the rounding error. So a ray
+        never hits the surface that it leaves, and you need not choose an epsilon.
 
-        Directions, of shape (..., 3), are broadcast against the hits: `hits[:,
-        None].leave(directions)` takes several for each. NaN for misses; rays from there hit
-        nothing. Float64: far from the origin, and in scenes, single precision is not enough.
+        Directions, of shape (..., 3), are broadcast against the hits:
+        `hits[:, None].leave(directions)` takes several directions per hit. Origins are NaN for
+        misses, and rays from there hit nothing. The result is float64, because single precision is
+        not enough in scenes and far from the origin.
         """
         ways = vectors("directions", directions)
         try:
@@ -78,15 +81,15 @@ def _row(array: Any, shape: tuple[int, ...]) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class Hits(_Met):
-    """First hits of rays. All arrays have the shape of the rays, for example (n,), followed by
-    the components of vectors. Hits can be indexed like arrays of that shape: `hits[hits.hit]`,
-    `hits[:, None]`."""
+    """First hits of rays with a mesh or a scene. All arrays have the shape of the rays, for example
+    (n,), followed by the components of vectors. Hits can be indexed like arrays of that shape:
+    `hits[hits.hit]`, `hits[:, None]`."""
 
-    #: Distance along the ray, in units of its direction's length; infinite for misses.
+    #: Distance along the ray, in units of the length of its direction; infinite for misses.
     t: Floats
     #: Index of the triangle in its mesh; -1 for misses.
     triangle: Ints
-    #: Second and third barycentric coordinate: the point is (1 - u - v) a + u b + v c.
+    #: Second and third barycentric coordinates: the point is (1 - u - v) a + u b + v c.
     uv: Floats
     _objects: Optional[Ints]
     _source: _Source
@@ -99,7 +102,7 @@ class Hits(_Met):
 
     @cached_property
     def object(self) -> Ints:
-        """Index of the object in its scene, 0 in a mesh; -1 for misses."""
+        """Index of the object in the scene, or 0 for a mesh; -1 for misses."""
         return np.minimum(self.triangle, 0) if self._objects is None else self._objects
 
     def _flat(self, shape: tuple[int, ...]) -> tuple[Optional[Ints], Ints, Floats]:
@@ -124,18 +127,18 @@ class Hits(_Met):
         return len(self.t)
 
     def __repr__(self) -> str:
-        return f"<Hits of {self.t.size} rays: {int(self.hit.sum())} meet something>"
+        return f"<Hits of {self.t.size} rays: {int(self.hit.sum())} hit something>"
 
 
 @dataclass(frozen=True, eq=False)
 class AllHits(_Met):
-    """All hits of rays, ray by ray, sorted by distance."""
+    """All hits of rays with a mesh or a scene, ray by ray, sorted by distance."""
 
-    #: Index of the ray of each hit, in the order of the rays.
+    #: For each hit, the index of its ray; ascending.
     ray: npt.NDArray[np.int64]
     #: Number of hits of each ray, in the shape of the rays.
     count: npt.NDArray[np.int64]
-    #: As in `Hits`, one row for each hit.
+    #: The fields of `Hits`, with one row per hit.
     t: Floats
     triangle: Ints
     object: Ints
@@ -145,7 +148,7 @@ class AllHits(_Met):
 
     @property
     def offsets(self) -> npt.NDArray[np.int64]:
-        """Offsets of the first hit of each ray, followed by the number of all hits."""
+        """Offset of the first hit of each ray, followed by the total number of hits."""
         return np.concatenate([np.zeros(1, np.int64), np.cumsum(self.count.reshape(-1))])
 
     def _flat(self, shape: tuple[int, ...]) -> tuple[Optional[Ints], Ints, Floats]:
@@ -160,17 +163,17 @@ class AllHits(_Met):
 
 @dataclass(frozen=True, eq=False)
 class Nearest:
-    """The nearest surface points of query points."""
+    """For query points, the nearest points on the surface of a mesh or a scene."""
 
-    #: Distance, 0 or more; infinite if none is within the limit.
+    #: Distance to the surface; infinite if no point is within the limit.
     distance: Doubles
-    #: Nearest point; NaN if none is within the limit.
+    #: Nearest point; NaN if no point is within the limit.
     point: Doubles
-    #: Index of the triangle; -1 if none is within the limit.
+    #: Index of the triangle; -1 if no point is within the limit.
     triangle: Ints
-    #: Index of the object in its scene, 0 in a mesh.
+    #: Index of the object in the scene, or 0 for a mesh.
     object: Ints
-    #: Second and third barycentric coordinate.
+    #: Second and third barycentric coordinates.
     uv: Doubles
 
     def __repr__(self) -> str:

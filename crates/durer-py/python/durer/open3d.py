@@ -1,5 +1,4 @@
-"""The interface of Open3D's `RaycastingScene`, implemented by Dürer with numpy arrays instead of
-tensors."""
+"""Drop-in replacement for Open3D's `RaycastingScene`, with numpy arrays instead of tensors."""
 
 from __future__ import annotations
 
@@ -17,9 +16,9 @@ _Answers = dict[str, npt.NDArray[Any]]
 
 
 class RaycastingScene:
-    """A ray caster for triangles; rays have six numbers, origin and direction. Indices are
-    uint32, `INVALID_ID` if there is none. As in Open3D, a point is inside if an odd number of
-    meshes contain it."""
+    """Ray queries on triangle meshes. Each ray is six numbers: origin and direction. Indices are
+    uint32, `INVALID_ID` for misses. As in Open3D, a point is inside if an odd number of meshes
+    contain it."""
 
     INVALID_ID = 0xFFFF_FFFF
 
@@ -29,7 +28,7 @@ class RaycastingScene:
         self._scene: Optional[_Rays] = None
 
     def add_triangles(self, vertex_positions: Any, triangle_indices: Optional[npt.ArrayLike] = None) -> int:
-        """Adds a mesh, which may be one of Open3D's own, and returns its index."""
+        """Adds a mesh, given as arrays or as one of Open3D's meshes, and returns its index."""
         faces: Any = triangle_indices
         if faces is None:
             vertex_positions, faces = (
@@ -47,7 +46,7 @@ class RaycastingScene:
 
     @staticmethod
     def _ids(numbers: npt.NDArray[Any]) -> npt.NDArray[np.uint32]:
-        # -1 becomes 2^32 - 1.
+        # The cast turns -1 into `INVALID_ID`, 2^32 - 1.
         return numbers.astype(np.int32, copy=False).view(np.uint32)
 
     def cast_rays(self, rays: npt.ArrayLike, nthreads: int = 0) -> _Answers:
@@ -84,7 +83,7 @@ class RaycastingScene:
         }
 
     def compute_closest_points(self, query_points: npt.ArrayLike, nthreads: int = 0) -> _Answers:
-        """Returns the nearest points of the surface."""
+        """Returns the point on the surface nearest to each query point."""
         scene = self._asked()
         near = scene.nearest(query_points, threads=nthreads or self._threads)
         met = (near.object.reshape(-1), near.triangle.reshape(-1), rows(near.uv.astype(np.float32), 2))
@@ -98,26 +97,26 @@ class RaycastingScene:
         }
 
     def compute_distance(self, query_points: npt.ArrayLike, nthreads: int = 0) -> npt.NDArray[np.float32]:
-        """Returns the distances of points from the surface."""
+        """Returns the distance of each point from the surface."""
         return self._asked().distance(query_points, threads=nthreads or self._threads).astype(np.float32)
 
     def compute_signed_distance(
         self, query_points: npt.ArrayLike, nthreads: int = 0, nsamples: int = 1
     ) -> npt.NDArray[np.float32]:
-        """Returns the distances of points from the surface, negative inside. `nsamples` is
-        ignored: one ray is exact."""
+        """Returns the distance of each point from the surface, negative inside. `nsamples` is
+        ignored, because one ray is exact."""
         distance = self.compute_distance(query_points, nthreads)
         return np.where(self._inside(query_points, nthreads), -distance, distance)
 
     def compute_occupancy(
         self, query_points: npt.ArrayLike, nthreads: int = 0, nsamples: int = 1
     ) -> npt.NDArray[np.float32]:
-        """Returns 1 inside, 0 outside."""
+        """Returns 1 for points inside and 0 for points outside."""
         return self._inside(query_points, nthreads).astype(np.float32)
 
     def _inside(self, query_points: npt.ArrayLike, nthreads: int) -> npt.NDArray[np.bool_]:
-        """Returns containment by the parity of all crossings, as in Open3D: a point in two
-        meshes is outside."""
+        """Returns which points are inside, by the parity of all crossings. As in Open3D, a point
+        inside two meshes counts as outside."""
         points, threads = places("query_points", query_points), nthreads or self._threads
         inside = np.zeros(points.shape[:-1], np.bool_)
         for mesh in self._meshes:
@@ -128,8 +127,8 @@ class RaycastingScene:
     def create_rays_pinhole(
         intrinsic_matrix: npt.ArrayLike, extrinsic_matrix: npt.ArrayLike, width_px: int, height_px: int
     ) -> npt.NDArray[np.float32]:
-        """Returns rays through the pixel centres, of shape (height, width, 6); pixel (0, 0) has
-        its centre at 0.5, 0.5."""
+        """Returns rays through the pixel centres, of shape (height, width, 6). The centre of the
+        first pixel is at (0.5, 0.5)."""
         inner = np.linalg.inv(np.asarray(intrinsic_matrix, np.float64))
         outer = np.asarray(extrinsic_matrix, np.float64)
         x, y = np.meshgrid(np.arange(width_px) + 0.5, np.arange(height_px) + 0.5)

@@ -1,4 +1,4 @@
-"""Pictures: reading files, comparing."""
+"""Reads and compares image files."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from .world import PathLike, Pictures
 
 
 def read(path: PathLike) -> tuple[Floats, bool]:
-    """Returns the values of a picture file, of shape (height, width, 3), without conversion; and
-    True if they are display values from 0 to 1 instead of linear light. Reads all formats that
-    the command writes."""
+    """Reads an image file in any format that the command writes. Returns the values without
+    conversion, of shape (height, width, 3), and True if they are display values from 0 to 1 instead
+    of linear light."""
     values, width, height, display = _durer.decode(Path(path).read_bytes(), os.fspath(path))
     return values.reshape(height, width, 3), display
 
@@ -30,13 +30,13 @@ def compare(
     tolerance: float = 1 / 255,
     allowed: float = 0.0,
 ) -> dict[str, Any]:
-    """Compares a picture with a reference: RMSE, PSNR, SSIM, FLIP, the worst regions and
-    explanations of the difference, as in `durer compare --json`, and `flip_map`, the error of each
-    pixel.
+    """Compares an image with a reference. The result has the contents of `durer compare --json`
+    (RMSE, PSNR, SSIM, FLIP, the worst regions, and explanations of the difference) and `flip_map`,
+    the FLIP error of each pixel.
 
-    Pictures are files, results of `render`, or arrays of shape (height, width, 3): uint8 for
-    display values, floating point for linear light. `allowed` is the share of pixels that may
-    differ by more than the tolerance.
+    Images are files, results of `render`, or arrays of shape (height, width, 3): uint8 for display
+    values, floating point for linear light. `allowed` is the fraction of pixels that may differ by
+    more than the tolerance.
     """
     a, b = _scaled("reference", reference), _scaled("picture", picture)
     text, flip = _durer.compare(a, b, tolerance, allowed)

@@ -1,4 +1,4 @@
-"""Ray queries without pictures: meshes and instanced meshes."""
+"""Ray queries on meshes and on scenes of instanced meshes."""
 
 from __future__ import annotations
 
@@ -17,12 +17,13 @@ from .hits import AllHits, Hits, Nearest
 
 Preset: TypeAlias = Literal["fast", "balanced", "best"]
 
-#: Number of rays, origins, directions, t_min and t_max.
+#: Rays for the native module: their number, origins, directions, t_min and t_max.
 Asked: TypeAlias = tuple[int, Places, Floats, Floats, Floats]
 
 
 def asked(origins: Any, directions: Any, t_min: Any, t_max: Any) -> tuple[tuple[int, ...], Asked]:
-    """Checks rays, and broadcasts their arrays; returns their shape and the arrays."""
+    """Checks the arguments of a ray query. Returns the broadcast shape of the rays, and their
+    arrays."""
     starts, ways = places("origins", origins), vectors("directions", directions)
     shape = starts.shape[:-1]
     if starts.shape != ways.shape:
@@ -47,16 +48,16 @@ class _Rays:
 
     Origins and directions have the shape (..., 3) and are broadcast against each other, for example
     one origin for all directions. Directions need not be unit length: `t` is in units of their
-    length. Hits lie in the open interval from `t_min` to `t_max`, each of which is one number or
-    has the shape of the rays. Rays that are not finite, or have no direction, hit nothing. Computed
-    in single precision with exact edges: a ray through an edge or vertex crosses exactly one of the
-    triangles around it. Origins and points in double precision keep it until they are made relative
-    to the mesh, or to the centre of its bounds if that is far away. Queries are fastest if
-    neighbours in the array are neighbours in space.
+    length. Hits lie in the open interval from `t_min` to `t_max`; each is one number or has the
+    shape of the rays. Rays that are not finite or have a zero direction hit nothing. Queries use
+    single precision with exact edge tests: a ray through an edge or vertex crosses exactly one of
+    the triangles around it. Origins and points in double precision are rounded only after they have
+    been made relative to the mesh, or to the centre of its bounds if that is far away. Queries are
+    fastest if neighbours in the array are neighbours in space.
 
-    `threads` limits the number of threads, None uses all of the machine; results have the same
-    bits with any number. `progress` is called with the work done and the total; without it, long
-    work shows a line on a terminal. Ctrl-C stops it.
+    `threads` limits the number of threads; None uses all processors. Results have the same bits for
+    any number. `progress` is called with the finished and the total work; by default, long queries
+    show a progress line on a terminal. Ctrl-C stops a query.
     """
 
     _tree: _durer.Tree
@@ -80,8 +81,8 @@ class _Rays:
         return Hits(t.reshape(shape), triangle.reshape(shape), uv.reshape(*shape, 2), objects, self, threads)
 
     def ray(self, origins: npt.ArrayLike, directions: npt.ArrayLike, **options: Any) -> npt.NDArray[np.void]:
-        """Like `closest`, as one structured array with the fields t, triangle, object, uv,
-        normal and point."""
+        """Returns the first hit of each ray as a structured array with the fields t, triangle,
+        object, uv, normal and point."""
         return self.closest(origins, directions, **options).record()
 
     def occluded(
@@ -94,8 +95,8 @@ class _Rays:
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> Bools:
-        """Returns True for each ray that hits anything: faster than `closest`. With directions
-        from point to point and `t_max` 1: True if the points do not see each other."""
+        """Returns True for each ray that hits anything. Faster than `closest`. To test whether two
+        points see each other, use their difference as the direction and `t_max` 1."""
         shape, rays = asked(origins, directions, t_min, t_max)
         return self._tree.occluded(rays, threads_asked(threads), watch(progress, rays[0])).reshape(shape)
 
@@ -109,8 +110,8 @@ class _Rays:
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> Ints:
-        """Returns the number of triangles that each ray crosses: exact, also through edges and
-        vertices."""
+        """Returns the number of triangles that each ray crosses, which is exact even through edges
+        and vertices."""
         shape, rays = asked(origins, directions, t_min, t_max)
         return self._tree.count(rays, threads_asked(threads), watch(progress, rays[0])).reshape(shape)
 
@@ -133,8 +134,9 @@ class _Rays:
     def contains(
         self, points: npt.ArrayLike, *, threads: Optional[int] = None, progress: Progress = None
     ) -> Bools:
-        """Returns True for points, of shape (..., 3), that are inside, by the parity of
-        crossings, which is exact for closed meshes. In a scene: inside any of its objects."""
+        """Returns True for each point, of shape (..., 3), that is inside, by the parity of
+        crossings, which is exact for closed meshes. In a scene, a point is inside if any object
+        contains it."""
         at = places("points", points)
         answer = self._tree.contains(rows(at, 3), threads_asked(threads), watch(progress))
         return answer.reshape(at.shape[:-1])
@@ -147,15 +149,15 @@ class _Rays:
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> Nearest:
-        """Returns the nearest surface point of each point, of shape (..., 3), within the
-        distance `within`."""
+        """Returns the point on the surface nearest to each query point, of shape (..., 3), within
+        the distance `within`."""
         raise NotImplementedError
 
     def distance(
         self, points: npt.ArrayLike, *, signed: bool = False, threads: Optional[int] = None, progress: Progress = None
     ) -> Doubles:
-        """Returns the distances of points from the surface; if `signed`, negative inside, for
-        closed meshes."""
+        """Returns the distance of each point from the surface. If `signed`, distances are negative
+        inside, which needs closed meshes."""
         distance = self.nearest(points, threads=threads, progress=progress).distance
         if signed:
             distance[self.contains(points, threads=threads)] *= -1
@@ -163,8 +165,8 @@ class _Rays:
 
     @property
     def bounds(self) -> Places:
-        """Least and greatest corner of the bounds: shape (2, 3). For a scene, the bounds of the
-        transformed bounds of its meshes, which may be larger than necessary."""
+        """Lower and upper corner of the bounding box, of shape (2, 3). For a scene, the union of
+        the transformed boxes of its meshes, which can be larger than the tightest box."""
         return np.array(self._tree.bounds(), np.float32)
 
     @property
@@ -188,7 +190,7 @@ class Mesh(_Rays):
     immutable. Vertices are stored in single precision; if they are far from the origin compared
     with their extent, relative to the centre of their bounds, so that no precision is lost.
     Triangles with a corner that is not finite are ignored. `preset` is the effort of the build:
-    "fast", "balanced" or "best", for many rays.
+    "fast", "balanced" or "best". The slower "best" pays off for many rays.
     """,
     )
 
@@ -234,15 +236,16 @@ class Mesh(_Rays):
         return f"<Mesh of {len(self.faces)} triangles>"
 
     def refit(self, vertices: npt.ArrayLike) -> Mesh:
-        """Returns the mesh with moved vertices, as many as before. Its tree is this one's tree,
-        refitted: much faster than a build, but the farther vertices move, the slower rays
-        become. Results are those of a new mesh."""
+        """Returns the mesh with moved vertices, which must have the same number. Its tree is a
+        refitted copy of this mesh's tree. Refitting is much faster than building, but rays become
+        slower the farther vertices move. The results are those of a new mesh."""
         given = places("vertices", vertices)
         if given.shape != self._own.shape:
             raise ValueError(f"vertices must have the shape {self._own.shape}, but has {given.shape}")
         own, center = centered(given)
         mesh = Mesh.__new__(Mesh)
-        # A tree has no place for a triangle that was not finite when it was built.
+        # The tree lacks triangles that were not finite when it was built, so it cannot be refitted
+        # if they become finite.
         if not (np.isfinite(own).all() and np.isfinite(self._own).all()):
             mesh._build(own, center, self.faces, self._preset)
             return mesh
@@ -252,8 +255,8 @@ class Mesh(_Rays):
 
     @cached_property
     def vertices(self) -> Places:
-        """Vertices, of shape (n, 3), as they are traced: float32, or float64 if they are far
-        from the origin."""
+        """Vertices as used by queries, of shape (n, 3): float32, or float64 if they are far from
+        the origin."""
         if not self._far:
             return self._own
         vertices = self._own + self._center
@@ -286,9 +289,9 @@ class Mesh(_Rays):
     nearest.__doc__ = _Rays.nearest.__doc__
 
     def surface(self, triangle: npt.ArrayLike, uv: npt.ArrayLike) -> Hits:
-        """Returns surface points by triangle, of shape (...), and u and v, (..., 2), as if rays
-        had hit them, with `t` 0. They have point, normal and `leave`. Use it for nearest points
-        or vertices, for example."""
+        """Returns points on the surface as hits with `t` 0, which have `point`, `normal` and
+        `leave`. A point is given by its triangle, of shape (...), and by u and v, of shape (...,
+        2). Use it, for example, to start rays at nearest points or at vertices."""
         triangles, places = np.asarray(seen("triangle", triangle), np.int32), vectors("uv", uv, 2)
         if bool((triangles >= len(self.faces)).any()) or triangles.shape != places.shape[:-1]:
             raise ValueError(f"there are {len(self.faces)} triangles, and each place must have one of them with u and v")
@@ -296,19 +299,19 @@ class Mesh(_Rays):
 
     @cached_property
     def open_edges(self) -> int:
-        """Number of edges with an odd number of triangles, where corners at the same position
-        are the same, or with several copies of one triangle with the same orientation. Triangles
-        that are not finite are ignored. 0 for a closed mesh, for which `contains` works."""
+        """Number of open edges: edges with an odd number of triangles, and edges of duplicate
+        triangles with the same orientation. Corners at the same position count as one. Triangles
+        that are not finite are ignored. 0 for a closed mesh, for which `contains` is exact."""
         return open_edges(self._own, self.faces)
 
     @property
     def is_closed(self) -> bool:
-        """True if the mesh has an inside: it has no open edge."""
+        """True if the mesh has no open edges, so that it has a well-defined inside."""
         return self.open_edges == 0
 
     @property
     def normals(self) -> Floats:
-        """Unit normals of all triangles; 0 for those without area."""
+        """Unit normals of all triangles; 0 for triangles without area."""
         count = len(self.faces)
         all = (None, np.arange(count, dtype=np.int32), np.zeros((count, 2), np.float32))
         return _durer.met_normals(self._tree, all, None).reshape(-1, 3)
@@ -320,16 +323,18 @@ Placed: TypeAlias = Union[Mesh, tuple[Mesh, npt.ArrayLike]]
 class Scene(_Rays):
     __doc__ = (_Rays.__doc__ or "").replace(
         "Queries that meshes and scenes share.",
-        """Instanced meshes, ready for ray queries. Each mesh is stored once, however often it is used.
+        """Scene of instanced meshes, ready for ray queries. A mesh used by several objects is
+        stored once.
 
-    `objects` are meshes, or pairs of a mesh and its matrix to the world, 4 x 4 or 3 x 4: any
-    invertible affine map. Of hits at the same `t`, the object with the least index wins.
+    `objects` are meshes, or pairs of a mesh and its matrix to world space, 4 x 4 or 3 x 4, which
+    can be any invertible affine map. If several objects are hit at the same `t`, the one with the
+    lowest index wins.
     """,
     )
 
     #: The mesh of each object.
     meshes: Sequence[Mesh]
-    #: The map of each object to the world: shape (n, 3, 4).
+    #: The matrix of each object to world space: shape (n, 3, 4).
     matrices: Doubles
 
     def __init__(self, objects: Iterable[Placed]) -> None:
@@ -349,8 +354,8 @@ class Scene(_Rays):
         self._far = bool(self.meshes) and max(map(abs, [*least, *greatest])) > FAR * size >= 0
 
     def move(self, places: Mapping[int, npt.ArrayLike]) -> Scene:
-        """Returns the scene with new matrices for some objects, by index. Meshes and their trees
-        are shared; only the small tree over the objects is rebuilt."""
+        """Returns the scene with new matrices for some objects, given by index. Meshes and their
+        trees are shared with this scene; only the small tree over the objects is rebuilt."""
         for i in places:
             if not 0 <= i < len(self.meshes):
                 raise ValueError(f"there is no object {i} among {len(self.meshes)}")
@@ -390,7 +395,7 @@ class Scene(_Rays):
 
 
 def rays_of(value: Any) -> tuple[Floats, Floats]:
-    """Splits rays of six numbers into origins and directions, as Open3D has them."""
+    """Splits Open3D's rays of six numbers into origins and directions."""
     array = seen("rays", value)
     if array.ndim == 0 or array.shape[-1] != 6:
         raise ValueError(f"rays must have the shape (..., 6), but has {array.shape}")

@@ -1,4 +1,5 @@
-"""Building blocks of scenes in code, which write themselves in the scene language."""
+"""Classes for building scenes in code. A scene is written in the scene language and then read like
+a file."""
 
 from __future__ import annotations
 
@@ -14,7 +15,7 @@ Self = TypeVar("Self", bound="Object")
 
 
 def number(value: Any) -> str:
-    """Formats a number for the reader: the shortest text of the same single-precision value."""
+    """Formats a number as the shortest text that reads back as the same single-precision value."""
     single = np.float32(value)
     if not np.isfinite(single):
         raise ValueError(f"{value} is not finite in single precision")
@@ -22,11 +23,12 @@ def number(value: Any) -> str:
 
 
 class Thing:
-    """A keyword of the scene language with its fields."""
+    """Block of the scene language: a keyword with its fields. Base class of cameras, lights,
+    materials and shapes."""
 
     def __init__(self, word: str, fields: Iterable[tuple[str, Any]]) -> None:
         self.word = word
-        # Two fields may have the same name, such as the materials of a pattern.
+        # Fields are a list because two can have the same name, such as the materials of a pattern.
         self.fields = [(name, value) for name, value in fields if value is not None]
 
     def materials(self) -> list[Material]:
@@ -34,7 +36,7 @@ class Thing:
         return [value for _, value in self.fields if isinstance(value, Material)]
 
     def text(self, numbers: Optional[Mapping[int, int]] = None) -> str:
-        """Returns the text; `numbers` are the indices of materials, by identity."""
+        """Returns the block as text. `numbers` maps the `id` of each material to its index."""
         parts = [f"{name} {self._value(name, value, numbers or {})}" for name, value in self.fields]
         return f"{self.word} {{ {'  '.join(parts)} }}"
 
@@ -74,12 +76,12 @@ class Material(Thing):
 
 
 class Object:
-    """An object of a scene: a shape, a mesh, a group, or one of them transformed."""
+    """Object of a scene: a shape, a mesh, a group, a solid, or a transformed object."""
 
     material: Optional[Material] = None
 
     def of(self: Self, material: Material) -> Self:
-        """Returns the object with a material; parts that have their own keep it."""
+        """Returns the object with a material. Parts that have a material keep it."""
         import copy
 
         other = copy.copy(self)
@@ -87,20 +89,21 @@ class Object:
         return other
 
     def at(self, place: npt.ArrayLike) -> Moved:
-        """Returns the object moved by three numbers, or by a matrix of 3 x 4 or 4 x 4."""
+        """Returns the object translated by a vector, or transformed by a matrix, 3 x 4 or 4 x 4."""
         return Moved(self, place)
 
     def parts(self) -> Iterable[Object]:
-        """Returns the objects in it."""
+        """Returns the objects directly inside this one."""
         return ()
 
     def write(self, writer: Writer, material: Optional[Material]) -> str:
-        """Returns the text, given the material of its surroundings."""
+        """Returns the object as text. `material` is the material that applies at that position in
+        the file."""
         raise NotImplementedError
 
 
 class Writer:
-    """State while a scene is written."""
+    """State of writing a scene: the materials and meshes collected so far."""
 
     def __init__(self) -> None:
         self.order: list[Material] = []
@@ -108,7 +111,8 @@ class Writer:
         self.meshes: list[Mesh] = []
 
     def number(self, material: Material) -> int:
-        """Returns the index of a material; materials that it refers to come before it."""
+        """Returns the index of a material, and adds it if it is new. Materials that it refers to
+        are added before it."""
         for one in [*material.materials(), material]:
             if id(one) not in self.numbers:
                 self.numbers[id(one)] = len(self.order)
@@ -116,13 +120,13 @@ class Writer:
         return self.numbers[id(material)]
 
     def mesh(self, mesh: Mesh) -> str:
-        """Returns the name of a mesh's file."""
+        """Returns the file name of a mesh, and adds the mesh if it is new."""
         if not any(known is mesh for known in self.meshes):
             self.meshes.append(mesh)
         return f"mesh{next(i for i, known in enumerate(self.meshes) if known is mesh)}.ply"
 
     def object(self, item: Union[Object, Mesh], around: Optional[Material]) -> str:
-        """Returns an object's text with its material before it."""
+        """Returns an object as text, preceded by its material."""
         item = Model(item) if isinstance(item, Mesh) else item
         if not isinstance(item, Object):
             raise TypeError(f"objects must be shapes, meshes, groups or solids, but this is {type(item).__name__}: {item!r}")
@@ -132,14 +136,14 @@ class Writer:
 
 
 class Shape(Thing, Object):
-    """A shape with a surface."""
+    """Shape of the scene language, such as a sphere."""
 
     def write(self, writer: Writer, material: Optional[Material]) -> str:
         return self.text(writer.numbers)
 
 
 class Model(Object):
-    """A mesh in a scene."""
+    """Mesh as an object of a scene."""
 
     def __init__(self, mesh: Mesh) -> None:
         self.mesh = mesh
@@ -152,7 +156,7 @@ class Model(Object):
 
 
 class Group(Object):
-    """A group of objects."""
+    """Group of objects."""
 
     word = "Group"
 
@@ -165,37 +169,37 @@ class Group(Object):
 
 
 class Union_(Group):
-    """Union of parts; surfaces inside other parts stay."""
+    """Union of solids that keeps surfaces inside other parts."""
 
     word = "Union"
 
 
 class Merge(Group):
-    """Union of parts as one solid."""
+    """Union of solids without the surfaces inside other parts."""
 
     word = "Merge"
 
 
 class Intersection(Group):
-    """Intersection of all parts."""
+    """Solid that consists of the points in all parts."""
 
     word = "Intersection"
 
 
 class Difference(Group):
-    """The first part minus all others."""
+    """Solid that consists of the first part without all others."""
 
     word = "Difference"
 
 
 class Xor(Group):
-    """Points in an odd number of parts."""
+    """Solid that consists of the points in an odd number of parts."""
 
     word = "Xor"
 
 
 class Moved(Object):
-    """An object with a transform."""
+    """Object with a transform."""
 
     def __init__(self, item: Union[Object, Mesh], place: npt.ArrayLike) -> None:
         array = seen("place", place)
@@ -207,16 +211,17 @@ class Moved(Object):
     def write(self, writer: Writer, material: Optional[Material]) -> str:
         rows = "  ".join(" ".join(number(x) for x in row) for row in self.matrix)
         inner = Model(self.item) if isinstance(self.item, Mesh) else self.item
-        # A transform holds one object without a material keyword.
+        # A transform contains one object, without a material keyword.
         return f"Transform {{ Matrix {{ {rows}  0 0 0 1 }} {inner.write(writer, material)} }}"
 
 
 def ply(mesh: Mesh) -> bytes:
-    """Returns a mesh as a binary PLY file, relative to its centre if that is far away."""
+    """Returns a mesh as a binary PLY file. Vertices are relative to the mesh's centre if it is far
+    from the origin."""
     vertices, corners = mesh._own, mesh.faces
     is_finite = finite(vertices)
     if not is_finite.all():
-        # Degenerate to points, so that the other triangles keep their indices.
+        # Collapse them to points, so that the other triangles keep their indices.
         vertices = np.where(is_finite[:, None], vertices, np.float32(0))
         corners = np.where(is_finite[corners].all(axis=1, keepdims=True), corners, corners[:, :1])
     head = (

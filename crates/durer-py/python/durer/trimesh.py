@@ -1,4 +1,4 @@
-"""The ray queries of `trimesh`, implemented by Dürer.
+"""Drop-in replacement for the ray queries of `trimesh`.
 
     mesh.ray = durer.trimesh.RayMeshIntersector(mesh)
 
@@ -22,11 +22,11 @@ _Doubles = npt.NDArray[np.float64]
 
 
 class RayMeshIntersector:
-    """Ray queries on a `trimesh.Trimesh`. Builds the tree on the first query, and again after the
-    mesh was changed.
+    """Ray queries on a `trimesh.Trimesh`. The first query builds the tree, and the first query
+    after a change of the mesh rebuilds it.
 
-    The mesh is traced relative to the centre of its bounds, so its position costs no precision.
-    `scale_to_box` is ignored.
+    The mesh is traced relative to the centre of its bounds, so no precision is lost far from the
+    origin. `scale_to_box` is ignored.
     """
 
     def __init__(self, geometry: Any, scale_to_box: bool = True) -> None:
@@ -57,7 +57,7 @@ class RayMeshIntersector:
     def intersects_location(
         self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike, multiple_hits: bool = True
     ) -> tuple[_Doubles, _Ints, _Ints]:
-        """Returns hit points, and the ray and triangle of each."""
+        """Returns the hit points, and the indices of the ray and the triangle of each."""
         triangle, ray, places = self.intersects_id(ray_origins, ray_directions, multiple_hits, return_locations=True)
         return places, ray, triangle
 
@@ -69,8 +69,8 @@ class RayMeshIntersector:
         max_hits: int = 100,
         return_locations: bool = False,
     ) -> Any:
-        """Returns the triangles of hits, the ray of each, and optionally the points: only first
-        hits, or at most `max_hits` for each ray."""
+        """Returns the indices of the triangle and the ray of each hit, and optionally the points.
+        Only first hits are returned, or at most `max_hits` per ray."""
         tree, origins, ways = self._rays(ray_origins, ray_directions)
         if multiple_hits:
             hits = tree.all_hits(origins, ways)
@@ -89,7 +89,7 @@ class RayMeshIntersector:
         return triangle, ray, (1 - u - v) * a + u * b + v * c
 
     def intersects_first(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike) -> _Ints:
-        """Returns the first triangle of each ray, or -1."""
+        """Returns the index of the first triangle that each ray hits, or -1."""
         tree, origins, ways = self._rays(ray_origins, ray_directions)
         return tree.closest(origins, ways).triangle.astype(np.int64)
 
@@ -99,7 +99,7 @@ class RayMeshIntersector:
         return tree.occluded(origins, ways)
 
     def contains_points(self, points: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        """Returns True for points that are inside."""
+        """Returns True for each point that is inside the mesh."""
         tree, middle = self._tree()
         return tree.contains(np.asarray(points, np.float64) - middle)
 

@@ -1,5 +1,4 @@
-"""Cameras in OpenCV's convention, and what they see of scenes: depth, normals, masks, optical
-flow."""
+"""Cameras in OpenCV's convention, which render depth, normals, instance masks and optical flow."""
 
 from __future__ import annotations
 
@@ -15,11 +14,12 @@ from .rays import Mesh, Scene
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """Results for each pixel of a camera: shape (height, width) or (height, width, 3)."""
+    """Images of a camera's view: depth, normals, objects and points per pixel, of shape (height,
+    width) or (height, width, 3)."""
 
-    #: Depth along the camera's axis, z in its frame, in the unit of the scene; infinite for misses.
+    #: Depth: z in the camera's frame, in scene units; infinite for misses.
     depth: Floats
-    #: Distance along the pixel's ray, in the same unit.
+    #: Distance along the pixel's ray, in scene units; infinite for misses.
     distance: Floats
     #: Surface normal in the camera's frame, towards the camera; 0 for misses.
     normals: Floats
@@ -37,12 +37,12 @@ def _zeros() -> Doubles:
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """A camera in OpenCV's convention: x to the right, y down, z forwards; the centre of the first
-    pixel is (0, 0).
+    """Camera in OpenCV's convention: x points right, y down and z forwards, and the centre of the
+    first pixel is (0, 0).
 
-    A point X in the world is R X + t in the camera's frame, with `extrinsics` = [R | t], 3 x 4
-    or 4 x 4. Its x / z and y / z are distorted by k1, k2, p1, p2[, k3[, k4, k5, k6]], as
-    `cv2.calibrateCamera` returns them, and mapped to pixels by `intrinsics`, 3 x 3.
+    A world point X is R X + t in the camera's frame, where `extrinsics` = [R | t] is 3 x 4 or 4 x
+    4. x / z and y / z are distorted by k1, k2, p1, p2[, k3[, k4, k5, k6]], as returned by
+    `cv2.calibrateCamera`, and mapped to pixels by the 3 x 3 matrix `intrinsics`.
     """
 
     intrinsics: npt.ArrayLike
@@ -98,8 +98,8 @@ class Camera:
         )
 
     def project(self, points: npt.ArrayLike) -> Doubles:
-        """Returns the pixel coordinates x and y of world points, of shape (..., 3); NaN for
-        points behind the camera."""
+        """Returns the pixel coordinates x and y of world points of shape (..., 3); NaN for points
+        behind the camera."""
         turn, shift = self._outer()
         local = np.asarray(seen("points", points), np.float64) @ turn.T + shift
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -109,9 +109,9 @@ class Camera:
         return np.stack([inner[0, 0] * x + inner[0, 1] * y + inner[0, 2], inner[1, 1] * y + inner[1, 2]], -1)
 
     def rays(self) -> tuple[Doubles, Doubles]:
-        """Returns the eye, and for each pixel the direction of its ray in the world, of shape
-        (height, width, 3). Its z in the camera's frame is 1, so `t` is depth. Where the lens has
-        no ray, the direction is NaN."""
+        """Returns the camera's position, and the direction of each pixel's ray in world space, of
+        shape (height, width, 3). Directions have z = 1 in the camera's frame, so `t` is the depth.
+        They are NaN where the distortion cannot be inverted."""
         inner, (turn, shift) = self._inner(), self._outer()
         u, v = np.meshgrid(np.arange(self.width, dtype=np.float64), np.arange(self.height, dtype=np.float64))
         yd = (v - inner[1, 2]) / inner[1, 1]
@@ -138,7 +138,7 @@ class Camera:
         return np.where(good, x, np.nan), np.where(good, y, np.nan)
 
     def view(self, scene: Union[Mesh, Scene]) -> View:
-        """Traces a scene."""
+        """Traces a ray through each pixel, and returns what it hits."""
         eye, ways = self.rays()
         hits = scene.closest(eye, ways)
         length = np.linalg.norm(ways, axis=-1)
@@ -150,9 +150,9 @@ class Camera:
         return View(hits.t, distance, facing, hits.object, hits.triangle, hits.point)
 
     def flow(self, scene: Union[Mesh, Scene], other: Camera) -> tuple[Doubles, Bools]:
-        """Returns the optical flow to another pose in a static scene: the motion of each pixel,
-        of shape (height, width, 2), NaN for misses; and True where the other camera sees the
-        point too, inside its picture and not occluded."""
+        """Returns the optical flow to another camera in a static scene, that is, the motion of each
+        pixel, of shape (height, width, 2), NaN for misses. Also returns True for each point that is
+        inside the other camera's image and not occluded there."""
         hits = scene.closest(*self.rays())
         points = hits.point.astype(np.float64)
         there = other.project(points)

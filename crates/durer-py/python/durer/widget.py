@@ -1,4 +1,4 @@
-"""A scene in a notebook: drag to orbit, click a pixel to see why it has its colour.
+"""A notebook widget that shows a scene: drag to orbit, click a pixel to see why it has its colour.
 
     from durer.widget import Explorer
 
@@ -22,12 +22,12 @@ from .world import World
 
 _Vector = npt.NDArray[np.float64]
 
-#: A camera's block in the scene language; no such block nests braces more than once. Comments match
-#: first, so that cameras in them do not count.
+#: A camera's block in the scene language, which nests braces at most once. Comments match first, so
+#: that cameras in comments are ignored.
 _CAMERA = re.compile(r"#[^\n]*|\b([A-Za-z]+Camera)\s*\{((?:[^{}#]|#[^\n]*|\{[^{}]*\})*)\}")
-#: A field of three numbers.
+#: A field with three numbers.
 _FIELD = r"\b{}((?:\s+[-+.\deE]+){{3}})"
-#: Limit of the elevation from the poles, in degrees.
+#: Minimum angle in degrees between the view direction and the vertical.
 _STEEPEST = 3.0
 
 
@@ -37,24 +37,24 @@ class _Camera:
     def __init__(self, world: World) -> None:
         blocks = [found for found in _CAMERA.finditer(world.text) if found[1]]
         if len(blocks) != 1:
-            raise ValueError(f"{world.path.name} has no camera in the scene language that could go around it")
+            raise ValueError(f"{world.path.name} has no camera in the scene language, so it cannot be orbited")
         self.text, (self.start, self.end) = world.text, blocks[0].span()
         self.block = blocks[0][0]
         self.eye, self.along, self.up = (self._field(name) for name in ("center", "direction", "up"))
         hit = world.closest(self.eye, self.along, progress=False)
         met = float(hit.t) * float(np.linalg.norm(self.along))
-        # If it looks at nothing, orbit at the origin's distance.
+        # If the camera looks at nothing, it orbits a point at the distance of the origin.
         self.far = met if np.isfinite(met) and met > 0 else max(float(np.linalg.norm(self.eye)), 1.0)
         self.target = self.eye + self.far * _unit(self.along)
 
     def _field(self, name: str) -> _Vector:
         found = re.search(_FIELD.format(name), self.block)
         if found is None:
-            raise ValueError(f"a camera without `{name}` cannot go around: {' '.join(self.block.split())[:60]}")
+            raise ValueError(f"a camera without `{name}` cannot orbit: {' '.join(self.block.split())[:60]}")
         return np.array(found[1].split(), np.float64)
 
     def go(self, right: float, down: float, nearer: float) -> None:
-        """Orbits around the target, by shares of a half turn, and zooms."""
+        """Orbits around the target by fractions of half a turn, and zooms."""
         up, away = _unit(self.up), _unit(self.eye - self.target)
         height = np.degrees(np.arcsin(np.clip(away @ up, -1, 1)))
         height = np.clip(height + 180 * down, _STEEPEST - 90, 90 - _STEEPEST)
@@ -81,11 +81,12 @@ def _unit(vector: _Vector) -> _Vector:
 
 
 class Explorer(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
-    """A world with an orbiting camera, whose pixels can be explained.
+    """Notebook widget that shows a world through an orbiting camera, and explains the pixels that
+    are clicked.
 
-    The world is in the scene language, from a file or built in code, with a camera that has
-    `center`, `direction` and `up`. Options are those of `World.render`. Drags, the wheel, arrow
-    keys, plus and minus move the camera; a click explains a pixel.
+    The world must come from the scene language, in a file or built in code, and its camera must
+    have `center`, `direction` and `up`. Options are those of `World.render`. Drag or use the arrow
+    keys to orbit, and use the wheel or the plus and minus keys to zoom.
     """
 
     _esm = Path(__file__).with_name("explorer.js")
@@ -94,20 +95,20 @@ class Explorer(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
     .durer-chip { display: inline-block; width: .8em; height: .8em; margin-right: .4em; border: 1px solid #8888; }
     .durer-node { margin-left: 1.1em; font-family: monospace; }
     """
-    #: The picture as PNG.
+    #: The rendered image as PNG.
     picture = traitlets.Bytes(b"").tag(sync=True)
-    #: Status line: what is shown, or an error.
+    #: Text of the status line, or of an error.
     word = traitlets.Unicode("").tag(sync=True)
-    #: The explanation as nodes: `text`, `color` for CSS, `value` and `terms`.
+    #: The explanation as a tree of nodes with `text`, `color` for CSS, `value` and `terms`.
     told = traitlets.Dict({}).tag(sync=True)
-    #: Number of requests of the page that were handled.
+    #: Number of requests from the page that were handled.
     made = traitlets.Int(0).tag(sync=True)
 
     def __init__(self, world: World, *, size: tuple[int, int] = (480, 360), samples: int = 4, **options: Any) -> None:
         super().__init__()
         self._camera = _Camera(world)
         self._size, self._samples, self._options = size, samples, options
-        #: The current world: `explorer.world.save(folder)` saves it.
+        #: The world as currently shown; `explorer.world.save(folder)` saves it.
         self.world = world
         self._draw()
         self.on_msg(self._told_of)
@@ -122,8 +123,8 @@ class Explorer(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
         self._hear(wish)
 
     def _hear(self, wish: dict[str, Any]) -> None:
-        """Handles a request of the page: `turn` and `nearer` move the camera, `ask` explains the
-        pixel at shares of width and height."""
+        """Handles a request from the page. `turn` and `nearer` move the camera; `ask` explains the
+        pixel at fractions of the width and height."""
         try:
             (right, down), nearer, ask = wish["turn"], wish["nearer"], wish["ask"]
             if right or down or nearer != 1:
@@ -139,7 +140,8 @@ class Explorer(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
             self.made += 1
 
     def explain(self, x: int, y: int) -> dict[str, Any]:
-        """Explains a pixel by the ray through its centre, here and in the page."""
+        """Explains a pixel by the ray through its centre. Returns the explanation and shows it on
+        the page."""
         answer = self.world.explain(x, y, size=self._size, samples=1, **self._options)
         samples = [sample["light"] for sample in answer["pixel"]["samples"] if sample["light"] is not None]
         self.told = _told(samples[0], answer) if samples else {}
@@ -148,7 +150,7 @@ class Explorer(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
 
 
 def _told(node: dict[str, Any], answer: dict[str, Any]) -> dict[str, Any]:
-    """Returns a node of an explanation for the page."""
+    """Converts a node of an explanation to the form that the page shows."""
     # Spectral values have four numbers and no display colour.
     value = [float(x or 0) for x in node["value"]]
     screen = [255 * (1.055 * x ** (1 / 2.4) - 0.055 if x > 0.0031308 else 12.92 * x) for x in np.clip(value, 0, 1)]
@@ -158,7 +160,7 @@ def _told(node: dict[str, Any], answer: dict[str, Any]) -> dict[str, Any]:
 
 
 def _named(what: dict[str, Any], answer: dict[str, Any]) -> str:
-    """Describes a node in a few words."""
+    """Returns a short description of a node."""
 
     def name(kind: str, number: Optional[Any]) -> str:
         return str(answer[kind].get(str(number), f"{kind[:-1]} {number}"))

@@ -1,4 +1,4 @@
-"""Described scenes, from files or built in code; their pictures and explanations."""
+"""Scenes from files or built in code, and their rendered images and explanations."""
 
 from __future__ import annotations
 
@@ -24,18 +24,19 @@ from .words import Background, PhongMaterial
 
 PathLike: TypeAlias = Union[str, "os.PathLike[str]"]
 
-#: Pictures whose three channels are one number.
+#: Images of single numbers, whose three channels are equal.
 _SINGLE = {"depth", "object", "material", "sample-count", "variance", "cost"}
 
 
 class Pictures(dict[str, Floats]):
-    """Pictures by name, float32, top row first: `color` is linear light of shape (height, width,
-    3), `alpha` the share of each pixel that the camera sees, if not everywhere 1; depth and
-    other single numbers have the shape (height, width)."""
+    """Rendered images by name, as float32 arrays with the top row first. `color` is linear light of
+    shape (height, width, 3). `alpha` is the fraction of each pixel that the camera covers, and
+    exists unless it is 1 everywhere. Images of single numbers, such as depth, have the shape
+    (height, width)."""
 
     def __init__(self, part: Part) -> None:
         super().__init__()
-        #: The part that the pictures are made from.
+        #: The part that contains the images.
         self.part = part
         self._alpha: dict[str, Optional[npt.NDArray[np.float32]]] = {}
         for name, width, height, values, alpha in part._part.pictures(False):
@@ -54,8 +55,9 @@ class Pictures(dict[str, Floats]):
         return self.part.hash
 
     def file(self, name: str, transfer: str = "srgb") -> bytes:
-        """Returns the bytes of a file, by the extension of `name`: the first picture as display
-        values in eight-bit formats, all pictures in `.exr`."""
+        """Returns the bytes of an image file. The extension of `name` selects the format. `.exr`
+        files contain all images; other files contain the first, as display values in eight-bit
+        formats."""
         eight = Path(name).suffix.lower() in (".png", ".tga", ".bmp", ".ppm")
         layers = []
         for layer, width, height, values, alpha in self.part._part.pictures(eight):
@@ -64,7 +66,7 @@ class Pictures(dict[str, Floats]):
         return _durer.encode(name, layers if name.lower().endswith(".exr") else layers[:1], transfer)
 
     def save(self, path: PathLike, transfer: str = "srgb") -> None:
-        """Writes the pictures into a file: png, tga, bmp, ppm, pfm, hdr or exr."""
+        """Writes the images to a file: png, tga, bmp, ppm, pfm, hdr or exr."""
         _write(Path(path), self.file(os.fspath(path), transfer))
 
     def _repr_png_(self) -> bytes:
@@ -85,11 +87,12 @@ def _write(path: Path, content: bytes) -> None:
 
 
 class Part:
-    """A partial render: a shard, a checkpoint, or the whole picture."""
+    """Partial render: the film of a shard, of an unfinished render, or of a finished image, which
+    can be saved, continued and merged."""
 
     def __init__(self, part: _durer.Part) -> None:
         self._part = part
-        #: The options it was created with, if known.
+        #: The options with which the part was created, if known.
         self._options: Optional[dict[str, Any]] = None
 
     def __reduce__(self) -> Any:
@@ -97,14 +100,14 @@ class Part:
 
     @classmethod
     def read(cls, source: Union[PathLike, bytes]) -> Part:
-        """Reads a part from a file or its bytes. Raises RenderError if it is damaged or of
-        another version."""
+        """Reads a part from a file or its bytes. Raises RenderError if it is damaged or was written
+        by another version."""
         return cls(_durer.Part.read(source if isinstance(source, bytes) else Path(source).read_bytes()))
 
     @classmethod
     def merge(cls, parts: Iterable[Union[Part, PathLike, bytes]]) -> Part:
-        """Merges parts to the same bits as a single run. Refuses parts of different pictures,
-        and overlapping or missing work."""
+        """Merges parts. The result has the same bits as a single run. Raises RenderError if parts
+        belong to different images or overlap, or if a part is missing."""
         named = []
         for i, part in enumerate(parts, 1):
             if isinstance(part, Part):
@@ -116,15 +119,15 @@ class Part:
         return cls(_durer.merge(named))
 
     def bytes(self) -> bytes:
-        """Returns the bytes that `durer render --shard` saves."""
+        """Returns the part as the bytes of a `.part` file."""
         return self._part.write()
 
     def save(self, path: PathLike) -> None:
-        """Writes the part into a file."""
+        """Writes the part to a file."""
         _write(Path(path), self.bytes())
 
     def pictures(self) -> Pictures:
-        """Returns the pictures so far; pixels without samples are black."""
+        """Returns the images rendered so far. Pixels without samples are black."""
         return Pictures(self)
 
     @property
@@ -134,17 +137,17 @@ class Part:
 
     @property
     def identity(self) -> str:
-        """Hash of everything that determines the picture: scene, job and version."""
+        """Hash of everything that determines the image: scene, job and version."""
         return self._part.identity()
 
     @property
     def shard(self) -> str:
-        """Index and number of shards: `3/16`."""
+        """Index of the shard and number of shards, for example `3/16`."""
         return self._part.shard()
 
     @property
     def job(self) -> dict[str, Any]:
-        """The job: everything that determines the picture beside the scene."""
+        """The render job: everything besides the scene that determines the image."""
         job: dict[str, Any] = json.loads(self._part.job())
         return job
 
@@ -165,30 +168,30 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Surfaces:
-    """First hits of rays in a world. All arrays have the shape of the rays, followed by the
-    components of vectors."""
+    """First hits of rays with the objects of a world. All arrays have the shape of the rays,
+    followed by the components of vectors."""
 
-    #: Distance along the ray, in units of its direction's length; infinite for misses.
+    #: Distance along the ray, in units of the length of its direction; infinite for misses.
     t: Floats
-    #: Index of the object, as in the picture `object`; -1 for misses.
+    #: Index of the object, as in the image `object`; -1 for misses.
     object: Ints
-    #: Index of the triangle in a mesh, else 0; -1 for misses.
+    #: Index of the triangle for a mesh, 0 for other objects; -1 for misses.
     triangle: Ints
     #: Index of the material; -1 for misses.
     material: Ints
     #: Hit point; NaN for misses.
     point: Floats
-    #: Geometric normal, unit length, outwards; NaN for misses.
+    #: Unit geometric normal, pointing outwards; NaN for misses.
     normal: Floats
-    #: Shading normal: interpolated on smooth meshes.
+    #: Unit shading normal, interpolated on smooth meshes; NaN for misses.
     shading_normal: Floats
-    #: The point in double precision, and the offset at which a ray starts.
+    #: The point in double precision, and the offset from it at which secondary rays start.
     _place: Doubles
 
     def leave(self, directions: npt.ArrayLike) -> Doubles:
-        """Returns origins for secondary rays in the given directions: see `Hits.leave`. A ray
-        that leaves a solid of several parts closer to an edge than the precision of the point
-        may start on the other side of that edge."""
+        """Returns origins for secondary rays in the given directions; see `Hits.leave`. On a solid
+        with several parts, a point that is closer to an edge than its precision can get an origin
+        on the other side of that edge."""
         ways = vectors("directions", directions)
         try:
             ways = np.broadcast_to(ways, self.point.shape)
@@ -206,15 +209,15 @@ class Surfaces:
         return self.object >= 0
 
     def __repr__(self) -> str:
-        return f"<Surfaces of {self.t.size} rays: {int(self.hit.sum())} meet something>"
+        return f"<Surfaces of {self.t.size} rays: {int(self.hit.sum())} hit something>"
 
 
 class World:
-    """A described scene, ready for rendering. `durer.load` reads one from a file; the constructor
-    builds one in code.
+    """Scene with camera, lights and materials, ready for rendering. `durer.load` reads one from a
+    file; the constructor builds one in code.
 
-    `objects` are shapes, meshes, groups and solids; `lights` None means the same as a file
-    without lights: ambient light alone.
+    `objects` are shapes, meshes, groups and solids. If `lights` is None, the scene has only ambient
+    light, like a file without lights.
     """
 
     def __init__(
@@ -251,20 +254,20 @@ class World:
 
     @classmethod
     def load(cls, path: PathLike, *, words: Optional[Sequence[str]] = None, **reading: Any) -> World:
-        """Reads any scene that the command reads. Options are those of `durer render` about
+        """Reads any scene that the command reads. Options are those of `durer render` that affect
         reading: dialect, compat, strict, allow_outside, assets, memory, and for models up, view,
         studio, environment, view_file, camera, fit, at. A model gets lights and a ground, which
-        rays hit too, unless `studio` is False. The framing of a model depends on `size`, which
-        is given here then and also applies to `render`. `words` are options as they follow
-        `durer render SCENE`; those of rendering apply to all renders of the world. Raises
-        SceneError with file, line and column."""
+        rays can hit, unless `studio` is False. A model is framed for `size`, so pass `size` here;
+        it also applies to `render`. `words` are options as written after `durer render SCENE`;
+        those about rendering apply to all renders of the world. Raises SceneError with file, line
+        and column."""
         world = cls.__new__(cls)
         world._load(Path(path), None, [], reading, parsed(words))
         return world
 
     @classmethod
     def from_text(cls, text: str, folder: PathLike = ".", **reading: Any) -> World:
-        """Reads a scene from a text in the scene language, as if it were a file in `folder`."""
+        """Reads a scene from text in the scene language, as if it were a file in `folder`."""
         world = cls.__new__(cls)
         world._load(Path(folder) / "scene.txt", text.encode(), [], reading)
         return world
@@ -279,7 +282,7 @@ class World:
         return world
 
     def rewritten(self, text: str) -> World:
-        """Returns a world with another text: in the same folder, with the same meshes and
+        """Returns the world of another text, in the same folder, with the same meshes and
         options."""
         return World._again(self.path, text.encode(), self._given, self._reading)
 
@@ -290,14 +293,14 @@ class World:
 
     @property
     def files(self) -> dict[str, bytes]:
-        """The scene's own files: its text as `scene.txt`, and the meshes that were built in
-        code."""
+        """The files that `save` writes: the scene's text as `scene.txt`, and the meshes that were
+        built in code."""
         text = self._text if self._text is not None else self.path.read_bytes()
         return {"scene.txt" if self._text is not None else self.path.name: text, **dict(self._given)}
 
     def save(self, folder: PathLike) -> Path:
-        """Writes the files into a folder and returns the path of the scene, which the command
-        renders identically."""
+        """Writes the scene's files into a folder, and returns the path of the scene, which the
+        command renders to the same image."""
         Path(folder).mkdir(parents=True, exist_ok=True)
         for name, content in self.files.items():
             _write(Path(folder) / name, content)
@@ -310,7 +313,7 @@ class World:
 
     @property
     def dialect(self) -> str:
-        """Dialect of the scene language."""
+        """Name of the scene's dialect of the scene language."""
         return self._world.dialect()
 
     @property
@@ -320,12 +323,13 @@ class World:
 
     @property
     def description(self) -> dict[str, Any]:
-        """The scene as data, as `durer convert` writes it to JSON."""
+        """The scene as data, in the JSON form that `durer convert` writes."""
         scene: dict[str, Any] = json.loads(self._world.description())
         return scene
 
     def part(self, **options: Any) -> Part:
-        """Returns an empty part of a picture; with `shard=(3, 16)` a shard."""
+        """Returns an empty part with these render options; `shard=(3, 16)` makes it the third of
+        sixteen shards."""
         given = self._all(options)
         part = Part(spoken(lambda: self._world.part(given)))
         part._options = {name: value for name, value in options.items() if not is_work(name)}
@@ -345,12 +349,13 @@ class World:
         every: float = 1.0,
         **options: Any,
     ) -> Pictures:
-        """Renders pictures. Options are those of `durer render` with the same meaning, defaults and
-        bits: size, samples, show, bounces, crop, noise_threshold, time_limit, threads, shard and
-        all others that `durer.options()` lists.
+        """Renders the scene. Options are those of `durer render`, with the same defaults and the
+        same resulting bits: size, samples, show, bounces, crop, noise_threshold, time_limit,
+        threads, shard and all others that `durer.options()` lists.
 
-        `part` continues earlier work; `callback` gets the pictures so far at regular intervals.
-        Ctrl-C and exceptions of a callback stop the render; the work so far is in the part.
+        `part` continues earlier work. `callback` is called with the images so far, every `every`
+        seconds. Ctrl-C and exceptions in the callback stop the render; the part keeps the work done
+        so far.
         """
         if part is not None and options:
             self._same(part, options)
@@ -372,7 +377,7 @@ class World:
         return begun.pictures()
 
     def _same(self, part: Part, options: Mapping[str, Any]) -> None:
-        """Refuses options that ask for another picture than the part's."""
+        """Raises an error if options would change the image that the part belongs to."""
 
         def differs(wanted: Mapping[str, Any]) -> bool:
             deciding = {name: value for name, value in wanted.items() if not is_work(name)}
@@ -383,11 +388,11 @@ class World:
         if differs(options):
             alone = [name for name in options if part._options is not None and differs({name: options[name]})]
             given = ", ".join(alone or options)
-            raise ValueError(f"the part is of another picture than {given} asks for: leave out what decides the picture")
+            raise ValueError(f"the part belongs to a different image than {given} would give: omit options that determine the image")
 
     async def progressive(self, *, every: float = 1.0, **options: Any) -> AsyncIterator[Pictures]:
-        """Renders in a thread, and yields the pictures so far every `every` seconds, and finally
-        the finished ones."""
+        """Renders in a thread. Yields the images so far every `every` seconds, and finally the
+        finished images."""
         part, stop = self.part(**options), False
 
         def look(done: int, total: int) -> None:
@@ -417,8 +422,8 @@ class World:
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> Surfaces:
-        """Returns the first hit of each ray among all objects, spheres, solids and meshes alike,
-        as in the pictures. Arguments are those of `Mesh.closest`."""
+        """Returns the first hit of each ray with any object, including spheres and solids, as when
+        rendering. Arguments are those of `Mesh.closest`."""
         shape, rays = asked(origins, directions, t_min, t_max)
         ids, values, places = self._world.closest(rays, threads_asked(threads), watch(progress))
         whole, other, place = ids.reshape(-1, 3), values.reshape(-1, 10), places.reshape(*shape, 4)
@@ -458,8 +463,8 @@ class World:
         return answer
 
     def check(self, **options: Any) -> list[dict[str, Any]]:
-        """Returns likely mistakes in the scene, causes first, as `durer check --json` lists
-        them."""
+        """Returns likely mistakes in the scene, causes before consequences, as `durer check --json`
+        lists them."""
         given = self._all(options)
         found: list[dict[str, Any]] = json.loads(spoken(lambda: self._world.check(given)))
         return found
@@ -492,7 +497,7 @@ def options() -> dict[str, str]:
 
 
 def kinds() -> dict[str, str]:
-    """Returns the kinds of pictures that `show` accepts beside color, with their descriptions."""
+    """Returns the images that `show` accepts besides `color`, with their descriptions."""
     return dict(_durer.Part.kinds())
 
 

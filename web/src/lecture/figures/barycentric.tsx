@@ -159,7 +159,7 @@ function BarycentricFigure() {
   );
 }
 
-/** The triangle as rendered, coloured by its barycentric coordinates. */
+/** Shows the rendered triangle, coloured by its barycentric coordinates. */
 function Backdrop({ session }: { session: ReturnType<typeof useScene> }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {

@@ -119,7 +119,7 @@ function CameraFigure() {
             <canvas
               ref={canvas}
               role="img"
-              aria-label="The picture of this camera; click to see the ray of a pixel"
+              aria-label="The image of this camera; click to see the ray of a pixel"
               onPointerDown={(event) => {
                 const box = event.currentTarget.getBoundingClientRect();
                 const column = Math.floor(((event.clientX - box.left) / box.width) * width);
@@ -206,10 +206,10 @@ function row(tree: { rows: { name: string; result: string }[] } | null, name: st
 export const camera: Topic = {
   id: "camera",
   title: "The camera",
-  lead: "Three axes and an angle turn a position in the picture into a ray.",
+  lead: "Three axes and an angle turn a position in the image into a ray.",
   text: [
-    "The camera has a position and three axes: u to the right, v upwards, w forwards. The picture plane is at distance D in front of it and reaches from −1 to 1 across its larger side. A pixel at (x, y) gets the ray with direction D w + x u + y v.",
-    "Make the angle wider: D shrinks, the picture plane comes nearer, and more of the world fits into it.",
+    "The camera has a position and three axes: u to the right, v upwards, w forwards. The image plane is at distance D in front of it and reaches from −1 to 1 across its larger side. A pixel at (x, y) gets the ray with direction D w + x u + y v.",
+    "Make the angle wider: D shrinks, the image plane comes closer, and more of the world fits into it.",
   ],
   Figure: CameraFigure,
   questions: [

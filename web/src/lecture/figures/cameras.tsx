@@ -10,17 +10,18 @@ import { paint, sceneOf } from "../scenes";
 import { Stage } from "../stage";
 import type { Topic } from "../topic";
 
+/** Kind of camera that the figure can show. */
 interface Kind {
   id: string;
   name: string;
-  /** Its statement, with the field that is slid. */
+  /** Returns the camera's block in the scene language, with the value of its slider. */
   statement(value: number): string;
   field: string;
   range: [number, number, number];
   unit: string;
-  /** Columns and rows of its picture. */
+  /** Width and height of its image in pixels. */
   size: [number, number];
-  /** How its rays go. */
+  /** How the rays of its pixels are chosen, for the figure's caption. */
   rule: string;
 }
 
@@ -34,7 +35,7 @@ const kinds = [
     range: [60, 180, 360],
     unit: "°",
     size: [240, 240],
-    rule: "The distance from the picture’s middle is the angle to the axis: half a sphere fits on a disc. Outside of the disc there is no ray.",
+    rule: "The distance from the image’s centre is proportional to the angle to the axis, so half of all directions fit on a disc. Outside the disc there are no rays.",
   },
   {
     id: "cylindrical",
@@ -44,7 +45,7 @@ const kinds = [
     range: [60, 240, 360],
     unit: "°",
     size: [420, 160],
-    rule: "The picture is bent to a cylinder around the eye: x is an angle, y a height. Vertical lines stay straight.",
+    rule: "The image is wrapped around the eye as a cylinder: x is an angle, y a height. Vertical lines stay straight.",
   },
   {
     id: "equirectangular",
@@ -54,7 +55,7 @@ const kinds = [
     range: [0, 0, 0],
     unit: "",
     size: [400, 200],
-    rule: "x is the longitude and y the latitude: all directions, as on a map of the world. Above and below the eye they are stretched.",
+    rule: "x is the longitude and y the latitude, so the image contains all directions, like a map of the world. Directions above and below the eye are stretched.",
   },
   {
     id: "stereo",
@@ -65,7 +66,7 @@ const kinds = [
     range: [0, 0.5, 1.6],
     unit: "",
     size: [400, 200],
-    rule: "Two cameras side by side. What lies at the distance of convergence is at the same place in both pictures.",
+    rule: "Two cameras side by side. Points at the convergence distance are at the same position in both images.",
   },
   {
     id: "lens",
@@ -76,7 +77,7 @@ const kinds = [
     range: [0, 0.6, 1.5],
     unit: "",
     size: [320, 240],
-    rule: "Rays start all over the lens and meet again in the plane of focus: what is there is sharp. Drawn are the rays through its middle.",
+    rule: "Rays start from all points of the lens and meet in the plane of focus, where objects are sharp. The figure draws only the rays through the centre of the lens.",
   },
   {
     id: "push-broom",
@@ -87,7 +88,7 @@ const kinds = [
     range: [20, 50, 110],
     unit: "°",
     size: [420, 175],
-    rule: "The eye moves while the picture is made, one column after the other, as a scanner or a satellite does. Across, nothing becomes smaller with distance.",
+    rule: "The eye moves while the image is recorded column by column, as in a scanner or a satellite. Horizontally, objects do not shrink with distance.",
   },
   {
     id: "parabolic",
@@ -97,12 +98,12 @@ const kinds = [
     range: [90, 210, 300],
     unit: "°",
     size: [240, 240],
-    rule: "A mirror in the form of a paraboloid, seen from far above. It keeps angles: small circles stay circles.",
+    rule: "A mirror in the shape of a paraboloid, seen from far above. It preserves angles: small circles remain circles.",
   },
 ] as const satisfies readonly Kind[];
 type Id = (typeof kinds)[number]["id"];
 
-/** Things all around the eye, so that every camera sees some. */
+/** Returns objects all around the eye, so that every camera sees some of them. */
 function around(): string {
   const all: string[] = ["MaterialIndex 0 Disc { center 0 -0.8 0 normal 0 1 0 radius 7 }"];
   for (let i = 0; i < 12; i++) {
@@ -206,7 +207,7 @@ function CamerasFigure() {
       <Equation
         numbers={
           <>
-            of {columns} × {rows} rays, <b>{there.length}</b> exist,{" "}
+            of {columns} × {rows} pixels, <b>{there.length}</b> have a ray,{" "}
             <b>{there.filter((ray) => ray.t !== null).length}</b> hit something
           </>
         }
@@ -216,10 +217,10 @@ function CamerasFigure() {
       <Equation
         numbers={
           starts === 1 ? (
-            "all rays start in one eye"
+            "all rays start at one eye point"
           ) : (
             <>
-              they start at <b>{starts}</b> places
+              they start at <b>{starts}</b> points
             </>
           )
         }
@@ -233,20 +234,20 @@ function CamerasFigure() {
 export const cameras: Topic = {
   id: "cameras",
   title: "Other cameras",
-  lead: "A camera is a rule that gives each pixel a ray. Any rule makes a picture.",
+  lead: "A camera is a rule that assigns a ray to each pixel. Any such rule gives an image.",
   text: [
-    "Nothing in a ray tracer wants the picture to be flat, or the rays to meet in one eye. A fisheye sees all around, a scanner moves while it looks, a pair of eyes makes two pictures. All else, the objects, the lights and the shading, stays as it is.",
-    "Painting programs and graphics cards project triangles onto a plane: there these cameras take tricks. Here each is a few lines.",
+    "A ray tracer does not require a flat image plane, or rays that meet in one eye point. A fisheye sees in all directions, a scanner moves while it records, and a pair of eyes sees two images. Everything else stays the same: the objects, the lights and the shading.",
+    "Rasterisers project triangles onto a plane, so they need tricks for such cameras. In a ray tracer, each takes only a few lines of code.",
   ],
   Figure: CamerasFigure,
   questions: [
     {
-      ask: "Which of these cameras has no single eye?",
-      answer: "The push broom, the two eyes and the lens: their rays start at many places.",
+      ask: "Which of these cameras have no single eye point?",
+      answer: "The push broom, the two eyes and the lens: their rays start at several points.",
     },
     {
-      ask: "Why can no perspective camera see half of all directions?",
-      answer: "Its picture would have to be infinitely wide: D = 1 / tan(90°) is 0.",
+      ask: "Why can a perspective camera not see half of all directions?",
+      answer: "Its image plane would have to be infinitely wide: D = 1 / tan(90°) is 0.",
     },
   ],
 };

@@ -43,7 +43,7 @@ function CausticsFigure() {
               session={session}
               width={width}
               height={height}
-              label="A ball of mirror and one of glass under a lamp; click for the photons of a pixel"
+              label="A mirror ball and a glass ball under a lamp; click for the photons of a pixel"
               told={setHead}
             />
           </Picked>
@@ -52,11 +52,11 @@ function CausticsFigure() {
       controls={
         <>
           <Choice
-            label="How the light is found"
+            label="How light is found"
             value={way}
             values={[
               ["photons", "Photons from the lamp"],
-              ["path", "Paths from the eye alone"],
+              ["path", "Paths from the eye only"],
             ]}
             change={(value) => setWay(value)}
           />
@@ -130,22 +130,22 @@ function CausticsFigure() {
 export const caustics: Topic = {
   id: "caustics",
   title: "Caustics by photons",
-  lead: "Glass gathers light to bright spots. They are hard to find from the eye, and easy from the lamp.",
+  lead: "Glass focuses light to bright spots. They are hard to find from the eye, but easy to find from the lamp.",
   text: [
-    "A path from the eye that hits the floor would have to go on in just the direction in which the glass bends it to the lamp. By chance that hardly happens, and when it does it counts so much that the picture is full of bright dots. Toward the lamp no shadow ray helps: the glass is in its way and bends it.",
-    "So photons are sent from the lamp first. Those that went through mirror or glass are kept where they land. The picture then looks up how many landed near each point: many in a small disc is bright. A large disc is smooth and blurred, a small one sharp and noisy; Dürer makes it smaller from sample to sample.",
+    "A path from the eye that hits the floor would have to continue in exactly a direction that the glass refracts to the lamp. That rarely happens by chance, and when it does, the path has so much weight that the image is full of bright dots. A shadow ray towards the lamp does not help either, because the glass is in its way.",
+    "So photons are sent from the lamp first. Those that were reflected by a mirror or refracted by glass are stored where they land. The brightness of a point then follows from the density of the photons around it, counted in a small disc. A large disc gives a smooth but blurred result, a small one a sharp but noisy result. Dürer makes the disc smaller with every sample.",
   ],
   Figure: CausticsFigure,
   questions: [
     {
-      ask: "You double the radius. How many photons are found, and what becomes of the brightness?",
+      ask: "You double the radius. How many photons are found, and how does the brightness change?",
       answer:
-        "About four times as many, over four times the area: the brightness stays, and its noise is halved.",
+        "About four times as many, on four times the area: the brightness stays the same, and its noise is halved.",
     },
     {
-      ask: "Which light in this picture do photons not bring?",
+      ask: "Which light in this image does not come from photons?",
       answer:
-        "What comes from the lamp or from the walls without glass or mirror between: paths find that well by themselves.",
+        "Light that comes from the lamp or the walls without passing glass or mirrors: paths find it easily.",
     },
   ],
 };

@@ -8,7 +8,7 @@ import { Rendered } from "../rendered";
 import type { Topic } from "../topic";
 
 const [width, height] = [320, 240];
-/** A ring and a thin wall on a floor: what starts too far off the floor is already behind the wall. */
+/** Scene with a ring and a thin wall on a floor. A ray that starts too far off the floor is already behind the wall. */
 const text = `PerspectiveCamera { center 0.2 1.5 5.4 direction 0 -0.3 -1 up 0 1 0 angle 40 }
 Background { color 0.72 0.78 0.86 ambientLight 0.16 0.16 0.18 }
 Lights { PointLight { position -3.2 3.4 2 color 0.9 0.9 0.86 } }
@@ -26,7 +26,7 @@ Group {
 const options = [{ name: "samples", value: "1" }];
 
 function EpsilonFigure() {
-  // The slider's steps are powers of ten; the first is 0.
+  // The slider moves in powers of ten; its first step is 0.
   const [step, setStep] = useState(0);
   const [exact, setExact] = useState(false);
   const [wrong, setWrong] = useState<number | null>(null);
@@ -63,9 +63,9 @@ function EpsilonFigure() {
       stage={
         <div class="halves">
           <Picked place={place} pick={setPlace}>
-            <Rendered {...sizes} label="With this epsilon; click for the shadow ray of a pixel" />
+            <Rendered {...sizes} label="The scene with this epsilon; click for the shadow ray of a pixel" />
           </Picked>
-          <Rendered {...sizes} session={sound} label="The same with exact starts of rays" />
+          <Rendered {...sizes} session={sound} label="The scene with exact ray origins" />
         </div>
       }
       controls={
@@ -82,7 +82,7 @@ function EpsilonFigure() {
               setExact(false);
             }}
           />
-          <Switch label="Exact starts, no epsilon" on={exact} change={setExact} />
+          <Switch label="Exact origins, no epsilon" on={exact} change={setExact} />
         </>
       }
     >
@@ -123,28 +123,28 @@ function spelled(epsilon: number): string {
 
 function judged(epsilon: number | null, wrong: number): string {
   if (wrong === 0) return "";
-  return epsilon !== null && epsilon < 0.01 ? ": surfaces shade themselves" : ": light leaks below things";
+  return epsilon !== null && epsilon < 0.01 ? ": surfaces shadow themselves" : ": light leaks below objects";
 }
 
 export const epsilon: Topic = {
   id: "epsilon",
   title: "Epsilon",
-  lead: "A shadow ray starts on a surface. Rounding may put it just inside, and the surface shades itself.",
+  lead: "A shadow ray starts on a surface. Rounding can put its origin just inside, and then the surface shadows itself.",
   text: [
-    "The point of a hit is rounded, so it lies a little above or a little below the surface. From below, the shadow ray meets the very surface that it leaves: dark spots, the acne. The usual cure is an epsilon: hits with a smaller t do not count.",
-    "But how small is small? Too small, and spots remain; too large, and the ray starts behind what stands close by: light leaks at the foot of the wall and below the ring. In a scene of another size, another epsilon is right.",
-    "Dürer takes none. It knows a bound on the rounding error of every point and starts just outside of it, and its test of a ray against the edge of two triangles is exact, so that no ray slips between.",
+    "The hit point is rounded, so it lies slightly above or slightly below the surface. From below, the shadow ray hits the very surface that it leaves. This gives dark spots, called shadow acne. The usual remedy is an epsilon: hits with a smaller t do not count.",
+    "But how small should it be? If it is too small, spots remain. If it is too large, rays miss nearby objects, and light leaks at the foot of the wall and below the ring. A scene of a different size needs a different epsilon.",
+    "Dürer uses none. It computes a bound on the rounding error of each point, and starts the ray just outside of it. In addition, its test of a ray against the edge between two triangles is exact, so no ray slips through between them.",
   ],
   Figure: EpsilonFigure,
   questions: [
     {
-      ask: "Why does the ring show spots, and the floor none?",
+      ask: "Why does the ring have spots, but the floor none?",
       answer:
-        "The floor’s height is one number, which needs no rounding: its points lie exactly on it. On the ring all three numbers are rounded.",
+        "The floor’s height is a number that needs no rounding, so hit points lie exactly on the floor. On the ring, all three coordinates are rounded.",
     },
     {
-      ask: "Where does the light leak first when epsilon grows?",
-      answer: "Where things touch the floor: the way to the blocker is shortest there.",
+      ask: "Where does light leak first if epsilon grows?",
+      answer: "Where objects touch the floor: there, the distance to the occluder is shortest.",
     },
   ],
 };

@@ -8,7 +8,7 @@ import type { Topic } from "../topic";
 
 type Point = [number, number];
 
-/** The plane w = 1, met by lines through the origin. */
+/** Scene of the plane w = 1, which lines through the origin intersect. */
 const scene = `PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }
 Group { Plane { normal 0 1 0 offset 1 } }
 `;
@@ -96,7 +96,7 @@ function HomogeneousFigure() {
       <Equation
         numbers={
           met === null ? (
-            "w = 0: the line is parallel to w = 1 and meets it nowhere. It is a direction"
+            "w = 0: the line is parallel to w = 1 and never meets it. It is a direction"
           ) : (
             <>
               {fixed(moved[0])} / {fixed(w)} = <b>{fixed(met, 3)}</b>
@@ -104,7 +104,7 @@ function HomogeneousFigure() {
           )
         }
       >
-        (<Sym>x</Sym>, <Sym>w</Sym>) means <Sym>x</Sym> / <Sym>w</Sym>
+        (<Sym>x</Sym>, <Sym>w</Sym>) represents <Sym>x</Sym> / <Sym>w</Sym>
       </Equation>
       <Equation
         numbers={
@@ -113,7 +113,7 @@ function HomogeneousFigure() {
           </>
         }
       >
-        moved by <Sym>s</Sym>: <Sym>x</Sym>′ = <Sym>x</Sym> + <Sym>s</Sym> <Sym>w</Sym>
+        translated by <Sym>s</Sym>: <Sym>x</Sym>′ = <Sym>x</Sym> + <Sym>s</Sym> <Sym>w</Sym>
       </Equation>
     </Figure>
   );
@@ -152,7 +152,7 @@ function Axes({ scale }: { scale: Scale }) {
   );
 }
 
-/** The line through the origin and a point of w = 1: all its points mean the same. */
+/** Draws the line through the origin and a point of w = 1. All its points represent the same position. */
 function Through({ scale, at }: { scale: Scale; at: number }) {
   return (
     <line
@@ -170,26 +170,26 @@ function Through({ scale, at }: { scale: Scale; at: number }) {
 export const homogeneous: Topic = {
   id: "homogeneous",
   title: "Homogeneous coordinates",
-  lead: "One number more for each point, and moving things becomes a product with a matrix too.",
+  lead: "With one more coordinate per point, a translation is also a product with a matrix.",
   text: [
-    "A point gets a weight w. All points of a line through the origin mean the same: the place where the line meets w = 1, which is x divided by w. Drag the point along its line, and the place stays.",
-    "A matrix can then move: it adds s times w to x. A point with w = 1 is moved by s; a direction has w = 0 and is left alone, since a direction has no place. In the picture, moving shears the plane of x and w.",
-    "A perspective picture is the same division: w is then the distance from the eye.",
+    "Each point gets a weight w. All points on a line through the origin represent the same position: the one where the line meets w = 1, which is x divided by w. Drag the point along its line, and the position stays the same.",
+    "A matrix can now translate: it adds s times w to x. A point with w = 1 moves by s. A direction has w = 0 and does not change, because a direction has no position. In the figure, the translation is a shear of the plane of x and w.",
+    "Perspective projection is the same division, with the distance from the eye as w.",
   ],
   Figure: HomogeneousFigure,
   questions: [
     {
-      ask: "Which point does (3, 1.5) mean, and which (−3, −1.5)?",
-      answer: "Both mean 2: they lie on the same line through the origin.",
+      ask: "Which position does (3, 1.5) represent, and which (−3, −1.5)?",
+      answer: "Both represent 2: they lie on the same line through the origin.",
     },
     {
-      ask: "Why does a ray’s direction get w = 0?",
+      ask: "Why does a ray’s direction have w = 0?",
       answer:
-        "A direction is the difference of two points: their weights of 1 cancel. So moving the scene changes its origin alone.",
+        "A direction is the difference of two points, so their weights of 1 cancel. A translation therefore changes only the ray’s origin.",
     },
     {
-      ask: "What happens to the place when w goes to 0?",
-      answer: "It runs away to infinity: the line becomes parallel to w = 1.",
+      ask: "What happens to the position when w approaches 0?",
+      answer: "It goes to infinity: the line becomes parallel to w = 1.",
     },
   ],
 };

@@ -10,7 +10,7 @@ import type { Topic } from "../topic";
 
 const columns = 32;
 const rows = 24;
-/** The nail in the wall, which holds the string: the eye. */
+/** Position of the nail in the wall that holds the string, which is the eye. */
 const nail: Vec = [-5.2, 1.15, 0.4];
 const aim: Vec = unit(sub([1.4, 0.15, 0], nail));
 const angle = 44;
@@ -19,7 +19,7 @@ const right = unit(cross(aim, [0, 1, 0]));
 const up = cross(right, aim);
 const half = reach * Math.tan((angle * Math.PI) / 360);
 
-/** A point of the picture plane, from -1 to 1 across its larger side. */
+/** Returns a point of the image plane; the larger side ranges from -1 to 1. */
 function onPicture(x: number, y: number): Vec {
   return add(add(nail, mul(reach, aim)), add(mul(x * half, right), mul(y * half, up)));
 }
@@ -148,13 +148,13 @@ function MachineFigure() {
         <Sym vector>P</Sym> = <Sym vector>o</Sym> + <Sym>t</Sym> <Sym vector>d</Sym>
       </Equation>
       <Equation numbers={`pixel ${at + 1} of ${columns * rows}: one ray each`}>
-        for every pixel a ray, for every ray the closest thing
+        for each pixel a ray, for each ray the closest object
       </Equation>
     </Figure>
   );
 }
 
-/** The frame, and all pixels drawn so far. */
+/** Draws the frame, and all pixels drawn so far. */
 function Canvas({ view, colors, upTo }: { view: Projector; colors: Uint8Array | null; upTo: number }) {
   const grid = useMemo(() => {
     const points: (ReturnType<Projector["point"]> | null)[][] = [];
@@ -206,8 +206,8 @@ export const machine: Topic = {
   title: "Dürer’s machine",
   lead: "A string runs from a nail through a frame to an object: a dot is drawn where the string crosses the frame.",
   text: [
-    "In 1525 Albrecht Dürer published a way to draw a lute without any skill. A nail in the wall is the eye. A string runs from it to a point of the lute; where it crosses the frame, a dot is drawn on the paper. Point by point, the picture appears, and it is in perfect perspective.",
-    "A ray tracer works in the opposite direction. It chooses a pixel of the picture instead of a point of the object, traces a ray through it, and finds the closest hit. This program draws the picture on the frame above, with one ray per pixel.",
+    "In 1525 Albrecht Dürer published a way to draw a lute without any skill. A nail in the wall is the eye. A string runs from it to a point of the lute; where it crosses the frame, a dot is drawn on the paper. Point by point, the picture appears, in perfect perspective.",
+    "A ray tracer works in the opposite direction. It chooses a pixel of the image instead of a point of the object, traces a ray through it, and finds the closest hit. This program draws the image in the frame above, with one ray per pixel.",
   ],
   Figure: MachineFigure,
   questions: [
@@ -218,7 +218,7 @@ export const machine: Topic = {
     },
     {
       ask: "Two objects lie on one string. Which of them is drawn?",
-      answer: "The one with the least t in front of the nail: the string cannot pass through it.",
+      answer: "The one with the smallest t in front of the nail: the string cannot pass through it.",
     },
   ],
 };

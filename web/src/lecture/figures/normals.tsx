@@ -13,7 +13,7 @@ function NormalsFigure() {
   const [shear, setShear] = useState(0.8);
   const [squash, setSquash] = useState(0.7);
   const [turn, setTurn] = useState(62);
-  // By rows: x' = x + shear y, y' = squash y.
+  // The matrix, by rows: x' = x + shear y, y' = squash y.
   const text = sceneOf({
     paper: usePaper(),
     materials: [paint.clay],
@@ -143,7 +143,7 @@ export const normals: Topic = {
   title: "Normals",
   lead: "Tangents transform by the matrix itself, normals by its inverse transpose.",
   text: [
-    "A tangent is the difference of two points of the surface, so the matrix transforms it like points. A normal is perpendicular to all tangents, and a shear that is applied to it tilts it. Under the transpose of the inverse it stays perpendicular: n · t = nᵀ M⁻¹ M t = (M⁻ᵀ n) · (M t).",
+    "A tangent is the difference of two points of the surface, so it transforms by the matrix itself. A normal is perpendicular to all tangents, and a shear that is applied to it tilts it. Under the transpose of the inverse it stays perpendicular: n · t = nᵀ M⁻¹ M t = (M⁻ᵀ n) · (M t).",
     "The green normal is the one that the ray tracer found at the hit; the red one is transformed like a tangent.",
   ],
   Figure: NormalsFigure,

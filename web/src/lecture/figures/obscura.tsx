@@ -12,14 +12,14 @@ import { paint, sceneOf } from "../scenes";
 import { Stage } from "../stage";
 import type { Topic } from "../topic";
 
-/** Height of the hole, and rays that are sent at it and beside it. */
+/** Height of the hole. */
 const high = 0.2;
 const aims = Array.from({ length: 25 }, (_, i) => (i - 12) / 10);
 const garden = `MaterialIndex 1 Sphere { center -0.9 -0.3 -3 radius 0.7 }
   MaterialIndex 2 Cone { base 0.9 -1 -3.6 top 0.9 1.3 -3.6 baseRadius 0.75 }
   MaterialIndex 3 Box { min 2 -1 -4.6 max 3 0.4 -3.8 }`;
 
-/** What all objects say of several rays. */
+/** Returns the results of intersecting several rays with all objects. */
 function useCasts(session: Session, origin: Vec, targets: Vec[], key: string): CastAccount[] {
   const [casts, setCasts] = useState<CastAccount[]>([]);
   const latest = useRef(0);
@@ -57,14 +57,14 @@ function ObscuraFigure() {
     angle: 38,
   });
   const targets = aims.map((aim): Vec => [0, high + (aim * hole) / 2, 0]);
-  // The garden is left out: the point may lie inside of it.
+  // The garden is omitted, because the point can lie inside one of its objects.
   const walls = useScene(sceneOf({ paper, materials, group: room }));
   const casts = useCasts(walls, point, targets, text);
   const passed = casts.filter((cast) => cast.hit?.object === 1);
   const heights = passed.map((cast) => cast.hit?.point[1] ?? 0);
   const spot = heights.length > 1 ? Math.max(...heights) - Math.min(...heights) : 0;
   const z = -point[2];
-  // What the hole lets onto the wall, as a camera with this hole and this film has it.
+  // A camera with this hole and the wall as its film renders the image on the wall.
   const angle = (2 * Math.atan(1.35 / depth) * 180) / Math.PI;
   const film = useScene(
     sceneOf({ paper: "0.72 0.80 0.92", materials, group: garden }).replace(
@@ -81,7 +81,7 @@ function ObscuraFigure() {
             session={session}
             eye={eye}
             setEye={setEye}
-            label="A dark room with a hole in its wall, and a garden before it"
+            label="A dark room with a hole in its wall, and a garden in front of it"
           >
             {(view) => (
               <>
@@ -145,7 +145,7 @@ function ObscuraFigure() {
             )}
           </Stage>
           <div class="inset turned">
-            <Rendered session={film} width={200} height={200} label="The picture on the wall, upside down" />
+            <Rendered session={film} width={200} height={200} label="The image on the wall, upside down" />
           </div>
         </div>
       }
@@ -175,7 +175,7 @@ function ObscuraFigure() {
       <Equation
         numbers={
           <>
-            <b>{passed.length}</b> of {casts.length} rays of this point pass; they light a spot{" "}
+            <b>{passed.length}</b> of {casts.length} rays from this point pass and illuminate a spot{" "}
             <b>{fixed(spot, 3)}</b> high
           </>
         }
@@ -204,22 +204,22 @@ function limit(x: number, most: number): number {
 export const obscura: Topic = {
   id: "obscura",
   title: "Camera obscura",
-  lead: "A dark room, a small hole in the wall: the garden appears on the wall behind, upside down.",
+  lead: "In a dark room with a small hole in one wall, the garden outside appears upside down on the opposite wall.",
   text: [
-    "Each point of the garden sends light to all sides. Of its rays only those that go through the hole come into the room, and they light one spot of the wall. What is above comes to lie below, and what is left comes to lie right.",
-    "A larger hole makes the picture brighter, since more rays pass, and less sharp, since each point lights a larger spot: the shape of the hole, thrown onto the wall. A deeper room makes the picture larger and darker.",
-    "Dürer knew such rooms; painters traced what they saw on the wall. A photographic camera is the same room with a lens in its hole.",
+    "Each point of the garden sends light in all directions. Only the rays through the hole enter the room, and they illuminate one spot on the wall. The image is turned upside down, and left and right are swapped.",
+    "A larger hole makes the image brighter, because more rays pass, but less sharp, because each point illuminates a larger spot with the shape of the hole. A deeper room makes the image larger and darker.",
+    "Such rooms were known in Dürer’s time, and painters later traced the image on the wall. A photographic camera is the same room with a lens in the hole.",
   ],
   Figure: ObscuraFigure,
   questions: [
     {
-      ask: "Below trees, the sun draws round spots on the ground even if the gaps in the leaves are not round. Why?",
-      answer: "Each gap is a hole, and what it throws on the ground is a picture of the sun, which is round.",
+      ask: "Below trees, sunlight forms round spots on the ground even if the gaps between the leaves are not round. Why?",
+      answer: "Each gap acts as a pinhole, and the spot is an image of the sun, which is round.",
     },
     {
       ask: "You make the hole twice as wide. How much more light comes in, and how much larger is the spot?",
       answer:
-        "Four times the light, by its area. The spot is twice as wide, so the wall is four times as bright.",
+        "Four times as much light, because of the hole’s area. The spot of each point becomes twice as wide, and the wall four times as bright.",
     },
   ],
 };

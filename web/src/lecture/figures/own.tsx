@@ -5,21 +5,21 @@ import { Explained } from "../explained";
 import { Choice, Equation, Figure, Sym } from "../parts";
 import type { Topic } from "../topic";
 
-/** The steps of the lecture over any scene: the picture that is shown, and options of the job. */
+/** Steps of the lecture for any scene: the image that is shown, and the render options. */
 const steps = [
   {
     id: "depth",
     name: "Rays and t",
     picture: "depth",
     options: [],
-    words: "one ray a pixel, and the least t of all objects",
+    words: "one ray per pixel, and the smallest t of all objects",
   },
   {
     id: "normals",
     name: "Normals",
     picture: "normals",
     options: [],
-    words: "the normal in the point of the hit, as a colour",
+    words: "the normal at the hit point, as a colour",
   },
   {
     id: "light",
@@ -29,7 +29,7 @@ const steps = [
       ["bounces", "0"],
       ["shadows", "off"],
     ],
-    words: "the light of all lamps, without asking what stands before them",
+    words: "the light of all lights, without testing for occlusion",
   },
   {
     id: "shadows",
@@ -43,7 +43,7 @@ const steps = [
   },
   {
     id: "first",
-    name: "One mirror",
+    name: "One reflection",
     picture: "color",
     options: [
       ["bounces", "1"],
@@ -51,7 +51,7 @@ const steps = [
     ],
     words: "mirrored and transmitted rays, once",
   },
-  { id: "all", name: "All", picture: "color", options: [], words: "as the scene wants it" },
+  { id: "all", name: "All", picture: "color", options: [], words: "all options as the scene sets them" },
 ] as const;
 type Id = (typeof steps)[number]["id"];
 
@@ -97,8 +97,8 @@ function OwnFigure() {
       >
         {step.words}
       </Equation>
-      <Equation numbers="click a pixel, or move with the arrow keys">
-        <Sym>pixel</Sym> = Σ of the terms beside
+      <Equation numbers="click a pixel, or select it with the arrow keys">
+        <Sym>pixel</Sym> = Σ of the terms beside the image
       </Equation>
     </Figure>
   );
@@ -107,22 +107,22 @@ function OwnFigure() {
 export const own: Topic = {
   id: "own",
   title: "Your own scene",
-  lead: "The same steps over the scene that is open: from one ray a pixel to the finished picture.",
+  lead: "The steps of the lecture for the scene that is open, from one ray per pixel to the finished image.",
   text: [
-    "This is the scene that is open in the viewer, as it stands there now. Change it, or drop another file on that page, and the steps follow.",
-    "Go through the steps and keep an eye on one pixel: each step adds terms to its colour, and takes none of the earlier ones away, but for the light that a shadow hides.",
+    "This is the scene that is open in the viewer, with all edits. Change it there, or drop another file onto that page, and the steps change with it.",
+    "Go through the steps and watch one pixel: each step adds terms to its colour. Only the shadow step also removes some: the light that is occluded.",
   ],
   Figure: OwnFigure,
   questions: [
     {
-      ask: "Which step takes the most rays, and why?",
+      ask: "Which step traces the most rays, and why?",
       answer:
-        "Shadows take one ray for each hit and light. Mirrors and glass take more the more of the picture they fill: each of their rays is shaded again.",
+        "Shadows need one ray per hit and light. Mirrors and glass need more rays the larger they are in the image, because the hit of each secondary ray is shaded again.",
     },
     {
-      ask: "Your picture is black. At which step would you look first?",
+      ask: "Your image is black. Which step would you look at first?",
       answer:
-        "At the rays: if t is the same everywhere, nothing is hit. If t and the normals are fine, it is the light.",
+        "The rays: if t is the same everywhere, nothing is hit. If t and the normals look right, the light is the cause.",
     },
   ],
 };

@@ -72,7 +72,8 @@ function PathsFigure() {
         numbers={
           head ? (
             <>
-              <b>{head.samples}</b> of {samples} samples a pixel, {(head.rays / 1e6).toFixed(1)} million rays
+              <b>{head.samples}</b> of {samples} samples per pixel, {(head.rays / 1e6).toFixed(1)} million
+              rays
             </>
           ) : (
             "…"
@@ -107,7 +108,7 @@ export const paths: Topic = {
   Figure: PathsFigure,
   questions: [
     {
-      ask: "Why is the picture so noisy with BSDF sampling alone?",
+      ask: "Why is the image so noisy with BSDF sampling alone?",
       answer: "The light is small: most paths never hit it, and the few that do carry all of the weight.",
     },
     { ask: "How many samples halve the noise?", answer: "Four times as many." },

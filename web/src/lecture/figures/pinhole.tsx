@@ -146,7 +146,7 @@ function PinholeFigure() {
   );
 }
 
-/** The camera obscura: walls, the film, and the wall with the hole. */
+/** Draws the camera obscura: walls, the film, and the wall with the hole. */
 function Box({ scale, film, hole }: { scale: Scale; film: number; hole: number }) {
   const gap = Math.max(hole / 2, 0.004);
   const [back, front, up] = [scale.x(-film), scale.x(0), 1.35];
@@ -178,7 +178,7 @@ function Box({ scale, film, hole }: { scale: Scale; film: number; hole: number }
   );
 }
 
-/** A ray from the top of the object through one edge of the hole. */
+/** Draws a ray from the top of the object through one edge of the hole. */
 function Beam({ scale, top: [z, h], edge, film }: { scale: Scale; top: Point; edge: number; film: number }) {
   const end: Point = [-film, edge + ((edge - h) * film) / z];
   return (
@@ -196,10 +196,10 @@ function Beam({ scale, top: [z, h], edge, film }: { scale: Scale; top: Point; ed
 export const pinhole: Topic = {
   id: "pinhole",
   title: "The pinhole",
-  lead: "A dark room with a hole in its wall: each point outside illuminates one spot, and the picture is inverted.",
+  lead: "A dark room with a hole in its wall: each point outside illuminates one spot, and the image is inverted.",
   text: [
     "Light from a point passes through the hole straight to the film. Two similar triangles meet in the hole, so the ratio of the image size to the object size is that of the film distance to the object distance: the image is inverted, and far objects appear small.",
-    "A real hole has a size. Rays from one point pass through it at different places and illuminate a patch instead of a spot. A smaller hole gives a sharper picture, but a darker one in a real camera. A ray tracer may use a hole of size 0.",
+    "A real hole has a size. Rays from one point pass through it at different places and illuminate a patch instead of a spot. A smaller hole gives a sharper image, but a darker one in a real camera. A ray tracer can use a hole of size 0.",
   ],
   Figure: PinholeFigure,
   questions: [
@@ -208,9 +208,9 @@ export const pinhole: Topic = {
       answer: "Near ones: the patch is the hole times 1 + f / z, and f / z grows towards the camera.",
     },
     {
-      ask: "Why do ray tracers put the picture plane in front of the eye, and not behind it?",
+      ask: "Why do ray tracers put the image plane in front of the eye, and not behind it?",
       answer:
-        "The triangles are the same. In front of the eye the picture is upright, without a negative sign.",
+        "The triangles are the same. In front of the eye, the image is upright, without a negative sign.",
     },
   ],
 };

@@ -48,7 +48,7 @@ function ProjectionFigure() {
             <canvas
               ref={canvas}
               role="img"
-              aria-label="The picture: three spheres of equal size, one behind the other"
+              aria-label="The image: three spheres of equal size, one behind the other"
             />
           </div>
           <Plot reach={[4.4, 4.3]} middle={[0, -1.6]} aspect={width / height} label="The rays from above">
@@ -132,12 +132,12 @@ export const projection: Topic = {
   lead: "Move back and narrow the angle at the same time: perspective turns into a parallel projection.",
   text: [
     "The three spheres have equal size. From nearby, the rays diverge from the eye, and far objects appear small. The slider narrows the angle and moves the eye back so that the first sphere keeps its size: film makers call this a dolly zoom.",
-    "At the end, all rays are parallel. This is the orthographic camera: lengths can be measured in its pictures, and objects do not shrink with distance.",
+    "At the end, all rays are parallel. This is the orthographic camera: lengths can be measured in its images, and objects do not shrink with distance.",
   ],
   Figure: ProjectionFigure,
   questions: [
     {
-      ask: "Why do faces look odd in pictures taken from very near?",
+      ask: "Why do faces look odd in photographs taken from very close?",
       answer:
         "In proportion, the nose is much nearer than the ears. The distance is the cause, not the lens.",
     },

@@ -136,7 +136,7 @@ export const ray: Topic = {
   lead: "A ray has an origin and a direction. One number, t, selects a point on it.",
   text: [
     "Slide t: the point P moves along the line through o in the direction d. At t = 0 it is the origin; points with negative t are behind it and do not belong to the ray. The direction may have any length. t counts in lengths of d, so it is a distance only if d has length 1.",
-    "To trace a ray means to find the least positive t at which its point lies on a surface.",
+    "To trace a ray means to find the smallest positive t at which its point lies on a surface.",
   ],
   Figure: RayFigure,
   questions: [

@@ -40,7 +40,7 @@ function SamplesFigure() {
           width={96}
           height={54}
           squares
-          label="A picture with few pixels, each shown as a square"
+          label="An image with few pixels, each shown as a square"
           told={setHead}
         />
       }
@@ -63,7 +63,7 @@ function SamplesFigure() {
         numbers={
           <>
             96 × 54 pixels, <b>{samples}</b> {samples === 1 ? "ray through each center" : "rays through each"}
-            , {head ? `${(head.rays / 1e3).toFixed(0)} thousand rays in all` : "…"}
+            , {head ? `${(head.rays / 1e3).toFixed(0)} thousand rays in total` : "…"}
           </>
         }
       >
@@ -76,7 +76,7 @@ function SamplesFigure() {
   );
 }
 
-/** A striped floor whose stripes become finer than a pixel in the distance. */
+/** Returns a floor whose stripes become narrower than a pixel in the distance. */
 function stripes(): string {
   const all = [];
   for (let i = -14; i < 14; i++) {
@@ -98,7 +98,7 @@ export const samples: Topic = {
   Figure: SamplesFigure,
   questions: [
     {
-      ask: "Which parts of the picture improve most?",
+      ask: "Which parts of the image improve most?",
       answer:
         "The edges, and the far stripes that are finer than a pixel. Inside uniform surfaces nothing changes.",
     },

@@ -13,7 +13,7 @@ type Interval = [number, number];
 const radii = [1.25, 1] as const;
 const colors = ["var(--ray-camera)", "var(--ray-scattered)"] as const;
 
-/** Interval of a line inside a circle. */
+/** Returns the interval of t in which a line is inside a circle; `null` if there is none. */
 function interval(origin: Point, d: Point, center: Point, radius: number): Interval | null {
   const o: Point = [origin[0] - center[0], origin[1] - center[1]];
   const [a, b, c] = [d[0] ** 2 + d[1] ** 2, o[0] * d[0] + o[1] * d[1], o[0] ** 2 + o[1] ** 2 - radius ** 2];
@@ -21,7 +21,7 @@ function interval(origin: Point, d: Point, center: Point, radius: number): Inter
   return root < 0 ? null : [(-b - Math.sqrt(root)) / a, (-b + Math.sqrt(root)) / a];
 }
 
-/** Returns the intervals of an operation, in order. */
+/** Returns the intervals of t inside the combined solid, in order. */
 export function combined(operation: Operation, a: Interval | null, b: Interval | null): Interval[] {
   const ends = [...(a ?? []), ...(b ?? [])].sort((x, y) => x - y);
   const within = (t: number, i: Interval | null) => i !== null && t > i[0] && t < i[1];
@@ -192,7 +192,7 @@ function spelled(intervals: Interval[]): string {
   return intervals.length === 0 ? "∅" : intervals.map(([a, b]) => `[${fixed(a)}, ${fixed(b)}]`).join(" ∪ ");
 }
 
-/** The intervals as bars over an axis of t. */
+/** Draws the intervals as bars along an axis of t. */
 function Bars({ scale, rows }: { scale: Scale; rows: Interval[][] }) {
   const names = ["A", "B", "="];
   const paints = [...colors, "var(--ray-lit)"];

@@ -216,7 +216,7 @@ export const sphere: Topic = {
   lead: "A line meets a sphere twice, once, or not at all: the discriminant decides.",
   text: [
     "Points of a sphere lie at distance r from its centre. Inserting the ray gives a quadratic equation in t. Its parabola below the figure is 0 where the line meets the sphere.",
-    "Drag the ray past the sphere and watch the parabola rise above the line: the discriminant becomes negative. Drag the origin into the sphere: one root is negative, and the greater one is the hit.",
+    "Drag the ray past the sphere and watch the parabola rise above the line: the discriminant becomes negative. Drag the origin into the sphere: one root is negative, and the larger one is the hit.",
   ],
   Figure: SphereFigure,
   questions: [

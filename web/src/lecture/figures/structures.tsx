@@ -11,7 +11,7 @@ import { paint, sceneOf } from "../scenes";
 import { Stage } from "../stage";
 import type { Topic } from "../topic";
 
-/** Balls that are scattered over a slab, denser to the right. */
+/** Returns balls scattered in a slab, denser to the right. */
 function balls(): string {
   const all: string[] = [];
   for (let i = 0; i < 96; i++) {
@@ -99,7 +99,7 @@ function StructuresFigure() {
                 view={view}
                 at={origin}
                 color="var(--ink)"
-                label="Start of the ray"
+                label="Origin of the ray"
                 move={(to) => {
                   setTip(add(tip, sub(to, origin)));
                   setOrigin(to);
@@ -133,8 +133,8 @@ function StructuresFigure() {
         {structure === "nothing"
           ? "all objects, one after the other"
           : structure === "grid"
-            ? "from cell to cell along the ray, until a hit lies before the next wall"
-            : "into a box only if the ray meets it before the closest hit"}
+            ? "from cell to cell along the ray, until a hit lies inside the current cell"
+            : "into a box only if the ray enters it before the closest hit"}
       </Equation>
       <Equation
         numbers={structures.map(([name, title], i) => (
@@ -158,12 +158,12 @@ function words(step: WalkStep | null): string {
   const tested = step.tests.length === 1 ? "1 object tested" : `${step.tests.length} objects tested`;
   if (step.tests.length === 0)
     return step.level === 0 && step.bounds
-      ? "nothing to test here"
-      : `a box of level ${step.level}: its inner boxes are tested`;
-  return `${tested}, ${hits} met; closest t = ${step.closest === null ? "∞" : fixed(step.closest, 3)}`;
+      ? "no objects to test here"
+      : `a box on level ${step.level}: the boxes inside it are tested`;
+  return `${tested}, ${hits} hit; closest t = ${step.closest === null ? "∞" : fixed(step.closest, 3)}`;
 }
 
-/** The box of a step, as a list of one. */
+/** Returns the box of a step as a list with at most one element. */
 function cube(step: WalkStep): WalkAccount["boxes"] {
   if (!step.bounds) return [];
   const [low, high] = step.bounds;
@@ -177,25 +177,26 @@ function cube(step: WalkStep): WalkAccount["boxes"] {
 export const structure: Topic = {
   id: "structures",
   title: "Grid and tree",
-  lead: "Most objects are far from a ray. Boxes tell which, before they are tested.",
+  lead: "Most objects are far from the ray. Boxes exclude them before they are tested.",
   text: [
-    "Without help, every ray is tested against every object: a million objects, a million tests for each ray. A grid cuts space into equal cells and writes down for each which objects reach into it; the ray goes from cell to cell and stops once a hit lies before the next wall.",
-    "A tree of boxes puts near objects into a box, near boxes into a larger one, and so on. If the ray misses a box, it misses all that is in it. If the box begins behind the closest hit, nothing in it matters any more. Dürer’s tree has up to eight boxes in each, since the processor tests eight at once.",
+    "Without an acceleration structure, each ray is tested against every object: a million objects mean a million tests per ray. A grid divides space into equal cells, and stores which objects overlap each cell. The ray goes from cell to cell, and stops as soon as a hit lies inside the current cell.",
+    "A tree of boxes groups nearby objects in a box, nearby boxes in a larger box, and so on. If the ray misses a box, it misses everything inside. If the ray enters a box behind the closest hit, the box can be skipped too. In Dürer’s tree, a box contains up to eight smaller boxes, because the processor can test eight at once.",
   ],
   Figure: StructuresFigure,
   questions: [
     {
-      ask: "Where does the grid waste its time?",
+      ask: "Where does the grid waste time?",
       answer:
-        "In empty cells, and where all objects are in few cells: its cells are equal, whatever is in them.",
+        "In empty cells, and in cells that contain many objects: all cells have the same size, whatever is inside.",
     },
     {
       ask: "Why is the box that the ray enters first visited first?",
-      answer: "A hit in it is likely to lie before the other boxes: then they need not be visited at all.",
+      answer:
+        "A hit inside it is likely to be in front of the other boxes, which then need not be visited at all.",
     },
     {
-      ask: "An object reaches into three cells of the grid. How often is it tested?",
-      answer: "Up to three times, once in each cell that the ray visits. A tree has it in one box.",
+      ask: "An object overlaps three cells of the grid. How often is it tested?",
+      answer: "Up to three times, once in each cell that the ray visits. In the tree, it is in only one box.",
     },
   ],
 };

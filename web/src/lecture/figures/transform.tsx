@@ -32,7 +32,8 @@ function TransformFigure() {
   const [localOrigin, localDirection] = [back(origin), vector(d)];
   const size = Math.hypot(...localDirection);
   const t = cast?.hit?.t ?? null;
-  // The mistake: normalise the direction in object space, and use its t in world space.
+  // The common mistake: the direction is normalised in object space, but its t is used in world
+  // space.
   const used = t == null ? null : wrong ? t * size : t;
   const on = (o: Point, v: Point, s: number): Point => [o[0] + s * v[0], o[1] + s * v[1]];
   return (
@@ -116,7 +117,7 @@ function TransformFigure() {
             text={fixed(move)}
             change={setMove}
           />
-          <Switch label="Usual mistake: normalise M⁻¹ d" on={wrong} change={setWrong} />
+          <Switch label="Common mistake: normalise M⁻¹ d" on={wrong} change={setWrong} />
         </>
       }
     >
