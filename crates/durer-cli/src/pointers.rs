@@ -9,10 +9,18 @@ use std::ffi::OsString;
 /// apply, and the hint.
 const POINTERS: &[(&[&str], &str, &str)] = &[
     (&["--width", "--height", "--resolution", "--res", "-size"], "size", "use `--size 640x480`, width first"),
-    (&["--spp", "--aa", "--antialias", "--samples-per-pixel"], "samples", "use `--samples 64` for 64 samples per pixel"),
+    (
+        &["--spp", "--aa", "--antialias", "--samples-per-pixel"],
+        "samples",
+        "use `--samples 64` for 64 samples per pixel",
+    ),
     (&["--format", "--type", "--filetype"], "output", "the file extension selects the format: `-o picture.exr`"),
     (&["--out", "--outfile", "-output"], "output", "use `-o picture.png`"),
-    (&["--depth", "--max-depth", "--maxdepth", "-bounces"], "bounces", "use `--bounces 4` for the maximum depth of secondary rays"),
+    (
+        &["--depth", "--max-depth", "--maxdepth", "-bounces"],
+        "bounces",
+        "use `--bounces 4` for the maximum depth of secondary rays",
+    ),
     (&["--depth", "-depth"], "show", "use `--show depth --depth-range 8 12` for a depth picture"),
     (&["-normals"], "show", "use `--show normals` for a picture of the normals"),
     (&["-shadows"], "shadows", "use `--shadows`"),

@@ -306,10 +306,7 @@ fn numbers_say_where_they_come_from() {
             &["a t² + 2 b t + c = 0: a = d·d = 1", "c = |o - C|² - r² = 35", "= 5 or 7", "M = (1 0 0 0)"][..],
         ),
         ("0 0 5 0 -0.5 -1", &["t = (offset - n·o) / n·d = (-1.5 - 0) / -0.5 = 3", "checkerboard: ", "material "]),
-        (
-            "-3.2 0.1 5 0 0 -1",
-            &["texture `two.ppm` of 2 x 1 texels", "99 99 99 by the sRGB curve", "· texel (0, 0)"],
-        ),
+        ("-3.2 0.1 5 0 0 -1", &["texture `two.ppm` of 2 x 1 texels", "99 99 99 by the sRGB curve", "· texel (0, 0)"]),
         ("3.3 0 5 0 0 -1", &["Snell: sin i = 0.3, sin t = n₁/n₂ sin i = 1 / 1.5 · 0.3 = 0.2"]),
     ] {
         let text = place.expect_exit(0, &format!("explain s.txt --bounces 2 --ray {ray}")).out;

@@ -13,7 +13,9 @@ const MAX_ROWS: usize = 100_000;
 /// column of values by name; the default is the first.
 pub fn read(bytes: &[u8], column: Option<&str>, file: u32, diagnostics: &mut Diagnostics) -> Option<Vec<[f32; 2]>> {
     std::str::from_utf8(bytes)
-        .map_err(|error| (error.valid_up_to()..error.valid_up_to() + 1, "a spectrum file must be UTF-8 text".to_string()))
+        .map_err(|error| {
+            (error.valid_up_to()..error.valid_up_to() + 1, "a spectrum file must be UTF-8 text".to_string())
+        })
         .and_then(|text| parse(text, column))
         .map_err(|(at, message)| {
             let span = Span { file, start: at.start as u32, end: at.end as u32 };

@@ -212,7 +212,9 @@ fn portability(bytes: &[u8], file: u32, dialect: Dialect, messages: &Diagnostics
     let first = strict.iter().find(|d| d.severity == Severity::Error);
     if let Some(first) = first.filter(|first| !messages.iter().any(|known| known.span == first.span)) {
         let message = format!("the program of {} would refuse this file: {}", dialect.name(), first.message);
-        let note = Diagnostic::note(message).code("portability").help("Dürer reads the file anyway, unless `--strict` is given");
+        let note = Diagnostic::note(message)
+            .code("portability")
+            .help("Dürer reads the file anyway, unless `--strict` is given");
         notes.push(Diagnostic { span: first.span, ..note });
     }
     notes

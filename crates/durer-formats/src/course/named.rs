@@ -46,7 +46,9 @@ impl Reader<'_, '_> {
                 Diagnostic::error(format!("no material `{name}` is defined before this")).code("unknown-word").at(span);
             self.error_once(match near {
                 Some(near) => error.help(format!("did you mean `{near}`?")).fix(span, near),
-                None => error.help("write the name before the material's block, for example `PhongMaterial gold { ... }`"),
+                None => {
+                    error.help("write the name before the material's block, for example `PhongMaterial gold { ... }`")
+                }
             });
             return None;
         }

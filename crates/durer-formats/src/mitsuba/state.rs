@@ -158,7 +158,8 @@ impl<'a> Reader<'a> {
     /// for example because they refer to each other in a cycle.
     pub fn too_deep(&self, depth: u32, at: Span) -> bool {
         if depth > DEEPEST {
-            self.report.bad(at, format!("plugins are nested more than {DEEPEST} levels deep: does one refer to itself?"));
+            self.report
+                .bad(at, format!("plugins are nested more than {DEEPEST} levels deep: does one refer to itself?"));
         }
         depth > DEEPEST
     }

@@ -103,7 +103,8 @@ impl SceneMaker<'_> {
             return Some(known.clone());
         }
         if depth > DEEPEST {
-            self.report.bad(place.at, format!("objects are nested more than {DEEPEST} levels deep: does one contain itself?"));
+            self.report
+                .bad(place.at, format!("objects are nested more than {DEEPEST} levels deep: does one contain itself?"));
             return None;
         }
         let model = self.model(part, place.at)?;

@@ -9,7 +9,11 @@ impl Session {
     #[cfg(feature = "fs")]
     pub(super) fn save(&mut self, force: bool) -> Result<Event, String> {
         use durer::format::folder::stamp_of;
-        let document = self.document.as_ref().filter(|_| self.on_disk).ok_or("this scene was not opened from a file on the server")?;
+        let document = self
+            .document
+            .as_ref()
+            .filter(|_| self.on_disk)
+            .ok_or("this scene was not opened from a file on the server")?;
         if !force && stamp_of(&document.path) != self.stamp {
             return Ok(Event::Conflict);
         }

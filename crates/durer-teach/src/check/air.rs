@@ -84,16 +84,17 @@ pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
             let bounds = world.bounds();
             let size = bounds.size().max_element().max(1.0);
             let (min, max) = (bounds.min - size, bounds.max + size);
-            let diagnostic = Diagnostic::warning("this fog is unbounded: no light from the sun or sky passes through it")
-                .effect(match near {
-                    true => "lights at infinity and the background are black",
-                    false => "the picture is black: light would have to cross unbounded fog",
-                })
-                .help(format!(
-                    "add a box, such as `min {} max {}`",
-                    super::finding::vector(min.round()),
-                    super::finding::vector(max.round())
-                ));
+            let diagnostic =
+                Diagnostic::warning("this fog is unbounded: no light from the sun or sky passes through it")
+                    .effect(match near {
+                        true => "lights at infinity and the background are black",
+                        false => "the picture is black: light would have to cross unbounded fog",
+                    })
+                    .help(format!(
+                        "add a box, such as `min {} max {}`",
+                        super::finding::vector(min.round()),
+                        super::finding::vector(max.round())
+                    ));
             found.push(Finding::from(diagnostic.at(span)).whole(!near));
         }
     }

@@ -32,10 +32,11 @@ pub(super) fn wrong_integrator(scout: &SceneProbe) -> Vec<Finding> {
         (None, Some(_)) => ("its environment", background_span(scout)),
         (None, None) => return Vec::new(),
     };
-    let diagnostic =
-        Diagnostic::warning(format!("the only light in this scene comes from {what}, which Whitted's method does not support"))
-            .effect("nothing is lit: surfaces are black or have a flat colour")
-            .help("use `--integrator path`, or omit `--integrator`");
+    let diagnostic = Diagnostic::warning(format!(
+        "the only light in this scene comes from {what}, which Whitted's method does not support"
+    ))
+    .effect("nothing is lit: surfaces are black or have a flat colour")
+    .help("use `--integrator path`, or omit `--integrator`");
     vec![Finding::from(Diagnostic { span, ..diagnostic }).whole(true)]
 }
 
@@ -47,7 +48,11 @@ pub(super) fn black_sky(scout: &SceneProbe) -> Vec<Finding> {
     }
     let alone = scout.world().lights().is_empty() && emissive_objects(scout).is_empty();
     let diagnostic = Diagnostic::warning("the environment is multiplied by 0")
-        .effect(if alone { "nothing else emits light, so the picture is black" } else { "it emits no light and is invisible" })
+        .effect(if alone {
+            "nothing else emits light, so the picture is black"
+        } else {
+            "it emits no light and is invisible"
+        })
         .help("`environmentScale` is a factor; `environmentScale 1 1 1` leaves the environment unchanged");
     let value = background_span(scout).and_then(|block| scout.value(block, &["environmentScale"]));
     let diagnostic = Diagnostic { span: value.or(background_span(scout)), ..diagnostic.fix_at(value, "1 1 1") };
@@ -80,15 +85,15 @@ pub(super) fn mostly_black(scout: &SceneProbe) -> Vec<Finding> {
         return Vec::new();
     }
     let model = scout.subject.files.name(0).is_some_and(|name| scene_format_for(name).is_some());
-    let diagnostic =
-        Diagnostic::warning(format!("{} of the visible surface area is black: the scene's lights do not reach it", percent(black, all)))
-            .effect("hardly anything except the background is visible")
-            .help(match model {
-                true => "`--studio sun` lights a model from outside, and replaces its lights",
-                false => {
-                    "move the light to the camera's side, add another, or write `Background { color 0.3 0.3 0.3 }`"
-                }
-            });
+    let diagnostic = Diagnostic::warning(format!(
+        "{} of the visible surface area is black: the scene's lights do not reach it",
+        percent(black, all)
+    ))
+    .effect("hardly anything except the background is visible")
+    .help(match model {
+        true => "`--studio sun` lights a model from outside, and replaces its lights",
+        false => "move the light to the camera's side, add another, or write `Background { color 0.3 0.3 0.3 }`",
+    });
     let span = scout.subject.scene.lights.iter().flatten().next().map(|light| light.span);
     vec![Finding::from(Diagnostic { span, ..diagnostic }).whole(true)]
 }

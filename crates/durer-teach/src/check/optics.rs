@@ -73,10 +73,11 @@ pub(super) fn no_spectrum(scout: &SceneProbe) -> Vec<Finding> {
         // Ignore dispersion that comes from a preset or a model, because it may not be meant to be
         // visible.
         let value = scout.value(written.span, &["transmissionDispersionScale"])?;
-        let diagnostic = Diagnostic::note(format!("material {index} has dispersion, but the picture is not rendered spectrally"))
-            .at(value)
-            .effect("red, green and blue light is refracted with the same index, so no dispersion is visible")
-            .help("use `--color spectral`");
+        let diagnostic =
+            Diagnostic::note(format!("material {index} has dispersion, but the picture is not rendered spectrally"))
+                .at(value)
+                .effect("red, green and blue light is refracted with the same index, so no dispersion is visible")
+                .help("use `--color spectral`");
         Some(Finding::from(diagnostic))
     };
     layers(scout).into_iter().filter_map(say).take(MAX_SOUGHT).collect()

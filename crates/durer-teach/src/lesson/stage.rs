@@ -219,8 +219,9 @@ impl Stage {
     /// lights.
     pub(super) fn method_lacks(&self, topic: &Topic) -> Option<&'static str> {
         let bounces = topic.shots.iter().any(|shot| shot.look.bounces > 0 && shot.look.paths.is_none());
-        (self.needs_paths() && bounces)
-            .then_some("its light comes from emissive surfaces or the environment, which Whitted's method does not support")
+        (self.needs_paths() && bounces).then_some(
+            "its light comes from emissive surfaces or the environment, which Whitted's method does not support",
+        )
     }
 
     /// Returns true if the job uses path tracing.

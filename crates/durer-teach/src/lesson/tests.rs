@@ -181,5 +181,9 @@ fn a_scene_without_lights_of_whitteds_method_is_shown_by_paths() {
     let most = diffuse[0].after.layer.image.pixels.iter().map(|pixel| pixel.max_element()).fold(0.0, f32::max);
     assert!(!diffuse[0].ours && most > 0.3, "{most}");
     let mirrors = of("reflection");
-    assert!(mirrors[0].ours && mirrors[0].lacking.contains("Whitted's method does not support"), "{}", mirrors[0].lacking);
+    assert!(
+        mirrors[0].ours && mirrors[0].lacking.contains("Whitted's method does not support"),
+        "{}",
+        mirrors[0].lacking
+    );
 }

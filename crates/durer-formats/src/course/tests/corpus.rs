@@ -58,7 +58,9 @@ fn grid_of_2003_reports_mistakes() {
     let ball = "min -1 -1 -1 max 1 1 1 numCells 3 3 3 rasterizeSphere { radius 1 }";
     assert_eq!(
         found(ball),
-        ["3:47 error: `rasterizeSphere` has no `center` [rasterizeSphere] (add it to the block, for example `center 0 0 5`)"]
+        [
+            "3:47 error: `rasterizeSphere` has no `center` [rasterizeSphere] (add it to the block, for example `center 0 0 5`)"
+        ]
     );
 }
 

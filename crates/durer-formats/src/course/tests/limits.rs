@@ -101,7 +101,10 @@ fn deep_nesting_is_an_error_and_fast() {
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
     let nested = |depth: usize| format!("{}{}", "Group { ".repeat(depth), "} ".repeat(depth));
     assert_eq!(findings(&nested(200), Dialect::F04), [""; 0]);
-    assert_eq!(findings(&nested(300), Dialect::F04), ["1:1609 error: objects are nested more than 200 levels deep [Group]"]);
+    assert_eq!(
+        findings(&nested(300), Dialect::F04),
+        ["1:1609 error: objects are nested more than 200 levels deep [Group]"]
+    );
 }
 
 #[test]

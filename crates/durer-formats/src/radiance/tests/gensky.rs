@@ -92,7 +92,10 @@ fn errors_have_positions() {
         assert!(scene.is_none() && found == [format!("scene.rad:{expected}")], "{text}: {found:?}");
     }
     let (_, found) = read("!gensky 6 21 12:30XYZ");
-    assert!(found[0].starts_with("scene.rad:1:14 error unknown time zone in `12:30XYZ`: known zones are YST"), "{found:?}");
+    assert!(
+        found[0].starts_with("scene.rad:1:14 error unknown time zone in `12:30XYZ`: known zones are YST"),
+        "{found:?}"
+    );
 }
 
 #[test]
