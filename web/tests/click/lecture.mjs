@@ -45,7 +45,8 @@ await test("numbers: homogeneous", wide, async (page) => {
   await open(page, "#/lecture/homogeneous");
   near((await told(page, /2\.00 = ([\d.]+)/))[0], 0.8, 1e-9, "1.6 / 2");
   await page.getByRole("slider", { name: "move by" }).fill("1");
-  near((await told(page, /3\.60 \/ 2\.00 = ([\d.]+)/))[0], 1.8, 1e-9, "moved");
+  // The ray is cast in the background, so the old quotient is shown for a moment.
+  await told(page, /3\.60 \/ 2\.00 = 1\.800?\D/);
   await page.getByRole("button", { name: "Direction: w = 0" }).click();
   await page.waitForFunction(() =>
     /It is a direction/.test(document.querySelector(".equations").textContent),

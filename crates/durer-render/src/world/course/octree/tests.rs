@@ -72,3 +72,18 @@ fn division_of_overlapping_boxes_terminates() {
     let found = visited(&octree, &Ray::new(Vec3::new(0.3, 0.4, 5.0), Vec3::new(0.01, 0.02, -1.0)));
     assert!((0..40).all(|i| found.contains(&i)));
 }
+
+#[test]
+fn overlapping_triangles_do_not_stop_the_division_of_other_cells() {
+    // The first eight boxes fill 230,000 of the smallest cells. The course's rabbit of 1000
+    // triangles fills half as many.
+    let cube = |min: Vec3, size: f32| Aabb { min, max: min + size };
+    let mut boxes = vec![cube(Vec3::ZERO, 0.12); 8];
+    boxes.push(cube(Vec3::splat(0.9), 0.1));
+    boxes.extend((0..8).map(|i| cube(Vec3::new(0.6, 0.3 + 0.01 * i as f32, 0.2), 0.01)));
+    let octree = Octree::new(boxes);
+    // The boxes at 0.3 are in the upper half of the lower half along y.
+    let along = |y: f32| visited(&octree, &Ray::new(Vec3::new(0.6, 0.33, 5.0), Vec3::new(0.001, y, -1.0)));
+    assert!(!along(0.0).iter().any(|&i| i > 8), "{:?}", along(0.0));
+    assert!(along(1e-6).iter().any(|&i| i > 8), "{:?}", along(1e-6));
+}
