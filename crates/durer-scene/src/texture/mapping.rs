@@ -46,14 +46,16 @@ pub struct Mapping {
     /// True to use mipmaps for samples that cover many texels.
     pub mipmaps: bool,
     /// True to use the second set of texture coordinates.
-    pub second: bool,
+    #[serde(rename = "second")]
+    pub second_uv: bool,
     /// Transform from surface coordinates to texture coordinates, both with v down from the upper
     /// border: two rows of a matrix.
     pub transform: [[f32; 3]; 2],
     /// Alpha cutoff: opacity is 1 at or above it, 0 below; with `None`, opacity is alpha.
     pub cutoff: Option<f32>,
     /// Factor that scales the slopes in a normal map; 1 keeps the stored slopes.
-    pub strength: f32,
+    #[serde(rename = "strength")]
+    pub normal_scale: f32,
     /// Channel to read as a number; `None` for red, or for alpha in opacity textures with alpha.
     pub channel: Option<Channel>,
     /// Parameter values that 0 and 1 in the texture stand for.
@@ -66,10 +68,10 @@ impl Default for Mapping {
             wrap: [Wrap::Repeat; 2],
             nearest: false,
             mipmaps: false,
-            second: false,
+            second_uv: false,
             transform: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
             cutoff: None,
-            strength: 1.0,
+            normal_scale: 1.0,
             channel: None,
             range: [0.0, 1.0],
         }
@@ -79,20 +81,20 @@ impl Default for Mapping {
 impl Mapping {
     /// Position in the texture, in widths from the left and heights from the top, for surface
     /// coordinates with v up.
-    pub fn place(&self, uv: Vec2) -> Vec2 {
+    pub fn texture_position(&self, uv: Vec2) -> Vec2 {
         let (u, v) = (uv.x, 1.0 - uv.y);
         let [x, y] = self.transform.map(|[a, b, c]| a * u + b * v + c);
         Vec2::new(x, y)
     }
 
     /// Maps a channel value to the range.
-    pub fn ranged(&self, x: f32) -> f32 {
+    pub fn map_to_range(&self, x: f32) -> f32 {
         let [low, high] = self.range;
         if [low, high] == [0.0, 1.0] { x } else { low + x * (high - low) }
     }
 
     /// Applies the alpha cutoff, if there is one.
-    pub(super) fn cut(&self, [r, g, b, alpha]: [f32; 4]) -> [f32; 4] {
+    pub(super) fn apply_cutoff(&self, [r, g, b, alpha]: [f32; 4]) -> [f32; 4] {
         let alpha = match self.cutoff {
             Some(least) if alpha >= least => 1.0,
             Some(_) => 0.0,
