@@ -89,7 +89,7 @@ impl Model<'_> {
         }
         m.normal_texture = at.get("normalTexture").and_then(|texture| {
             let strength = texture.get("scale").and_then(|scale| scale.number()).unwrap_or(1.0);
-            self.texture(&texture, |mapping| mapping.normal_scale = strength)
+            self.texture(&texture, |mapping| mapping.strength = strength)
         });
         let strength = extension("KHR_materials_emissive_strength");
         let strength = strength.and_then(|e| e.get("emissiveStrength")?.within(0.0..)).unwrap_or(1.0);

@@ -85,7 +85,7 @@ impl Model<'_> {
             );
             at.warning("MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", message);
         }
-        mapping.second_uv = set == 1;
+        mapping.second = set == 1;
         change(&mut mapping);
         let path = format!("{}#{}{role}", self.input.name, at.pointer());
         self.pictures.borrow_mut().insert(path.clone(), TextureImage { bytes: image, mapping });

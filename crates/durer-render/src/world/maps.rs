@@ -93,17 +93,14 @@ impl World {
         if at.width <= 0.0 || !texture.has_levels() {
             return 0.0;
         }
-        let Some([u, v]) = self.derivatives(at, mapping.second_uv) else { return 0.0 };
+        let Some([u, v]) = self.derivatives(at, mapping.second) else { return 0.0 };
         texture.texels_in(mapping, at.width / u.cross(v).length().sqrt())
     }
 
     /// Returns the texture coordinates at a hit that a texture uses, first or second set.
     fn coordinates(&self, texture: &Texture, at: &SurfaceInteraction) -> Option<Vec2> {
         let SurfaceInteraction { hit, surface, .. } = at;
-        match (
-            texture.mapping().is_some_and(|mapping| mapping.second_uv),
-            &self.objects()[hit.object as usize].geometry,
-        ) {
+        match (texture.mapping().is_some_and(|mapping| mapping.second), &self.objects()[hit.object as usize].geometry) {
             (true, Geometry::Mesh(tree)) => tree.mesh.second_uv(hit.part, surface.barycentric),
             (true, _) => None,
             (false, _) => surface.uv.get(),
@@ -130,10 +127,10 @@ impl World {
             Geometry::Mesh(tree) => {
                 // Tangents in the file are relative to the normal in object space.
                 let own = object.to_world.as_ref().map_or(normal, |to_world| to_world.inverse_normal(normal));
-                let grow = tree.mesh.tangents(at.hit.part, at.surface.barycentric, own, mapping.second_uv)?;
+                let grow = tree.mesh.tangents(at.hit.part, at.surface.barycentric, own, mapping.second)?;
                 grow.map(|v| object.to_world.as_ref().map_or(v, |to_world| to_world.vector(v)))
             }
-            _ => self.derivatives(at, mapping.second_uv)?,
+            _ => self.derivatives(at, mapping.second)?,
         };
         let [u, v] = mapping.directions(grow);
         let tangent = u.reject_from_normalized(normal).try_normalize()?;
@@ -141,7 +138,7 @@ impl World {
         let across = normal.cross(tangent);
         let bitangent = if across.dot(v) < 0.0 { -across } else { across };
         let signed = |x: f32| 2.0 * x - 1.0;
-        let (x, y) = (mapping.normal_scale * signed(r), mapping.normal_scale * signed(g));
+        let (x, y) = (mapping.strength * signed(r), mapping.strength * signed(g));
         (x * tangent + y * bitangent + signed(b) * normal).try_normalize()
     }
 
@@ -153,7 +150,7 @@ impl World {
         let texture = &self.textures()[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
         let slope = height * texture.slope(&mapping, self.coordinates(texture, at)?);
-        let [u, v] = dual(self.derivatives(at, mapping.second_uv)?)?;
+        let [u, v] = dual(self.derivatives(at, mapping.second)?)?;
         (at.surface.n_shade - slope.x * u - slope.y * v).try_normalize()
     }
 

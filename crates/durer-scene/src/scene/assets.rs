@@ -94,17 +94,8 @@ impl NamedTexture {
     /// Describes a picture by name, file and mapping.
     pub(super) fn with_mapping(name: &str, file: &str, mapping: Mapping) -> Self {
         let named = |path: &str| FileName { path: path.to_string(), ..FileName::default() };
-        let Mapping {
-            wrap: [wrap_u, wrap_v],
-            nearest,
-            mipmaps,
-            second_uv: second,
-            transform,
-            cutoff,
-            normal_scale: strength,
-            channel,
-            range,
-        } = mapping;
+        let Mapping { wrap: [wrap_u, wrap_v], nearest, mipmaps, second, transform, cutoff, strength, channel, range } =
+            mapping;
         NamedTexture {
             name: named(name),
             picture: named(file),
@@ -128,10 +119,10 @@ impl NamedTexture {
             wrap: [self.wrap_u, self.wrap_v],
             nearest: self.texels == MagnificationFilter::Nearest,
             mipmaps: self.minified == MinificationFilter::Mipmaps,
-            second_uv: self.uv_set > 0,
+            second: self.uv_set > 0,
             transform: self.uv_transform.as_slice().try_into().unwrap_or(usual.transform),
             cutoff: self.alpha_cutoff,
-            normal_scale: self.normal_scale,
+            strength: self.normal_scale,
             channel: self.channel,
             range: self.texel_range.first().copied().unwrap_or(usual.range),
         };

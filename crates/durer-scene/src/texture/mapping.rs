@@ -46,16 +46,14 @@ pub struct Mapping {
     /// True to use mipmaps for samples that cover many texels.
     pub mipmaps: bool,
     /// True to use the second set of texture coordinates.
-    #[serde(rename = "second")]
-    pub second_uv: bool,
+    pub second: bool,
     /// Transform from surface coordinates to texture coordinates, both with v down from the upper
     /// border: two rows of a matrix.
     pub transform: [[f32; 3]; 2],
     /// Alpha cutoff: opacity is 1 at or above it, 0 below; with `None`, opacity is alpha.
     pub cutoff: Option<f32>,
     /// Factor that scales the slopes in a normal map; 1 keeps the stored slopes.
-    #[serde(rename = "strength")]
-    pub normal_scale: f32,
+    pub strength: f32,
     /// Channel to read as a number; `None` for red, or for alpha in opacity textures with alpha.
     pub channel: Option<Channel>,
     /// Parameter values that 0 and 1 in the texture stand for.
@@ -68,10 +66,10 @@ impl Default for Mapping {
             wrap: [Wrap::Repeat; 2],
             nearest: false,
             mipmaps: false,
-            second_uv: false,
+            second: false,
             transform: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
             cutoff: None,
-            normal_scale: 1.0,
+            strength: 1.0,
             channel: None,
             range: [0.0, 1.0],
         }

@@ -93,7 +93,7 @@ impl Writer<'_> {
         }
         material["pbrMetallicRoughness"] = pbr;
         if let Some((mut info, mapping)) = self.texture(m.normal_texture.as_ref()) {
-            info["scale"] = mapping.normal_scale.into();
+            info["scale"] = mapping.strength.into();
             material["normalTexture"] = info;
         }
         let mut extend = |name: &'static str, value: Value| extensions.insert(name.into(), value);

@@ -49,7 +49,7 @@ impl Writer<'_> {
         let sampler = known.unwrap_or_else(|| self.add("samplers", sampler));
         let index = self.add("textures", json!({ "source": source, "sampler": sampler }));
         let mut info = json!({ "index": index });
-        if mapping.second_uv {
+        if mapping.second {
             info["texCoord"] = 1.into();
         }
         if mapping.transform != Mapping::default().transform {

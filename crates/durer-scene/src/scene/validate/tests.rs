@@ -150,7 +150,7 @@ fn lists_of_meshes_and_mappings_of_pictures_are_checked() {
     assert_eq!(found(normals), [wrong]);
     let colors = MeshData { colors: vec![[1.0; 4]], ..triangle() };
     assert_eq!(found(colors), ["mesh `m`: `colors` has 1 entries for 3 positions"]);
-    let mapping = Mapping { normal_scale: f32::NAN, ..Mapping::default() };
+    let mapping = Mapping { strength: f32::NAN, ..Mapping::default() };
     let picture = TextureImage { bytes: PictureBytes::Memory("p.png".into(), Arc::new([])), mapping };
     let mut scene = Scene::default();
     scene.assets.pictures.insert("p".into(), picture);
