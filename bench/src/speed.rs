@@ -318,7 +318,7 @@ fn one_case(
     if let (Some(packets), Some(batch)) = (rate("Embree 16-wide"), rate("Dürer batch")) {
         print!(", batch to packets {:.2}", batch / packets);
     }
-    print!(" | nodes {:.1}, tests {:.1} per ray", per_ray(counts.nodes), per_ray(counts.tests));
+    print!(" | nodes {:.1}, tests {:.1} per ray", per_ray(counts.nodes), per_ray(counts.primitive_tests));
     let differ: Vec<String> = (1..tracers.len())
         .map(|i| (tracers[i].name, differences(&found[0], &found[i])))
         .filter(|(_, n)| *n > 0)

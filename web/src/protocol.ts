@@ -1,6 +1,6 @@
 // Written by `DURER_WRITE=1 cargo test -p durer-session` from crates/durer-session/src/protocol.rs.
 
-export type Ask = { 
+export type RequestMessage = { 
 /**
  * Number of the session, chosen by the page. A new number opens a new session.
  */
@@ -14,7 +14,7 @@ id: number,
  */
 request: Request, };
 
-export type Answer = { 
+export type EventMessage = { 
 /**
  * Number of the session.
  */
@@ -238,7 +238,7 @@ saves: boolean,
 /**
  * Pictures that can be shown.
  */
-pictures: Array<Choice>, 
+pictures: Array<NamedChoice>, 
 /**
  * Tone curves.
  */
@@ -246,7 +246,7 @@ tones: Array<string>,
 /**
  * Integrators.
  */
-integrators: Array<Choice>, } | { "kind": "scene", 
+integrators: Array<NamedChoice>, } | { "kind": "scene", 
 /**
  * Findings of the parser and the compiler.
  */
@@ -254,7 +254,7 @@ findings: Array<Finding>,
 /**
  * Contents of the scene; `None` after errors, in which case the previous picture remains.
  */
-contents: Contents | null, 
+contents: SceneSummary | null, 
 /**
  * Time to read and compile it, in milliseconds.
  */
@@ -270,27 +270,27 @@ camera: CameraState, } | { "kind": "picture",
 /**
  * Description of the payload.
  */
-head: PictureHead, } | { "kind": "explained", 
+head: PictureInfo, } | { "kind": "explained", 
 /**
  * The pixel.
  */
-pixel: PixelAccount, } | { "kind": "cast", 
+pixel: PixelExplanation, } | { "kind": "cast", 
 /**
  * The results.
  */
-cast: CastAccount, } | { "kind": "rays", 
+cast: CastResult, } | { "kind": "rays", 
 /**
  * The rays.
  */
-rays: Array<RayAccount | null>, } | { "kind": "walk", 
+rays: Array<CameraRay | null>, } | { "kind": "walk", 
 /**
  * The traversal.
  */
-walk: WalkAccount, } | { "kind": "boxes", 
+walk: Traversal, } | { "kind": "boxes", 
 /**
  * Boxes, level by level, up to a limit.
  */
-boxes: Array<BoxState>, } | { "kind": "values", 
+boxes: Array<TreeBox>, } | { "kind": "values", 
 /**
  * First column.
  */
@@ -314,7 +314,7 @@ values: Array<number | null>, } | { "kind": "tree",
 /**
  * The objects.
  */
-nodes: Array<TreeNode>, 
+nodes: Array<SceneNode>, 
 /**
  * The materials, by number.
  */
@@ -338,11 +338,11 @@ outlines: Array<Outline>,
 /**
  * Lights that have a position or a direction.
  */
-lamps: Array<Lamp>, } | { "kind": "language", 
+lamps: Array<LightMarker>, } | { "kind": "language", 
 /**
  * Keywords that begin a statement.
  */
-words: Array<Word>, } | { "kind": "text", 
+words: Array<Keyword>, } | { "kind": "text", 
 /**
  * The new text.
  */
@@ -412,7 +412,7 @@ right: number,
  */
 up: number, } | { "kind": "home" } | { "kind": "frame" };
 
-export type Choice = { 
+export type NamedChoice = { 
 /**
  * Name of the item.
  */
@@ -422,7 +422,7 @@ name: string,
  */
 doc: string, };
 
-export type Place = { 
+export type TextPosition = { 
 /**
  * Line, from 1.
  */
@@ -470,13 +470,13 @@ file: string | null,
 /**
  * Place in the file.
  */
-place: Place | null, 
+place: TextPosition | null, 
 /**
  * Edits that fix the problem.
  */
-fix: Array<Change>, };
+fix: Array<TextEdit>, };
 
-export type Change = { 
+export type TextEdit = { 
 /**
  * Byte offset of the start of the replaced range.
  */
@@ -490,7 +490,7 @@ end: number,
  */
 text: string, };
 
-export type Contents = { 
+export type SceneSummary = { 
 /**
  * Name of the dialect.
  */
@@ -502,7 +502,7 @@ camera: CameraState,
 /**
  * Objects by number, up to a limit.
  */
-objects: Array<Thing>, 
+objects: Array<SceneItem>, 
 /**
  * Number of objects.
  */
@@ -514,7 +514,7 @@ triangles: number,
 /**
  * Lights by number.
  */
-lights: Array<Thing>, 
+lights: Array<SceneItem>, 
 /**
  * Minimum and maximum corner of the bounding box of all bounded objects, in world space.
  */
@@ -546,7 +546,7 @@ bounces: number,
  */
 words: Array<string>, };
 
-export type Thing = { 
+export type SceneItem = { 
 /**
  * Keyword and line.
  */
@@ -554,7 +554,7 @@ name: string,
 /**
  * Place in the scene's text.
  */
-place: Place | null, };
+place: TextPosition | null, };
 
 export type CameraState = { 
 /**
@@ -624,7 +624,7 @@ least: number | null,
  */
 most: number | null, };
 
-export type PictureHead = { 
+export type PictureInfo = { 
 /**
  * `color`, or the name of an auxiliary picture.
  */
@@ -683,7 +683,7 @@ ms: number,
  */
 hash: string | null, };
 
-export type Row = { 
+export type FormulaRow = { 
 /**
  * Name of the result.
  */
@@ -709,7 +709,7 @@ export type Segment = {
 /**
  * Kind of the ray.
  */
-role: Role, 
+role: SegmentKind, 
 /**
  * Start in world space.
  */
@@ -723,7 +723,7 @@ to: [number, number, number],
  */
 escapes: boolean, };
 
-export type Role = "camera" | "reflected" | "transmitted" | "scattered" | "lit" | "shadowed";
+export type SegmentKind = "camera" | "reflected" | "transmitted" | "scattered" | "lit" | "shadowed";
 
 export type Term = { 
 /**
@@ -733,7 +733,7 @@ title: string,
 /**
  * Formulas of the term.
  */
-rows: Array<Row>, 
+rows: Array<FormulaRow>, 
 /**
  * Value of the term, as linear RGB.
  */
@@ -753,7 +753,7 @@ swatch: [number, number, number],
 /**
  * Place of the object or light in the text.
  */
-place: Place | null, 
+place: TextPosition | null, 
 /**
  * Segment to draw.
  */
@@ -779,7 +779,7 @@ object: number | null,
  */
 terms: Array<Term>, };
 
-export type PixelAccount = { 
+export type PixelExplanation = { 
 /**
  * Column from the left.
  */
@@ -831,7 +831,7 @@ name: string,
 /**
  * Place of the object in the text.
  */
-place: Place | null, 
+place: TextPosition | null, 
 /**
  * Result of the test.
  */
@@ -847,9 +847,9 @@ t: number | null,
 /**
  * Formulas with numbers.
  */
-rows: Array<Row>, };
+rows: Array<FormulaRow>, };
 
-export type CastAccount = { 
+export type CastResult = { 
 /**
  * Origin of the ray in world space.
  */
@@ -869,9 +869,9 @@ left_out: number,
 /**
  * The closest hit.
  */
-hit: HitAccount | null, };
+hit: CastHit | null, };
 
-export type HitAccount = { 
+export type CastHit = { 
 /**
  * Number of the object.
  */
@@ -915,7 +915,7 @@ object: number,
  */
 lines: Array<Array<number>>, };
 
-export type Lamp = { 
+export type LightMarker = { 
 /**
  * Position in world space; for a directional light, a point in the direction from which its
  * light comes.
@@ -932,7 +932,7 @@ name: string, };
 
 export type Structure = "tree" | "grid" | "nothing";
 
-export type RayAccount = { 
+export type CameraRay = { 
 /**
  * Origin.
  */
@@ -950,7 +950,7 @@ t: number | null,
  */
 object: number | null, };
 
-export type WalkTest = { 
+export type TraversalTest = { 
 /**
  * Number of the object.
  */
@@ -960,7 +960,7 @@ object: number,
  */
 t: number | null, };
 
-export type WalkStep = { 
+export type TraversalStep = { 
 /**
  * Two opposite corners; `None` for objects outside the structure.
  */
@@ -972,17 +972,17 @@ level: number,
 /**
  * Tests of the objects in it.
  */
-tests: Array<WalkTest>, 
+tests: Array<TraversalTest>, 
 /**
  * Ray parameter of the nearest hit after this step.
  */
 closest: number | null, };
 
-export type WalkAccount = { 
+export type Traversal = { 
 /**
  * Visited boxes or cells, in visiting order.
  */
-steps: Array<WalkStep>, 
+steps: Array<TraversalStep>, 
 /**
  * Number of visited nodes or cells.
  */
@@ -998,13 +998,13 @@ objects: number,
 /**
  * The first hit.
  */
-hit: WalkTest | null, 
+hit: TraversalTest | null, 
 /**
  * Boxes of the tree, or cells that contain objects, up to a limit.
  */
-boxes: Array<BoxState>, };
+boxes: Array<TreeBox>, };
 
-export type BoxState = { 
+export type TreeBox = { 
 /**
  * Depth; 0 for the root's box.
  */
@@ -1015,7 +1015,7 @@ level: number,
  */
 corners: Array<number>, };
 
-export type TreeNode = { 
+export type SceneNode = { 
 /**
  * Keyword or file name of the node.
  */
@@ -1023,7 +1023,7 @@ name: string,
 /**
  * Position in the scene's text.
  */
-place: Place | null, 
+place: TextPosition | null, 
 /**
  * Number of the node's material.
  */
@@ -1031,7 +1031,7 @@ material: number | null,
 /**
  * Child nodes.
  */
-nodes: Array<TreeNode>, };
+nodes: Array<SceneNode>, };
 
 export type MaterialState = { 
 /**
@@ -1041,13 +1041,13 @@ name: string,
 /**
  * Position in the scene's text.
  */
-place: Place | null, 
+place: TextPosition | null, 
 /**
  * Fields of the material.
  */
 fields: Array<FieldState>, };
 
-export type Word = { 
+export type Keyword = { 
 /**
  * The keyword.
  */
@@ -1063,13 +1063,13 @@ doc: string,
 /**
  * Fields of its block.
  */
-fields: Array<WordField>, 
+fields: Array<KeywordField>, 
 /**
  * Example.
  */
 example: string, };
 
-export type WordField = { 
+export type KeywordField = { 
 /**
  * The keyword.
  */

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { code, steps } from "../src/explain/steps";
 import { combined } from "../src/lecture/figures/solids";
 import { topics } from "../src/lecture/topics";
-import type { CastAccount, PixelAccount, Term, Verdict } from "../src/protocol";
+import type { CastResult, PixelExplanation, Term, Verdict } from "../src/protocol";
 import { fixed, short } from "../src/ui/slider";
 
 describe("solids", () => {
@@ -71,7 +71,7 @@ function term(title: string, role: string | null, terms: Term[] = []): Term {
   } as Term;
 }
 
-function cast(...tests: [Verdict, number | null][]): CastAccount {
+function cast(...tests: [Verdict, number | null][]): CastResult {
   const all = tests.map(([verdict, t], object) => ({
     object,
     name: `thing ${object}`,
@@ -90,7 +90,7 @@ describe("step by step", () => {
     term("Lamp", "lit"),
     term("Mirrored and transmitted", null, [term("Mirrored ray", "reflected", [term("Background", null)])]),
   ]);
-  const pixel = { x: 1, y: 2, at: [1.5, 2.5], bytes: [1, 2, 3], tree } as unknown as PixelAccount;
+  const pixel = { x: 1, y: 2, at: [1.5, 2.5], bytes: [1, 2, 3], tree } as unknown as PixelExplanation;
   const casts = new Map([["0", cast(["farther", 5], ["missed", null], ["closest", 2], ["farther", 3])]]);
   const all = steps(pixel, casts);
 

@@ -2,9 +2,9 @@ import { describe, expect, it } from "vitest";
 import { Engine, type LineEvents } from "../src/engine/engine";
 import { level } from "../src/engine/level";
 import { decode } from "../src/engine/wire";
-import type { Answer, Ask } from "../src/protocol";
+import type { EventMessage, RequestMessage } from "../src/protocol";
 
-function encode(answer: Answer, payload: number[] = []): ArrayBuffer {
+function encode(answer: EventMessage, payload: number[] = []): ArrayBuffer {
   const json = new TextEncoder().encode(JSON.stringify(answer));
   const bytes = new Uint8Array(4 + json.length + payload.length);
   new DataView(bytes.buffer).setUint32(0, json.length, true);
@@ -30,7 +30,7 @@ describe("messages", () => {
 describe("an engine", () => {
   it("gives each answer to who asked, and refusals as errors", async () => {
     let events: LineEvents | undefined;
-    const sent: Ask[] = [];
+    const sent: RequestMessage[] = [];
     const engine = new Engine("test", (given) => {
       events = given;
       return { send: (ask) => sent.push(ask), close: () => {} };
@@ -38,7 +38,7 @@ describe("an engine", () => {
     const [first, second] = [engine.session(), engine.session()];
     const one = first.ask({ kind: "save", force: false }, "saved");
     const two = second.ask({ kind: "save", force: false }, "saved");
-    const [a, b] = sent as [Ask, Ask];
+    const [a, b] = sent as [RequestMessage, RequestMessage];
     events?.message(encode({ session: b.session, id: b.id, event: { kind: "refused", why: "no file" } }));
     events?.message(encode({ session: a.session, id: a.id, event: { kind: "saved" } }));
     await expect(one).resolves.toEqual({ kind: "saved" });

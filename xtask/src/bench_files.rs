@@ -72,7 +72,7 @@ fn read(path: &Path, bytes: &Arc<[u8]>) -> Result<usize> {
         return Ok(mesh.with_context(|| format!("{diagnostics:?}"))?.triangles.len());
     }
     let options = LoadOptions {
-        scene_defaults: SceneDefaults { bare: true, ..SceneDefaults::default() },
+        scene_defaults: SceneDefaults { convert_only: true, ..SceneDefaults::default() },
         ..LoadOptions::default()
     };
     let loaded = load_text(path, bytes.clone(), &options, &mut files, &mut diagnostics);
@@ -103,7 +103,7 @@ fn written(folder: &Path, millions: u32) -> Result<Vec<PathBuf>> {
 fn as_gltf(mesh: &MeshData) -> Result<Vec<u8>> {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let options = LoadOptions {
-        scene_defaults: SceneDefaults { bare: true, ..SceneDefaults::default() },
+        scene_defaults: SceneDefaults { convert_only: true, ..SceneDefaults::default() },
         ..LoadOptions::default()
     };
     let bytes = (MESH_FORMATS[0].write)(mesh).into();

@@ -8,7 +8,7 @@ use durer::image::{Image, Layer, WriteOptions, format_for, read_srgb, save};
 use durer::integrator::IntegratorKind;
 use durer::math::Vec3;
 use durer::render::{Control, Job, PartialRender, Sampling, Shard};
-use durer::scene::{SceneDefaults, View};
+use durer::scene::{PresetView, SceneDefaults};
 use durer::{LoadOptions, load};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -87,7 +87,7 @@ fn screenshot(path: &Path) -> Option<PathBuf> {
 
 fn rendered(path: &Path, samples: u32, front: bool) -> Result<Image> {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
-    let view = front.then_some(View::Front);
+    let view = front.then_some(PresetView::Front);
     let scene_defaults = SceneDefaults { aspect: Some(1.0), view, ..SceneDefaults::default() };
     let options = LoadOptions { scene_defaults, ..LoadOptions::default() };
     let complaint = |diagnostics: &Diagnostics| {

@@ -3,7 +3,7 @@
 //! grow, and that no handles leak.
 
 use anyhow::{Context, Result, bail, ensure};
-use durer::describe::DescribedList;
+use durer::describe::DescribedKind;
 use durer::diag::{Diagnostics, Files};
 use durer::integrator::IntegratorKind;
 use durer::render::{Control, PartialRender, Shard};

@@ -48,7 +48,7 @@ pub fn run() -> Result<ExitCode> {
                 "    {kind:48} {:8} {:12.0} {:12.2}   {ratio:.2} times, {hits} hits",
                 world.objects().len(),
                 time.as_nanos() as f64 / f64::from(RAYS),
-                counts.tests as f64 / f64::from(RAYS)
+                counts.primitive_tests as f64 / f64::from(RAYS)
             );
         }
     }

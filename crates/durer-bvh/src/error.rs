@@ -22,7 +22,7 @@ pub enum BuildError {
         triangles: usize,
     },
     /// The length of a flat list of coordinates or indices is not a multiple of three.
-    NotInThrees {
+    NotMultipleOfThree {
         /// `positions` or `indices`.
         list: &'static str,
         /// Length of the list.
@@ -30,7 +30,7 @@ pub enum BuildError {
     },
     /// A height grid has fewer than two lines along an axis, or the number of heights is not the
     /// number of grid points.
-    NoGrid {
+    InvalidGridSize {
         /// Number of lines along z.
         columns: usize,
         /// Number of lines along x.
@@ -41,11 +41,11 @@ pub enum BuildError {
     /// A height grid contains a value that is not finite.
     NotFinite,
     /// A tree was refitted to a different number of triangles.
-    OtherTriangles {
+    TriangleCountMismatch {
         /// Number of triangles at build time.
         built: usize,
         /// Number of triangles at refit.
-        given: usize,
+        refitted: usize,
     },
 }
 
@@ -61,18 +61,18 @@ impl fmt::Display for BuildError {
             BuildError::TooManyTriangles { triangles } => {
                 write!(f, "{triangles} triangles are too many: a tree holds fewer than 2^28")
             }
-            BuildError::NotInThrees { list, len } => {
+            BuildError::NotMultipleOfThree { list, len } => {
                 write!(f, "{list} has {len} numbers, which is not a multiple of 3")
             }
-            BuildError::NoGrid { columns, rows, heights } => {
+            BuildError::InvalidGridSize { columns, rows, heights } => {
                 write!(
                     f,
                     "a grid of {columns} x {rows} lines needs at least two lines along each axis and a height per crossing, not {heights} heights"
                 )
             }
             BuildError::NotFinite => write!(f, "the height grid has values that are not finite"),
-            BuildError::OtherTriangles { built, given } => {
-                write!(f, "the tree was built over {built} triangles, but {given} were given")
+            BuildError::TriangleCountMismatch { built, refitted } => {
+                write!(f, "the tree was built over {built} triangles, but {refitted} were given")
             }
         }
     }
@@ -88,13 +88,13 @@ pub enum LoadError {
     /// The data does not begin with the header of a saved tree.
     NotATree,
     /// The data has a format version that this version of the crate does not support.
-    Version(u32),
+    UnsupportedVersion(u32),
     /// The length of the data differs from the length in the header.
-    Length {
+    WrongLength {
         /// Expected length in bytes.
         expected: u64,
         /// Actual length in bytes.
-        found: usize,
+        actual: usize,
     },
     /// The checksum is wrong: the data is damaged.
     Damaged,
@@ -106,11 +106,11 @@ impl fmt::Display for LoadError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             LoadError::NotATree => f.write_str("the data is not a saved tree"),
-            LoadError::Version(version) => {
+            LoadError::UnsupportedVersion(version) => {
                 write!(f, "the tree is saved in format {version}, which this version does not support")
             }
-            LoadError::Length { expected, found } => {
-                write!(f, "the saved tree should have {expected} bytes, but has {found}")
+            LoadError::WrongLength { expected, actual } => {
+                write!(f, "the saved tree should have {expected} bytes, but has {actual}")
             }
             LoadError::Damaged => f.write_str("the saved tree is damaged: its checksum is wrong"),
             LoadError::Invalid(what) => write!(f, "the saved tree is invalid: {what}"),

@@ -4,7 +4,7 @@
 //! 1987.
 
 use super::TraversalCounter;
-use super::traverse::is_sound;
+use super::traverse::is_valid;
 use crate::math::{Aabb, Ray, Vec3};
 
 /// Enlargement of primitive boxes that compensates for rounding along rays, in cells.
@@ -12,13 +12,13 @@ const PAD: f32 = 1e-2;
 
 /// Enlargement of primitive boxes in a grid that is drawn, in cells. Just enough to include
 /// primitives that touch a cell.
-const PICTURE_PAD: f32 = 1e-3;
+const DRAWING_PAD: f32 = 1e-3;
 
 /// A uniform grid over the caller's primitives, an alternative to a [`Bvh`](super::Bvh) for rays.
 #[derive(Clone, Debug)]
 pub struct Grid {
     bounds: Aabb,
-    counts: [u32; 3],
+    resolution: [u32; 3],
     /// Padding of boxes, in cells.
     pad: f32,
     /// Start of each cell's list in `items`, and the end of the last list.
@@ -36,7 +36,7 @@ impl Grid {
 
     /// Suitable numbers of cells along x, y, and z for `primitive_count` primitives in a box: about
     /// two nearly cubic cells per primitive.
-    pub fn suitable(bounds: Aabb, primitive_count: usize) -> [u32; 3] {
+    pub fn suggested_resolution(bounds: Aabb, primitive_count: usize) -> [u32; 3] {
         let size = bounds.size();
         let longest = size.max_element().max(f32::MIN_POSITIVE);
         // Flat boxes count as slightly thick, so that the number of cells stays bounded.
@@ -62,18 +62,18 @@ impl Grid {
 
     /// Builds a grid with equal cells for drawing, in which primitives are listed only in the cells
     /// that they touch. Not for rays, which may miss primitives in it.
-    pub fn for_picture(&self, boxes: &[Aabb], overlaps: impl Fn(usize, Aabb) -> bool) -> Option<Self> {
-        Self::build_padded(self.bounds, self.counts, PICTURE_PAD, boxes, overlaps)
+    pub fn for_drawing(&self, boxes: &[Aabb], overlaps: impl Fn(usize, Aabb) -> bool) -> Option<Self> {
+        Self::build_padded(self.bounds, self.resolution, DRAWING_PAD, boxes, overlaps)
     }
 
     fn build_padded(
         bounds: Aabb,
-        counts: [u32; 3],
+        resolution: [u32; 3],
         cell_pad: f32,
         boxes: &[Aabb],
         overlaps: impl Fn(usize, Aabb) -> bool,
     ) -> Option<Self> {
-        let cells = counts.iter().try_fold(1u64, |n, &c| n.checked_mul(u64::from(c)))?;
+        let cells = resolution.iter().try_fold(1u64, |n, &c| n.checked_mul(u64::from(c)))?;
         if cells == 0 || cells > Grid::MAX_CELLS {
             return None;
         }
@@ -83,7 +83,7 @@ impl Grid {
         let bounds = Aabb { min: bounds.min - pad, max: bounds.max + pad };
         let mut grid = Grid {
             bounds,
-            counts,
+            resolution,
             pad: cell_pad,
             starts: vec![0; cells as usize + 1],
             items: Vec::new(),
@@ -114,12 +114,12 @@ impl Grid {
 
     /// Edge lengths of a cell.
     pub fn cell_size(&self) -> Vec3 {
-        self.bounds.size() / Vec3::from(self.counts.map(|n| n as f32))
+        self.bounds.size() / Vec3::from(self.resolution.map(|n| n as f32))
     }
 
     /// Numbers of cells along x, y, and z.
-    pub fn counts(&self) -> [u32; 3] {
-        self.counts
+    pub fn resolution(&self) -> [u32; 3] {
+        self.resolution
     }
 
     /// Bounding box of a cell.
@@ -145,14 +145,14 @@ impl Grid {
     }
 
     fn number(&self, [x, y, z]: [u32; 3]) -> usize {
-        let [nx, ny, _] = self.counts;
+        let [nx, ny, _] = self.resolution;
         (z as usize * ny as usize + y as usize) * nx as usize + x as usize
     }
 
     fn cell_of(&self, p: Vec3) -> [u32; 3] {
         let at = (p - self.bounds.min) / self.cell_size();
         // The cast saturates at 0.
-        std::array::from_fn(|axis| (at[axis] as u32).min(self.counts[axis] - 1))
+        std::array::from_fn(|axis| (at[axis] as u32).min(self.resolution[axis] - 1))
     }
 
     /// Ranges of cells that a box overlaps: the lowest and the highest cell, both included.
@@ -196,49 +196,51 @@ impl Grid {
         counter: &mut T,
         mut test: impl FnMut(usize, f32, &mut T) -> f32,
     ) {
-        let is_done = self.offer_cells(ray, &mut |items, t_max| {
-            counter.work(1, 0);
+        let is_done = self.visit_cells(ray, &mut |items, t_max| {
+            counter.count_work(1, 0);
             items.iter().fold(t_max, |t_max, item| test(*item as usize, t_max, counter))
         });
         if !is_done {
-            counter.work(1, 0);
+            counter.count_work(1, 0);
             (0..self.primitive_count).fold(ray.t_max, |t_max, primitive| test(primitive, t_max, counter));
         }
     }
 
-    /// Calls `offer` with the primitives of each cell on the ray. Returns false without calling it
-    /// if all primitives should be tested instead. `offer` is a trait object, so that the traversal
+    /// Calls `visit` with the primitives of each cell on the ray. Returns false without calling it
+    /// if all primitives should be tested instead. `visit` is a trait object, so that the traversal
     /// is compiled only once and not for each caller.
-    fn offer_cells(&self, ray: &Ray, offer: &mut dyn FnMut(&[u32], f32) -> f32) -> bool {
+    fn visit_cells(&self, ray: &Ray, visit: &mut dyn FnMut(&[u32], f32) -> f32) -> bool {
         // Far from the grid, rounding moves a ray by more than the padding, so also visit
         // neighbouring cells.
         let reach = [self.bounds.min, self.bounds.max].map(|c| (ray.origin - c).abs().max(c.abs()).max_element());
-        let cut = |axis: &usize| self.counts[*axis] > 1;
+        let cut = |axis: &usize| self.resolution[*axis] > 1;
         let finest = (0..3).filter(cut).map(|axis| self.cell_size()[axis]).fold(f32::INFINITY, f32::min);
-        let slip = 16.0 * f32::EPSILON * reach[0].max(reach[1]);
-        if slip > PAD * finest && is_sound(ray) {
-            return self.walk_wide(ray, slip.into(), offer);
+        let rounding_error = 16.0 * f32::EPSILON * reach[0].max(reach[1]);
+        if rounding_error > PAD * finest && is_valid(ray) {
+            return self.traverse_wide(ray, rounding_error.into(), visit);
         }
-        self.walk_cells(ray, |grid, cell, t_max| offer(grid.primitives(cell), t_max));
+        self.traverse_cells(ray, |grid, cell, t_max| visit(grid.primitives(cell), t_max));
         true
     }
 
-    /// Calls `offer` for all cells within distance `slip` of a ray, layer by layer across the ray's
-    /// main axis. Returns false without calling it if testing all primitives is less work.
-    fn walk_wide(&self, ray: &Ray, slip: f64, offer: &mut dyn FnMut(&[u32], f32) -> f32) -> bool {
+    /// Calls `visit` for all cells within distance `rounding_error` of a ray, layer by layer across
+    /// the ray's main axis. Returns false without calling it if testing all primitives is less
+    /// work.
+    fn traverse_wide(&self, ray: &Ray, rounding_error: f64, visit: &mut dyn FnMut(&[u32], f32) -> f32) -> bool {
         let (line, size, min) = (ray.line(), self.cell_size().as_dvec3(), self.bounds.min.as_dvec3());
         let main = line.dir.abs().max_position();
         let [a, b] = [(main + 1) % 3, (main + 2) % 3];
-        let across = |axis: usize| (2.0 * slip / size[axis] + 3.0).min(f64::from(self.counts[axis]));
-        if f64::from(self.counts[main]) * across(a) * across(b) > self.primitive_count as f64 {
+        let across = |axis: usize| (2.0 * rounding_error / size[axis] + 3.0).min(f64::from(self.resolution[axis]));
+        if f64::from(self.resolution[main]) * across(a) * across(b) > self.primitive_count as f64 {
             return false;
         }
-        let pad = slip / line.dir[main].abs();
+        let pad = rounding_error / line.dir[main].abs();
         let (begin, mut end) = (f64::from(ray.t_min) - pad, f64::from(ray.t_max) + pad);
-        for layer in 0..self.counts[main] {
-            let layer = if line.dir[main] > 0.0 { layer } else { self.counts[main] - 1 - layer };
+        for layer in 0..self.resolution[main] {
+            let layer = if line.dir[main] > 0.0 { layer } else { self.resolution[main] - 1 - layer };
             let [low, high] = [0.0, 1.0].map(|wall| min[main] + (f64::from(layer) + wall) * size[main]);
-            let [t, u] = [low - slip, high + slip].map(|wall| (wall - line.origin[main]) / line.dir[main]);
+            let [t, u] =
+                [low - rounding_error, high + rounding_error].map(|wall| (wall - line.origin[main]) / line.dir[main]);
             let (near, far) = (t.min(u).max(begin), t.max(u).min(end));
             if near > end {
                 break;
@@ -247,8 +249,8 @@ impl Grid {
             let range = |axis: usize| {
                 let [p, q] = [near, far].map(|t| line.origin[axis] + t * line.dir[axis]);
                 let cell = |at: f64| (at - min[axis]) / size[axis];
-                let (low, high) = (cell(p.min(q) - slip), cell(p.max(q) + slip));
-                let count = f64::from(self.counts[axis]);
+                let (low, high) = (cell(p.min(q) - rounding_error), cell(p.max(q) + rounding_error));
+                let count = f64::from(self.resolution[axis]);
                 // Empty if the interval ends before the grid or begins beyond it.
                 if near > far || !(high >= 0.0 && low < count) {
                     return 0..0;
@@ -261,7 +263,7 @@ impl Grid {
                     (cell[a], cell[b]) = (i, j);
                     let number = self.number(cell);
                     let items = &self.items[self.starts[number] as usize..self.starts[number + 1] as usize];
-                    end = end.min(f64::from(offer(items, end.min(f64::from(ray.t_max)) as f32)) + pad);
+                    end = end.min(f64::from(visit(items, end.min(f64::from(ray.t_max)) as f32)) + pad);
                 }
             }
         }
@@ -270,8 +272,8 @@ impl Grid {
 
     /// Visits the cells along a ray in order. `visit` takes a cell and the current `t_max`, and
     /// returns the new `t_max`.
-    pub fn walk_cells(&self, ray: &Ray, mut visit: impl FnMut(&Self, [u32; 3], f32) -> f32) {
-        let Some((enter, leave)) = self.bounds.clip(ray.origin, ray.dir).filter(|_| is_sound(ray)) else { return };
+    pub fn traverse_cells(&self, ray: &Ray, mut visit: impl FnMut(&Self, [u32; 3], f32) -> f32) {
+        let Some((enter, leave)) = self.bounds.clip(ray.origin, ray.dir).filter(|_| is_valid(ray)) else { return };
         let (enter, leave) = (enter.max(ray.t_min), leave.min(ray.t_max));
         if enter > leave {
             return;
@@ -306,7 +308,7 @@ impl Grid {
                 return;
             }
             let up = ray.dir[axis] > 0.0;
-            if if up { cell[axis] + 1 == self.counts[axis] } else { cell[axis] == 0 } {
+            if if up { cell[axis] + 1 == self.resolution[axis] } else { cell[axis] == 0 } {
                 return;
             }
             cell[axis] = if up { cell[axis] + 1 } else { cell[axis] - 1 };

@@ -137,12 +137,12 @@ impl InstanceBvh {
 
     /// Finds the [closest](InstanceBvh::closest) hit and counts nodes and tests in both levels.
     pub fn closest_counting<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> Option<InstanceHit> {
-        self.nearest(&ray.into(), u32::MAX, counter, |bvh, ray, _, counter| bvh.closest_counting(ray, counter))
+        self.closest_with(&ray.into(), u32::MAX, counter, |bvh, ray, _, counter| bvh.closest_counting(ray, counter))
     }
 
     /// Finds the [closest](InstanceBvh::closest) hit on instances that share a bit with `mask`.
     pub fn closest_masked(&self, ray: impl Into<Ray64>, mask: u32) -> Option<InstanceHit> {
-        self.nearest(&ray.into(), mask, &mut (), |bvh, ray, _, _| bvh.closest(ray))
+        self.closest_with(&ray.into(), mask, &mut (), |bvh, ray, _, _| bvh.closest(ray))
     }
 
     /// Finds the closest hit that passes `filter`, on instances that share a bit with `mask`; see
@@ -154,8 +154,8 @@ impl InstanceBvh {
         mask: u32,
         mut filter: impl FnMut(&InstanceHit, Facing) -> bool,
     ) -> Option<InstanceHit> {
-        self.nearest(&ray.into(), mask, &mut (), |bvh, local, number, _| {
-            let mirrors = self.instances[number as usize].to_world.mirrors();
+        self.closest_with(&ray.into(), mask, &mut (), |bvh, local, number, _| {
+            let mirrors = self.instances[number as usize].to_world.flips_handedness();
             bvh.closest_filtered(local, &mut |hit, facing| {
                 filter(&InstanceHit::new(number, *hit), facing.turned_if(mirrors))
             })
@@ -164,7 +164,7 @@ impl InstanceBvh {
 
     /// Calls `closest` for each instance that the ray may hit, and returns the closest of the hits.
     #[inline]
-    fn nearest<T: TraversalCounter>(
+    fn closest_with<T: TraversalCounter>(
         &self,
         ray: &Ray64,
         mask: u32,
@@ -210,7 +210,7 @@ impl InstanceBvh {
         mut filter: impl FnMut(&InstanceHit, Facing) -> bool,
     ) -> bool {
         self.any(&ray.into(), mask, &mut (), |bvh, local, number, _| {
-            let mirrors = self.instances[number as usize].to_world.mirrors();
+            let mirrors = self.instances[number as usize].to_world.flips_handedness();
             bvh.occluded_filtered(local, &mut |hit, facing| {
                 filter(&InstanceHit::new(number, *hit), facing.turned_if(mirrors))
             })
@@ -225,12 +225,12 @@ impl InstanceBvh {
         counter: &mut T,
         mut occluded: impl FnMut(&TriangleBvh, &Ray, u32, &mut T) -> bool,
     ) -> bool {
-        let mut found = false;
+        let mut is_occluded = false;
         self.traverse(ray, mask, counter, |number, bvh, local, counter| {
-            found |= occluded(bvh, &local, number, counter);
-            if found { f32::NEG_INFINITY } else { ray.rounded.t_max }
+            is_occluded |= occluded(bvh, &local, number, counter);
+            if is_occluded { f32::NEG_INFINITY } else { ray.rounded.t_max }
         });
-        found
+        is_occluded
     }
 
     /// Hits in the ray's open interval, sorted by `t`, then by instance number, then by triangle
@@ -298,22 +298,22 @@ impl InstanceBvh {
         self.corners(hit).map_or(Vec3::ZERO, triangle_normal)
     }
 
-    /// Calls `ask` with the number and tree of each instance that the ray may hit and the ray in
-    /// object space, roughly from near to far. `ask` returns the new `t_max`.
+    /// Calls `visit` with the number and tree of each instance that the ray may hit and the ray in
+    /// object space, roughly from near to far. `visit` returns the new `t_max`.
     #[inline]
     fn traverse<T: TraversalCounter>(
         &self,
         ray: &Ray64,
         mask: u32,
         counter: &mut T,
-        mut ask: impl FnMut(u32, &TriangleBvh, Ray, &mut T) -> f32,
+        mut visit: impl FnMut(u32, &TriangleBvh, Ray, &mut T) -> f32,
     ) {
         self.bvh.traverse(&ray.rounded, counter, |item, t_max, counter| {
             let number = self.bvh.primitive_indices()[item];
             let instance = &self.instances[number as usize];
             match instance.mask & mask {
                 0 => t_max,
-                _ => ask(number, &instance.bvh, instance.to_world.inverse_ray(ray), counter),
+                _ => visit(number, &instance.bvh, instance.to_world.inverse_ray(ray), counter),
             }
         });
     }

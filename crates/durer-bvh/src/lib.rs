@@ -6,30 +6,30 @@
 //! stores the triangles too.
 #![doc = include_str!("../README.md")]
 
-mod boxes;
 mod build;
+mod bvh;
 mod error;
 mod grid;
 mod instances;
 mod lanes;
 pub mod math;
 mod node;
-mod packs;
 mod parallel;
-mod shown;
+mod primitive_packs;
 mod traverse;
+mod tree_boxes;
 mod triangles;
 pub mod watertight;
 
-pub use boxes::Bvh;
 pub use build::BuildQuality;
+pub use bvh::Bvh;
 pub use error::{BuildError, LoadError};
 pub use glam;
 pub use grid::Grid;
 pub use instances::{Instance, InstanceBvh, InstanceHit};
-pub use lanes::{SimdLevel, UnknownSimdLevel};
-pub use packs::{PackHit, PrimitivePacks};
-pub use shown::TreeBox;
+pub use lanes::{SimdLevel, UnsupportedSimdLevel};
+pub use primitive_packs::{PackHit, PrimitivePacks};
+pub use tree_boxes::TreeBox;
 pub use triangles::{Facing, HeightGrid, NearestPoint, TriangleBvh, TriangleHit};
 
 /// Counter of rays, visited nodes, and primitive tests, passed to queries. `()` counts nothing, at
@@ -42,7 +42,7 @@ pub trait TraversalCounter {
     fn ray(&mut self) {}
 
     /// Counts visited nodes or cells, and primitives tested against the ray.
-    fn work(&mut self, _nodes: u64, _tests: u64) {}
+    fn count_work(&mut self, _nodes: u64, _tests: u64) {}
 }
 
 impl TraversalCounter for () {
@@ -55,8 +55,8 @@ impl<T: TraversalCounter> TraversalCounter for &mut T {
     fn ray(&mut self) {
         (**self).ray();
     }
-    fn work(&mut self, nodes: u64, tests: u64) {
-        (**self).work(nodes, tests);
+    fn count_work(&mut self, nodes: u64, tests: u64) {
+        (**self).count_work(nodes, tests);
     }
 }
 
@@ -80,7 +80,7 @@ pub struct TraversalStats {
     /// Nodes or cells visited.
     pub nodes: u64,
     /// Primitives tested against a ray.
-    pub tests: u64,
+    pub primitive_tests: u64,
 }
 
 impl TraversalCounter for TraversalStats {
@@ -89,18 +89,18 @@ impl TraversalCounter for TraversalStats {
     fn ray(&mut self) {
         self.rays += 1;
     }
-    fn work(&mut self, nodes: u64, tests: u64) {
+    fn count_work(&mut self, nodes: u64, tests: u64) {
         self.nodes += nodes;
-        self.tests += tests;
+        self.primitive_tests += tests;
     }
 }
 
 /// Items for the other crates of the workspace. They can change in any version.
 #[doc(hidden)]
 pub mod internal {
-    pub use crate::lanes::{PlainKernel, bring_near, room, run_plain};
+    pub use crate::lanes::{PlainKernel, prefetch, run_plain, vec_on_large_pages};
     pub use crate::math::random;
-    pub use crate::traverse::is_sound;
+    pub use crate::traverse::is_valid;
 }
 
 #[cfg(test)]

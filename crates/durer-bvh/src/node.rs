@@ -25,26 +25,26 @@ pub(super) struct WideNode {
     /// [`TraversalRay::negative`](super::traverse::TraversalRay::negative). It is set if rays visit
     /// the children from last to first. The first entry is for closest-hit rays, the second for
     /// any-hit rays.
-    pub from_last: [u32; 2],
+    pub reversed_octants: [u32; 2],
     /// Offset of the first inner child, if any. The other inner children follow it in any order.
     pub first: u32,
-    /// Tag of each child. The bits of [`PLACE`] hold its slot. A leaf has the bit [`IS_LEAF`]. For
-    /// an inner node, the bits of [`BEHIND`] hold its distance from the first inner child. A tag
-    /// has only eight bits, so that it can replace the last bits of an entry distance.
+    /// Tag of each child. The bits of [`SLOT_BITS`] hold its slot. A leaf has the bit [`IS_LEAF`].
+    /// For an inner node, the bits of [`OFFSET_BITS`] hold its distance from the first inner child.
+    /// A tag has only eight bits, so that it can replace the last bits of an entry distance.
     pub child_tags: [u8; WIDTH],
 }
 
 /// Bytes between the two orders in the traversal's lookup table, so that a lookup needs no
 /// arithmetic.
-pub(super) const FROM_LAST: u32 = size_of::<[[u8; WIDTH]; 1 << WIDTH]>() as u32;
+pub(super) const REVERSED: u32 = size_of::<[[u8; WIDTH]; 1 << WIDTH]>() as u32;
 
 /// Bits of a [tag](WideNode::child_tags) that hold the child's slot.
-pub(super) const PLACE: u32 = WIDTH as u32 - 1;
+pub(super) const SLOT_BITS: u32 = WIDTH as u32 - 1;
 /// Bit of a tag that marks a leaf.
 pub(super) const IS_LEAF: u32 = 8;
 /// Bits of a tag that hold the child's distance from the first inner child.
-pub(super) const BEHIND: u32 = PLACE * UNITS as u32;
-const _: () = assert!(BEHIND & (PLACE | IS_LEAF) == 0 && BEHIND < 256);
+pub(super) const OFFSET_BITS: u32 = SLOT_BITS * UNITS as u32;
+const _: () = assert!(OFFSET_BITS & (SLOT_BITS | IS_LEAF) == 0 && OFFSET_BITS < 256);
 
 pub(super) const LEAF: u32 = 1 << 31;
 const COUNT_SHIFT: u32 = 28;
@@ -58,39 +58,39 @@ impl WideNode {
     pub const EMPTY: WideNode = WideNode {
         planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3],
         children: [LEAF; WIDTH],
-        from_last: [0; 2],
+        reversed_octants: [0; 2],
         first: 0,
         child_tags: [0; WIDTH],
     };
 
     /// Sets a child. For an inner child, [`first`](WideNode::first) must be set already.
-    pub fn set(&mut self, place: usize, bounds: Aabb, child: u32) {
+    pub fn set(&mut self, slot: usize, bounds: Aabb, child: u32) {
         for axis in 0..3 {
-            self.planes[axis][0][place] = bounds.min[axis];
-            self.planes[axis][1][place] = bounds.max[axis];
+            self.planes[axis][0][slot] = bounds.min[axis];
+            self.planes[axis][1][slot] = bounds.max[axis];
         }
-        self.children[place] = child;
+        self.children[slot] = child;
         let rest = if child & LEAF == 0 { child - self.first } else { IS_LEAF };
-        assert!(rest == IS_LEAF || rest & !BEHIND == 0, "inner children are consecutive");
-        self.child_tags[place] = (place as u32 | rest) as u8;
+        assert!(rest == IS_LEAF || rest & !OFFSET_BITS == 0, "inner children are consecutive");
+        self.child_tags[slot] = (slot as u32 | rest) as u8;
     }
 
     /// Bounding box of a child; empty for an unused slot.
-    pub fn bounds(&self, place: usize) -> Aabb {
-        let side = |side: usize| std::array::from_fn::<f32, 3, _>(|axis| self.planes[axis][side][place]).into();
+    pub fn bounds(&self, slot: usize) -> Aabb {
+        let side = |side: usize| std::array::from_fn::<f32, 3, _>(|axis| self.planes[axis][side][slot]).into();
         Aabb { min: side(0), max: side(1) }
     }
 
-    /// [`FROM_LAST`] if rays of an octant take the children from last to first, else 0. `any`
+    /// [`REVERSED`] if rays of an octant take the children from last to first, else 0. `any`
     /// selects the order for any-hit rays.
     #[inline(always)]
     pub fn order(&self, any: bool, octant: u32) -> u32 {
-        self.from_last[usize::from(any)] << (FROM_LAST.trailing_zeros() - (octant & 7)) & FROM_LAST
+        self.reversed_octants[usize::from(any)] << (REVERSED.trailing_zeros() - (octant & 7)) & REVERSED
     }
 
     /// Slot, box, and code of each child in use.
     pub fn children(&self) -> impl Iterator<Item = (usize, Aabb, u32)> {
-        let all = (0..WIDTH).map(|place| (place, self.bounds(place), self.children[place]));
+        let all = (0..WIDTH).map(|slot| (slot, self.bounds(slot), self.children[slot]));
         all.filter(|(_, bounds, _)| bounds.min.x <= bounds.max.x)
     }
 }
@@ -112,7 +112,7 @@ pub(super) fn node_offset(number: usize) -> u32 {
 
 /// Number of the node at an offset.
 #[inline(always)]
-pub(super) fn number(address: u32) -> usize {
+pub(super) fn node_index(address: u32) -> usize {
     address as usize / UNITS
 }
 
@@ -134,14 +134,14 @@ pub(super) fn refit(nodes: &mut [WideNode], leaf_bounds: impl Fn(u32) -> Aabb) {
     // Children come after their parents, so the boxes below a node are final when it is reached.
     for parent in (0..nodes.len()).rev() {
         let children: Vec<(usize, Aabb, u32)> = nodes[parent].children().collect();
-        for (place, _, child) in children {
+        for (slot, _, child) in children {
             let bounds = match child & LEAF {
-                0 => nodes[number(child)].children().fold(Aabb::EMPTY, |b, (_, c, _)| b.union(c)),
+                0 => nodes[node_index(child)].children().fold(Aabb::EMPTY, |b, (_, c, _)| b.union(c)),
                 _ => leaf_bounds(child),
             };
             // A child with an empty box keeps its old bounds.
             if !bounds.is_empty() {
-                nodes[parent].set(place, bounds, child);
+                nodes[parent].set(slot, bounds, child);
             }
         }
     }

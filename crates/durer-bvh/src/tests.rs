@@ -1,6 +1,6 @@
 //! Tests of trees and grids with difficult boxes.
 
-use super::traverse::{TraversalRay, is_sound};
+use super::traverse::{TraversalRay, is_valid};
 use super::*;
 use crate::math::random::Random;
 use crate::math::{Aabb, Ray, Vec3};
@@ -45,7 +45,7 @@ fn collections() -> Vec<(&'static str, Vec<Aabb>)> {
 /// Depth of a subtree in nodes.
 fn depth(nodes: &[node::WideNode], number: usize) -> usize {
     let inner = nodes[number].children().filter(|(_, _, child)| child & node::LEAF == 0);
-    1 + inner.map(|(_, _, child)| depth(nodes, node::number(child))).max().unwrap_or(0)
+    1 + inner.map(|(_, _, child)| depth(nodes, node::node_index(child))).max().unwrap_or(0)
 }
 
 /// Returns true if the tags of a node's children agree with their codes.
@@ -53,15 +53,15 @@ pub fn codes_are_right(node: &node::WideNode) -> bool {
     node.children().all(|(place, _, child)| {
         let code = u32::from(node.child_tags[place]);
         let is_there = match child & node::LEAF {
-            0 => code & node::IS_LEAF == 0 && node.first + (code & node::BEHIND) == child,
+            0 => code & node::IS_LEAF == 0 && node.first + (code & node::OFFSET_BITS) == child,
             _ => code & node::IS_LEAF != 0,
         };
-        is_there && code & node::PLACE == place as u32
+        is_there && code & node::SLOT_BITS == place as u32
     })
 }
 
 #[test]
-fn every_thing_is_offered_to_a_ray_through_its_box() {
+fn every_box_on_a_ray_is_visited() {
     let (mut random, mut fast) = (Random(2), 0);
     for (name, boxes) in collections() {
         let bvh = Bvh::build(&boxes);
@@ -94,10 +94,10 @@ fn every_thing_is_offered_to_a_ray_through_its_box() {
                 (1f32.next_down(), 1f32.next_up()),
             ][random.below(4)];
             let ray = Ray { t_min, t_max, ..Ray::new(target - step, step) };
-            if !is_sound(&ray) {
+            if !is_valid(&ray) {
                 continue;
             }
-            fast += u32::from(TraversalRay::new(&ray, bvh.bounds().reach()).is_some());
+            fast += u32::from(TraversalRay::new(&ray, bvh.bounds().max_abs_coordinate()).is_some());
             let mut offered = false;
             bvh.traverse(&ray, &mut (), |item, t_max, _| {
                 offered |= bvh.primitive_indices()[item] == i;
@@ -168,7 +168,7 @@ fn grids_contain_everything_or_are_refused() {
         if bounds.is_empty() || name == "identical" || name == "larger than numbers" || name == "huge" {
             continue;
         }
-        let counts = Grid::suitable(bounds, boxes.len());
+        let counts = Grid::suggested_resolution(bounds, boxes.len());
         assert!(counts.iter().all(|n| (1..=256).contains(n)), "{name}: {counts:?}");
         let grid = Grid::build(bounds, counts, &boxes, |_, _| true).unwrap_or_else(|| panic!("{name}"));
         let mut random = Random(4);
@@ -176,7 +176,7 @@ fn grids_contain_everything_or_are_refused() {
             let i = random.below(boxes.len());
             let (target, from) = (boxes[i].center(), bounds.center() + bounds.size() * random.point());
             let ray = Ray { t_min: f32::NEG_INFINITY, ..Ray::new(from, target - from) };
-            if boxes[i].is_empty() || !is_sound(&ray) {
+            if boxes[i].is_empty() || !is_valid(&ray) {
                 continue;
             }
             let mut offered = false;
@@ -195,7 +195,7 @@ fn grid_cells_are_visited_in_order_and_only_up_to_the_hit() {
     let grid = Grid::build(unit, [4, 4, 4], &[], |_, _| true).unwrap();
     let visited = |ray: Ray, limit: f32| {
         let mut cells = Vec::new();
-        grid.walk_cells(&ray, |_, cell, t_max| {
+        grid.traverse_cells(&ray, |_, cell, t_max| {
             cells.push(cell);
             t_max.min(limit)
         });
@@ -241,7 +241,7 @@ fn distant_ray_is_offered_few_boxes_and_every_hit() {
     let at = |i: usize| (i % 20) as f32 / 10.0 - 0.95;
     let boxes: Vec<Aabb> = (0..8000).map(|i| cube(Vec3::new(at(i), at(i / 20), at(i / 400)), 0.04)).collect();
     let bounds = boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);
-    let grid = Grid::build(bounds, Grid::suitable(bounds, boxes.len()), &boxes, |_, _| true).unwrap();
+    let grid = Grid::build(bounds, Grid::suggested_resolution(bounds, boxes.len()), &boxes, |_, _| true).unwrap();
     let mut random = Random(9);
     for distance in [1e2, 1e3, 3e3, 1e4, 1e5, 1e6] {
         let mut offered = 0;
@@ -249,10 +249,10 @@ fn distant_ray_is_offered_few_boxes_and_every_hit() {
             let target = 0.9 * random.point();
             let ray = Ray::new(target + distance * random.direction(), Vec3::ZERO);
             let ray = Ray { dir: target - ray.origin, ..ray };
-            let mut found = vec![false; boxes.len()];
+            let mut visited = vec![false; boxes.len()];
             grid.traverse(&ray, &mut (), |item, t_max, _| {
                 offered += 1;
-                found[item] = true;
+                visited[item] = true;
                 t_max
             });
             // Every box must be offered that the line hits after enlarging it by the rounding
@@ -267,7 +267,7 @@ fn distant_ray_is_offered_few_boxes_and_every_hit() {
                     (t.min(u), t.max(u))
                 });
                 let (enter, leave) = enters.fold((f64::MIN, f64::MAX), |(e, l), (t, u)| (e.max(t), l.min(u)));
-                assert!(found[i] || enter > leave, "{distance}: {i} is missed");
+                assert!(visited[i] || enter > leave, "{distance}: {i} is missed");
             }
         }
         // Even if rounding may move the ray anywhere, each primitive is offered at most once.

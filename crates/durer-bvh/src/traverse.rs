@@ -10,8 +10,8 @@
 //! Architectures*, JCGT 4(4), 2015.
 
 use super::TraversalCounter;
-use super::lanes::{Lanes, Sides, Stack, StackStorage, WIDTH};
-use super::node::{BEHIND, FROM_LAST, IS_LEAF, LEAF, PLACE, WideNode};
+use super::lanes::{Lanes, NodePlanes, Stack, StackStorage, WIDTH};
+use super::node::{IS_LEAF, LEAF, OFFSET_BITS, REVERSED, SLOT_BITS, WideNode};
 use crate::math::{Ray, Vec3};
 use glam::{Vec3A, Vec3Swizzles, Vec4};
 use std::ops::Range;
@@ -31,7 +31,7 @@ pub(super) struct TraversalRay {
     /// Unit of box distances along the ray; 1 if the ray is fast.
     scale: f32,
     /// True if coordinates are so small that no triangle test overflows.
-    pub moderate: bool,
+    pub is_in_range: bool,
 }
 
 /// Coefficients of a ray for computing the distances to the planes of boxes, by axis.
@@ -61,18 +61,18 @@ pub(super) const FAST_RANGE: Range<f32> = 1e-15..1e15;
 pub(super) const MIN_MAIN_COMPONENT: f32 = 1e-6;
 
 impl TraversalRay {
-    /// Prepares a fast ray for a tree whose coordinates are at most `most`; `None` if the ray is
-    /// not fast. Box tests of a fast ray never leave the range of `f32`, and its interval begins at
-    /// its origin or later, so the tests are shorter. Components of the direction can be zero if
-    /// another one is at least [`MIN_MAIN_COMPONENT`].
+    /// Prepares a fast ray for a tree whose coordinates are at most `max_coordinate`; `None` if the
+    /// ray is not fast. Box tests of a fast ray never leave the range of `f32`, and its interval
+    /// begins at its origin or later, so the tests are shorter. Components of the direction can be
+    /// zero if another one is at least [`MIN_MAIN_COMPONENT`].
     #[inline(always)]
-    pub fn new(ray: &Ray, most: f32) -> Option<Self> {
+    pub fn new(ray: &Ray, max_coordinate: f32) -> Option<Self> {
         let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
         // The padding also depends on the coordinates of the origin, since a ray that was
         // transformed into object space has their rounding error. Each lane holds the sum of all
         // coordinates, so that any NaN reaches every lane.
         let from = origin.abs();
-        let reach = (from + from.yzx()) + (from.zxy() + most);
+        let reach = (from + from.yzx()) + (from.zxy() + max_coordinate);
         let size = dir.abs();
         let sizes = size.extend(reach.x);
         let (above, below) = (sizes.cmpgt(Vec4::splat(FAST_RANGE.start)), sizes.cmplt(Vec4::splat(FAST_RANGE.end)));
@@ -89,16 +89,16 @@ impl TraversalRay {
         };
         // Turns -0 into 0, since ends of intervals are compared as integers.
         let t_min = ray.t_min + 0.0;
-        Some(TraversalRay { planes, negative: dir.is_negative_bitmask(), t_min, scale: 1.0, moderate: true })
+        Some(TraversalRay { planes, negative: dir.is_negative_bitmask(), t_min, scale: 1.0, is_in_range: true })
     }
 
     /// Prepares a ray that is not fast; `None` if it cannot hit anything.
     #[cold]
-    pub fn robust(ray: &Ray, most: f32) -> Option<Self> {
-        if !is_sound(ray) {
+    pub fn robust(ray: &Ray, max_coordinate: f32) -> Option<Self> {
+        if !is_valid(ray) {
             return None;
         }
-        let reach = (ray.origin.abs().max_element() + most).min(f32::MAX);
+        let reach = (ray.origin.abs().max_element() + max_coordinate).min(f32::MAX);
         let length = ray.dir.abs();
         // Divide the direction by a power of two, so that distances within the bounds neither
         // overflow nor underflow.
@@ -106,17 +106,17 @@ impl TraversalRay {
         let dir = ray.dir / scale;
         // Treat a component as zero if it has no inverse or moves the ray by much less than the
         // padding.
-        let still = dir.abs().cmplt(Vec3::splat(1e-30));
+        let is_negligible = dir.abs().cmplt(Vec3::splat(1e-30));
         // Add the smallest normal number, since for a tiny reach, the padding underflows.
         let outward = Vec3::splat(PADDING * reach + f32::MIN_POSITIVE).copysign(dir);
         let planes = Planes {
-            inverse: Vec3::select(still, Vec3::INFINITY.copysign(dir), 1.0 / dir).to_array(),
+            inverse: Vec3::select(is_negligible, Vec3::INFINITY.copysign(dir), 1.0 / dir).to_array(),
             near_origin: (ray.origin + outward).to_array(),
             far_origin: (ray.origin - outward).to_array(),
         };
         let negative = dir.is_negative_bitmask();
         let t_min = (ray.t_min * scale).next_down();
-        Some(TraversalRay { planes, negative, t_min, scale, moderate: reach < FAST_RANGE.end })
+        Some(TraversalRay { planes, negative, t_min, scale, is_in_range: reach < FAST_RANGE.end })
     }
 
     /// Converts a distance along the ray to the unit of box distances, rounded up.
@@ -172,7 +172,7 @@ pub(super) fn traverse<L: Lanes, V: Visitor, const FAST: bool>(
             let leaf = if child & LEAF == 0 {
                 let mut address = child as usize;
                 loop {
-                    visitor.counter().work(1, 0);
+                    visitor.counter().count_work(1, 0);
                     visitor.enter(address);
                     let hits = intersect_node::<L, FAST>(lanes, &slabs, address, limit);
                     if hits.mask == 0 {
@@ -180,13 +180,13 @@ pub(super) fn traverse<L: Lanes, V: Visitor, const FAST: bool>(
                     }
                     // The next child skips the stack.
                     let order = hits.node.order(V::ANY, boxes.negative);
-                    let likely = end_of(hits.mask, order != 0);
+                    let likely = extreme_bit(hits.mask, order != 0);
                     let next = hits.next::<FAST>(lanes, V::ANY, likely);
                     visitor.fetch(lanes, &hits, likely);
                     hits.push(lanes, &mut stack, next, order);
-                    match hits.target::<FAST>(V::ANY, next) {
-                        Target::Node(next) => address = next,
-                        Target::Leaf(leaf) => break leaf,
+                    match hits.next_child::<FAST>(V::ANY, next) {
+                        NextChild::Node(next) => address = next,
+                        NextChild::Leaf(leaf) => break leaf,
                     }
                 }
             } else {
@@ -230,7 +230,7 @@ pub(super) struct NodeHits<'a, L: Lanes> {
 }
 
 /// Next child to visit in a traversal.
-enum Target {
+enum NextChild {
     /// Offset of a node.
     Node(usize),
     Leaf(u32),
@@ -252,16 +252,16 @@ impl<L: Lanes> NodeHits<'_, L> {
     /// tag, which is fastest, since the ray waits for the node's address. A leaf is found by its
     /// slot.
     #[inline(always)]
-    fn target<const FAST: bool>(&self, any: bool, next: u32) -> Target {
+    fn next_child<const FAST: bool>(&self, any: bool, next: u32) -> NextChild {
         if FAST && !any {
             if next & IS_LEAF == 0 {
-                return Target::Node(self.node.first as usize + (next & BEHIND) as usize);
+                return NextChild::Node(self.node.first as usize + (next & OFFSET_BITS) as usize);
             }
-            return Target::Leaf(self.child(next & PLACE));
+            return NextChild::Leaf(self.child(next & SLOT_BITS));
         }
         match self.child(next) {
-            child if child & LEAF == 0 => Target::Node(child as usize),
-            leaf => Target::Leaf(leaf),
+            child if child & LEAF == 0 => NextChild::Node(child as usize),
+            leaf => NextChild::Leaf(leaf),
         }
     }
 
@@ -275,23 +275,23 @@ impl<L: Lanes> NodeHits<'_, L> {
     /// popped first.
     #[inline(always)]
     pub fn push(&self, lanes: L, stack: &mut Stack, next: u32, order: u32) {
-        let orders = &PUSHED[(order / FROM_LAST) as usize];
+        let orders = &PUSH_ORDERS[(order / REVERSED) as usize];
         // Computed from the hit mask, so that the stack does not wait for the nearest child.
         let count = self.mask.count_ones() - u32::from(self.mask != 0);
-        let others = self.mask & !(1 << (next & PLACE));
+        let others = self.mask & !(1 << (next & SLOT_BITS));
         lanes.push(stack, &self.node.children, self.enter, &orders[others as usize & 255], count);
     }
 }
 
 /// First (or `last`) set bit of a lane mask; a value beyond all lanes if the mask is 0.
 #[inline(always)]
-pub(super) fn end_of(lanes: u32, last: bool) -> u32 {
+pub(super) fn extreme_bit(lanes: u32, last: bool) -> u32 {
     if last { lanes.leading_zeros() ^ 31 } else { lanes.trailing_zeros() }
 }
 
 /// Lanes of each mask in the order in which they are pushed. The first table is for visits from
 /// first to last, the second for visits from last to first.
-static PUSHED: [[[u8; WIDTH]; 256]; 2] = {
+static PUSH_ORDERS: [[[u8; WIDTH]; 256]; 2] = {
     let mut table = [[[0; WIDTH]; 256]; 2];
     let mut set = 0;
     while set < 256 {
@@ -309,7 +309,7 @@ static PUSHED: [[[u8; WIDTH]; 256]; 2] = {
     }
     table
 };
-const _: () = assert!(size_of_val(&PUSHED[0]) == FROM_LAST as usize);
+const _: () = assert!(size_of_val(&PUSH_ORDERS[0]) == REVERSED as usize);
 
 /// A [`TraversalRay`] with each coefficient copied to all lanes, for box tests of eight children.
 pub(super) struct Slabs<'a, L: Lanes> {
@@ -317,7 +317,7 @@ pub(super) struct Slabs<'a, L: Lanes> {
     near_origin: [L::Floats; 3],
     far_origin: [L::Floats; 3],
     t_min: L::Floats,
-    sides: Sides<'a>,
+    sides: NodePlanes<'a>,
 }
 
 impl<'a, L: Lanes> Slabs<'a, L> {
@@ -328,7 +328,7 @@ impl<'a, L: Lanes> Slabs<'a, L> {
             near_origin: lanes.splat3(boxes.planes.near_origin),
             far_origin: lanes.splat3(boxes.planes.far_origin),
             t_min: lanes.splat(boxes.t_min),
-            sides: Sides::new(nodes, boxes.negative),
+            sides: NodePlanes::new(nodes, boxes.negative),
         }
     }
 }
@@ -364,7 +364,7 @@ pub(super) fn intersect_node<'a, L: Lanes, const FAST: bool>(
         // result is the right end, or a negative one if the box is missed. Padding ensures that the
         // interval of a hit box is not empty.
         let [enter, leave] = lanes.interval([x, y, z], [*t_min, limit]);
-        let which = lanes.before(enter, leave);
+        let which = lanes.lt_as_int(enter, leave);
         return NodeHits { node, child_tags, mask: lanes.signs(which), which, enter };
     }
     // If the ray lies in a plane of a box, zero times infinity is NaN. As the first argument, NaN
@@ -377,6 +377,6 @@ pub(super) fn intersect_node<'a, L: Lanes, const FAST: bool>(
 /// Returns true if the ray can hit anything: rays with NaN or infinity, without a direction, or
 /// with an empty interval cannot.
 #[inline]
-pub fn is_sound(ray: &Ray) -> bool {
+pub fn is_valid(ray: &Ray) -> bool {
     ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != Vec3::ZERO && ray.t_min < ray.t_max
 }

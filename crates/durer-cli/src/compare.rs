@@ -17,7 +17,7 @@ use crate::report::counted;
 use crate::terminal::say;
 pub use args::CompareArgs;
 use compared_pair::{ComparedPair, Outcome, name};
-use durer::diag::{at_least, at_most};
+use durer::diag::{format_bytes_down, format_bytes_up};
 use durer::format::folder::FolderSource;
 use durer::image::compare::{Options, Picture, Verdict, compare, memory_needed};
 use durer::image::{Destination, Encoded, Transfer};
@@ -51,7 +51,7 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
     let heat_file = args.heat.as_ref().map(|path| guard.writes("--heat", path)).transpose()?;
     let memory = args.reading.memory.bytes().unwrap_or(u64::MAX);
     let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
-    let options = Options { tolerance: args.tolerance, allowed: args.allow / 100.0, transfer };
+    let options = Options { tolerance: args.tolerance, allowed_share: args.allow / 100.0, transfer };
 
     let (names, folders, extra) = (found.pairs.iter().map(name).collect::<Vec<_>>(), found.folders, found.extra);
     let mut all: Vec<ComparedPair> =
@@ -155,7 +155,7 @@ fn read_both(paths: [&Path; 2], memory: u64) -> Result<[Picture; 2], String> {
     let both = format!("`{}` and `{}`", paths[0].display(), paths[1].display());
     let needed = memory_needed(&a, &b).map_err(|error| format!("{both}: {error}"))?;
     if needed > memory {
-        let (needed, memory) = (at_least(needed), at_most(memory));
+        let (needed, memory) = (format_bytes_up(needed), format_bytes_down(memory));
         return Err(format!(
             "{both}: comparing them needs about {needed} of memory, but the limit is {memory}; see --memory"
         ));

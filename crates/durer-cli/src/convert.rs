@@ -48,7 +48,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let as_mesh = mesh_format_for(&name).filter(|_| args.to.is_none());
     if as_mesh.is_some() {
         // The default ground plane is not part of the model.
-        options.scene_defaults.studio = Some(DefaultLighting::None);
+        options.scene_defaults.lighting = Some(DefaultLighting::None);
     }
     let ending = args.output.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let has_words = args.to.is_none() && (mesh_format_for(&name).is_some() || scene_format_for(&name).is_some());
@@ -58,7 +58,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     }
     let as_scene = scene_format_for(&name).filter(|format| format.write.is_some() && args.to.is_none());
     // Write only the model: the renderer adds a missing camera and lights later.
-    options.scene_defaults.bare = as_scene.is_some();
+    options.scene_defaults.convert_only = as_scene.is_some();
     // A camera in a file has no image size, so frame the model for a square picture.
     options.scene_defaults.aspect = Some(1.0);
     let loaded = load(&args.scene, &options, &mut files, &mut diagnostics).map_err(report::unreadable)?;
@@ -89,7 +89,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         true => json::write(scene, dialect).into_bytes(),
         false => write(scene, dialect).into_bytes(),
     };
-    if !loaded.scene.assets.has_loose() {
+    if !loaded.scene.assets.has_in_memory() {
         return output::save(&[(&place, text(&loaded.scene))], false);
     }
     // A text scene refers to files, so write those of a model to a folder named after the output.

@@ -17,7 +17,7 @@ use durer::image::{Image, Transfer};
 use durer::math::{Color, Ray, Vec3};
 use durer::render::explain::{ExplainOptions, Explanation, Names, TextLine, explain_of, explain_ray, number, ray_text};
 use durer::render::{Control, Job};
-use durer::report::{self, Subject};
+use durer::report::{self, Explained};
 use durer::sampler::SampleId;
 use std::ffi::OsString;
 use std::io::IsTerminal;
@@ -105,12 +105,12 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     let names = Names { files: &compiled.files, scene: &compiled.loaded.scene, world: &compiled.world };
     // Show a single tree: the rays of all samples of a pixel would hide each other.
     let sample = match &subject {
-        Subject::Pixel(pixel) => match (args.sample, args.worst) {
+        Explained::Pixel(pixel) => match (args.sample, args.worst) {
             (Some(sample), _) => sample as usize,
             (None, true) => pixel.brightest().map_or_else(|| pixel.heaviest(), |(sample, _)| sample),
             (None, false) => pixel.heaviest(),
         },
-        Subject::Ray(_) => 0,
+        Explained::Ray(_) => 0,
     };
     let transfer = args.render.display.transfer();
     if let (Some(place), Some(picture)) = (&page_file, &picture) {
@@ -125,12 +125,12 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     let deepest = args.depth.map_or(usize::MAX, |depth| depth as usize);
     let detail = ExplainOptions { least: (args.min / 100.0) as f32, deepest, transfer };
     let lines = match &subject {
-        Subject::Ray(light) => ray_text(light, &names, &detail),
-        Subject::Pixel(pixel) => pixel.lines(&names, sample, &detail),
+        Explained::Ray(light) => ray_text(light, &names, &detail),
+        Explained::Pixel(pixel) => pixel.lines(&names, sample, &detail),
     };
     let colored = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     lines.iter().for_each(|line| say(&shown(line, colored, transfer)));
-    if let Subject::Pixel(pixel) = &subject
+    if let Explained::Pixel(pixel) = &subject
         && job.method.is_random()
     {
         pixel.firefly().iter().for_each(|sentence| say(&format!("  {sentence}")));
@@ -155,7 +155,7 @@ fn subject(
     job: &Job,
     picture: Option<&Image>,
     counts: Option<&Image>,
-) -> Result<Subject, Failure> {
+) -> Result<Explained, Failure> {
     let pixel = match (&args.ray, args.pixel, picture) {
         (Some(numbers), ..) => {
             let [ox, oy, oz, dx, dy, dz] = numbers[..] else { return Err(bad("--ray needs six numbers")) };
@@ -165,12 +165,12 @@ fn subject(
             }
             let world = &compiled.world;
             let light = explain_ray(world, job, &ray, SampleId::new(job.seed, (0, 0), 0));
-            return light.map(|light| Subject::Ray(light.into())).ok_or_else(|| bad("this ray cannot be explained"));
+            return light.map(|light| Explained::Ray(light.into())).ok_or_else(|| bad("this ray cannot be explained"));
         }
         (None, Some(pixel), _) => pixel,
         (None, None, Some(picture)) if args.brightest => most(picture, |x, y| luminance_of(at(picture, x, y))),
         (None, None, Some(picture)) if job.method.is_random() => {
-            return worst(compiled, job, picture, counts).map(Subject::Pixel);
+            return worst(compiled, job, picture, counts).map(Explained::Pixel);
         }
         (None, None, Some(picture)) => most(picture, |x, y| oddness(picture, x, y)),
         (None, None, None) => return Err(bad("choose a pixel or a ray: --pixel X,Y, --brightest, --worst, or --ray")),
@@ -187,7 +187,7 @@ fn subject(
         let last = explanation.samples.len() - 1;
         return Err(bad(format!("no sample {sample}: the pixel's samples are numbered from 0 to {last}")));
     }
-    Ok(Subject::Pixel(explanation))
+    Ok(Explained::Pixel(explanation))
 }
 
 /// Returns the sample count of a pixel, if it is known.

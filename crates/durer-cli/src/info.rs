@@ -8,7 +8,7 @@ use crate::terminal::say;
 use clap::Args;
 use durer::bvh::TraversalStats;
 use durer::camera::{Projection, Raster};
-use durer::describe::DescribedList;
+use durer::describe::DescribedKind;
 use durer::render::{center_ray, raster};
 use durer::world::{Accel, Geometry, MeshTree, World};
 use std::collections::BTreeMap;
@@ -50,7 +50,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
             "tree_cost": count.tree_cost(),
             "object_tree_cost": count.object_cost,
             "nodes_per_ray": per_ray(rays.nodes),
-            "tests_per_ray": per_ray(rays.tests),
+            "tests_per_ray": per_ray(rays.primitive_tests),
             "scene": scene,
         });
         say(&serde_json::to_string_pretty(&value)?);
@@ -98,7 +98,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     if let Some(bytes) = count.tree_bytes_each() {
         say(&format!("           {bytes:.0} bytes per triangle"));
     }
-    if let (Some(nodes), Some(tests)) = (per_ray(rays.nodes), per_ray(rays.tests)) {
+    if let (Some(nodes), Some(tests)) = (per_ray(rays.nodes), per_ray(rays.primitive_tests)) {
         say(&format!("rays       {nodes:.1} nodes and {tests:.1} tests per ray, for {} camera rays", rays.rays));
     }
     Ok(())
@@ -120,7 +120,7 @@ fn mib(bytes: usize) -> f64 {
 }
 
 /// Formats the fields of an object, except those in `except`.
-fn fields<T: DescribedList>(item: &T, except: &[&str]) -> String {
+fn fields<T: DescribedKind>(item: &T, except: &[&str]) -> String {
     let wanted = item.fields().iter().enumerate().filter(|(_, field)| !except.contains(&field.name));
     let shown = wanted.filter_map(|(i, field)| Some(format!("{} {}", field.name, value(&item.get(i)?))));
     shown.collect::<Vec<_>>().join(", ")

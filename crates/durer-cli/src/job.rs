@@ -7,14 +7,14 @@ use durer::LoadedScene;
 use durer::camera::{Projection, Raster};
 use durer::diag::Diagnostic;
 use durer::dialect::Quirk;
-use durer::job::{RenderJob, View};
+use durer::job::{OutputSelection, RenderJob};
 use durer::render::{Job, Sampling};
 use durer::world::World;
 
 /// Returns the job for the options. Without `view`, it renders the whole colour picture. `timed` is
 /// true if a time limit ends the render.
 pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &LoadedScene, timed: bool) -> Result<Job, Failure> {
-    let view = view.map(|view| View { crop: view.crop, show: view.show.clone() });
+    let view = view.map(|view| OutputSelection { crop: view.crop, show: view.show.clone() });
     args.options.resolve(&loaded.job_context(timed), view.as_ref()).map_err(bad)
 }
 
@@ -59,6 +59,6 @@ pub fn spelled(reading: &SceneArgs, job: &Job, loaded: &LoadedScene) -> String {
             add(flag.into());
         }
     }
-    words.extend(RenderJob::of(job, &loaded.job_context(false)).spelled());
+    words.extend(RenderJob::of(job, &loaded.job_context(false)).to_arguments());
     words.join(" ")
 }

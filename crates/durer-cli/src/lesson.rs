@@ -76,7 +76,7 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     options.scene_defaults.aspect = aspect(&args.job);
     let compiled = open(&args.scene, &options, args.quiet, &mut guard)?;
     let mut job = job(&args.job, None, &compiled.loaded, false)?;
-    if args.job.options.given_size().is_none() {
+    if args.job.options.requested_size().is_none() {
         let proportions = compiled.world.camera().proportions();
         (job.width, job.height) = Raster::natural_size(proportions, (SIDE, SIDE));
     }

@@ -3,7 +3,7 @@
 use crate::failure::{Failure, bad};
 use crate::terminal::say;
 use clap::Args;
-use durer_live::{Server, Start};
+use durer_live::{Server, SessionFiles};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -29,7 +29,7 @@ pub struct LiveArgs {
 /// Runs `durer live`.
 pub fn run(args: &LiveArgs) -> Result<(), Failure> {
     readable(&args.scene)?;
-    serve(Start { file: Some(args.scene.clone()), lesson: None }, args.port, args.open)
+    serve(SessionFiles { file: Some(args.scene.clone()), lesson: None }, args.port, args.open)
 }
 
 /// Fails if a file cannot be opened as a scene.
@@ -46,10 +46,10 @@ fn readable(path: &Path) -> Result<(), Failure> {
 /// Serves a lesson that a teacher wrote in Markdown.
 pub fn lesson(path: &Path) -> Result<(), Failure> {
     readable(path)?;
-    serve(Start { file: None, lesson: Some(path.to_path_buf()) }, 0, false)
+    serve(SessionFiles { file: None, lesson: Some(path.to_path_buf()) }, 0, false)
 }
 
-fn serve(start: Start, port: u16, open: bool) -> Result<(), Failure> {
+fn serve(start: SessionFiles, port: u16, open: bool) -> Result<(), Failure> {
     let page = if start.lesson.is_some() { "#/lesson" } else { "" };
     let server = Server::bind(port, start);
     let server = server.map_err(|error| bad(format!("port {port}: {error}")))?;

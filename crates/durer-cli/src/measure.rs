@@ -13,7 +13,7 @@ use durer::math::{Color, LUMINANCE, Ray64, Vec3};
 use durer::render::Job;
 use durer::sampler::SampleId;
 use durer::scene::Axis;
-use durer::scene::defaults::Sides;
+use durer::scene::defaults::ModelAxes;
 use durer::threads;
 use durer::world::World;
 use rayon::prelude::*;
@@ -147,10 +147,10 @@ fn vector_of(v: Vec3) -> String {
 pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let mut options = load_options(&args.reading);
     // Measure only the scene's own light.
-    options.scene_defaults.own_light = options.scene_defaults.studio.is_none();
+    options.scene_defaults.own_light = options.scene_defaults.lighting.is_none();
     let compiled = open(&args.scene, &options, false, &mut Guard::default())?;
     let scene = &compiled.loaded.scene;
-    let up = Sides::new(scene.up.unwrap_or(Axis::Y)).up.as_vec3();
+    let up = ModelAxes::new(scene.up.unwrap_or(Axis::Y)).up.as_vec3();
     let lumens = compiled.world.lumens().unwrap_or(LUMINANCE);
     let grids = args.grid.iter().flat_map(|grid| {
         let normal = grid.edges[1].cross(grid.edges[0]).normalize_or(up);
@@ -167,7 +167,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         places.iter_mut().for_each(|place| place.1 = normal);
     }
     let settings = WhittedOptions { bounces: args.bounces, ..Job::default().settings };
-    let method = args.method.0.resolved_method(IntegratorKind::PATH).map_err(bad)?;
+    let method = args.method.0.resolve_integrator(IntegratorKind::PATH).map_err(bad)?;
     let setup = IntegratorContext { world: &compiled.world, settings, cone: None, seed: args.seed, cancel: None };
     let (Integrator::Path(path) | Integrator::Photons(path)) = method.over(setup) else {
         return Err(bad("only path tracing can measure illuminance: set --integrator path or photons"));

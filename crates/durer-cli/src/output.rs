@@ -40,7 +40,7 @@ impl Target {
     pub fn new(path: &Path, names: &[&str], guard: &mut Guard) -> Result<Self, Failure> {
         let format = format(path)?;
         let diagram = names.iter().any(|name| DIAGRAMS.contains(name));
-        if names.len() == 1 || format.layers && !diagram {
+        if names.len() == 1 || format.supports_layers && !diagram {
             return Ok(Target { format, files: vec![(None, guard.writes("--output", path)?)] });
         }
         let extension = path.extension().unwrap_or_default().to_string_lossy();
@@ -67,7 +67,7 @@ impl Target {
         quiet: bool,
     ) -> Result<Option<PictureScan>, Failure> {
         let only_colors = part.job().color && part.job().aovs.is_empty();
-        let rows = |format: &Format| only_colors && format.rows.is_some() && !format.layers;
+        let rows = |format: &Format| only_colors && format.rows.is_some() && !format.supports_layers;
         let Some((place, format)) = self.single().filter(|(_, format)| rows(format)) else { return Ok(None) };
         progress::saving();
         let colors = Colors { part, format, display, looks: RefCell::new(PictureScan::new(display.exposure)) };

@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use durer::options::doc;
-use durer::scene::{Axis, DefaultLighting, SceneDefaults, View};
+use durer::scene::{Axis, DefaultLighting, PresetView, SceneDefaults};
 use std::path::PathBuf;
 
 /// Options that turn a model into a scene (glTF, pbrt, Radiance, OBJ, PLY, STL); scene files ignore
@@ -86,23 +86,23 @@ impl SceneDefaultsArgs {
                 Up::Z => Axis::Z,
             }),
             view: self.view.map(|view| match view {
-                From::ThreeQuarter => View::ThreeQuarter,
-                From::Front => View::Front,
-                From::Side => View::Side,
-                From::Top => View::Top,
-                From::Iso => View::Iso,
+                From::ThreeQuarter => PresetView::ThreeQuarter,
+                From::Front => PresetView::Front,
+                From::Side => PresetView::Side,
+                From::Top => PresetView::Top,
+                From::Iso => PresetView::Iso,
             }),
-            studio: self.studio.map(|studio| match studio {
+            lighting: self.studio.map(|studio| match studio {
                 Light::None => DefaultLighting::None,
                 Light::Soft => DefaultLighting::Soft,
                 Light::Sun => DefaultLighting::Sun,
             }),
             camera: self.camera.clone(),
             variant: self.variant.clone(),
-            at: self.at,
+            animation_time: self.at,
             fit: self.fit,
-            turned: self.turned,
-            bare: false,
+            orbit_degrees: self.turned,
+            convert_only: false,
             own_light: false,
             view_file: self.view_file.clone(),
             environment: self.environment.clone(),

@@ -66,7 +66,7 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
     for (name, accel) in STRUCTURES {
         let mut options = load_options(&args.reading);
         options.accel = accel;
-        let (width, height) = args.job.options.given_size().unwrap_or(SIZE);
+        let (width, height) = args.job.options.requested_size().unwrap_or(SIZE);
         options.scene_defaults.aspect = Some(width as f32 / height as f32);
         // Print diagnostics only for the first acceleration structure.
         let compiled = open(&args.scene, &options, args.quiet || !worlds.is_empty(), &mut Guard::default())?;

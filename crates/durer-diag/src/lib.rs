@@ -31,13 +31,13 @@ impl PartialEq for Span {
 
 impl Span {
     /// Returns true if the span is in a file. Items from options and defaults have no position.
-    pub fn is_place(self) -> bool {
+    pub fn has_position(self) -> bool {
         self.end > 0
     }
 
     /// Joins this span with a later one: from the start of this span to the end of `end`. Returns
     /// this span if `end` is in another file.
-    pub fn to(self, end: Span) -> Span {
+    pub fn join(self, end: Span) -> Span {
         if end.file != self.file {
             return self;
         }
@@ -252,7 +252,7 @@ impl Diagnostics {
 pub struct Files {
     files: Vec<(String, Arc<[u8]>)>,
     /// Numbers of the files of which only the beginning is kept.
-    cut: BTreeSet<u32>,
+    truncated: BTreeSet<u32>,
 }
 
 impl Files {
@@ -267,7 +267,7 @@ impl Files {
 
     /// Drops the end of a large file to save memory. Keeps the first `end` bytes, to which later
     /// spans may refer, and everything to which the diagnostics in `messages` refer.
-    pub fn cut(&mut self, file: u32, end: usize, messages: &Diagnostics) {
+    pub fn truncate(&mut self, file: u32, end: usize, messages: &Diagnostics) {
         let Some((_, bytes)) = self.files.get_mut(file as usize).filter(|(_, bytes)| bytes.len() > Self::SMALL) else {
             return;
         };
@@ -276,7 +276,7 @@ impl Files {
             // Keep the rest of the last line, which is printed with a diagnostic, but at most 256
             // bytes, since a binary file may have no lines.
             *bytes = bytes[..bytes.len().min(end + 256)].into();
-            self.cut.insert(file);
+            self.truncated.insert(file);
         }
     }
 
@@ -294,8 +294,8 @@ impl Files {
     }
 
     /// Content of a file, unless only its beginning is kept.
-    pub fn whole(&self, file: u32) -> Option<&[u8]> {
-        self.bytes(file).filter(|_| !self.cut.contains(&file))
+    pub fn complete_bytes(&self, file: u32) -> Option<&[u8]> {
+        self.bytes(file).filter(|_| !self.truncated.contains(&file))
     }
 
     /// Content of a file, or of its beginning.
@@ -344,13 +344,13 @@ pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str
 }
 
 /// Formats a number of bytes for humans, rounded up.
-pub fn at_least(bytes: u64) -> String {
+pub fn format_bytes_up(bytes: u64) -> String {
     rounded(bytes, u64::div_ceil)
 }
 
 /// Formats a number of bytes for humans, rounded down. A limit formatted like this is never shown
-/// as larger than a size formatted by [`at_least`] that exceeds it.
-pub fn at_most(bytes: u64) -> String {
+/// as larger than a size formatted by [`format_bytes_up`] that exceeds it.
+pub fn format_bytes_down(bytes: u64) -> String {
     rounded(bytes, |bytes, unit| bytes / unit)
 }
 

@@ -34,10 +34,10 @@ fn large_files_keep_what_is_said_of_them() {
     let large = files.add("large", vec![b'\n'; Files::SMALL + 1].into());
     let mut messages = Diagnostics::default();
     messages.push(Diagnostic::warning("odd").at(Span { file: large, start: 5000, end: 5002 }));
-    files.cut(small, 0, &messages);
-    assert_eq!(files.whole(small).map(<[u8]>::len), Some(1 << 10));
-    files.cut(large, 10, &messages);
-    assert_eq!((files.whole(large), files.bytes(large).map(<[u8]>::len)), (None, Some(5002 + 256)));
+    files.truncate(small, 0, &messages);
+    assert_eq!(files.complete_bytes(small).map(<[u8]>::len), Some(1 << 10));
+    files.truncate(large, 10, &messages);
+    assert_eq!((files.complete_bytes(large), files.bytes(large).map(<[u8]>::len)), (None, Some(5002 + 256)));
     assert_eq!(files.position(Span { file: large, start: 5000, end: 5002 }), Some((5001, 1)));
 }
 

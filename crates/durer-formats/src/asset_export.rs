@@ -4,8 +4,8 @@
 use super::ply::write_whole;
 use super::{extension, photometry, vol};
 use durer_image as image;
-use durer_scene::describe::{DescribedList, FileName, Value};
-use durer_scene::scene::{Assets, Group, Material, Node, Picture, PictureBytes, Scene};
+use durer_scene::describe::{DescribedKind, FileName, Value};
+use durer_scene::scene::{Assets, Group, Material, ObjectKind, PictureBytes, Scene, TextureImage};
 use durer_scene::source::AssetSource;
 use durer_scene::texture::Mapping;
 use std::collections::{BTreeMap, BTreeSet};
@@ -57,7 +57,7 @@ struct AssetExport<'a> {
     /// New names by kind and old name.
     known: BTreeMap<(&'static str, String), String>,
     /// Named textures by their old names.
-    textures: BTreeMap<String, (String, Picture)>,
+    textures: BTreeMap<String, (String, TextureImage)>,
 }
 
 impl AssetExport<'_> {
@@ -86,13 +86,13 @@ impl AssetExport<'_> {
         group.objects.iter_mut().for_each(|object| self.node(&mut object.node));
     }
 
-    fn node(&mut self, node: &mut Node) {
+    fn node(&mut self, node: &mut ObjectKind) {
         match node {
-            Node::Group(group) => self.group(group),
-            Node::Transform(_, inner) => self.node(&mut inner.node),
-            Node::Solid(_, parts) => parts.iter_mut().for_each(|part| self.node(&mut part.node)),
-            Node::Mesh(mesh) => mesh.obj_file.path = self.mesh(&mesh.obj_file.path),
-            Node::Primitive(_) | Node::Voxels(..) | Node::HeightField(_) => {}
+            ObjectKind::Group(group) => self.group(group),
+            ObjectKind::Transform(_, inner) => self.node(&mut inner.node),
+            ObjectKind::Solid(_, parts) => parts.iter_mut().for_each(|part| self.node(&mut part.node)),
+            ObjectKind::Mesh(mesh) => mesh.obj_file.path = self.mesh(&mesh.obj_file.path),
+            ObjectKind::Primitive(_) | ObjectKind::Voxels(..) | ObjectKind::HeightField(_) => {}
         }
     }
 
@@ -124,11 +124,11 @@ impl AssetExport<'_> {
     }
 
     /// Exports the files named by a statement's fields.
-    fn fields<T: DescribedList>(&mut self, item: &mut T) {
+    fn fields<T: DescribedKind>(&mut self, item: &mut T) {
         for i in 0..item.fields().len() {
-            let Some(Value::Path(file)) = DescribedList::get(item, i) else { continue };
+            let Some(Value::Path(file)) = DescribedKind::get(item, i) else { continue };
             let path = self.named(&file.path);
-            DescribedList::set(item, i, Value::Path(FileName { path, ..file }));
+            DescribedKind::set(item, i, Value::Path(FileName { path, ..file }));
         }
     }
 
@@ -145,7 +145,7 @@ impl AssetExport<'_> {
         if let Some((bounds, grid)) = scene.assets.densities.get(name) {
             return self.once("densities", name, |put| put.file(name, "vol", vol::write(bounds, grid)));
         }
-        let Some(Picture { bytes, mapping }) = scene.assets.pictures.get(name) else {
+        let Some(TextureImage { bytes, mapping }) = scene.assets.pictures.get(name) else {
             // In `light.csv:red` and `picture.png:g`, the last part is a column or a channel of the
             // file.
             let parted = name.rsplit_once(':').filter(|_| !self.source.contains(name));
@@ -155,7 +155,7 @@ impl AssetExport<'_> {
         let path = bytes.path();
         let file = self.once("picture", path, |put| match bytes {
             PictureBytes::File(_) => put.copied(path),
-            PictureBytes::Here(_, bytes) => {
+            PictureBytes::Memory(_, bytes) => {
                 let own = extension(path);
                 put.file(path, image::extension_of(bytes, path).unwrap_or(&own), bytes.to_vec())
             }
@@ -164,7 +164,7 @@ impl AssetExport<'_> {
             return file;
         }
         let own = self.name(&file, "");
-        let picture = Picture { bytes: PictureBytes::File(file), mapping: *mapping };
+        let picture = TextureImage { bytes: PictureBytes::File(file), mapping: *mapping };
         self.textures.insert(name.to_string(), (own.clone(), picture));
         own
     }

@@ -6,7 +6,7 @@
 
 use durer_scene::dialect::MeshNormals;
 use durer_scene::material::principled::Walls;
-use durer_scene::scene::{Group, Material, MatrixOp, MatrixRules, Node, Object, Scene};
+use durer_scene::scene::{Group, Material, MatrixOp, MatrixRules, Object, ObjectKind, Scene};
 use durer_scene::shape::mesh::NO_INDEX;
 use durer_scene::shape::{Mesh, MeshData};
 use glam::{DAffine3, DVec3};
@@ -16,8 +16,8 @@ use std::sync::Arc;
 /// Returns the name of an object's mesh, and its transform.
 fn mesh_of(object: &Object) -> Option<(&str, DAffine3)> {
     match &object.node {
-        Node::Mesh(mesh) => Some((&mesh.obj_file.path, DAffine3::IDENTITY)),
-        Node::Transform(ops, inner) => {
+        ObjectKind::Mesh(mesh) => Some((&mesh.obj_file.path, DAffine3::IDENTITY)),
+        ObjectKind::Transform(ops, inner) => {
             mesh_of(inner).map(|(name, map)| (name, MatrixOp::product(ops, MatrixRules::default()) * map))
         }
         _ => None,
@@ -28,9 +28,9 @@ fn mesh_of(object: &Object) -> Option<(&str, DAffine3)> {
 fn used(group: &Group, names: &mut BTreeSet<String>) {
     for object in &group.objects {
         match &object.node {
-            Node::Group(inner) => used(inner, names),
-            Node::Transform(_, inner) => {
-                if let Node::Group(inner) = &inner.node {
+            ObjectKind::Group(inner) => used(inner, names),
+            ObjectKind::Transform(_, inner) => {
+                if let ObjectKind::Group(inner) = &inner.node {
                     used(inner, names);
                 }
             }
@@ -95,7 +95,7 @@ pub(super) fn join_bodies(scene: &mut Scene, name: &str) {
         let name = format!("{}#body{material}", name);
         meshes.insert(name.clone(), Arc::new(body));
         let path = durer_scene::describe::FileName { path: name, span };
-        let node = Node::Mesh(durer_scene::shape::TriangleMesh { obj_file: path });
+        let node = ObjectKind::Mesh(durer_scene::shape::TriangleMesh { obj_file: path });
         root.objects[skin[0]] = Object { node, material: Some(material), span };
         gone.extend(&skin[1..]);
     }

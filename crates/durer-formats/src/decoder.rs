@@ -4,7 +4,7 @@ use crate::{curve, photometry, read_mesh_as, vol};
 use durer_diag::Diagnostics;
 use durer_scene::asset::AssetDecoder;
 use durer_scene::dialect::QuirkSet;
-use durer_scene::light::Profile;
+use durer_scene::light::PhotometricProfile;
 use durer_scene::math::Aabb;
 use durer_scene::medium::DensityGrid;
 use durer_scene::shape::MeshData;
@@ -26,7 +26,7 @@ impl AssetDecoder for Decoder {
         read_mesh_as(bytes, file, name, quirks, diagnostics)
     }
 
-    fn profile(&self, bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<Profile> {
+    fn profile(&self, bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<PhotometricProfile> {
         photometry::read(bytes, file, diagnostics)
     }
 

@@ -146,7 +146,7 @@ impl FolderSource {
         }
         Err(match outside {
             true => SourceError::Outside { name: name.into() },
-            false => SourceError::Missing { name: name.into(), near: None, tried: candidates },
+            false => SourceError::Missing { name: name.into(), similar: None, tried: candidates },
         })
     }
 
@@ -252,7 +252,7 @@ impl AssetSource for FolderSource {
         match self.find(name) {
             Ok(path) => self.read_path(&path, name).inspect(|bytes| self.record.add(name, bytes)),
             Err(SourceError::Missing { name, tried, .. }) => {
-                Err(SourceError::Missing { near: self.near(&tried), name, tried })
+                Err(SourceError::Missing { similar: self.near(&tried), name, tried })
             }
             Err(error) => Err(error),
         }
@@ -287,7 +287,7 @@ impl AssetSource for FolderSource {
         stamp_of(&self.find(name).ok()?)
     }
 
-    fn skip_reading(&self, name: &str, stamp: &Stamp, digest: Digest) {
+    fn record_unchanged(&self, name: &str, stamp: &Stamp, digest: Digest) {
         self.record.add_digest(name, digest);
         self.progress().paths.push(stamp.path.clone());
     }

@@ -2,7 +2,7 @@
 //! the file contains. Readers count both here before they allocate memory.
 
 use crate::shared_report::SharedReport;
-use durer_diag::{Span, at_most};
+use durer_diag::{Span, format_bytes_down};
 use std::cell::Cell;
 
 /// Maximum number of objects in a scene, counting those of each instance.
@@ -79,7 +79,7 @@ impl Growth {
     pub fn bytes(&self, count: usize, size: usize) -> Result<(), TooMuch> {
         let left = self.left.get().checked_sub((count as u64).saturating_mul(size as u64));
         self.left.set(left.unwrap_or(0));
-        let limit = at_most(self.limit.get());
+        let limit = format_bytes_down(self.limit.get());
         left.map(|_| ()).ok_or_else(|| self.over(format!("reading this file needs more memory than {limit}")))
     }
 

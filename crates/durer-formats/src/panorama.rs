@@ -5,7 +5,7 @@ use durer_diag::Span;
 use durer_image::{self as image, Image, ImageError, Layer, WriteOptions};
 use durer_scene::describe::FileName;
 use durer_scene::math::{Color, Vec2, Vec3, fp};
-use durer_scene::scene::{Picture, PictureBytes, Scene};
+use durer_scene::scene::{PictureBytes, Scene, TextureImage};
 use durer_scene::texture::Mapping;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -34,14 +34,14 @@ pub(super) fn surround(
     let (width, height) = (2 * u64::from(rows), u64::from(rows));
     let needed = width * height * MAKING;
     if needed > allowed {
-        return Err(ImageError::Memory { width, height, needed, allowed });
+        return Err(ImageError::MemoryLimit { width, height, needed, allowed });
     }
     let whole = Image::from_pixels(2 * rows, rows, pixels(light, rows))?;
     let mut bytes = Vec::new();
     image::format_for("a.pfm")?.write(&[Layer::data("", whole)], &WriteOptions::default(), &mut bytes)?;
     let path = format!("{name}#environment.pfm");
-    let bytes = PictureBytes::Here(path.clone(), bytes.into());
-    scene.assets.pictures.insert(path.clone(), Picture { bytes, mapping: Mapping::default() });
+    let bytes = PictureBytes::Memory(path.clone(), bytes.into());
+    scene.assets.pictures.insert(path.clone(), TextureImage { bytes, mapping: Mapping::default() });
     scene.background.environment = Some(FileName { path, span });
     Ok(())
 }

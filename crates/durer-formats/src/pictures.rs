@@ -6,7 +6,7 @@ use durer_diag::{Diagnostic, Span};
 use durer_image::{self as image, Depth, Encoded, Image, ImageError, Layer, Transfer, WriteOptions};
 use durer_scene::describe::FileName;
 use durer_scene::math::Color;
-use durer_scene::scene::{Picture, PictureBytes, Scene};
+use durer_scene::scene::{PictureBytes, Scene, TextureImage};
 use durer_scene::source::Digest;
 use std::sync::Arc;
 
@@ -51,7 +51,7 @@ impl Pictures<'_> {
             Ok(encoded) if encoded.depth() != Depth::Float => Some(PictureBytes::File(name.to_string())),
             Ok(_) => {
                 let eight = as_png(self.image(name, at)?, Transfer::Srgb)?;
-                Some(PictureBytes::Here(format!("{name}#8.png"), eight))
+                Some(PictureBytes::Memory(format!("{name}#8.png"), eight))
             }
             Err(error) => {
                 self.complain(name, at, &error);
@@ -70,7 +70,7 @@ impl Pictures<'_> {
             if most > 1.0 && most.is_finite() {
                 image.pixels.iter_mut().for_each(|p| *p /= most);
                 let eight = as_png(image, Transfer::Srgb)?;
-                return Some((PictureBytes::Here(format!("{name}#of-{most}.png"), eight), most));
+                return Some((PictureBytes::Memory(format!("{name}#of-{most}.png"), eight), most));
             }
         }
         Some((self.eight_bits(name, at)?, 1.0))
@@ -78,7 +78,13 @@ impl Pictures<'_> {
 
     /// Converts a picture from another transfer function to sRGB if `is_color`, otherwise to linear
     /// values. `decode` maps an 8-bit value, scaled to between 0 and 1, to a linear value.
-    pub fn recoded(&self, picture: &Picture, at: Span, is_color: bool, decode: impl Fn(f32) -> f32) -> Option<Picture> {
+    pub fn recoded(
+        &self,
+        picture: &TextureImage,
+        at: Span,
+        is_color: bool,
+        decode: impl Fn(f32) -> f32,
+    ) -> Option<TextureImage> {
         // Pictures in memory were already converted to a standard transfer function.
         let PictureBytes::File(path) = &picture.bytes else { return None };
         let mut image = self.decoded(path, at, image::decode_linear)?;
@@ -86,14 +92,14 @@ impl Pictures<'_> {
         // Data other than colours stays linear.
         let bytes = as_png(image, if is_color { Transfer::Srgb } else { Transfer::Linear })?;
         let path = format!("{path}#{}.png", &Digest::of(&bytes).to_string()[..12]);
-        Some(Picture { bytes: PictureBytes::Here(path, bytes), mapping: picture.mapping })
+        Some(TextureImage { bytes: PictureBytes::Memory(path, bytes), mapping: picture.mapping })
     }
 
     /// Returns the mean of all values of a picture.
-    pub fn mean(&self, picture: &Picture, at: Span) -> Option<f32> {
+    pub fn mean(&self, picture: &TextureImage, at: Span) -> Option<f32> {
         match &picture.bytes {
             PictureBytes::File(path) => self.image(path, at).map(|image| mean(&image)),
-            PictureBytes::Here(path, bytes) => {
+            PictureBytes::Memory(path, bytes) => {
                 self.read(path, bytes, image::decode_linear).ok().map(|image| mean(&image))
             }
         }
@@ -103,36 +109,36 @@ impl Pictures<'_> {
     /// function of the source.
     pub fn changed(
         &self,
-        picture: &Picture,
+        picture: &TextureImage,
         at: Span,
         decode: fn(u8) -> f32,
         change: impl Fn(Color) -> f32,
-    ) -> Option<Picture> {
+    ) -> Option<TextureImage> {
         let (path, image) = match &picture.bytes {
             PictureBytes::File(path) => (path, self.decoded(path, at, decode)?),
-            PictureBytes::Here(path, bytes) => (path, self.read(path, bytes, decode).ok()?),
+            PictureBytes::Memory(path, bytes) => (path, self.read(path, bytes, decode).ok()?),
         };
         let texel = |p: &Color| Color::splat(change(*p).clamp(0.0, 1.0));
         let image = Image::from_pixels(image.width, image.height, image.pixels.iter().map(texel).collect()).ok()?;
         let bytes = as_png(image, Transfer::Linear)?;
         let path = format!("{path}#{}.png", &Digest::of(&bytes).to_string()[..12]);
-        Some(Picture { bytes: PictureBytes::Here(path, bytes), mapping: picture.mapping })
+        Some(TextureImage { bytes: PictureBytes::Memory(path, bytes), mapping: picture.mapping })
     }
 
     /// Joins two pictures with the same mapping, or one with itself, texel by texel. Returns the
     /// colour picture and the factor on its values; `None` if the mappings differ.
     pub fn remade(
         &self,
-        [one, other]: [&Picture; 2],
+        [one, other]: [&TextureImage; 2],
         at: Span,
         join: impl Fn(Color, Color) -> Color,
-    ) -> Option<(Picture, f32)> {
+    ) -> Option<(TextureImage, f32)> {
         if one.mapping != other.mapping {
             return None;
         }
-        let image = |picture: &Picture| match &picture.bytes {
+        let image = |picture: &TextureImage| match &picture.bytes {
             PictureBytes::File(path) => self.image(path, at),
-            PictureBytes::Here(path, bytes) => self.read(path, bytes, image::decode_srgb).ok(),
+            PictureBytes::Memory(path, bytes) => self.read(path, bytes, image::decode_srgb).ok(),
         };
         let (a, b) = (image(one)?, image(other)?);
         let (width, height) = (a.width.max(b.width), a.height.max(b.height));
@@ -150,7 +156,7 @@ impl Pictures<'_> {
         pixels.iter_mut().for_each(|p| *p /= most);
         let bytes = as_png(Image::from_pixels(width, height, pixels).ok()?, Transfer::Srgb)?;
         let path = format!("{}#{}.png", one.bytes.path(), &Digest::of(&bytes).to_string()[..12]);
-        Some((Picture { bytes: PictureBytes::Here(path, bytes), mapping: one.mapping }, most))
+        Some((TextureImage { bytes: PictureBytes::Memory(path, bytes), mapping: one.mapping }, most))
     }
 
     fn complain(&self, name: &str, at: Span, error: &ImageError) {
@@ -162,13 +168,13 @@ impl Pictures<'_> {
 pub(super) fn unusable(name: &str, error: &ImageError) -> Diagnostic {
     let diagnostic = Diagnostic::error(format!("the picture `{name}` cannot be used: {error}")).code("bad-file");
     match error {
-        ImageError::Memory { .. } => diagnostic.help("see `--memory`"),
+        ImageError::MemoryLimit { .. } => diagnostic.help("see `--memory`"),
         _ => diagnostic,
     }
 }
 
 /// Adds a picture to the scene's assets; returns its asset name.
-pub(super) fn asset(scene: &mut Scene, picture: Picture, span: Span) -> FileName {
+pub(super) fn asset(scene: &mut Scene, picture: TextureImage, span: Span) -> FileName {
     // Include the mapping in the name, because a file can be used with several mappings.
     let mapping = Digest::of(format!("{:?}", picture.mapping).as_bytes()).to_string();
     let path = format!("{}#{}", picture.bytes.path(), &mapping[..12]);
@@ -180,8 +186,8 @@ pub(super) fn asset(scene: &mut Scene, picture: Picture, span: Span) -> FileName
 /// two. Also returns the factor on its values.
 pub(super) fn checkerboard(one: Color, other: Color) -> Option<(PictureBytes, f32)> {
     let (bytes, most) = four([one, other, other, one])?;
-    let PictureBytes::Here(_, bytes) = bytes else { return None };
-    Some((PictureBytes::Here(format!("checkerboard-{other}-{one}.png"), bytes), most))
+    let PictureBytes::Memory(_, bytes) = bytes else { return None };
+    Some((PictureBytes::Memory(format!("checkerboard-{other}-{one}.png"), bytes), most))
 }
 
 /// Returns a picture of four texels, upper row first, and the factor on its values.
@@ -190,7 +196,7 @@ pub(super) fn four(colors: [Color; 4]) -> Option<(PictureBytes, f32)> {
     let pixels = colors.map(|color| color / most);
     let bytes = as_png(Image::from_pixels(2, 2, pixels.to_vec()).ok()?, Transfer::Srgb)?;
     let name = format!("corners-{}.png", &Digest::of(format!("{colors:?}").as_bytes()).to_string()[..12]);
-    Some((PictureBytes::Here(name, bytes), most))
+    Some((PictureBytes::Memory(name, bytes), most))
 }
 
 /// Encodes a picture as an 8-bit PNG.

@@ -4,7 +4,7 @@
 use durer_diag::Span;
 use durer_scene::describe::FileName;
 use durer_scene::light::photometric::ProfileKind;
-use durer_scene::light::{PhotometricLight, Profile};
+use durer_scene::light::{PhotometricLight, PhotometricProfile};
 use durer_scene::math::{Color, LUMINANCE, Vec3, fp};
 use durer_scene::scene::{Scene, Spanned};
 use glam::{DAffine3, DVec3};
@@ -48,7 +48,7 @@ pub(super) fn steps(last: f32, count: u32) -> Vec<f32> {
 }
 
 /// Measured light profiles, each with its colour, that together form one coloured point light.
-pub(super) struct ProfileLights(Vec<(Vec3, Profile)>);
+pub(super) struct ProfileLights(Vec<(Vec3, PhotometricProfile)>);
 
 impl ProfileLights {
     /// Samples the intensity `light`, a function of the direction in the light's own space, at
@@ -58,7 +58,7 @@ impl ProfileLights {
         for &across in &horizontal {
             values.extend(vertical.iter().map(|&down| light(axes.direction(down, across)).max(Color::ZERO)));
         }
-        let emitter = |part: &dyn Fn(&Color) -> f32| Profile {
+        let emitter = |part: &dyn Fn(&Color) -> f32| PhotometricProfile {
             kind: ProfileKind::C,
             vertical: vertical.clone(),
             horizontal: horizontal.clone(),

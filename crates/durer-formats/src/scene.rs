@@ -11,8 +11,8 @@ use durer_image::{self as image, Encoded, ImageError};
 use durer_scene::describe::FileName;
 use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::Vec3;
-use durer_scene::scene::defaults::Sides;
-use durer_scene::scene::{Axis, Background, Group, Object, Picture, PictureBytes, Scene, Spanned};
+use durer_scene::scene::defaults::ModelAxes;
+use durer_scene::scene::{Axis, Background, Group, Object, PictureBytes, Scene, Spanned, TextureImage};
 use durer_scene::source::SourceError;
 use durer_scene::texture::Mapping;
 use glam::DVec3;
@@ -78,7 +78,7 @@ pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnos
         let surrounded = surround(&mut scene, &name, bytes, up, input.memory);
         surrounded.map_err(|error| diagnostics.push(unusable(&name, &error))).ok()?;
     }
-    if !input.scene_defaults.bare {
+    if !input.scene_defaults.convert_only {
         input.scene_defaults.complete(&mut scene, format.up, format.whole);
     }
     Some(scene)
@@ -111,7 +111,7 @@ fn named(input: &Input, path: &Path, diagnostics: &mut Diagnostics) -> Option<(S
 fn one_mesh(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let span = Span { file: input.file, start: 0, end: 0 };
     let data = read_mesh(input.bytes, input.file, input.name, diagnostics)?;
-    input.files.borrow_mut().cut(input.file, 0, diagnostics);
+    input.files.borrow_mut().truncate(input.file, 0, diagnostics);
     let data = if data.triangles.is_empty() && !data.positions.is_empty() {
         // A file with vertices but no faces is a point cloud.
         let points: Vec<u32> = (0..data.positions.len() as u32).collect();
@@ -134,7 +134,7 @@ fn surround(scene: &mut Scene, name: &str, bytes: Arc<[u8]>, up: Axis, memory: u
     let near = |light: &Spanned<Light>| light.value.position().is_some();
     scene.lights.get_or_insert_default().retain(near);
     let decoded = || Encoded::open(&bytes, name).and_then(|encoded| encoded.read(memory, image::decode_srgb));
-    let sides = Sides::new(up);
+    let sides = ModelAxes::new(up);
     let turned = |dir: DVec3| DVec3::new(dir.dot(sides.right), dir.dot(sides.up), dir.dot(sides.front));
     // If a picture cannot be decoded, compiling the scene reports it.
     if let Some(picture) = (up != Axis::Y).then(decoded).and_then(Result::ok) {
@@ -142,7 +142,7 @@ fn surround(scene: &mut Scene, name: &str, bytes: Arc<[u8]>, up: Axis, memory: u
         let memory = panorama::beside([&picture], memory);
         return panorama::surround(scene, (name, Span::default()), picture.height.min(MAX_ROWS), memory, light);
     }
-    let picture = Picture { bytes: PictureBytes::Here(name.to_string(), bytes), mapping: Mapping::default() };
+    let picture = TextureImage { bytes: PictureBytes::Memory(name.to_string(), bytes), mapping: Mapping::default() };
     scene.assets.pictures.insert(name.to_string(), picture);
     scene.background.environment = Some(FileName { path: name.to_string(), span: Span::default() });
     Ok(())

@@ -2,22 +2,22 @@
 
 use super::report::counted;
 use durer_scene::math::{Vec3, fp};
-use durer_scene::scene::Node;
+use durer_scene::scene::ObjectKind;
 use durer_scene::shape::{Cone, Cylinder, MeshData, Sphere};
 
 /// Returns a cylinder or cone between two points, with a radius at each end; `None` if the points
 /// coincide.
-pub(super) fn stick(from: Vec3, to: Vec3, [first, last]: [f32; 2]) -> Option<Node> {
+pub(super) fn stick(from: Vec3, to: Vec3, [first, last]: [f32; 2]) -> Option<ObjectKind> {
     let shape = match first == last {
         true => Cylinder { base: from, top: to, radius: first }.into(),
         false => Cone { base: from, top: to, base_radius: first, top_radius: last }.into(),
     };
-    (from != to).then_some(Node::Primitive(shape))
+    (from != to).then_some(ObjectKind::Primitive(shape))
 }
 
 /// Returns a sphere at a point.
-pub(super) fn ball(center: Vec3, radius: f32) -> Node {
-    Node::Primitive(Sphere { center, radius }.into())
+pub(super) fn ball(center: Vec3, radius: f32) -> ObjectKind {
+    ObjectKind::Primitive(Sphere { center, radius }.into())
 }
 
 /// Number of sides of a tessellated stick.

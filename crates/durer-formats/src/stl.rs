@@ -13,7 +13,7 @@ use super::{MeshFormat, as_it_is};
 use durer_diag::Diagnostics;
 use durer_scene::math::Vec3;
 use durer_scene::scene::Axis;
-use durer_scene::shape::mesh::{MeshData, place_key};
+use durer_scene::shape::mesh::{MeshData, position_key};
 use std::collections::HashMap;
 use write::write;
 
@@ -116,7 +116,7 @@ struct Builder {
 impl Builder {
     fn facet(&mut self, corners: [Vec3; 3]) {
         let numbers = corners.map(|corner| {
-            *self.numbers.entry(place_key(corner)).or_insert_with(|| {
+            *self.numbers.entry(position_key(corner)).or_insert_with(|| {
                 self.data.positions.push(corner);
                 (self.data.positions.len() - 1) as u32
             })

@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn volume_is_read_and_its_errors_have_byte_offsets() {
         let (bounds, grid) = parse(&file(), 1 << 20).unwrap();
-        assert_eq!((bounds.max, grid.most()), (Vec3::new(2.0, 1.0, 1.0), 4.0));
+        assert_eq!((bounds.max, grid.max_density()), (Vec3::new(2.0, 1.0, 1.0), 4.0));
         assert_eq!(grid.at(&bounds, Vec3::new(0.5, 0.5, 0.5)), 0.5);
         for length in 0..file().len() {
             let (at, message) = parse(&file()[..length], 1 << 20).unwrap_err();

@@ -90,9 +90,9 @@ fn layers_that_do_not_fit_are_refused() {
     for format in FORMATS {
         let write = |layers: &[Layer]| format.write(layers, &options, &mut Vec::new());
         assert_eq!(write(&[]), Err(ImageError::NoLayer));
-        assert_eq!(write(&[Layer::color("", broken.clone())]), Err(ImageError::Size { width: 7, height: 7 }));
+        assert_eq!(write(&[Layer::color("", broken.clone())]), Err(ImageError::InvalidSize { width: 7, height: 7 }));
         let two = [Layer::color("a", sample()), Layer::data("b", sample())];
-        assert_eq!(write(&two).is_ok(), format.layers, "{}", format.name);
+        assert_eq!(write(&two).is_ok(), format.supports_layers, "{}", format.name);
         let differ = [Layer::color("a", sample()), Layer::data("b", small.clone())];
         assert!(write(&differ).is_err());
     }

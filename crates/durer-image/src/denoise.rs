@@ -16,7 +16,7 @@ use rayon::prelude::*;
 /// Auxiliary images that guide the denoiser: albedo, normal, position, and variance of each pixel,
 /// row by row.
 #[derive(Clone, Copy, Debug)]
-pub struct Guides<'a> {
+pub struct GuideImages<'a> {
     /// Albedo.
     pub albedo: &'a [Color],
     /// Unit normal of the surface; zero where the camera ray hit nothing.
@@ -47,7 +47,7 @@ fn luminance(color: Color) -> f32 {
 /// Denoises a picture. The result is the same, bit for bit, for any number of threads.
 ///
 /// Returns `None` if the size of a guide differs from that of the picture.
-pub fn denoise(picture: &Image, guides: &Guides) -> Option<Image> {
+pub fn denoise(picture: &Image, guides: &GuideImages) -> Option<Image> {
     let count = picture.pixels.len();
     let fits = |length: usize| length == count;
     if !(fits(guides.albedo.len())
@@ -74,7 +74,7 @@ pub fn denoise(picture: &Image, guides: &Guides) -> Option<Image> {
     Some(Image { width: picture.width, height: picture.height, pixels })
 }
 
-fn averaged(pixels: &[Pixel], guides: &Guides, width: u32, i: usize, step: i64) -> Pixel {
+fn averaged(pixels: &[Pixel], guides: &GuideImages, width: u32, i: usize, step: i64) -> Pixel {
     let (width, height) = (i64::from(width), pixels.len() as i64 / i64::from(width));
     let (x, y) = (i as i64 % width, i as i64 / width);
     let at = |x: i64, y: i64| ((0..width).contains(&x) && (0..height).contains(&y)).then_some((y * width + x) as usize);
@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn noise_goes_and_edges_stay() {
         let (truth, noisy, [albedo, normal, position], variance) = noisy(0.08);
-        let guides = Guides { albedo: &albedo, normal: &normal, position: &position, variance: &variance };
+        let guides = GuideImages { albedo: &albedo, normal: &normal, position: &position, variance: &variance };
         let clean = denoise(&noisy, &guides).unwrap();
         assert!(
             error(&clean, &truth) < 0.25 * error(&noisy, &truth),
@@ -162,8 +162,8 @@ mod tests {
         );
         // Without noise, hardly anything changes.
         let none = vec![0.0; variance.len()];
-        let same = denoise(&truth, &Guides { variance: &none, ..guides }).unwrap();
+        let same = denoise(&truth, &GuideImages { variance: &none, ..guides }).unwrap();
         assert!(error(&same, &truth) < 1e-3, "{}", error(&same, &truth));
-        assert!(denoise(&truth, &Guides { variance: &none[1..], ..guides }).is_none());
+        assert!(denoise(&truth, &GuideImages { variance: &none[1..], ..guides }).is_none());
     }
 }

@@ -1,6 +1,6 @@
 //! Errors from reading and writing pictures.
 
-use durer_diag::{at_least, at_most};
+use durer_diag::{format_bytes_down, format_bytes_up};
 
 /// Error from decoding, encoding, or creating a picture.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -51,9 +51,9 @@ pub enum ImageError {
     /// Decoding would take more memory than allowed.
     #[error(
         "its {width} x {height} pixels need about {} of memory, but only {} is left",
-        at_least(*.needed), at_most(*.allowed)
+        format_bytes_up(*.needed), format_bytes_down(*.allowed)
     )]
-    Memory {
+    MemoryLimit {
         /// Width in pixels.
         width: u64,
         /// Height in pixels.
@@ -64,15 +64,15 @@ pub enum ImageError {
         allowed: u64,
     },
     /// An allocation of this many bytes failed.
-    #[error("it needs {} of memory in one allocation, which failed", at_least(*.0))]
-    NoRoom(u64),
+    #[error("it needs {} of memory in one allocation, which failed", format_bytes_up(*.0))]
+    OutOfMemory(u64),
     /// 8-bit values were requested, but the picture has more bits per channel.
     #[error("the picture does not have eight bits per channel")]
     NotEightBit,
     /// The width or height is 0, there are too many pixels, or their number is not width times
     /// height.
     #[error("{width} x {height} is not a possible size: a picture has from 1 to {} pixels", super::MAX_PIXELS)]
-    Size {
+    InvalidSize {
         /// Width in pixels.
         width: u32,
         /// Height in pixels.
@@ -108,8 +108,8 @@ impl ImageError {
     }
 
     /// Creates an error for a failed allocation of `count` items of `size` bytes.
-    pub(super) fn no_room(count: usize, size: usize) -> ImageError {
-        ImageError::NoRoom(count as u64 * size as u64)
+    pub(super) fn out_of_memory(count: usize, size: usize) -> ImageError {
+        ImageError::OutOfMemory(count as u64 * size as u64)
     }
 
     /// Creates an error for an unsupported variant of the format.

@@ -25,11 +25,11 @@ mod tga;
 #[cfg(feature = "webp")]
 mod webp;
 
-pub use rows::{RowFormat, RowWriter, Strip};
+pub use rows::{RowFormat, RowLayout, RowWriter};
 
 use super::limits;
 use super::{Display, Image, Image8, ImageError, Layer, LayerKind, Transfer};
-use crate::panics::caught;
+use crate::panics::catch_panic;
 use durer_diag as diag;
 #[cfg(feature = "codecs")]
 use rayon::prelude::*;
@@ -81,16 +81,16 @@ pub struct WriteOptions<'a> {
 }
 
 /// Size and memory needs of a picture, from the header of its file.
-pub(super) struct Head {
+pub(super) struct ImageHeader {
     /// Width and height as stored in the header, possibly invalid.
     pub width: u64,
     pub height: u64,
     /// True if a channel has eight bits.
-    pub eight: bool,
+    pub is_eight_bit: bool,
     /// Memory that decoding takes, including the decoded picture: bytes per pixel, and an
-    /// additional number of bytes, `spare`.
+    /// additional number of bytes, `extra_bytes`.
     pub bytes_per_pixel: u64,
-    pub spare: u64,
+    pub extra_bytes: u64,
 }
 
 /// Decoded pixels of a picture file, with the depth that they have in the file.
@@ -119,13 +119,13 @@ pub struct Format {
     /// Depth of a channel.
     pub depth: Depth,
     /// True if a file can contain several layers.
-    pub layers: bool,
+    pub supports_layers: bool,
     /// Maximum width and height in pixels.
-    pub most_side: u32,
+    pub max_side: u32,
     /// Returns true if the bytes begin with the format's signature.
-    begins: fn(&[u8]) -> bool,
+    has_signature: fn(&[u8]) -> bool,
     /// Reads the header only.
-    head: fn(&[u8]) -> Result<Head, ImageError>,
+    head: fn(&[u8]) -> Result<ImageHeader, ImageError>,
     /// Decodes a picture whose size was already checked.
     decode: fn(&[u8]) -> Result<Raster, ImageError>,
     encode: Encode,
@@ -149,11 +149,11 @@ impl Format {
     /// # Errors
     /// [`ImageError::Unsupported`].
     pub fn check_sides(&self, width: u32, height: u32) -> Result<(), ImageError> {
-        match width.max(height) <= self.most_side {
+        match width.max(height) <= self.max_side {
             true => Ok(()),
             false => Err(ImageError::unsupported(
                 self.name,
-                format!("sides of more than {} pixels are not supported", self.most_side),
+                format!("sides of more than {} pixels are not supported", self.max_side),
             )),
         }
     }
@@ -166,13 +166,13 @@ impl Format {
     /// or name that the format cannot hold.
     pub fn write(&self, layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
         let first = layers.first().ok_or(ImageError::NoLayer)?;
-        if layers.len() > 1 && !self.layers {
+        if layers.len() > 1 && !self.supports_layers {
             return Err(ImageError::SeveralLayers { format: self.name, count: layers.len() });
         }
         for layer in layers {
             layer.image.check()?;
             if layer.coverage.as_ref().is_some_and(|coverage| coverage.len() != layer.image.pixels.len()) {
-                return Err(ImageError::Size { width: layer.image.width, height: layer.image.height });
+                return Err(ImageError::InvalidSize { width: layer.image.width, height: layer.image.height });
             }
             if (layer.image.width, layer.image.height) != (first.image.width, first.image.height) {
                 return Err(ImageError::LayerSizes { name: layer.name.clone() });
@@ -181,18 +181,18 @@ impl Format {
         (self.encode)(layers, options, out)
     }
 
-    pub(super) fn head(&self, bytes: &[u8]) -> Result<Head, ImageError> {
-        self.caught(|| (self.head)(bytes))
+    pub(super) fn head(&self, bytes: &[u8]) -> Result<ImageHeader, ImageError> {
+        self.catch(|| (self.head)(bytes))
     }
 
     pub(super) fn decode(&self, bytes: &[u8]) -> Result<Raster, ImageError> {
-        self.caught(|| (self.decode)(bytes))
+        self.catch(|| (self.decode)(bytes))
     }
 
     /// Runs a decoder and treats a panic as a malformed file, since most decoders are third-party
     /// code.
-    fn caught<T>(&self, work: impl FnOnce() -> Result<T, ImageError>) -> Result<T, ImageError> {
-        caught(work).unwrap_or_else(|| Err(ImageError::malformed(self.name, "its decoder failed")))
+    fn catch<T>(&self, work: impl FnOnce() -> Result<T, ImageError>) -> Result<T, ImageError> {
+        catch_panic(work).unwrap_or_else(|| Err(ImageError::malformed(self.name, "its decoder failed")))
     }
 
     fn has_extension(&self, path: &str) -> bool {
@@ -216,7 +216,7 @@ pub fn format_for(path: impl AsRef<Path>) -> Result<&'static Format, ImageError>
 /// Finds the format by content or, failing that, by name.
 pub(super) fn recognise(bytes: &[u8], name: &str) -> Result<&'static Format, ImageError> {
     let all = || FORMATS.iter().chain(READ_ONLY);
-    let by_content = all().find(|format| (format.begins)(bytes));
+    let by_content = all().find(|format| (format.has_signature)(bytes));
     let by_name = || all().find(|format| format.has_extension(name));
     by_content.or_else(by_name).ok_or_else(|| ImageError::Unrecognised { name: name.into() })
 }
@@ -252,7 +252,7 @@ fn display(layer: &Layer, options: &WriteOptions) -> Display {
 #[cfg(feature = "codecs")]
 fn eight_bit(layer: &Layer, options: &WriteOptions) -> Vec<u8> {
     const STEP: usize = 1 << 14;
-    let (strip, pixels) = (Strip { alpha: false, ..Strip::of(layer, options) }, &layer.image.pixels);
+    let (strip, pixels) = (RowLayout { alpha: false, ..RowLayout::of(layer, options) }, &layer.image.pixels);
     let mut bytes = vec![0_u8; 3 * pixels.len()];
     bytes.as_chunks_mut::<3>().0.par_chunks_mut(STEP).enumerate().for_each(|(i, made)| {
         let mut made = made.iter_mut();

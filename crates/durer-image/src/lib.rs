@@ -28,7 +28,7 @@ pub use content::Content;
 pub use display::{Display, Tone};
 pub use error::ImageError;
 pub use formats::{
-    Depth, FORMATS, Format, Raster, RowFormat, RowWriter, Strip, WriteOptions, extension_of, format_for,
+    Depth, FORMATS, Format, Raster, RowFormat, RowLayout, RowWriter, WriteOptions, extension_of, format_for,
 };
 pub use limits::{can_allocate, checked_count, pixel_limit};
 pub use read::{Encoded, read, read_srgb, read8};
@@ -119,7 +119,7 @@ impl Image {
     pub fn check(&self) -> Result<(), ImageError> {
         match limits::checked_count(self.width, self.height)? == self.pixels.len() {
             true => Ok(()),
-            false => Err(ImageError::Size { width: self.width, height: self.height }),
+            false => Err(ImageError::InvalidSize { width: self.width, height: self.height }),
         }
     }
 
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn pixels_are_found_from_the_top_left() {
+    fn pixels_are_indexed_from_the_top_left() {
         let mut image = Image::new(3, 2, Vec3::ZERO).unwrap();
         image.pixels[5] = Vec3::new(1.0, f32::NAN, 0.0);
         assert_eq!(image.get(1, 1), Some(Vec3::ZERO));

@@ -23,16 +23,16 @@ pub fn pixel_limit(bytes: usize) -> u64 {
 pub(super) fn declared_count(width: u64, height: u64, bytes: usize) -> Result<usize, ImageError> {
     match width.checked_mul(height) {
         Some(count) if count <= pixel_limit(bytes) && count > 0 => Ok(count as usize),
-        Some(0) => Err(ImageError::Size { width: width as u32, height: height as u32 }),
+        Some(0) => Err(ImageError::InvalidSize { width: width as u32, height: height as u32 }),
         _ => Err(ImageError::TooLarge { width, height, bytes }),
     }
 }
 
 /// Creates a list of `count` copies of a value. Returns an error if there is not enough memory,
 /// instead of ending the program.
-pub(super) fn room_for<T: Clone>(count: usize, item: T) -> Result<Vec<T>, ImageError> {
+pub(super) fn try_vec<T: Clone>(count: usize, item: T) -> Result<Vec<T>, ImageError> {
     let mut all = Vec::new();
-    all.try_reserve_exact(count).map_err(|_| ImageError::no_room(count, size_of::<T>()))?;
+    all.try_reserve_exact(count).map_err(|_| ImageError::out_of_memory(count, size_of::<T>()))?;
     all.resize(count, item);
     Ok(all)
 }
@@ -52,6 +52,6 @@ pub fn can_allocate(bytes: u64) -> bool {
 pub fn checked_count(width: u32, height: u32) -> Result<usize, ImageError> {
     match u64::from(width) * u64::from(height) {
         count @ 1..=MAX_PIXELS => Ok(count as usize),
-        _ => Err(ImageError::Size { width, height }),
+        _ => Err(ImageError::InvalidSize { width, height }),
     }
 }

@@ -12,15 +12,15 @@ thread_local! {
 }
 
 /// Runs `work` and returns its result; `None` if it panicked.
-pub fn caught<T>(work: impl FnOnce() -> T) -> Option<T> {
+pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Option<T> {
     let before = EXPECTED.replace(true);
     let result = catch_unwind(AssertUnwindSafe(work));
     EXPECTED.set(before);
     result.ok()
 }
 
-/// Returns true if [`caught`] would catch a panic of this thread, so that a panic hook need not
-/// print it. False in a thread that is ending.
+/// Returns true if [`catch_panic`] would catch a panic of this thread, so that a panic hook need
+/// not print it. False in a thread that is ending.
 pub fn are_expected() -> bool {
     EXPECTED.try_with(Cell::get).unwrap_or(false)
 }
@@ -31,13 +31,13 @@ mod tests {
 
     #[test]
     fn panics_are_expected_only_where_they_are_caught() {
-        assert_eq!(caught(|| 1), Some(1));
-        let inner = caught(|| {
-            assert_eq!(caught(|| -> u32 { panic!("not reported") }), None);
+        assert_eq!(catch_panic(|| 1), Some(1));
+        let inner = catch_panic(|| {
+            assert_eq!(catch_panic(|| -> u32 { panic!("not reported") }), None);
             assert!(are_expected());
         });
         assert_eq!(inner, Some(()));
-        assert_eq!(caught(|| Vec::<u32>::new()[0]), None);
+        assert_eq!(catch_panic(|| Vec::<u32>::new()[0]), None);
         assert!(!are_expected());
     }
 }

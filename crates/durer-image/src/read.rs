@@ -1,6 +1,6 @@
 //! Decodes pictures from the bytes of a file.
 
-use super::formats::{Format, Head, Raster, recognise};
+use super::formats::{Format, ImageHeader, Raster, recognise};
 use super::limits::declared_count;
 use super::{Depth, Image, Image8, ImageError, decode_linear, decode_srgb};
 use durer_bvh::math::Vec3;
@@ -10,7 +10,7 @@ use durer_bvh::math::Vec3;
 pub struct Encoded<'a> {
     format: &'static Format,
     bytes: &'a [u8],
-    head: Head,
+    head: ImageHeader,
     count: usize,
 }
 
@@ -40,21 +40,21 @@ impl<'a> Encoded<'a> {
     }
 
     /// Memory in bytes that [`Encoded::read8`] takes in addition to the bytes of the file.
-    pub fn needed8(&self) -> u64 {
-        (self.count as u64).saturating_mul(self.head.bytes_per_pixel).saturating_add(self.head.spare)
+    pub fn memory_needed8(&self) -> u64 {
+        (self.count as u64).saturating_mul(self.head.bytes_per_pixel).saturating_add(self.head.extra_bytes)
     }
 
     /// Memory in bytes that [`Encoded::read`] takes.
-    pub fn needed(&self) -> u64 {
-        let floats = if self.head.eight { self.count * size_of::<Vec3>() } else { 0 };
-        self.needed8().saturating_add(floats as u64)
+    pub fn memory_needed(&self) -> u64 {
+        let floats = if self.head.is_eight_bit { self.count * size_of::<Vec3>() } else { 0 };
+        self.memory_needed8().saturating_add(floats as u64)
     }
 
     /// Memory in bytes that [`Encoded::read_raster`] takes, including one copy of the values by the
     /// caller.
-    pub fn needed_raster(&self) -> u64 {
-        let texel = if self.head.eight { size_of::<[u8; 4]>() } else { size_of::<[f32; 4]>() };
-        self.needed8().max((2 * self.count * texel) as u64)
+    pub fn memory_needed_raster(&self) -> u64 {
+        let texel = if self.head.is_eight_bit { size_of::<[u8; 4]>() } else { size_of::<[f32; 4]>() };
+        self.memory_needed8().max((2 * self.count * texel) as u64)
     }
 
     /// Decodes the values of an 8-bit file.
@@ -63,10 +63,10 @@ impl<'a> Encoded<'a> {
     /// [`ImageError::NotEightBit`], [`ImageError::Memory`] if decoding needs more than `memory`
     /// bytes, and errors of [`Encoded::open`].
     pub fn read8(&self, memory: u64) -> Result<Image8, ImageError> {
-        if !self.head.eight {
+        if !self.head.is_eight_bit {
             return Err(ImageError::NotEightBit);
         }
-        match self.decode(self.needed8(), memory)? {
+        match self.decode(self.memory_needed8(), memory)? {
             Raster::Eight(image) => Ok(image),
             Raster::Sixteen(..) | Raster::Float(..) => Err(ImageError::NotEightBit),
         }
@@ -78,7 +78,7 @@ impl<'a> Encoded<'a> {
     /// [`ImageError::Memory`] if decoding needs more than `memory` bytes, and errors of
     /// [`Encoded::open`].
     pub fn read_raster(&self, memory: u64) -> Result<Raster, ImageError> {
-        self.decode(self.needed_raster(), memory)
+        self.decode(self.memory_needed_raster(), memory)
     }
 
     /// Decodes the pixels. 8-bit values are converted by `decode`, and others are not changed.
@@ -96,13 +96,13 @@ impl<'a> Encoded<'a> {
     /// Errors of [`Encoded::read`].
     pub fn read_for(&self, more: usize, memory: u64, decode: fn(u8) -> f32) -> Result<Image, ImageError> {
         let later = (self.count as u64).saturating_mul((size_of::<Vec3>() + more) as u64);
-        Ok(match self.decode(self.needed().max(later), memory)? {
+        Ok(match self.decode(self.memory_needed().max(later), memory)? {
             Raster::Sixteen(image, _) | Raster::Float(image, _) => image,
             Raster::Eight(Image8 { width, height, pixels, .. }) => {
                 let table: [f32; 256] = std::array::from_fn(|value| decode(value as u8));
                 let mut all = Vec::new();
                 all.try_reserve_exact(pixels.len())
-                    .map_err(|_| ImageError::no_room(pixels.len(), size_of::<Vec3>()))?;
+                    .map_err(|_| ImageError::out_of_memory(pixels.len(), size_of::<Vec3>()))?;
                 all.extend(pixels.into_iter().map(|pixel| Vec3::from(pixel.map(|value| table[usize::from(value)]))));
                 Image { width, height, pixels: all }
             }
@@ -112,7 +112,7 @@ impl<'a> Encoded<'a> {
     fn decode(&self, needed: u64, allowed: u64) -> Result<Raster, ImageError> {
         match needed <= allowed {
             true => self.format.decode(self.bytes),
-            false => Err(ImageError::Memory { width: self.head.width, height: self.head.height, needed, allowed }),
+            false => Err(ImageError::MemoryLimit { width: self.head.width, height: self.head.height, needed, allowed }),
         }
     }
 }

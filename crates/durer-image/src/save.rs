@@ -29,13 +29,13 @@ pub enum SaveError {
     },
     /// The path is a dangling symbolic link: its target is missing, or is the link itself.
     #[error("cannot write `{}`: it is a broken symbolic link", path.display())]
-    LostLink {
+    BrokenLink {
         /// Target path.
         path: PathBuf,
     },
     /// The path is a pipe without a reader. Opening it would wait for one.
     #[error("cannot write `{}`: it is a pipe without a reader; start the reader first", path.display())]
-    NobodyReads {
+    NoReader {
         /// Target path.
         path: PathBuf,
     },
@@ -111,13 +111,13 @@ pub fn save(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), SaveError> {
 /// has changed in the meantime.
 pub fn save_all<C: Content>(files: &[(&Destination, C)]) -> Result<(), SaveError> {
     let mut staged = Vec::with_capacity(files.len());
-    for (place, content) in files.iter().filter(|file| !file.0.is_stream()) {
-        staged.push(stage(place.path(), content)?);
+    for (destination, content) in files.iter().filter(|file| !file.0.is_stream()) {
+        staged.push(stage(destination.path(), content)?);
     }
     // Writes to streams cannot be undone, so they come after the files are safely on disk.
-    for (place, content) in files {
-        if let Some(mut stream) = place.stream.as_ref() {
-            content.write_to(&mut stream).map_err(|error| SaveError::Io { path: place.path.clone(), error })?;
+    for (destination, content) in files {
+        if let Some(mut stream) = destination.stream.as_ref() {
+            content.write_to(&mut stream).map_err(|error| SaveError::Io { path: destination.path.clone(), error })?;
         }
     }
     for (temporary, target) in staged {
@@ -143,7 +143,7 @@ fn resolve(path: &Path) -> Result<Option<(PathBuf, Option<fs::Metadata>)>, SaveE
         // A rename would replace even a file without write permission.
         Ok(old) => OpenOptions::new().write(true).open(path).map(|_| Some(old)).map_err(io)?,
         Err(_) if fs::symlink_metadata(path).is_ok_and(|link| link.is_symlink()) => {
-            return Err(SaveError::LostLink { path: path.into() });
+            return Err(SaveError::BrokenLink { path: path.into() });
         }
         Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => None,
         Err(error) => return Err(io(error)),
@@ -186,9 +186,7 @@ fn open_stream(path: &Path) -> Result<File, SaveError> {
             Ok(stream)
         });
         opened.map_err(|error| match error.raw_os_error() {
-            Some(code) if code == rustix::io::Errno::NXIO.raw_os_error() => {
-                SaveError::NobodyReads { path: path.into() }
-            }
+            Some(code) if code == rustix::io::Errno::NXIO.raw_os_error() => SaveError::NoReader { path: path.into() },
             _ => SaveError::Io { path: path.into(), error },
         })
     }

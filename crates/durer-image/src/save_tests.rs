@@ -10,7 +10,7 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn a_file_is_made_and_replaced() {
+fn file_is_created_and_replaced() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.png");
     save(&path, b"one").unwrap();
@@ -20,7 +20,7 @@ fn a_file_is_made_and_replaced() {
 }
 
 #[test]
-fn impossible_places_are_refused() {
+fn impossible_destinations_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     save(&file, b"old").unwrap();
@@ -105,7 +105,7 @@ fn links_that_lead_nowhere_are_refused() {
     std::os::unix::fs::symlink("two", &one).unwrap();
     std::os::unix::fs::symlink("one", &two).unwrap();
     for path in [dangling, one] {
-        assert!(matches!(save(&path, b"x"), Err(SaveError::LostLink { .. })));
+        assert!(matches!(save(&path, b"x"), Err(SaveError::BrokenLink { .. })));
         assert!(fs::symlink_metadata(&path).unwrap().is_symlink());
     }
     assert_eq!(names(folder.path()), ["dangling", "one", "two"]);
@@ -118,7 +118,7 @@ fn pipes_are_written_through_or_refused() {
     let folder = tempfile::tempdir().unwrap();
     let pipe = folder.path().join("pipe");
     assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
-    assert!(matches!(Destination::new(&pipe), Err(SaveError::NobodyReads { .. })));
+    assert!(matches!(Destination::new(&pipe), Err(SaveError::NoReader { .. })));
     let reader = std::thread::spawn({
         let pipe = pipe.clone();
         move || {
@@ -129,7 +129,7 @@ fn pipes_are_written_through_or_refused() {
     });
     let place = loop {
         match Destination::new(&pipe) {
-            Err(SaveError::NobodyReads { .. }) => std::thread::yield_now(),
+            Err(SaveError::NoReader { .. }) => std::thread::yield_now(),
             place => break place.unwrap(),
         }
     };

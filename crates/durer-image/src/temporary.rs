@@ -19,7 +19,7 @@ const SUFFIX: &str = ".tmp";
 
 /// Age above which an unlocked file that may be incomplete is removed. A younger one may be about
 /// to be locked by a running program.
-const PATIENCE: Duration = Duration::from_secs(60);
+const MIN_STALE_AGE: Duration = Duration::from_secs(60);
 
 /// A temporary file that is being written and then moved to its target by [`Temporary::persist`].
 pub(super) enum Temporary {
@@ -126,7 +126,7 @@ pub(super) fn remove_stale(folder: &Path) {
         let Some(file) = is_file.then(|| File::open(entry.path()).ok()).flatten() else { continue };
         let free = rustix::fs::flock(&file, rustix::fs::FlockOperation::NonBlockingLockExclusive).is_ok();
         let age = entry.metadata().and_then(|data| data.modified()).ok().and_then(|time| time.elapsed().ok());
-        if free && (name.starts_with(READY) || age.is_some_and(|age| age > PATIENCE)) {
+        if free && (name.starts_with(READY) || age.is_some_and(|age| age > MIN_STALE_AGE)) {
             // Ignore errors: the file may belong to another user.
             let _ = fs::remove_file(entry.path());
         }
@@ -149,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_killed_programs_left_is_removed_and_nothing_else() {
+    fn files_of_killed_programs_are_removed() {
         let folder = tempfile::tempdir().unwrap();
         let put = |name: &str| fs::write(folder.path().join(name), "").unwrap();
         ["picture.png", ".durer-ready-1.tmp", ".durer-young.tmp", ".durer-ready-no", "other.tmp"]
@@ -157,7 +157,7 @@ mod tests {
             .for_each(put);
         put(".durer-old.tmp");
         let old = File::options().write(true).open(folder.path().join(".durer-old.tmp")).unwrap();
-        old.set_modified(std::time::SystemTime::now() - 2 * PATIENCE).unwrap();
+        old.set_modified(std::time::SystemTime::now() - 2 * MIN_STALE_AGE).unwrap();
         // A file of a running program.
         let living = builder(READY).tempfile_in(folder.path()).unwrap();
         lock(living.as_file());

@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_found_again() {
+    fn names_round_trip() {
         for transfer in Transfer::ALL {
             assert_eq!(Transfer::from_name(transfer.name()), Some(transfer));
         }

@@ -8,7 +8,7 @@ mod head;
 mod page;
 mod socket;
 
-pub use durer_session::Start;
+pub use durer_session::SessionFiles;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
 use std::sync::Arc;
@@ -32,7 +32,7 @@ pub struct Server {
 #[derive(Debug)]
 pub(crate) struct Shared {
     pub token: String,
-    pub start: Start,
+    pub start: SessionFiles,
     pub open: AtomicUsize,
     pub stop: AtomicBool,
 }
@@ -43,7 +43,7 @@ impl Server {
     /// # Errors
     ///
     /// Fails if the port is in use, or if the system provides no random numbers.
-    pub fn bind(port: u16, start: Start) -> io::Result<Server> {
+    pub fn bind(port: u16, start: SessionFiles) -> io::Result<Server> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         listener.set_nonblocking(true)?;
         let mut random = [0_u8; 16];

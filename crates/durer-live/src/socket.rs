@@ -47,7 +47,7 @@ fn talk(stream: TcpStream, rest: Vec<u8>, shared: &Shared) -> Result<(), Error> 
         host.step(&mut |bytes| send(&mut socket, bytes, &mut failed));
         if looked.elapsed() > IDLE {
             looked = Instant::now();
-            host.look_at_disk(&mut |bytes| send(&mut socket, bytes, &mut failed));
+            host.check_disk(&mut |bytes| send(&mut socket, bytes, &mut failed));
         }
         if let Some(error) = failed {
             return Err(error);

@@ -1,6 +1,6 @@
 //! Tests the server with pages, other programs and attackers as clients.
 
-use durer_live::{Server, Start};
+use durer_live::{Server, SessionFiles};
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ struct Running {
 
 impl Running {
     fn new(file: Option<PathBuf>) -> Running {
-        let server = Server::bind(0, Start { file, lesson: None }).unwrap();
+        let server = Server::bind(0, SessionFiles { file, lesson: None }).unwrap();
         let (address, stop) = (server.address().unwrap(), Arc::new(AtomicBool::new(false)));
         let stopped = stop.clone();
         let thread = Some(std::thread::spawn(move || server.run(|| stopped.load(Relaxed)).unwrap()));

@@ -37,7 +37,7 @@ pub fn compare<'py>(
     let scale = |display: bool| if display { Scale::Display } else { Scale::Linear };
     let reference = Picture { image: image(&reference.0)?, scale: scale(reference.1) };
     let picture = Picture { image: image(&picture.0)?, scale: scale(picture.1) };
-    let options = Options { tolerance, allowed, ..Options::default() };
+    let options = Options { tolerance, allowed_share: allowed, ..Options::default() };
     let found = install(py, None, || comparing::compare(&reference, &picture, &options)).map_err(wrong)?;
     Ok((report::comparison(&found, &[]).to_string(), found.flip_map.into_pyarray(py)))
 }

@@ -100,7 +100,7 @@ impl Face<'_> {
                 let forward = map.forward();
                 let far = forward.translation.abs() + forward.matrix3.abs() * point.abs();
                 let local = map.inverse_ray(Ray::new(Vec3::ZERO, dir)).dir;
-                (local, map.inverse_spread((DOUBLE * far).as_vec3()).as_dvec3())
+                (local, map.inverse_error_bound((DOUBLE * far).as_vec3()).as_dvec3())
             }
         };
         let reach = self.corners.iter().map(|corner| (corner - point).abs().max_element()).fold(0.0, f64::max);

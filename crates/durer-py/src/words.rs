@@ -1,6 +1,6 @@
 //! The list of render options, and the `durer` command itself.
 
-use durer::options::{OptionGroup, statements};
+use durer::options::{OptionGroup, option_descriptions};
 use pyo3::prelude::*;
 
 /// Render option as passed to Python: its name, help, name of its value, allowed values, and group:
@@ -11,11 +11,11 @@ type Statement = (&'static str, String, Option<String>, Vec<&'static str>, &'sta
 #[pyfunction]
 pub fn options() -> Vec<Statement> {
     let group = |group| match group {
-        OptionGroup::Reading => "reading",
+        OptionGroup::Loading => "reading",
         OptionGroup::Picture => "picture",
-        OptionGroup::Work => "work",
+        OptionGroup::Execution => "work",
     };
-    statements().into_iter().map(|o| (o.name, o.help, o.value, o.words, group(o.group))).collect()
+    option_descriptions().into_iter().map(|o| (o.name, o.help, o.value, o.words, group(o.group))).collect()
 }
 
 /// Runs the command with the words of a command line, beginning with the program's name, and

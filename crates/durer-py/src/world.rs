@@ -259,7 +259,7 @@ impl World {
         let explain = || render::explain::explain(&self.world, &job, pixel.0, pixel.1);
         let found = install(py, None, explain).map_err(|error| PyValueError::new_err(error.to_string()))?;
         let names = Names { scene: &self.loaded.scene, world: &self.world, files: &self.files };
-        Ok(report::explanation(&report::Subject::Pixel(found), &names).to_string())
+        Ok(report::explanation(&report::Explained::Pixel(found), &names).to_string())
     }
 
     /// Checks the scene, and returns the findings as JSON.

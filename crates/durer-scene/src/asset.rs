@@ -1,7 +1,7 @@
 //! Interface for decoding the mesh, photometric, spectrum and density files that a scene refers to.
 
 use crate::dialect::QuirkSet;
-use crate::light::Profile;
+use crate::light::PhotometricProfile;
 use crate::math::Aabb;
 use crate::medium::DensityGrid;
 use crate::shape::MeshData;
@@ -23,7 +23,7 @@ pub trait AssetDecoder: Sync {
     ) -> Option<MeshData>;
 
     /// Decodes a photometric file (IES, EULUMDAT).
-    fn profile(&self, bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<Profile>;
+    fn profile(&self, bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<PhotometricProfile>;
 
     /// Decodes a measured spectrum into ascending rows of wavelength (nm) and value. `column`
     /// selects one of several spectra by name; `None` selects the first.

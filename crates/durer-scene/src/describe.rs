@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 /// Type of a field in scene files: a number, a vector, a path, a word or rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum FieldKind {
     /// A number.
     Float,
     /// A non-negative integer.
@@ -80,15 +80,15 @@ pub enum Constraint {
     /// Between two numbers, both excluded.
     Between(f32, f32),
     /// Between two numbers, both included.
-    From(f32, f32),
+    Within(f32, f32),
     /// Greater than 0 and at most this.
     UpTo(f32),
     /// Number from 0 to 1.
-    Share,
+    UnitInterval,
     /// Integer that is at most this.
     AtMost(u32),
     /// Integer from 1 to this.
-    Numbered(u32),
+    OneTo(u32),
     /// Minimum and maximum number of rows.
     Rows(usize, usize),
     /// Vector of integers from 1 to this.
@@ -116,21 +116,19 @@ impl Constraint {
             (Constraint::Between(low, high), Value::Float(x)) if *x <= low || *x >= high => {
                 Err(format!("must be more than {low} and less than {high}"))
             }
-            (Constraint::From(low, high), Value::Float(x)) if *x < low || *x > high => {
+            (Constraint::Within(low, high), Value::Float(x)) if *x < low || *x > high => {
                 Err(format!("must be from {low} to {high}"))
             }
             (Constraint::UpTo(high), Value::Float(x)) if *x <= 0.0 || *x > high => {
                 Err(format!("must be more than 0 and at most {high}"))
             }
-            (Constraint::Share, Value::Float(x)) if *x < 0.0 || *x > 1.0 => Err("must be from 0 to 1".into()),
+            (Constraint::UnitInterval, Value::Float(x)) if *x < 0.0 || *x > 1.0 => Err("must be from 0 to 1".into()),
             (Constraint::Counts(most), Value::Vec3(v))
                 if v.to_array().iter().any(|&n| n.fract() != 0.0 || n < 1.0 || n > most as f32) =>
             {
                 Err(format!("must be whole numbers from 1 to {most}"))
             }
-            (Constraint::Numbered(last), Value::Int(i)) if *i < 1 || *i > last => {
-                Err(format!("must be from 1 to {last}"))
-            }
+            (Constraint::OneTo(last), Value::Int(i)) if *i < 1 || *i > last => Err(format!("must be from 1 to {last}")),
             (Constraint::AtMost(most), Value::Int(i)) if *i > most => Err(format!("must be at most {most}")),
             (Constraint::Rows(least, most), Value::Rows(rows)) if rows.len() < least || rows.len() > most => {
                 let wanted = if least == most { least.to_string() } else { format!("{least} to {most}") };
@@ -147,21 +145,21 @@ pub struct Field {
     /// Name in code and JSON.
     pub name: &'static str,
     /// Type of the value.
-    pub kind: Kind,
+    pub kind: FieldKind,
     /// True if a scene must set the field.
     pub required: bool,
     /// Constraint on the value.
-    pub rule: Constraint,
+    pub constraint: Constraint,
     /// Keyword in each dialect.
-    pub spellings: &'static [(&'static str, DialectSet)],
+    pub keywords: &'static [(&'static str, DialectSet)],
     /// Meaning and unit.
     pub doc: &'static str,
 }
 
 impl Field {
     /// Returns the keyword of this field in a dialect, or `None` if the dialect does not have it.
-    pub fn spelling(&self, dialect: Dialect) -> Option<&'static str> {
-        self.spellings.iter().find(|(_, set)| dialect.is_in(*set)).map(|(word, _)| *word)
+    pub fn keyword(&self, dialect: Dialect) -> Option<&'static str> {
+        self.keywords.iter().find(|(_, set)| dialect.is_in(*set)).map(|(word, _)| *word)
     }
 
     /// Returns the value that official programs use if the written one violates the constraint; see
@@ -169,7 +167,7 @@ impl Field {
     /// nothing meaningful with it.
     ///
     /// [`Quirk::AnyValues`]: crate::dialect::Quirk::AnyValues
-    pub fn drawn_anyway(&self, keyword: &str, value: &Value) -> Option<Value> {
+    pub fn quirk_value(&self, keyword: &str, value: &Value) -> Option<Value> {
         match (keyword, self.name, value) {
             // The program squares the radius; no usable radius is smaller than this.
             ("Sphere", "radius", Value::Float(r)) => Some(Value::Float(r.abs().max(f32::MIN_POSITIVE))),
@@ -201,7 +199,7 @@ pub trait Describe: Default {
 /// Rust type that a described field can have, with conversions from and to [`Value`].
 pub trait FieldType: Sized {
     /// Type of the field in scene files.
-    const KIND: Kind;
+    const KIND: FieldKind;
     /// Returns the value; `None` if it is not set.
     fn value(&self) -> Option<Value>;
     /// Converts from a value of this kind.
@@ -211,7 +209,7 @@ pub trait FieldType: Sized {
 macro_rules! field_type {
     ($type:ty, $kind:ident) => {
         impl FieldType for $type {
-            const KIND: Kind = Kind::$kind;
+            const KIND: FieldKind = FieldKind::$kind;
             fn value(&self) -> Option<Value> {
                 Some(Value::$kind(self.clone()))
             }
@@ -231,7 +229,7 @@ field_type!(Vec3, Vec3);
 field_type!(FileName, Path);
 
 impl<const N: usize> FieldType for Vec<[f32; N]> {
-    const KIND: Kind = Kind::Rows(N);
+    const KIND: FieldKind = FieldKind::Rows(N);
     fn value(&self) -> Option<Value> {
         Some(Value::Rows(self.iter().map(|row| row.to_vec()).collect()))
     }
@@ -255,7 +253,7 @@ macro_rules! described_words {
         }
 
         impl $crate::describe::FieldType for $name {
-            const KIND: $crate::describe::Kind = $crate::describe::Kind::Word(&[$first_word $(, $word)*]);
+            const KIND: $crate::describe::FieldKind = $crate::describe::FieldKind::Word(&[$first_word $(, $word)*]);
             fn value(&self) -> Option<$crate::describe::Value> {
                 let word = match self { $name::$first => $first_word, $($name::$variant => $word,)* };
                 Some($crate::describe::Value::Word(word.into()))
@@ -269,7 +267,7 @@ macro_rules! described_words {
 }
 
 impl<T: FieldType> FieldType for Option<T> {
-    const KIND: Kind = T::KIND;
+    const KIND: FieldKind = T::KIND;
     fn value(&self) -> Option<Value> {
         self.as_ref().and_then(T::value)
     }
@@ -307,8 +305,8 @@ macro_rules! described {
                     name: stringify!($field),
                     kind: <$type as $crate::describe::FieldType>::KIND,
                     required: $crate::describe::presence::$presence,
-                    rule: $rule,
-                    spellings: &[$(($word, $fset)),+],
+                    constraint: $rule,
+                    keywords: &[$(($word, $fset)),+],
                     doc: concat!($($fdoc, "\n"),+),
                 },
             )*];
@@ -395,7 +393,7 @@ macro_rules! described_list {
             fn from(x: $type) -> Self { $name::$variant(x) }
         })+
 
-        impl $crate::describe::DescribedList for $name {
+        impl $crate::describe::DescribedKind for $name {
             fn kinds() -> Vec<Self> {
                 vec![$($name::$variant(<$type>::default()),)+]
             }
@@ -422,7 +420,7 @@ pub use {described, described_list, described_words};
 
 /// Scene object that has one of several described types, such as any shape or any light.
 /// [`described_list!`] implements it.
-pub trait DescribedList: Sized {
+pub trait DescribedKind: Sized {
     /// Returns one object of each type, with default values.
     fn kinds() -> Vec<Self>;
     /// Keywords of the object.
@@ -437,7 +435,7 @@ pub trait DescribedList: Sized {
     fn set(&mut self, field: usize, value: Value);
 
     /// True if only Dürer's own dialect has the object.
-    fn is_ours(&self) -> bool {
+    fn is_durer_only(&self) -> bool {
         self.keywords().iter().all(|(_, set)| *set == Dialect::Durer as DialectSet)
     }
 
@@ -459,7 +457,7 @@ pub trait DescribedList: Sized {
 }
 
 /// Every described type is also a list of one type, so the reader needs only one code path.
-impl<T: Describe> DescribedList for T {
+impl<T: Describe> DescribedKind for T {
     fn kinds() -> Vec<Self> {
         vec![T::default()]
     }

@@ -1,12 +1,12 @@
 //! Dialects of the scene language, as one table of differences.
 //!
-//! A [`Dialect`] is the scene language of a year. Its [`Rules`] define the meaning of its words.
-//! Its [`Quirk`]s are the known bugs of that year's official program, and are active only if the
-//! user selects the dialect.
+//! A [`Dialect`] is the scene language of a year. Its [`DialectRules`] define the meaning of its
+//! words. Its [`Quirk`]s are the known bugs of that year's official program, and are active only if
+//! the user selects the dialect.
 
 mod quirk;
 
-use quirk::bits;
+use quirk::quirk_set;
 pub use quirk::{Quirk, QuirkSet};
 use serde::{Deserialize, Serialize};
 
@@ -82,7 +82,7 @@ impl Dialect {
     }
 
     /// Returns the rules of the dialect, including the bugs of the old program.
-    pub fn rules(self) -> &'static Rules {
+    pub fn rules(self) -> &'static DialectRules {
         &TABLE[(self as u8).trailing_zeros() as usize]
     }
 }
@@ -125,14 +125,16 @@ pub enum Falloff {
     /// No attenuation.
     None,
     /// 1 / (a0 + a1 d + a2 d^2), or 1 / (1 + f d^2).
-    OnePlus,
+    #[serde(rename = "OnePlus")]
+    Polynomial,
     /// 1 / (f d^2), with this default for f; `None` means no attenuation by default.
-    Bare(Option<f32>),
+    #[serde(rename = "Bare")]
+    InverseSquare(Option<f32>),
 }
 
 /// Reflected and refracted rays that a dialect traces from a surface, and their weights.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Secondary {
+pub enum SecondaryRays {
     /// Direct lighting only.
     None,
     /// Reflected and refracted rays, weighted by `reflectiveColor` and `transparentColor`; both are
@@ -192,7 +194,7 @@ pub enum Arithmetic {
 
 /// Rules of a dialect: its defaults, the meaning of its keywords, and its quirks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Rules {
+pub struct DialectRules {
     /// Name on the command line.
     pub name: &'static str,
     /// Title, one line.
@@ -214,7 +216,7 @@ pub struct Rules {
     /// Formula of the attenuation of point lights.
     pub falloff: Falloff,
     /// Rays for reflection and refraction.
-    pub secondary: Secondary,
+    pub secondary: SecondaryRays,
     /// Minimum `t` of secondary rays; `None` if rays start at an error-bounded offset instead.
     pub epsilon: Option<f32>,
     /// Arithmetic of camera rays and intersections.
@@ -232,17 +234,19 @@ pub struct Rules {
     pub ambient_textured: bool,
     /// True if a scene without lights has ambient light 1 1 1, regardless of the value in the
     /// scene.
-    pub ambient_alone: bool,
+    #[serde(rename = "ambient_alone")]
+    pub ambient_without_lights: bool,
     /// True if coloured, transparent objects cast coloured shadows.
     pub transparent_shadows: bool,
     /// Quirks of the official program.
-    pub compat: QuirkSet,
+    #[serde(rename = "compat")]
+    pub quirks: QuirkSet,
 }
 
-impl Rules {
+impl DialectRules {
     /// True if a quirk is on.
     pub fn has(&self, compat: Quirk) -> bool {
-        self.compat & compat.bit() != 0
+        self.quirks & compat.bit() != 0
     }
 
     /// True if the picture must equal that of an official program: the rules have an epsilon, and
@@ -254,20 +258,20 @@ impl Rules {
     /// Returns these rules without the old program's bugs, and with Dürer's defaults.
     ///
     /// Used for files if the user did not select a dialect.
-    pub fn without_quirks(&self) -> Rules {
+    pub fn without_quirks(&self) -> DialectRules {
         let ours = Dialect::Durer.rules();
-        Rules {
+        DialectRules {
             size: ours.size,
             shadows: ours.shadows,
             shade_back: ours.shade_back,
-            bounces: if self.bounces > 0 || self.secondary == Secondary::Colors { ours.bounces } else { 0 },
+            bounces: if self.bounces > 0 || self.secondary == SecondaryRays::Colors { ours.bounces } else { 0 },
             file_normals: true,
             epsilon: None,
             arithmetic: Arithmetic::Own,
             srgb_textures: true,
             paths: PathBase::SceneFile,
             ambient_textured: true,
-            compat: 0,
+            quirks: 0,
             ..self.clone()
         }
     }
@@ -275,9 +279,9 @@ impl Rules {
 
 use Quirk::*;
 
-const F03: Rules = Rules { name: "f03", title: "6.837 of 2003", ..F04 };
+const F03: DialectRules = DialectRules { name: "f03", title: "6.837 of 2003", ..F04 };
 
-const F04: Rules = Rules {
+const F04: DialectRules = DialectRules {
     name: "f04",
     title: "6.837 of Fall 2004",
     size: (100, 100),
@@ -287,8 +291,8 @@ const F04: Rules = Rules {
     mesh_normals: MeshNormals::Flat,
     file_normals: false,
     highlight: Highlight::Blinn,
-    falloff: Falloff::OnePlus,
-    secondary: Secondary::Colors,
+    falloff: Falloff::Polynomial,
+    secondary: SecondaryRays::Colors,
     epsilon: Some(1e-4),
     arithmetic: Arithmetic::Own,
     normals_picture: NormalsPicture::Abs,
@@ -296,9 +300,9 @@ const F04: Rules = Rules {
     srgb_textures: false,
     paths: PathBase::Current,
     ambient_textured: true,
-    ambient_alone: true,
+    ambient_without_lights: true,
     transparent_shadows: false,
-    compat: bits(&[
+    quirks: quirk_set(&[
         BlackBacks,
         ShadedSides,
         ScreenPoint,
@@ -310,15 +314,15 @@ const F04: Rules = Rules {
     ]),
 };
 
-const F12A4: Rules = Rules {
+const F12A4: DialectRules = DialectRules {
     name: "f12a4",
     title: "6.837 of Fall 2012, assignment 4, and TIEA311",
     mesh_normals: MeshNormals::SmoothByArea,
     highlight: Highlight::Phong,
     falloff: Falloff::None,
-    secondary: Secondary::None,
+    secondary: SecondaryRays::None,
     arithmetic: Arithmetic::Of2012,
-    compat: bits(&[
+    quirks: quirk_set(&[
         BorderPixels,
         ShadedSides,
         Stretch,
@@ -337,17 +341,17 @@ const F12A4: Rules = Rules {
     ..F04
 };
 
-const F12A5: Rules = Rules {
+const F12A5: DialectRules = DialectRules {
     name: "f12a5",
     title: "6.837 of Fall 2012, assignment 5",
     bounces: 4,
     mesh_normals: MeshNormals::SmoothAbove(120),
     highlight: Highlight::None,
-    falloff: Falloff::OnePlus,
-    secondary: Secondary::SpecularFresnel,
+    falloff: Falloff::Polynomial,
+    secondary: SecondaryRays::SpecularFresnel,
     epsilon: Some(1e-3),
     ambient_textured: false,
-    compat: bits(&[
+    quirks: quirk_set(&[
         BorderPixels,
         ShadedSides,
         Stretch,
@@ -372,18 +376,18 @@ const F12A5: Rules = Rules {
     ..F12A4
 };
 
-const F16: Rules = Rules {
+const F16: DialectRules = DialectRules {
     name: "f16",
     title: "6.837 of 2016 to 2019",
     mesh_normals: MeshNormals::SmoothByFace,
-    falloff: Falloff::Bare(None),
-    secondary: Secondary::Specular,
+    falloff: Falloff::InverseSquare(None),
+    secondary: SecondaryRays::Specular,
     epsilon: Some(1e-2),
     normals_picture: NormalsPicture::Half,
     depth_picture: DepthPicture::NearBlack,
     paths: PathBase::SceneFile,
     arithmetic: Arithmetic::Of2016,
-    compat: bits(&[
+    quirks: quirk_set(&[
         BorderPixels,
         ShadedSides,
         Stretch,
@@ -408,16 +412,16 @@ const F16: Rules = Rules {
     ..F12A4
 };
 
-const F23: Rules = Rules {
+const F23: DialectRules = DialectRules {
     name: "f23",
     title: "6.837 of 2020 to 2023",
     size: (200, 200),
     mesh_normals: MeshNormals::SmoothByArea,
-    falloff: Falloff::Bare(Some(20.0)),
-    ambient_alone: false,
+    falloff: Falloff::InverseSquare(Some(20.0)),
+    ambient_without_lights: false,
     paths: PathBase::Assets("assets/assignment4"),
     arithmetic: Arithmetic::Of2020,
-    compat: bits(&[
+    quirks: quirk_set(&[
         BorderPixels,
         ShadedSides,
         Stretch,
@@ -443,7 +447,7 @@ const F23: Rules = Rules {
     ..F16
 };
 
-const DURER: Rules = Rules {
+const DURER: DialectRules = DialectRules {
     name: "durer",
     title: "Dürer's own: every word of every year, without the quirks",
     size: (512, 512),
@@ -453,8 +457,8 @@ const DURER: Rules = Rules {
     mesh_normals: MeshNormals::Crease(40.0),
     file_normals: true,
     highlight: Highlight::ByKeyword,
-    falloff: Falloff::OnePlus,
-    secondary: Secondary::ByKeyword,
+    falloff: Falloff::Polynomial,
+    secondary: SecondaryRays::ByKeyword,
     epsilon: None,
     arithmetic: Arithmetic::Own,
     normals_picture: NormalsPicture::Half,
@@ -462,13 +466,13 @@ const DURER: Rules = Rules {
     srgb_textures: true,
     paths: PathBase::SceneFile,
     ambient_textured: true,
-    ambient_alone: true,
+    ambient_without_lights: true,
     transparent_shadows: false,
-    compat: 0,
+    quirks: 0,
 };
 
 /// Rules of all dialects, in the order of the discriminants.
-static TABLE: [Rules; 7] = [F03, F04, F12A4, F12A5, F16, F23, DURER];
+static TABLE: [DialectRules; 7] = [F03, F04, F12A4, F12A5, F16, F23, DURER];
 
 #[cfg(test)]
 mod tests;

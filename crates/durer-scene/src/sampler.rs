@@ -117,7 +117,7 @@ impl SampleId {
     }
 
     /// Returns the identifier of another sample of the same pixel.
-    pub fn of_sample(self, sample: u32) -> Self {
+    pub fn with_sample(self, sample: u32) -> Self {
         SampleId { sample, ..self }
     }
 
@@ -128,7 +128,7 @@ impl SampleId {
 
     /// Returns the sample with other dimensions. `first` is relative to the first dimension that
     /// integrators use.
-    pub fn at(self, first: u32) -> Self {
+    pub fn with_first_dimension(self, first: u32) -> Self {
         SampleId { first: LENS_DIMENSION + 1 + first, ..self }
     }
 
@@ -150,7 +150,7 @@ impl SampleId {
 
     /// Returns a number in [0,1) for a layer, after `depth` bounces.
     pub fn layer(&self, depth: u32, layer: u32) -> f32 {
-        independent(numbered(self.key, self.sample, LAYER_DIMENSIONS + (depth << 8) + layer)).x
+        independent(sample_hash(self.key, self.sample, LAYER_DIMENSIONS + (depth << 8) + layer)).x
     }
 }
 
@@ -177,14 +177,14 @@ const MEDIUM_DIMENSIONS: u32 = 1 << 17;
 pub struct Stream {
     id: SampleId,
     dimension: u32,
-    taken: u32,
+    count: u32,
 }
 
 impl SampleId {
     /// Returns the numbers for a path segment after `depth` bounces. `side` distinguishes segments
     /// from the same point.
     pub fn stream(&self, depth: u32, side: u32) -> Stream {
-        Stream { id: *self, dimension: MEDIUM_DIMENSIONS + 2 * depth + side, taken: 0 }
+        Stream { id: *self, dimension: MEDIUM_DIMENSIONS + 2 * depth + side, count: 0 }
     }
 }
 
@@ -193,11 +193,11 @@ impl Stream {
     /// others are independent.
     pub fn number(&mut self) -> f32 {
         let SampleId { key, sample, .. } = self.id;
-        self.taken += 1;
-        match self.taken {
+        self.count += 1;
+        match self.count {
             1 => Sequence::of(key, self.dimension).point(sample).x,
             2 => Sequence::of(key, self.dimension).point(sample).y,
-            n => unit(mix(numbered(key, sample, self.dimension) ^ u64::from(n)) as u32),
+            n => unit(mix(sample_hash(key, sample, self.dimension) ^ u64::from(n)) as u32),
         }
     }
 
@@ -234,7 +234,7 @@ impl Sequence {
     #[inline(always)]
     fn of(key: u64, dimension: u32) -> Self {
         // One hash is the key of the shuffle, another the keys of both scrambles.
-        Sequence { shuffle: numbered(key, 0, dimension) as u32, scramble: numbered(key, 1, dimension) }
+        Sequence { shuffle: sample_hash(key, 0, dimension) as u32, scramble: sample_hash(key, 1, dimension) }
     }
 
     /// Returns the points of several samples, each in a separate sequence, equal to those of
@@ -278,7 +278,7 @@ fn independent(hash: u64) -> Vec2 {
 
 /// Hashes a seed, a pixel, a sample index and a dimension to 64 evenly mixed bits.
 pub fn hash(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> u64 {
-    numbered(key(seed, x, y), sample, dimension)
+    sample_hash(key(seed, x, y), sample, dimension)
 }
 
 /// Common part of all hashes of a pixel.
@@ -287,7 +287,7 @@ fn key(seed: u64, x: u32, y: u32) -> u64 {
 }
 
 #[inline(always)]
-fn numbered(key: u64, sample: u32, dimension: u32) -> u64 {
+fn sample_hash(key: u64, sample: u32, dimension: u32) -> u64 {
     mix(key ^ (u64::from(sample) | u64::from(dimension) << 32))
 }
 

@@ -26,7 +26,7 @@ impl Digest {
 
     /// Creates an incremental hasher of numbers.
     pub fn hasher() -> Hasher {
-        Hasher { hasher: blake3::Hasher::new(), waiting: Vec::with_capacity(Hasher::BLOCK) }
+        Hasher { hasher: blake3::Hasher::new(), buffer: Vec::with_capacity(Hasher::BLOCK) }
     }
 }
 
@@ -34,7 +34,7 @@ impl Digest {
 #[derive(Debug)]
 pub struct Hasher {
     hasher: blake3::Hasher,
-    waiting: Vec<u8>,
+    buffer: Vec<u8>,
 }
 
 impl Hasher {
@@ -42,23 +42,23 @@ impl Hasher {
     const BLOCK: usize = 1 << 16;
 
     /// Adds 32 bits.
-    pub fn word(&mut self, word: u32) {
-        self.waiting.extend(word.to_le_bytes());
-        if self.waiting.len() >= Hasher::BLOCK {
-            self.hasher.update(&self.waiting);
-            self.waiting.clear();
+    pub fn add_u32(&mut self, word: u32) {
+        self.buffer.extend(word.to_le_bytes());
+        if self.buffer.len() >= Hasher::BLOCK {
+            self.hasher.update(&self.buffer);
+            self.buffer.clear();
         }
     }
 
     /// Adds a count as 64 bits.
-    pub fn count(&mut self, count: u64) {
-        self.word(count as u32);
-        self.word((count >> 32) as u32);
+    pub fn add_u64(&mut self, count: u64) {
+        self.add_u32(count as u32);
+        self.add_u32((count >> 32) as u32);
     }
 
     /// Returns the hash.
     pub fn finish(mut self) -> Digest {
-        self.hasher.update(&self.waiting);
+        self.hasher.update(&self.buffer);
         Digest(self.hasher.finalize().into())
     }
 }
@@ -87,7 +87,7 @@ pub enum SourceError {
         /// Paths that were tried.
         tried: Vec<PathBuf>,
         /// An existing file with a similar name.
-        near: Option<String>,
+        similar: Option<String>,
     },
     /// The file is outside the allowed folders.
     #[error("`{name}` is outside the scene's folder")]
@@ -125,7 +125,7 @@ impl SourceError {
     /// Help text: a similar name, or the option to use.
     pub fn help(&self) -> Option<String> {
         match self {
-            SourceError::Missing { near: Some(near), .. } => Some(format!("did you mean `{near}`?")),
+            SourceError::Missing { similar: Some(near), .. } => Some(format!("did you mean `{near}`?")),
             SourceError::Outside { .. } => {
                 let only = "a scene can only use files in or below its own folder, unless `--allow-outside` is given";
                 Some(only.into())
@@ -229,7 +229,7 @@ pub trait AssetSource: std::fmt::Debug + Sync {
     }
 
     /// Adds a file that was read earlier and has not changed since `stamp` to the record.
-    fn skip_reading(&self, name: &str, _stamp: &Stamp, digest: Digest) {
+    fn record_unchanged(&self, name: &str, _stamp: &Stamp, digest: Digest) {
         self.record().add_digest(name, digest);
     }
 }
@@ -256,8 +256,8 @@ impl AssetSource for MemorySource {
                 Ok(bytes.clone())
             }
             None => {
-                let near = did_you_mean(name, self.files.keys().map(String::as_str)).map(str::to_string);
-                Err(SourceError::Missing { name: name.into(), tried: Vec::new(), near })
+                let similar = did_you_mean(name, self.files.keys().map(String::as_str)).map(str::to_string);
+                Err(SourceError::Missing { name: name.into(), tried: Vec::new(), similar })
             }
         }
     }
@@ -285,8 +285,8 @@ mod tests {
         assert_eq!(source.record().digest_of("cube.obj"), Some(Digest::of(b"v 0 0 0")));
         assert_ne!(source.record().digest(b""), empty);
         match source.read("cubes.obj") {
-            Err(SourceError::Missing { name, near, .. }) => {
-                assert_eq!((name.as_str(), near.as_deref()), ("cubes.obj", Some("cube.obj")));
+            Err(SourceError::Missing { name, similar, .. }) => {
+                assert_eq!((name.as_str(), similar.as_deref()), ("cubes.obj", Some("cube.obj")));
             }
             other => panic!("{other:?}"),
         }

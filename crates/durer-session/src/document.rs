@@ -1,10 +1,10 @@
 //! The text of a scene and its compiled form.
 
-use crate::protocol::{Change, Finding, Place, Severity};
+use crate::protocol::{Finding, Severity, TextEdit, TextPosition};
 use durer::camera::Camera;
 use durer::check::{Subject, check};
 use durer::compile::AssetCache;
-use durer::describe::DescribedList;
+use durer::describe::DescribedKind;
 use durer::diag::{self, Diagnostic, Diagnostics, Files, Span};
 use durer::dialect::Dialect;
 use durer::format::asset_export::{AssetFile, plain};
@@ -37,7 +37,7 @@ pub(crate) struct CompiledDocument {
     loaded: LoadedScene,
     pub world: World,
     /// The camera as written in the text.
-    pub written: Camera,
+    pub text_camera: Camera,
     pub files: Files,
     diagnostics: Diagnostics,
 }
@@ -62,7 +62,7 @@ impl Document {
         let findings = diagnostics.iter().map(|diagnostic| finding(diagnostic, &files)).collect();
         let Some((loaded, world)) = loaded.zip(world) else { return (false, findings) };
         let written = world.camera().clone();
-        self.compiled = Some(CompiledDocument { loaded, world, written, files, diagnostics });
+        self.compiled = Some(CompiledDocument { loaded, world, text_camera: written, files, diagnostics });
         (true, findings)
     }
 
@@ -115,7 +115,7 @@ impl Document {
     pub fn camera_statement(&self) -> Option<(usize, usize)> {
         let compiled = self.compiled.as_ref()?;
         let span = compiled.loaded.scene.camera_span;
-        (span.is_place() && span.file == OWN).then_some(())?;
+        (span.has_position() && span.file == OWN).then_some(())?;
         let rest = self.text()?.get(span.start as usize..)?;
         let mut depth = 0;
         let mut in_comment = false;
@@ -178,15 +178,15 @@ impl CompiledDocument {
     }
 
     /// Returns the place of a span if it lies in the scene's own text.
-    pub fn place(&self, span: Span) -> Option<Place> {
+    pub fn place(&self, span: Span) -> Option<TextPosition> {
         place(&self.files, span)
     }
 }
 
-fn place(files: &Files, span: Span) -> Option<Place> {
-    (span.is_place() && span.file == OWN).then_some(())?;
+fn place(files: &Files, span: Span) -> Option<TextPosition> {
+    (span.has_position() && span.file == OWN).then_some(())?;
     let (line, column) = files.position(span)?;
-    Some(Place { line: line as u32, column: column as u32, start: span.start, end: span.end })
+    Some(TextPosition { line: line as u32, column: column as u32, start: span.start, end: span.end })
 }
 
 fn finding(diagnostic: &Diagnostic, files: &Files) -> Finding {
@@ -207,7 +207,7 @@ fn finding(diagnostic: &Diagnostic, files: &Files) -> Finding {
             .fix
             .iter()
             .filter(|edit| edit.span.file == OWN)
-            .map(|edit| Change { start: edit.span.start, end: edit.span.end, text: edit.text.clone() })
+            .map(|edit| TextEdit { start: edit.span.start, end: edit.span.end, text: edit.text.clone() })
             .collect(),
     }
 }

@@ -1,17 +1,17 @@
 //! Fields of cameras and materials, which a page shows as sliders.
 
 use crate::protocol::FieldState;
-use durer::describe::{Constraint, DescribedList, Field, Value};
+use durer::describe::{Constraint, DescribedKind, Field, Value};
 use durer::dialect::Dialect;
 use durer::math::Vec3;
 
 /// Fields of an item with their values.
-pub(crate) fn field_states(list: &impl DescribedList) -> Vec<FieldState> {
+pub(crate) fn field_states(list: &impl DescribedKind) -> Vec<FieldState> {
     list.fields().iter().enumerate().map(|(i, field)| state(field, list.get(i))).collect()
 }
 
 /// Sets the numbers of the field with the keyword `word` in the scene language.
-pub(crate) fn set_numbers(list: &mut impl DescribedList, word: &str, numbers: &[f32]) -> Result<(), String> {
+pub(crate) fn set_numbers(list: &mut impl DescribedKind, word: &str, numbers: &[f32]) -> Result<(), String> {
     let fields = list.fields();
     let at = fields.iter().position(|field| spelled(field) == word).ok_or_else(|| format!("no field `{word}`"))?;
     let value = match (list.get(at), numbers) {
@@ -20,20 +20,20 @@ pub(crate) fn set_numbers(list: &mut impl DescribedList, word: &str, numbers: &[
         (Some(Value::Float(_)) | None, &[x]) => Value::Float(x),
         _ => return Err(format!("`{word}` takes a different number or type of values")),
     };
-    fields[at].rule.validate(&value).map_err(|wrong| format!("`{word}` {wrong}"))?;
+    fields[at].constraint.validate(&value).map_err(|wrong| format!("`{word}` {wrong}"))?;
     list.set(at, value);
     Ok(())
 }
 
 fn spelled(field: &Field) -> &'static str {
-    field.spelling(Dialect::Durer).unwrap_or(field.name)
+    field.keyword(Dialect::Durer).unwrap_or(field.name)
 }
 
 fn state(field: &Field, value: Option<Value>) -> FieldState {
-    let (least, most) = match field.rule {
-        Constraint::Between(low, high) | Constraint::From(low, high) => (Some(low), Some(high)),
+    let (least, most) = match field.constraint {
+        Constraint::Between(low, high) | Constraint::Within(low, high) => (Some(low), Some(high)),
         Constraint::Positive | Constraint::NonNegative => (Some(0.0), None),
-        Constraint::Share => (Some(0.0), Some(1.0)),
+        Constraint::UnitInterval => (Some(0.0), Some(1.0)),
         Constraint::UpTo(most) => (Some(0.0), Some(most)),
         _ => (None, None),
     };

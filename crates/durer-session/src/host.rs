@@ -1,7 +1,7 @@
 //! Several sessions on one connection.
 
-use crate::protocol::{Answer, Ask, Event, Request};
-use crate::session::{Clock, Session, Start};
+use crate::protocol::{Event, EventMessage, Request, RequestMessage};
+use crate::session::{Clock, Session, SessionFiles};
 use std::collections::BTreeMap;
 
 /// Maximum number of sessions. It is limited because each holds a scene in memory.
@@ -10,7 +10,7 @@ const MAX_SESSIONS: usize = 64;
 /// The sessions of one connection from a page: passes messages to them and shares the time between
 /// them.
 pub struct Host {
-    start: Start,
+    start: SessionFiles,
     clock: Clock,
     sessions: BTreeMap<u32, Session>,
     /// Session that received the last request. Its coarse pictures have priority.
@@ -21,37 +21,38 @@ pub struct Host {
 
 impl Host {
     /// Creates a host without sessions.
-    pub fn new(start: Start, clock: Clock) -> Self {
+    pub fn new(start: SessionFiles, clock: Clock) -> Self {
         Host { start, clock, sessions: BTreeMap::new(), latest: 0, worked: 0 }
     }
 
-    /// Answers a message: the JSON of an [`Ask`].
+    /// Answers a message: the JSON of a [`RequestMessage`].
     pub fn receive(&mut self, message: &str, send: &mut dyn FnMut(Vec<u8>)) {
-        let Ask { session, id, request } = match serde_json::from_str(message) {
+        let RequestMessage { session, id, request } = match serde_json::from_str(message) {
             Ok(ask) => ask,
             Err(error) => {
                 // Truncate the error, which can quote a long message.
                 let why: String = format!("invalid request: {error}").chars().take(200).collect();
                 let event = Event::Refused { why };
-                return send(Answer { session: 0, id: 0, event }.encode(&[]));
+                return send(EventMessage { session: 0, id: 0, event }.encode(&[]));
             }
         };
         if matches!(request, Request::Close) {
             self.sessions.remove(&session);
             return;
         }
-        let mut say = |(event, payload): (Event, Vec<u8>)| send(Answer { session, id, event }.encode(&payload));
+        let mut send_message =
+            |(event, payload): (Event, Vec<u8>)| send(EventMessage { session, id, event }.encode(&payload));
         if !self.sessions.contains_key(&session) && self.sessions.len() >= MAX_SESSIONS {
-            return say((Event::Refused { why: "too many sessions are open".into() }, Vec::new()));
+            return send_message((Event::Refused { why: "too many sessions are open".into() }, Vec::new()));
         }
         self.latest = session;
         let (start, clock) = (&self.start, &self.clock);
         let found = self.sessions.entry(session).or_insert_with(|| Session::new(start.clone(), clock.clone()));
         #[cfg(feature = "fs")]
         if let Request::Edit { text } = &request {
-            found.take_over(text);
+            found.accept_disk_version(text);
         }
-        found.handle(request, &mut say);
+        found.handle(request, &mut send_message);
     }
 
     /// Returns true if there is work for [`Host::step`].
@@ -65,7 +66,7 @@ impl Host {
         let Some(session) = self.next() else { return };
         self.worked = session;
         let Some(found) = self.sessions.get_mut(&session) else { return };
-        found.step(&mut |(event, payload)| send(Answer { session, id: 0, event }.encode(&payload)));
+        found.step(&mut |(event, payload)| send(EventMessage { session, id: 0, event }.encode(&payload)));
     }
 
     /// Returns the session that works next.
@@ -78,9 +79,9 @@ impl Host {
 
     /// Notifies the page of scene files that have changed on disk.
     #[cfg(feature = "fs")]
-    pub fn look_at_disk(&mut self, send: &mut dyn FnMut(Vec<u8>)) {
+    pub fn check_disk(&mut self, send: &mut dyn FnMut(Vec<u8>)) {
         for (&session, found) in &mut self.sessions {
-            found.look_at_disk(&mut |(event, payload)| send(Answer { session, id: 0, event }.encode(&payload)));
+            found.check_disk(&mut |(event, payload)| send(EventMessage { session, id: 0, event }.encode(&payload)));
         }
     }
 }

@@ -1,11 +1,11 @@
 //! Keywords of the scene language, for completion and hints.
 
-use crate::protocol::{Word, WordField};
+use crate::protocol::{Keyword, KeywordField};
 use durer::dialect::Dialect;
 use durer::format::course::reference::{Entry, FieldEntry, Spelling, entries};
 
 /// Returns the keywords of Dürer's own dialect.
-pub(crate) fn words() -> Vec<Word> {
+pub(crate) fn words() -> Vec<Keyword> {
     entries().iter().filter_map(word).collect()
 }
 
@@ -13,8 +13,8 @@ fn own(words: &[Spelling]) -> Option<&'static str> {
     words.iter().find(|(_, dialects)| Dialect::Durer.is_in(*dialects)).map(|(word, _)| *word)
 }
 
-fn word(entry: &Entry) -> Option<Word> {
-    Some(Word {
+fn word(entry: &Entry) -> Option<Keyword> {
+    Some(Keyword {
         word: own(&entry.keywords)?.into(),
         chapter: entry.chapter.title().into(),
         doc: entry.doc.trim().into(),
@@ -23,8 +23,8 @@ fn word(entry: &Entry) -> Option<Word> {
     })
 }
 
-fn field(field: &FieldEntry) -> Option<WordField> {
-    Some(WordField {
+fn field(field: &FieldEntry) -> Option<KeywordField> {
+    Some(KeywordField {
         word: own(&field.words)?.into(),
         value: field.value.replace('`', ""),
         default: field.default.clone(),

@@ -5,12 +5,12 @@
 //! [`protocol`] and are independent of sockets and browsers: `durer-live` and `durer-wasm`
 //! transport the messages.
 
-mod candidates;
 mod display;
 mod document;
 mod export;
 mod fields;
 mod host;
+mod intersection_tests;
 mod language;
 mod model;
 mod motion;
@@ -19,8 +19,8 @@ pub mod protocol;
 mod rows;
 mod session;
 mod terms;
+mod traversal;
 mod viewer;
-mod walk;
 
 pub use host::Host;
-pub use session::{Clock, Session, Start};
+pub use session::{Clock, Session, SessionFiles};

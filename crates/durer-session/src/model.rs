@@ -3,40 +3,40 @@
 
 use crate::document::CompiledDocument;
 use crate::fields::{field_states, set_numbers};
-use crate::protocol::{FieldState, MaterialState, TreeNode};
-use durer::describe::DescribedList;
+use crate::protocol::{FieldState, MaterialState, SceneNode};
+use durer::describe::DescribedKind;
 use durer::dialect::Dialect;
-use durer::scene::{Material, Node, Object, Scene};
+use durer::scene::{Material, Object, ObjectKind, Scene};
 
 /// Maximum number of nodes, and of materials, that are listed.
 const MAX_NODES: usize = 2000;
 
 /// Returns the objects of a scene as a tree of groups.
-pub(crate) fn nodes(compiled: &CompiledDocument) -> Vec<TreeNode> {
+pub(crate) fn nodes(compiled: &CompiledDocument) -> Vec<SceneNode> {
     let mut left = MAX_NODES;
     let root = compiled.scene().root.iter().flat_map(|group| &group.objects);
     root.map_while(|object| node(compiled, object, &mut left)).collect()
 }
 
 /// Returns an object with its subtree; `None` if the maximum number of nodes is reached.
-fn node(compiled: &CompiledDocument, object: &Object, left: &mut usize) -> Option<TreeNode> {
+fn node(compiled: &CompiledDocument, object: &Object, left: &mut usize) -> Option<SceneNode> {
     *left = left.checked_sub(1)?;
     let below: &[Object] = match &object.node {
-        Node::Group(group) => &group.objects,
-        Node::Transform(_, inner) => std::slice::from_ref(inner),
-        Node::Solid(_, parts) => parts,
+        ObjectKind::Group(group) => &group.objects,
+        ObjectKind::Transform(_, inner) => std::slice::from_ref(inner),
+        ObjectKind::Solid(_, parts) => parts,
         _ => &[],
     };
     let name = match &object.node {
-        Node::Group(_) => "Group".into(),
-        Node::Transform(..) => "Transform".into(),
-        Node::Solid(operation, _) => operation.keyword().into(),
-        Node::Primitive(shape) => shape.own_keyword().into(),
-        Node::Mesh(mesh) => mesh.obj_file.path.clone(),
-        Node::Voxels(..) => "VoxelGrid".into(),
-        Node::HeightField(_) => "HeightField".into(),
+        ObjectKind::Group(_) => "Group".into(),
+        ObjectKind::Transform(..) => "Transform".into(),
+        ObjectKind::Solid(operation, _) => operation.keyword().into(),
+        ObjectKind::Primitive(shape) => shape.own_keyword().into(),
+        ObjectKind::Mesh(mesh) => mesh.obj_file.path.clone(),
+        ObjectKind::Voxels(..) => "VoxelGrid".into(),
+        ObjectKind::HeightField(_) => "HeightField".into(),
     };
-    Some(TreeNode {
+    Some(SceneNode {
         name,
         place: compiled.place(object.span),
         material: object.material,
@@ -55,7 +55,7 @@ pub(crate) fn materials(compiled: &CompiledDocument) -> Vec<MaterialState> {
 }
 
 fn described(material: &Material) -> (&'static str, Vec<FieldState>) {
-    fn of(list: &impl DescribedList) -> (&'static str, Vec<FieldState>) {
+    fn of(list: &impl DescribedKind) -> (&'static str, Vec<FieldState>) {
         (list.keyword(Dialect::Durer), field_states(list))
     }
     match material {

@@ -3,7 +3,7 @@
 use crate::fields::{field_states, set_numbers};
 use crate::protocol::{CameraState, Motion};
 use durer::camera::{Camera, Projection};
-use durer::describe::{DescribedList, Value};
+use durer::describe::{DescribedKind, Value};
 use durer::dialect::Dialect;
 use durer::math::{Aabb, Vec3};
 use durer::world::World;
@@ -122,7 +122,7 @@ pub(crate) fn state(world: &World, written: &Camera, dialect: Dialect, distance:
 /// Returns the camera as a statement of the scene language.
 pub(crate) fn statement(camera: &Camera, dialect: Dialect) -> String {
     let fields = camera.fields().iter().enumerate().filter_map(|(i, field)| {
-        let word = field.spelling(dialect)?;
+        let word = field.keyword(dialect)?;
         let value = match camera.get(i)? {
             Value::Float(x) => x.to_string(),
             Value::Int(i) => i.to_string(),

@@ -1,7 +1,7 @@
 //! Line drawings of a scene, for the page's 3D view.
 
 use crate::document::CompiledDocument;
-use crate::protocol::{Lamp, Outline};
+use crate::protocol::{LightMarker, Outline};
 use durer::math::Vec3;
 use durer::render::explain::Names;
 use durer::report::{LightMark, light_marks, object_outlines};
@@ -18,7 +18,9 @@ pub(crate) fn outlines(names: &Names) -> Vec<Outline> {
 }
 
 /// Returns the marks of the lights, with their names.
-pub(crate) fn lamps(compiled: &CompiledDocument) -> Vec<Lamp> {
+pub(crate) fn light_markers(compiled: &CompiledDocument) -> Vec<LightMarker> {
     let marks = light_marks(&compiled.world).take(MAX_LIGHTS).enumerate();
-    marks.map(|(i, LightMark { at, is_far })| Lamp { at: at.into(), far: is_far, name: compiled.light(i) }).collect()
+    marks
+        .map(|(i, LightMark { at, is_far })| LightMarker { at: at.into(), far: is_far, name: compiled.light(i) })
+        .collect()
 }

@@ -1,15 +1,16 @@
 //! Messages between a page and a session.
 //!
-//! A page sends [`Ask`]s as JSON and receives [`Answer`]s. An answer consists of the length of its
-//! JSON (four bytes, little endian), the JSON, and a payload of bytes: pixels or a file. The tests
-//! of this crate generate the TypeScript types in `web/src/protocol.ts` from these.
+//! A page sends [`RequestMessage`]s as JSON and receives [`EventMessage`]s. An answer consists of
+//! the length of its JSON (four bytes, little endian), the JSON, and a payload of bytes: pixels or
+//! a file. The tests of this crate generate the TypeScript types in `web/src/protocol.ts` from
+//! these.
 
-mod account;
-mod ask;
+mod explanation;
+mod ray;
 mod scene;
 
-pub use account::*;
-pub use ask::*;
+pub use explanation::*;
+pub use ray::*;
 pub use scene::*;
 use serde::{Deserialize, Serialize};
 #[cfg(test)]
@@ -18,7 +19,7 @@ use ts_rs::TS;
 /// A message from a page to a session: a request, with the number of the session.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Ask {
+pub struct RequestMessage {
     /// Number of the session, chosen by the page. A new number opens a new session.
     pub session: u32,
     /// Number of the request, from 1.
@@ -30,7 +31,7 @@ pub struct Ask {
 /// A message from a session to a page: an event, with the number of the request that it answers.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Answer {
+pub struct EventMessage {
     /// Number of the session.
     pub session: u32,
     /// Number of the request that it answers; 0 if unsolicited.
@@ -245,18 +246,18 @@ pub enum Event {
         /// True if the scene can be saved.
         saves: bool,
         /// Pictures that can be shown.
-        pictures: Vec<Choice>,
+        pictures: Vec<NamedChoice>,
         /// Tone curves.
         tones: Vec<String>,
         /// Integrators.
-        integrators: Vec<Choice>,
+        integrators: Vec<NamedChoice>,
     },
     /// The text of the scene was read and compiled.
     Scene {
         /// Findings of the parser and the compiler.
         findings: Vec<Finding>,
         /// Contents of the scene; `None` after errors, in which case the previous picture remains.
-        contents: Option<Contents>,
+        contents: Option<SceneSummary>,
         /// Time to read and compile it, in milliseconds.
         ms: f64,
     },
@@ -273,32 +274,32 @@ pub enum Event {
     /// A picture to show. The payload holds four bytes per pixel: red, green, blue, coverage.
     Picture {
         /// Description of the payload.
-        head: PictureHead,
+        head: PictureInfo,
     },
     /// Explanation of a pixel's colour.
     Explained {
         /// The pixel.
-        pixel: PixelAccount,
+        pixel: PixelExplanation,
     },
     /// Intersection tests of a ray with each object.
     Cast {
         /// The results.
-        cast: CastAccount,
+        cast: CastResult,
     },
     /// Camera rays, row by row; `None` for a pixel without a ray.
     Rays {
         /// The rays.
-        rays: Vec<Option<RayAccount>>,
+        rays: Vec<Option<CameraRay>>,
     },
     /// Traversal of an acceleration structure by a ray.
     Walk {
         /// The traversal.
-        walk: WalkAccount,
+        walk: Traversal,
     },
     /// Bounding boxes of the BVHs.
     Boxes {
         /// Boxes, level by level, up to a limit.
-        boxes: Vec<BoxState>,
+        boxes: Vec<TreeBox>,
     },
     /// Values of pixels, three per pixel, row by row; `None` for infinity and NaN.
     Values {
@@ -316,7 +317,7 @@ pub enum Event {
     /// Groups and materials of the scene.
     Tree {
         /// The objects.
-        nodes: Vec<TreeNode>,
+        nodes: Vec<SceneNode>,
         /// The materials, by number.
         materials: Vec<MaterialState>,
     },
@@ -337,12 +338,12 @@ pub enum Event {
         /// Outlines, one per object, up to a limit.
         outlines: Vec<Outline>,
         /// Lights that have a position or a direction.
-        lamps: Vec<Lamp>,
+        lamps: Vec<LightMarker>,
     },
     /// Keywords of the language.
     Language {
         /// Keywords that begin a statement.
-        words: Vec<Word>,
+        words: Vec<Keyword>,
     },
     /// The session has changed the text, or the file has changed on disk.
     Text {
@@ -367,7 +368,7 @@ pub enum Event {
     },
 }
 
-impl Answer {
+impl EventMessage {
     /// Encodes the message with its payload.
     pub fn encode(&self, payload: &[u8]) -> Vec<u8> {
         // Serialization of these types cannot fail.

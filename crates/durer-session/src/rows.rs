@@ -1,6 +1,6 @@
 //! Rows of explanations: formulas with their numbers.
 
-use crate::protocol::Row;
+use crate::protocol::FormulaRow;
 use glam::DVec3;
 
 /// Formats a number with five significant digits.
@@ -29,8 +29,8 @@ pub(crate) fn factor(x: f64) -> String {
 }
 
 /// Returns a row with a scalar result.
-pub(crate) fn row(name: &str, formula: &str, numbers: impl Into<String>, value: f64) -> Row {
-    Row {
+pub(crate) fn row(name: &str, formula: &str, numbers: impl Into<String>, value: f64) -> FormulaRow {
+    FormulaRow {
         name: name.into(),
         formula: formula.into(),
         numbers: numbers.into(),
@@ -40,6 +40,12 @@ pub(crate) fn row(name: &str, formula: &str, numbers: impl Into<String>, value: 
 }
 
 /// Returns a row with a vector result.
-pub(crate) fn vector_row(name: &str, formula: &str, numbers: impl Into<String>, value: impl Into<DVec3>) -> Row {
-    Row { name: name.into(), formula: formula.into(), numbers: numbers.into(), result: vector(value), value: None }
+pub(crate) fn vector_row(name: &str, formula: &str, numbers: impl Into<String>, value: impl Into<DVec3>) -> FormulaRow {
+    FormulaRow {
+        name: name.into(),
+        formula: formula.into(),
+        numbers: numbers.into(),
+        result: vector(value),
+        value: None,
+    }
 }

@@ -4,12 +4,14 @@ mod disk;
 
 use crate::document::{CompiledDocument, Document};
 use crate::motion::{distance, moved, set_field, state};
-use crate::outlines::{lamps, outlines};
-use crate::protocol::{CameraState, Choice, Contents, Event, Finding, JobState, Motion, Request, Structure, Thing};
+use crate::outlines::{light_markers, outlines};
+use crate::protocol::{
+    CameraState, Event, Finding, JobState, Motion, NamedChoice, Request, SceneItem, SceneSummary, Structure,
+};
 use crate::viewer::{PictureMessage, Viewer};
-use crate::{candidates, language, model, terms, walk};
+use crate::{intersection_tests, language, model, terms, traversal};
 use durer::camera::{Camera, PerspectiveCamera, Projection};
-use durer::describe::DescribedList;
+use durer::describe::DescribedKind;
 use durer::film::aov::AOVS;
 use durer::image::Tone;
 use durer::integrator::IntegratorKind;
@@ -27,13 +29,13 @@ type NamedBytes = (String, Arc<[u8]>);
 pub type Clock = Arc<dyn Fn() -> f64 + Send + Sync>;
 
 /// Maximum number of objects that are listed.
-const MAX_THINGS: usize = 2000;
+const MAX_ITEMS: usize = 2000;
 /// Maximum size of a text or file from a page, in bytes.
 const MAX_BYTES: usize = 256 << 20;
 
 /// Files of the server with which new sessions start: a scene file and a lesson.
 #[derive(Clone, Debug, Default)]
-pub struct Start {
+pub struct SessionFiles {
     /// Scene file that is opened and saved if a page does not name one.
     pub file: Option<PathBuf>,
     /// A teacher's lesson in Markdown. The scenes that it names are in the same folder.
@@ -45,7 +47,7 @@ pub(crate) type Message = (Event, Vec<u8>);
 
 /// An interactive session: answers requests about one scene and renders its picture progressively.
 pub struct Session {
-    start: Start,
+    start: SessionFiles,
     clock: Clock,
     document: Option<Document>,
     viewer: Viewer,
@@ -68,7 +70,7 @@ pub struct Session {
 
 impl Session {
     /// Creates a session without a scene.
-    pub fn new(start: Start, clock: Clock) -> Self {
+    pub fn new(start: SessionFiles, clock: Clock) -> Self {
         Session {
             start,
             clock,
@@ -97,14 +99,14 @@ impl Session {
     }
 
     /// Answers a request. Pictures are rendered later, by [`Session::step`].
-    pub(crate) fn handle(&mut self, request: Request, say: &mut dyn FnMut(Message)) {
-        if let Err(why) = self.answer(request, say) {
-            say((Event::Refused { why }, Vec::new()));
+    pub(crate) fn handle(&mut self, request: Request, send_message: &mut dyn FnMut(Message)) {
+        if let Err(why) = self.answer(request, send_message) {
+            send_message((Event::Refused { why }, Vec::new()));
         }
     }
 
-    fn answer(&mut self, request: Request, say: &mut dyn FnMut(Message)) -> Result<(), String> {
-        let mut send = |event| say((event, Vec::new()));
+    fn answer(&mut self, request: Request, send_message: &mut dyn FnMut(Message)) -> Result<(), String> {
+        let mut send = |event| send_message((event, Vec::new()));
         match request {
             Request::Open { name, text } => self.open(name, text, &mut send)?,
             Request::Give { name, base64, opens } => self.give(name, &base64, opens, &mut send)?,
@@ -119,7 +121,7 @@ impl Session {
                     return Err(format!("unknown picture `{picture}`"));
                 }
                 (self.viewer.picture, self.viewer.stops, self.viewer.tone) = (picture, stops.clamp(-40.0, 40.0), tone);
-                if same { self.show_again(say) } else { self.restart() }
+                if same { self.show_again(send_message) } else { self.restart() }
             }
             Request::Options { options } => {
                 self.viewer.set_options(&options)?;
@@ -130,7 +132,7 @@ impl Session {
                 let (world, written, far) = {
                     let distance = self.distance;
                     let compiled = self.compiled()?;
-                    (&mut compiled.world, &compiled.written, distance)
+                    (&mut compiled.world, &compiled.text_camera, distance)
                 };
                 let (camera, now) = moved(world, written, far, motion);
                 world.look_through(camera);
@@ -163,14 +165,14 @@ impl Session {
                 send(explained);
             }
             Request::Rays { columns, rows, row } => {
-                let rays = walk::rays(&self.compiled()?.world, [columns, rows], row)?;
+                let rays = traversal::rays(&self.compiled()?.world, [columns, rows], row)?;
                 send(Event::Rays { rays });
             }
             Request::Walk { structure, origin, direction } => {
                 let walk = self.walk(structure, origin, direction)?;
                 send(walk);
             }
-            Request::Boxes => send(Event::Boxes { boxes: walk::boxes(&self.compiled()?.world) }),
+            Request::Boxes => send(Event::Boxes { boxes: traversal::boxes(&self.compiled()?.world) }),
             Request::Values { left, top, width, height } => {
                 let values = self.viewer.values([left, top, width, height])?;
                 send(Event::Values { left, top, width, height, values });
@@ -181,7 +183,7 @@ impl Session {
             }
             Request::Denoise { on } => {
                 self.viewer.denoises = on;
-                self.show_again(say);
+                self.show_again(send_message);
             }
             Request::Epsilon { epsilon } => {
                 if epsilon.is_some_and(|epsilon| !(0.0..=1e6).contains(&epsilon)) {
@@ -206,7 +208,7 @@ impl Session {
             Request::Pack => {
                 let (names, files): (Vec<_>, Vec<_>) = self.pack()?.into_iter().unzip();
                 let sizes = files.iter().map(|bytes| bytes.len() as u32).collect();
-                say((Event::Packed { names, sizes }, files.concat()));
+                send_message((Event::Packed { names, sizes }, files.concat()));
             }
             Request::Lesson => {
                 let text = self.start.lesson.as_deref().map(read).transpose()?;
@@ -215,17 +217,17 @@ impl Session {
             }
             Request::Cast { origin, direction, t_max } => {
                 let ray = Ray { t_max: t_max.unwrap_or(f32::INFINITY), ..ray_of(origin, direction)? };
-                let cast = candidates::cast(self.compiled()?, &ray);
+                let cast = intersection_tests::cast(self.compiled()?, &ray);
                 send(Event::Cast { cast });
             }
             Request::Outlines => {
                 let compiled = self.compiled()?;
-                send(Event::Outlines { outlines: outlines(&compiled.names()), lamps: lamps(compiled) });
+                send(Event::Outlines { outlines: outlines(&compiled.names()), lamps: light_markers(compiled) });
             }
             Request::Language => send(Event::Language { words: language::words() }),
             Request::Export { name } => {
                 let bytes = self.viewer.export(&name)?;
-                say((Event::Exported { name }, bytes));
+                send_message((Event::Exported { name }, bytes));
             }
             Request::Save { force } => {
                 let saved = self.save(force)?;
@@ -246,11 +248,11 @@ impl Session {
         let (path, bytes) = match (text, &self.start.file) {
             (Some(text), _) => {
                 self.on_disk = false;
-                (self.beside(&name), text.into_bytes().into())
+                (self.path_of(&name), text.into_bytes().into())
             }
             (None, _) if !name.is_empty() => {
                 self.on_disk = false;
-                let path = self.beside(&name);
+                let path = self.path_of(&name);
                 let bytes = read(&path)?;
                 (path, bytes)
             }
@@ -271,7 +273,7 @@ impl Session {
 
     /// Path of a scene that a page has sent. It is always in the folder of the server's file, so
     /// the scene can only refer to files in that folder.
-    fn beside(&self, name: &str) -> PathBuf {
+    fn path_of(&self, name: &str) -> PathBuf {
         let own = self.start.file.as_deref().or(self.start.lesson.as_deref());
         let folder = own.and_then(Path::parent).unwrap_or(Path::new(""));
         let name = name.rsplit(['/', '\\']).next().filter(|name| !["", ".", ".."].contains(name));
@@ -283,7 +285,7 @@ impl Session {
         let mut document = Document::new(path, bytes);
         document.options.in_memory = in_memory;
         self.viewer.forget();
-        let choice = |(name, doc): (&str, &str)| Choice { name: name.into(), doc: doc.into() };
+        let choice = |(name, doc): (&str, &str)| NamedChoice { name: name.into(), doc: doc.into() };
         let name = document.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         send(Event::Opened {
             version: env!("CARGO_PKG_VERSION").into(),
@@ -308,7 +310,7 @@ impl Session {
         let bytes: Arc<[u8]> = decode(base64).ok_or_else(|| format!("the upload of `{name}` is incomplete"))?.into();
         if opens {
             self.on_disk = false;
-            let path = self.beside(&name);
+            let path = self.path_of(&name);
             return self.begin(path, bytes, send);
         }
         let document = self.document.get_or_insert_with(|| Document::new("scene.txt".into(), Arc::from([])));
@@ -331,7 +333,7 @@ impl Session {
         let start = (self.clock)();
         let document = self.document.as_mut().ok_or("no scene is open")?;
         let before = document.compiled.as_ref().filter(|_| !is_new);
-        let held = before.map(|compiled| (compiled.written.clone(), compiled.world.camera().clone()));
+        let held = before.map(|compiled| (compiled.text_camera.clone(), compiled.world.camera().clone()));
         let (ok, findings) = document.compile();
         let ms = (self.clock)() - start;
         if !ok {
@@ -339,7 +341,7 @@ impl Session {
             return Ok(());
         }
         if let (Some((written, now)), Some(compiled)) = (held, &mut document.compiled) {
-            if compiled.written == written && now != written {
+            if compiled.text_camera == written && now != written {
                 compiled.world.look_through(now);
             } else {
                 self.distance = distance(&compiled.world);
@@ -358,13 +360,13 @@ impl Session {
         Ok(())
     }
 
-    fn contents(&mut self) -> Result<Contents, String> {
+    fn contents(&mut self) -> Result<SceneSummary, String> {
         let far = self.distance;
         let document = self.document.as_ref().ok_or("no scene is open")?;
         let compiled = document.compiled.as_ref().ok_or("the scene has errors")?;
         let (world, names) = (&compiled.world, compiled.names());
-        let thing = |name: String, span| Thing { name, place: compiled.place(span) };
-        let objects = world.objects().iter().enumerate().take(MAX_THINGS);
+        let thing = |name: String, span| SceneItem { name, place: compiled.place(span) };
+        let objects = world.objects().iter().enumerate().take(MAX_ITEMS);
         let lights = compiled.scene().lights.iter().flatten().enumerate();
         let triangles = world.objects().iter().map(|object| match &object.geometry {
             Geometry::Mesh(tree) => tree.mesh.len() as f64,
@@ -373,9 +375,9 @@ impl Session {
         let bounds = world.bounds();
         let job = self.viewer.job_of(compiled, "color")?;
         let natural = durer::RenderJob::default().resolve(&compiled.job_context(), None)?;
-        Ok(Contents {
+        Ok(SceneSummary {
             dialect: compiled.dialect().name().into(),
-            camera: state(world, &compiled.written, compiled.dialect(), far),
+            camera: state(world, &compiled.text_camera, compiled.dialect(), far),
             objects: objects.map(|(i, object)| thing(names.short_object(i as u32), object.span)).collect(),
             object_count: world.objects().len() as u32,
             triangles: triangles.sum(),
@@ -389,7 +391,7 @@ impl Session {
                 integrator: job.method.name().into(),
                 samples: job.sampling.samples(),
                 bounces: job.settings.bounces,
-                words: self.viewer.spelled(compiled, &job),
+                words: self.viewer.argument_list(compiled, &job),
             },
         })
     }
@@ -397,7 +399,7 @@ impl Session {
     fn place(&mut self, camera: Camera) -> Result<(), String> {
         for (i, field) in camera.fields().iter().enumerate() {
             if let Some(value) = camera.get(i) {
-                field.rule.validate(&value).map_err(|wrong| format!("`{}` {wrong}", field.name))?;
+                field.constraint.validate(&value).map_err(|wrong| format!("`{}` {wrong}", field.name))?;
             }
         }
         camera.validate()?;
@@ -415,7 +417,7 @@ impl Session {
     fn camera(&mut self) -> Result<CameraState, String> {
         let far = self.distance;
         let compiled = self.compiled()?;
-        Ok(state(&compiled.world, &compiled.written, compiled.dialect(), far))
+        Ok(state(&compiled.world, &compiled.text_camera, compiled.dialect(), far))
     }
 
     fn write_camera(&mut self) -> Result<String, String> {
@@ -431,12 +433,12 @@ impl Session {
         let compiled = document.compiled.as_ref().ok_or("the scene has errors")?;
         let job = self.viewer.job_of(compiled, "color")?;
         let explanation = explain_of(&compiled.world, &job, (x, y), None).map_err(|error| error.to_string())?;
-        Ok(Event::Explained { pixel: terms::account(compiled, &job, &explanation, sample) })
+        Ok(Event::Explained { pixel: terms::explain(compiled, &job, &explanation, sample) })
     }
 
     fn walk(&mut self, structure: Structure, origin: [f32; 3], direction: [f32; 3]) -> Result<Event, String> {
         let ray = ray_of(origin, direction)?;
-        Ok(Event::Walk { walk: walk::walk(&self.compiled()?.world, structure, &ray)? })
+        Ok(Event::Walk { walk: traversal::traverse(&self.compiled()?.world, structure, &ray)? })
     }
 
     /// Converts a model to text with asset files. From then on, the text is edited.
@@ -466,10 +468,10 @@ impl Session {
     }
 
     /// Shows a finished picture again with different display settings.
-    fn show_again(&mut self, say: &mut dyn FnMut(Message)) {
+    fn show_again(&mut self, send_message: &mut dyn FnMut(Message)) {
         let compiled = self.document.as_ref().and_then(|document| document.compiled.as_ref());
         match compiled.and_then(|compiled| self.viewer.again(compiled, &*self.clock)) {
-            Some(shown) => say(picture(shown)),
+            Some(shown) => send_message(picture(shown)),
             None => self.restart(),
         }
     }
@@ -484,24 +486,24 @@ impl Session {
     }
 
     /// Works for a few milliseconds.
-    pub(crate) fn step(&mut self, say: &mut dyn FnMut(Message)) {
+    pub(crate) fn step(&mut self, send_message: &mut dyn FnMut(Message)) {
         let Some(compiled) = self.document.as_ref().and_then(|document| document.compiled.as_ref()) else {
-            self.viewer.rest();
+            self.viewer.stop();
             self.unchecked = false;
             return;
         };
         if self.viewer.is_busy() {
             match self.viewer.step(compiled, &*self.clock) {
-                Ok(Some(shown)) => say(picture(shown)),
+                Ok(Some(shown)) => send_message(picture(shown)),
                 Ok(None) => {}
-                Err(why) => say((Event::Refused { why }, Vec::new())),
+                Err(why) => send_message((Event::Refused { why }, Vec::new())),
             }
         } else if std::mem::take(&mut self.unchecked) {
             let findings: Vec<Finding> = match self.viewer.job_of(compiled, "color") {
                 Ok(job) => compiled.check(&job),
                 Err(_) => return,
             };
-            say((Event::Checked { findings }, Vec::new()));
+            send_message((Event::Checked { findings }, Vec::new()));
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Explains the radiance of a pixel as a tree of terms, each with its formula and numbers.
 
 use crate::document::CompiledDocument;
-use crate::protocol::{PixelAccount, Role, Row, Segment, Term};
+use crate::protocol::{FormulaRow, PixelExplanation, Segment, SegmentKind, Term};
 use crate::rows::{factor, number, row, vector, vector_row};
 use durer::diag::Span;
 use durer::image::Transfer;
@@ -14,12 +14,12 @@ use durer::world::emitters::LightId;
 
 /// Explains a pixel by one of its samples. If `sample` is `None`, it is the one with the largest
 /// contribution.
-pub(crate) fn account(
+pub(crate) fn explain(
     compiled: &CompiledDocument,
     job: &Job,
     explanation: &Explanation,
     sample: Option<u32>,
-) -> PixelAccount {
+) -> PixelExplanation {
     let chosen = sample.map_or(explanation.heaviest(), |sample| sample as usize);
     let chosen = chosen.min(explanation.samples.len().saturating_sub(1));
     let weights: f32 = explanation.samples.iter().map(|sample| sample.weight).sum();
@@ -27,8 +27,12 @@ pub(crate) fn account(
     let light = sample.and_then(|sample| sample.light.as_ref());
     let at = sample.map_or(Vec2::ZERO, |sample| sample.place);
     let tree = light.map(|light| {
-        let formatter =
-            TermFormatter { compiled, names: compiled.names(), tree: light, whole: light.sum().dot(LUMINANCE) };
+        let formatter = TermFormatter {
+            compiled,
+            names: compiled.names(),
+            tree: light,
+            pixel_luminance: light.sum().dot(LUMINANCE),
+        };
         let one = TermValue::Color(Color::ONE);
         let mut term = formatter.term(&light.root, one, &TermContext::default());
         let mut rows = camera_rows(compiled, job, at);
@@ -36,7 +40,7 @@ pub(crate) fn account(
         term.rows = rows;
         term
     });
-    PixelAccount {
+    PixelExplanation {
         x: explanation.x,
         y: explanation.y,
         color: explanation.color.into(),
@@ -50,11 +54,11 @@ pub(crate) fn account(
 }
 
 /// Returns the formulas of the camera ray through a position in the picture.
-fn camera_rows(compiled: &CompiledDocument, job: &Job, place: Vec2) -> Vec<Row> {
+fn camera_rows(compiled: &CompiledDocument, job: &Job, place: Vec2) -> Vec<FormulaRow> {
     let world = &compiled.world;
     let raster = durer::render::raster(world, job.width, job.height);
     let (point, frame) = (raster.point(place), world.camera_frame());
-    let mut rows = vec![Row {
+    let mut rows = vec![FormulaRow {
         name: "(x, y)".into(),
         formula: "position in the picture, from −1 to 1 along its larger side".into(),
         numbers: format!("pixel position ({}, {})", number(place.x.into()), number(place.y.into())),
@@ -87,7 +91,7 @@ struct TermFormatter<'a> {
     names: Names<'a>,
     tree: &'a Tree,
     /// Luminance of the pixel.
-    whole: f32,
+    pixel_luminance: f32,
 }
 
 impl TermFormatter<'_> {
@@ -109,7 +113,7 @@ impl TermFormatter<'_> {
             rows: self.rows(node, around),
             value: value.into(),
             adds: adds.into(),
-            share: if self.whole > 0.0 { adds.dot(LUMINANCE) / self.whole } else { 0.0 },
+            share: if self.pixel_luminance > 0.0 { adds.dot(LUMINANCE) / self.pixel_luminance } else { 0.0 },
             swatch: Transfer::Srgb.encode_pixel(value),
             place: self.span(node).and_then(|span| self.compiled.place(span)),
             segment: self.segment(node),
@@ -199,10 +203,10 @@ impl TermFormatter<'_> {
         match &node.what {
             TermKind::Ray { from, ray, hit, .. } => {
                 let role = match from {
-                    RayKind::Camera => Role::Camera,
-                    RayKind::Reflected => Role::Reflected,
-                    RayKind::Transmitted => Role::Transmitted,
-                    RayKind::Scattered => Role::Scattered,
+                    RayKind::Camera => SegmentKind::Camera,
+                    RayKind::Reflected => SegmentKind::Reflected,
+                    RayKind::Transmitted => SegmentKind::Transmitted,
+                    RayKind::Scattered => SegmentKind::Scattered,
                 };
                 let away = ray.origin + far * ray.dir.normalize_or_zero();
                 let to = hit.as_ref().map_or(away, |hit| hit.position);
@@ -214,7 +218,7 @@ impl TermFormatter<'_> {
         }
     }
 
-    fn rows(&self, node: &TraceNode, around: &TermContext) -> Vec<Row> {
+    fn rows(&self, node: &TraceNode, around: &TermContext) -> Vec<FormulaRow> {
         let color = |value: TermValue| vector(self.tree.color(value));
         let mut rows = Vec::new();
         match &node.what {
@@ -339,7 +343,7 @@ impl TermFormatter<'_> {
         rows
     }
 
-    fn shadow_row(&self, shadow: &Shadow) -> Row {
+    fn shadow_row(&self, shadow: &Shadow) -> FormulaRow {
         match shadow.blocker {
             Some((object, t)) => {
                 let what = self.names.short_object(object);
@@ -351,8 +355,8 @@ impl TermFormatter<'_> {
     }
 }
 
-fn words(name: &str, result: &str) -> Row {
-    Row { name: name.into(), formula: String::new(), numbers: String::new(), result: result.into(), value: None }
+fn words(name: &str, result: &str) -> FormulaRow {
+    FormulaRow { name: name.into(), formula: String::new(), numbers: String::new(), result: result.into(), value: None }
 }
 
 fn shadow_segment(shadow: &Shadow, distance: f32, far: f32) -> Segment {
@@ -360,12 +364,12 @@ fn shadow_segment(shadow: &Shadow, distance: f32, far: f32) -> Segment {
     let unit = dir.normalize_or_zero();
     match shadow.blocker {
         Some((_, t)) => {
-            Segment { role: Role::Shadowed, from: origin.into(), to: (origin + t * dir).into(), escapes: false }
+            Segment { role: SegmentKind::Shadowed, from: origin.into(), to: (origin + t * dir).into(), escapes: false }
         }
         None => {
             let escapes = !distance.is_finite() || distance > 4.0 * far;
             let to = origin + if escapes { far } else { distance } * unit;
-            Segment { role: Role::Lit, from: origin.into(), to: to.into(), escapes }
+            Segment { role: SegmentKind::Lit, from: origin.into(), to: to.into(), escapes }
         }
     }
 }

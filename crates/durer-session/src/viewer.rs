@@ -3,10 +3,10 @@
 use crate::display::{display, pixels};
 use crate::document::CompiledDocument;
 use crate::export::export;
-use crate::protocol::{PictureHead, Setting};
+use crate::protocol::{PictureInfo, Setting};
 use durer::RenderJob;
 use durer::image::Layer;
-use durer::job::View;
+use durer::job::OutputSelection;
 use durer::render::{Control, Crop, Job, ProgressiveRender, RenderError, Sampling};
 
 /// Time budgets for a coarse picture in milliseconds: `MOVING` while the camera moves, and
@@ -55,7 +55,7 @@ pub(crate) struct Viewer {
 /// Stage of progressive rendering in a [`Viewer`]: idle, coarse picture, or full picture.
 enum Stage {
     /// No work is left.
-    Rest,
+    Idle,
     /// A coarse picture is next.
     Coarse,
     /// The full picture is being rendered. The number is the samples per pixel after the last
@@ -64,7 +64,7 @@ enum Stage {
 }
 
 /// A picture to send to the page: its description and its pixels.
-pub(crate) type PictureMessage = (PictureHead, Vec<u8>);
+pub(crate) type PictureMessage = (PictureInfo, Vec<u8>);
 
 impl Viewer {
     pub fn new() -> Self {
@@ -78,7 +78,7 @@ impl Viewer {
             crop: None,
             denoises: false,
             options: RenderJob::default(),
-            stage: Stage::Rest,
+            stage: Stage::Idle,
             cost: None,
             tiles: 4,
             changed: 0.0,
@@ -120,12 +120,12 @@ impl Viewer {
     }
 
     /// Stops rendering and keeps the last picture.
-    pub fn rest(&mut self) {
-        self.stage = Stage::Rest;
+    pub fn stop(&mut self) {
+        self.stage = Stage::Idle;
     }
 
     pub fn is_busy(&self) -> bool {
-        !matches!(self.stage, Stage::Rest)
+        !matches!(self.stage, Stage::Idle)
     }
 
     /// Returns the job of the picture that is shown.
@@ -139,12 +139,12 @@ impl Viewer {
     /// Job for the full picture.
     pub fn job_of(&self, compiled: &CompiledDocument, picture: &str) -> Result<Job, String> {
         let options = self.options.clone().size((self.width, self.height));
-        options.resolve(&compiled.job_context(), Some(&View { crop: None, show: vec![picture.into()] }))
+        options.resolve(&compiled.job_context(), Some(&OutputSelection { crop: None, show: vec![picture.into()] }))
     }
 
     /// Returns the options that differ from the scene's defaults.
-    pub fn spelled(&self, compiled: &CompiledDocument, job: &Job) -> Vec<String> {
-        RenderJob::of(job, &compiled.job_context()).spelled()
+    pub fn argument_list(&self, compiled: &CompiledDocument, job: &Job) -> Vec<String> {
+        RenderJob::of(job, &compiled.job_context()).to_arguments()
     }
 
     /// Works for about one [`STEP`].
@@ -153,8 +153,8 @@ impl Viewer {
         compiled: &CompiledDocument,
         clock: &dyn Fn() -> f64,
     ) -> Result<Option<PictureMessage>, String> {
-        match std::mem::replace(&mut self.stage, Stage::Rest) {
-            Stage::Rest => Ok(None),
+        match std::mem::replace(&mut self.stage, Stage::Idle) {
+            Stage::Idle => Ok(None),
             Stage::Coarse => self.coarse(compiled, clock),
             Stage::Fine(render, seen) => self.fine(compiled, render, seen, clock),
         }
@@ -320,7 +320,7 @@ impl Viewer {
         let layer = clean.or(rendered.pictures.first()).ok_or("the job has no picture")?;
         let Crop { left, top, width, height } = render.part().job().window();
         let how = if color { display(self.stops, &self.tone) } else { durer::image::Transfer::Linear.into() };
-        let head = PictureHead {
+        let head = PictureInfo {
             picture: self.picture.clone(),
             width,
             height,
@@ -341,7 +341,7 @@ impl Viewer {
 
     fn head(&self, (head, bytes): PictureMessage, job: Option<&Job>, clock: &dyn Fn() -> f64) -> PictureMessage {
         let all_samples = job.map_or(head.all_samples, |job| job.sampling.samples());
-        (PictureHead { all_samples, ms: clock() - self.changed, ..head }, bytes)
+        (PictureInfo { all_samples, ms: clock() - self.changed, ..head }, bytes)
     }
 }
 

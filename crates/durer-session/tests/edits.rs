@@ -1,6 +1,6 @@
 //! Tests that a session survives thousands of random edits.
 
-use durer_session::{Host, Start};
+use durer_session::{Host, SessionFiles};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -52,7 +52,7 @@ fn changed(text: &str, random: &mut Random) -> String {
 #[test]
 fn edits_never_end_a_session() {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-    let mut host = Host::new(Start::default(), Arc::new(|| 0.0));
+    let mut host = Host::new(SessionFiles::default(), Arc::new(|| 0.0));
     let mut random = Random(1);
     let mut counts = [0_usize; 2];
     // `cargo xtask page --measure` makes 10,000 edits.

@@ -1,7 +1,7 @@
 //! Runs `durer-session` in a Web Worker. Requests arrive as JSON text, and answers are sent as
 //! bytes.
 
-use durer_session::{Clock, Host, Start};
+use durer_session::{Clock, Host, SessionFiles};
 use js_sys::{Function, Uint8Array};
 use std::sync::Arc;
 use wasm_bindgen::prelude::*;
@@ -24,7 +24,7 @@ impl Engine {
     #[expect(clippy::new_without_default)]
     pub fn new() -> Engine {
         let clock: Clock = Arc::new(now);
-        Engine(Host::new(Start::default(), clock))
+        Engine(Host::new(SessionFiles::default(), clock))
     }
 
     /// Handles a message, and calls `send` with each answer.

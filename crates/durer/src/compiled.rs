@@ -1,7 +1,7 @@
 //! Compiled scenes, ready for rendering and ray queries.
 
 use crate::error::{Error, SceneError};
-use crate::job::{JobContext, RenderJob, View};
+use crate::job::{JobContext, OutputSelection, RenderJob};
 #[cfg(feature = "fs")]
 use crate::load::{LoadOptions, load};
 use durer_diag::{Diagnostics, Files};
@@ -9,7 +9,7 @@ use durer_formats::Decoder;
 use durer_render::compile::{AccelKind, Resources, compile};
 use durer_render::render::Job;
 use durer_render::world::World;
-use durer_scene::dialect::{Dialect, Rules};
+use durer_scene::dialect::{Dialect, DialectRules};
 use durer_scene::scene::Scene;
 use durer_scene::source::{AssetSource, MemorySource};
 use std::ops::Deref;
@@ -22,9 +22,9 @@ use std::path::Path;
 pub struct CompiledScene {
     scene: Scene,
     world: World,
-    rules: Rules,
+    rules: DialectRules,
     dialect: Dialect,
-    emulates: bool,
+    emulates_program: bool,
     diagnostics: Diagnostics,
     files: Files,
 }
@@ -65,7 +65,7 @@ impl CompiledScene {
 
     /// Returns the context that determines the defaults of a job.
     pub fn job_context(&self) -> JobContext<'_> {
-        JobContext { scene: &self.scene, rules: &self.rules, emulates: self.emulates, timed: false }
+        JobContext { scene: &self.scene, rules: &self.rules, emulates: self.emulates_program, timed: false }
     }
 
     /// Resolves options into a job for a colour picture. Options that are not set have the scene's
@@ -75,7 +75,7 @@ impl CompiledScene {
     ///
     /// [`Error::Options`].
     pub fn job(&self, options: &RenderJob) -> Result<Job, Error> {
-        let job = options.resolve(&self.job_context(), Some(&View::default())).map_err(Error::Options)?;
+        let job = options.resolve(&self.job_context(), Some(&OutputSelection::default())).map_err(Error::Options)?;
         job.validate()?;
         Ok(job)
     }
@@ -86,7 +86,7 @@ impl RenderJob {
     /// so that each can be read and changed.
     pub fn for_scene(scene: &CompiledScene) -> RenderJob {
         let context = scene.job_context();
-        match RenderJob::default().resolve(&context, Some(&View::default())) {
+        match RenderJob::default().resolve(&context, Some(&OutputSelection::default())) {
             Ok(job) => RenderJob::of(&job, &context)
                 .size((job.width, job.height))
                 .integrator(job.method.name())
@@ -126,7 +126,7 @@ impl CompileScene for Scene {
         let resources = Resources::new(source, &Decoder, &mut files);
         match compile(&self, &rules, AccelKind::Bvh, resources, &mut diagnostics) {
             Some(world) => {
-                Ok(CompiledScene { scene: self, world, rules, dialect, emulates: false, diagnostics, files })
+                Ok(CompiledScene { scene: self, world, rules, dialect, emulates_program: false, diagnostics, files })
             }
             None => Err(SceneError::new(diagnostics, files).into()),
         }
@@ -145,7 +145,7 @@ pub fn open(path: impl AsRef<Path>) -> Result<CompiledScene, Error> {
     let world = loaded.as_ref().and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics));
     match (loaded, world) {
         (Some(loaded), Some(world)) => Ok(CompiledScene {
-            emulates: false,
+            emulates_program: false,
             scene: loaded.scene,
             world,
             rules: loaded.rules,

@@ -61,7 +61,7 @@ impl std::error::Error for SceneError {}
 impl std::fmt::Display for SceneError {
     /// Writes one line for each error: `file:line:column: message`.
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        let errors = self.diagnostics.iter().filter(|found| found.severity == Severity::Error);
+        let errors = self.diagnostics.iter().filter(|diagnostic| diagnostic.severity == Severity::Error);
         for (i, error) in errors.enumerate() {
             if i > 0 {
                 writeln!(f)?;

@@ -37,7 +37,7 @@ pub fn scene(data: &[u8]) {
     for dialect in Dialect::ALL {
         for strict in [false, true] {
             let mut diagnostics = Diagnostics::default();
-            let options = ReadOptions { dialect, strict, compat: dialect.rules().compat };
+            let options = ReadOptions { dialect, strict, compat: dialect.rules().quirks };
             let scene = read(data, file, options, &mut diagnostics);
             for diagnostic in diagnostics.iter() {
                 let spans = diagnostic.span.into_iter().chain(diagnostic.related.iter().map(|related| related.0));
@@ -116,7 +116,9 @@ pub fn model(data: &[u8], name: &str) {
     let file = files.add(name, Arc::clone(&bytes));
     let files = RefCell::new(files);
     let source = FolderSource::new(folder());
-    for scene_defaults in [SceneDefaults::default(), SceneDefaults { at: Some(0.5), ..SceneDefaults::default() }] {
+    for scene_defaults in
+        [SceneDefaults::default(), SceneDefaults { animation_time: Some(0.5), ..SceneDefaults::default() }]
+    {
         let input = Input {
             bytes: &bytes,
             file,
@@ -144,9 +146,9 @@ pub fn picture(data: &[u8], name: &str) {
     match encoded.read(MEMORY, decode_linear) {
         Ok(image) => {
             assert_eq!((image.width as usize, image.height as usize), (width, height));
-            assert!(image.check().is_ok() && encoded.needed() <= MEMORY);
+            assert!(image.check().is_ok() && encoded.memory_needed() <= MEMORY);
         }
-        Err(ImageError::Memory { needed, .. }) => assert!(needed > MEMORY),
+        Err(ImageError::MemoryLimit { needed, .. }) => assert!(needed > MEMORY),
         Err(ImageError::Malformed { reason, .. }) => assert_ne!(reason, "its decoder failed"),
         Err(_) => {}
     }

@@ -13,7 +13,7 @@ use durer_formats::scene::{Input, Output, find_scene_format, other_format, read_
 use durer_render::compile::{AccelKind, AssetCache, Resources, compile};
 use durer_render::threads;
 use durer_render::world::World;
-use durer_scene::dialect::{Dialect, PathBase, Quirk, Rules};
+use durer_scene::dialect::{Dialect, DialectRules, PathBase, Quirk};
 use durer_scene::scene::{Scene, SceneDefaults};
 use durer_scene::source::{AssetSource, SourceError};
 use std::cell::RefCell;
@@ -63,7 +63,7 @@ pub struct LoadedScene {
     /// The scene's description.
     pub scene: Scene,
     /// Rules of the dialect.
-    pub rules: Rules,
+    pub rules: DialectRules,
     /// Dialect of the file.
     pub dialect: Dialect,
     /// Detected dialect with the reasons for it; `None` if the dialect was requested.
@@ -145,7 +145,7 @@ pub fn load_text(
         let scene = scene?;
         return Some(LoadedScene { scene, rules: dialect.rules().clone(), dialect, guess: None, source, memory });
     }
-    if options.scene_defaults.turned.is_some() {
+    if options.scene_defaults.orbit_degrees.is_some() {
         let error = Diagnostic::error("`--turntable` cannot rotate around this scene, because it has its own camera");
         let help = "convert it with `durer convert` to a glTF file, a model that `--turntable` rotates around";
         diagnostics.push(error.help(help));
@@ -153,12 +153,12 @@ pub fn load_text(
     }
     let mut guess = None;
     let dialect = options.dialect.unwrap_or_else(|| {
-        let found = match &json {
+        let detected = match &json {
             // A JSON scene states its dialect, so there is nothing to detect.
             Some(json) => Guess::certain(json.dialect()),
             None => course::guess(&bytes, file, &options.hints, &|name| source.contains(name)),
         };
-        guess.insert(found).dialect
+        guess.insert(detected).dialect
     });
     let mut rules = dialect.rules().clone();
     if options.dialect.is_none() && !options.course {
@@ -166,10 +166,10 @@ pub fn load_text(
     }
     // No version of the program has both quirks.
     if options.compat.contains(&(Quirk::ExitR0, true)) {
-        rules.compat &= !Quirk::ShadowFronts.bit();
+        rules.quirks &= !Quirk::ShadowFronts.bit();
     }
     for (compat, on) in &options.compat {
-        rules.compat = if *on { rules.compat | compat.bit() } else { rules.compat & !compat.bit() };
+        rules.quirks = if *on { rules.quirks | compat.bit() } else { rules.quirks & !compat.bit() };
     }
     source = match rules.paths {
         PathBase::SceneFile => source,
@@ -180,7 +180,7 @@ pub fn load_text(
         source = source.allow(".");
     }
     source = source.budget(budget(options));
-    let read = ReadOptions { dialect, strict: options.strict, compat: rules.compat };
+    let read = ReadOptions { dialect, strict: options.strict, compat: rules.quirks };
     if let Some(json) = json {
         return json.scene(diagnostics).map(|scene| LoadedScene { scene, rules, dialect, guess, source, memory });
     }
@@ -207,7 +207,7 @@ fn budget(options: &LoadOptions) -> u64 {
 fn portability(bytes: &[u8], file: u32, dialect: Dialect, messages: &Diagnostics) -> Diagnostics {
     let (mut strict, mut notes) = (Diagnostics::default(), Diagnostics::default());
     if dialect != Dialect::Durer {
-        course::read(bytes, file, ReadOptions { dialect, strict: true, compat: dialect.rules().compat }, &mut strict);
+        course::read(bytes, file, ReadOptions { dialect, strict: true, compat: dialect.rules().quirks }, &mut strict);
     }
     let first = strict.iter().find(|d| d.severity == Severity::Error);
     if let Some(first) = first.filter(|first| !messages.iter().any(|known| known.span == first.span)) {
@@ -243,9 +243,9 @@ impl LoadedScene {
         let quoted: BTreeSet<&str> = text.split('"').collect();
         // `picture.png:g` is a channel of a file.
         let names = quoted.iter().flat_map(|text| [Some(*text), text.rsplit_once(':').map(|parted| parted.0)]);
-        let mut found = self.source.paths();
-        found.extend(names.flatten().filter_map(|name| self.source.place(name)));
-        found
+        let mut paths = self.source.paths();
+        paths.extend(names.flatten().filter_map(|name| self.source.place(name)));
+        paths
     }
 
     /// Converts the scene to the format given by the extension of `name`; `None` if it cannot be

@@ -36,7 +36,7 @@ fn hit(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Option<Hit> {
     world.closest(ray(origin, dir), &mut ())
 }
 
-fn seen(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Color {
+fn traced_color(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Color {
     let settings = WhittedOptions {
         bounces: 2,
         shadows: true,
@@ -85,7 +85,7 @@ fn secondary_rays_of_2016_start_farther_along_and_those_of_2012_have_a_minimum_t
     // direction.
     let light = "PointLight { position 0.995 1 0 color 1 1 1 falloff 0.25 }";
     let scene = classic(light, &["Plane { normal 1 0 0 offset -1 }", "Plane { normal -1 0 0 offset -1 }"]);
-    let left = |world: &World| seen(world, [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]);
+    let left = |world: &World| traced_color(world, [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]);
     assert_eq!(left(&world(&scene, Dialect::F16)), Color::ZERO);
     assert!(left(&world_in(Path::new("."), &scene, Dialect::F16, &[Quirk::MovedStarts]).0).x > 0.9);
     assert!(left(&world(&scene, Dialect::F12a5)).x > 0.4);
@@ -280,7 +280,7 @@ fn glass_of_2012_uses_plane_normals_as_written() {
     };
     // Seen at normal incidence through the pane, the ball appears with 1 - R of its light.
     let share = |text: &str, off: &[Quirk]| {
-        seen(&world_in(Path::new("."), text, Dialect::F12a5, off).0, [0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).x
+        traced_color(&world_in(Path::new("."), text, Dialect::F12a5, off).0, [0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).x
     };
     let unit = share(&pane("0 1 0", 0.0), &[]);
     assert!((unit - 0.96).abs() < 1e-5, "{unit}");
@@ -307,7 +307,7 @@ fn mirrors_of_2012_and_2016_keep_the_length_that_the_normal_of_a_plane_gives_a_r
     // d - 2 (d·N) N: (1, -1, 0) becomes (1, 7, 0) with this normal, and (1, 1, 0) with a unit
     // normal.
     for dialect in [Dialect::F12a5, Dialect::F16] {
-        let share = |center: &str| seen(&world(&scene(center), dialect), [-5.0, 5.0, 0.0], [1.0, -1.0, 0.0]).x;
+        let share = |center: &str| traced_color(&world(&scene(center), dialect), [-5.0, 5.0, 0.0], [1.0, -1.0, 0.0]).x;
         assert_eq!((share("1 7 0"), share("5 5 0")), (1.0, 0.0), "{dialect:?}");
     }
 }
@@ -323,7 +323,7 @@ fn weights_of_mirrored_rays_below_zero_count_in_2012() {
         Group { numObjects 2 MaterialIndex 0 Plane { normal 0 2 0 offset 0 }
           MaterialIndex 1 Sphere { center 0 -2 0 radius 1 } }";
     // R = 0.04 - 0.96 of the background, and 1 - R of the ball.
-    let light = seen(&world(scene, Dialect::F12a5), [0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).x;
+    let light = traced_color(&world(scene, Dialect::F12a5), [0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).x;
     assert!((light - (1.92 - 0.92 * 0.5)).abs() < 1e-5, "{light}");
 }
 
@@ -334,7 +334,7 @@ fn highlights_beyond_all_numbers_spoil_black_ones_too() {
         classic(SUN, &[&plane]).replace("diffuseColor 1 1 1", "diffuseColor 1 1 1 specularColor 0 0 0 shininess 200")
     };
     for dialect in [Dialect::F12a4, Dialect::F16] {
-        let light = |normal| seen(&world(&plane(normal), dialect), [0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).x;
+        let light = |normal| traced_color(&world(&plane(normal), dialect), [0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).x;
         // The base of the power is 7 with a normal of length 2, and 1 with a unit one.
         assert!(light("0 2 0").is_nan(), "{dialect:?}");
         assert_eq!(light("0 1 0"), 1.0, "{dialect:?}");

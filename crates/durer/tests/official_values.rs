@@ -30,7 +30,7 @@ fn official(text: &str, dialect: Dialect) -> World {
     world.unwrap_or_else(|| panic!("{dialect:?}: {diagnostics:?}"))
 }
 
-fn seen(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Color {
+fn traced_color(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Color {
     let settings = WhittedOptions {
         bounces: 1,
         shadows: false,
@@ -115,7 +115,7 @@ fn negative_radius_is_used_as_absolute_value_and_zero_is_invisible() {
         let [whole, below, none] =
             ["radius 2", "radius -2", "radius 0"].map(|radius| official(&text.replace("radius 2", radius), dialect));
         for x in [0.0, 0.5, 1.9, 2.1] {
-            let look = |world: &World| seen(world, [x, 5.0, 0.3], DOWN);
+            let look = |world: &World| traced_color(world, [x, 5.0, 0.3], DOWN);
             assert_eq!(look(&whole), look(&below), "{dialect:?}");
             assert_eq!(look(&none), Color::new(0.0, 0.0, 0.25), "{dialect:?}");
         }
@@ -130,7 +130,7 @@ fn hexadecimal_numbers_are_read_before_2020() {
         let Some(world) = world else { continue };
         assert!(found.iter().any(|d| d.message.contains("hexadecimal")), "{found:?}");
         let same = official(&text.replace("0x1.8p0", "1.5"), dialect);
-        assert_eq!(seen(&world, [0.0, 5.0, 1.49], DOWN), seen(&same, [0.0, 5.0, 1.49], DOWN));
+        assert_eq!(traced_color(&world, [0.0, 5.0, 1.49], DOWN), traced_color(&same, [0.0, 5.0, 1.49], DOWN));
         assert!(load(Path::new("."), &text, dialect, false).0.is_none());
     }
     for wrong in ["0x", "0xp1", "0x1p", "0x1.8q0", "0x1p99999", "-0x"] {
@@ -150,17 +150,17 @@ fn flat_scales_are_rendered_before_2020_and_ignored_since() {
     }
     // In 2016, the sphere is hit at a NaN t and is black. In 2012, it is hit at t = 10000, as in
     // a4soln.
-    assert_eq!(seen(&official(&flat("1 0 1"), Dialect::F16), [0.0, 5.0, 0.0], DOWN), Color::ZERO);
-    assert_eq!(seen(&official(&flat("1 0 1"), Dialect::F12a4), [0.0, 5.0, 0.0], DOWN), Color::splat(0.25));
+    assert_eq!(traced_color(&official(&flat("1 0 1"), Dialect::F16), [0.0, 5.0, 0.0], DOWN), Color::ZERO);
+    assert_eq!(traced_color(&official(&flat("1 0 1"), Dialect::F12a4), [0.0, 5.0, 0.0], DOWN), Color::splat(0.25));
     let node = |scale: &str| {
         let node = NODE.replace("Node {", &format!("Node {{ Transform {{ translate 9 0 0 scale {scale} }}"));
         official(&nodes("40", "10", &node), Dialect::F23)
     };
     // All matrices of the transform are ignored, so the sphere keeps its position.
     for scale in ["1 0 1", "0.004 0.004 0.004"] {
-        assert_ne!(seen(&node(scale), [1.5, 5.0, 0.0], DOWN), Color::new(0.0, 0.0, 0.25), "{scale}");
+        assert_ne!(traced_color(&node(scale), [1.5, 5.0, 0.0], DOWN), Color::new(0.0, 0.0, 0.25), "{scale}");
     }
-    assert_eq!(seen(&node("0.006 0.006 0.006"), [1.5, 5.0, 0.0], DOWN), Color::new(0.0, 0.0, 0.25));
+    assert_eq!(traced_color(&node("0.006 0.006 0.006"), [1.5, 5.0, 0.0], DOWN), Color::new(0.0, 0.0, 0.25));
 }
 
 #[test]
@@ -172,7 +172,7 @@ fn light_divided_by_zero_is_not_finite() {
         let text = nodes("40", "10", &format!("{NODE} {light}"));
         official(&text, Dialect::F23)
     };
-    let bright = |world: &World| seen(world, [0.0, 5.0, 0.0], DOWN);
+    let bright = |world: &World| traced_color(world, [0.0, 5.0, 0.0], DOWN);
     assert!(!bright(&emitter("attenuation 0")).is_finite());
     assert!(bright(&emitter("")).is_finite() && bright(&emitter("attenuation 1")).is_finite());
     for dialect in [Dialect::F12a4, Dialect::F16] {
@@ -206,7 +206,7 @@ fn face_without_area_makes_neighbours_black_in_2016() {
     let look = |dialect, official, x: f32| {
         let (world, found) = load(folder.path(), &text, dialect, official);
         let world = world.unwrap_or_else(|| panic!("{found:?}"));
-        (seen(&world, [x, 5.0, 0.2], DOWN), seen(&world, [x, 5.0, 0.2], DOWN).x > 0.2)
+        (traced_color(&world, [x, 5.0, 0.2], DOWN), traced_color(&world, [x, 5.0, 0.2], DOWN).x > 0.2)
     };
     assert_eq!(look(Dialect::F16, true, -0.5).0, Color::ZERO);
     assert!(look(Dialect::F16, true, 2.5).1 && look(Dialect::F16, false, -0.5).1);

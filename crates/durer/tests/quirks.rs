@@ -29,7 +29,7 @@ fn world_with(folder: &Path, text: &str, dialect: Dialect, compat: Vec<(Quirk, b
 }
 
 /// Returns all quirks of the rules, turned off.
-fn off(rules: &durer::dialect::Rules) -> Vec<(Quirk, bool)> {
+fn off(rules: &durer::dialect::DialectRules) -> Vec<(Quirk, bool)> {
     Quirk::ALL.iter().filter(|row| rules.has(row.0)).map(|row| (row.0, false)).collect()
 }
 
@@ -37,7 +37,7 @@ fn world(text: &str, dialect: Dialect, official: bool) -> World {
     world_in(Path::new("."), text, dialect, official)
 }
 
-fn seen(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Color {
+fn traced_color(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Color {
     let rules = world.rules();
     let settings = WhittedOptions {
         bounces: 4,
@@ -112,9 +112,9 @@ fn plane_normals_are_not_normalised() {
     let moved = scene("Transform { Plane { normal 0 2 0 offset -1 } }");
     for (dialect, light) in [(Dialect::F12a4, 2.0), (Dialect::F16, 2.0), (Dialect::F12a5, 1.0), (Dialect::F04, 1.0)] {
         let light = 0.25 * light;
-        close(seen(&world(&long, dialect, true), [0.0, 5.0, 0.0], DOWN), [light; 3]);
-        close(seen(&world(&moved, dialect, true), [0.0, 5.0, 0.0], DOWN), [0.25; 3]);
-        close(seen(&world(&long, dialect, false), [0.0, 5.0, 0.0], DOWN), [0.25; 3]);
+        close(traced_color(&world(&long, dialect, true), [0.0, 5.0, 0.0], DOWN), [light; 3]);
+        close(traced_color(&world(&moved, dialect, true), [0.0, 5.0, 0.0], DOWN), [0.25; 3]);
+        close(traced_color(&world(&long, dialect, false), [0.0, 5.0, 0.0], DOWN), [0.25; 3]);
     }
     // Mirrors: d - 2 (d·n) n with the normal as written, here (0, 1, 1) of length √2, reflects a
     // downward ray into (0, 1, 2) / √5.
@@ -126,7 +126,7 @@ fn plane_normals_are_not_normalised() {
     for (dialect, raw) in [(Dialect::F12a5, true), (Dialect::F16, true), (Dialect::F12a5, false), (Dialect::F16, false)]
     {
         let world = world(&format!("{CAMERA}{mirror}"), dialect, raw);
-        let hit = seen(&world, [0.0, 5.0, 0.0], DOWN) != Color::ZERO;
+        let hit = traced_color(&world, [0.0, 5.0, 0.0], DOWN) != Color::ZERO;
         assert_eq!(hit, raw, "{dialect:?}");
     }
 }
@@ -153,7 +153,7 @@ fn only_meshes_of_2012_have_textures() {
         for dialect in [Dialect::F12a4, Dialect::F12a5] {
             let color = |official| {
                 let world = world_in(folder.path(), &scene(object), dialect, official);
-                seen(&world, [0.1, 5.0, 0.2], DOWN).normalize().round()
+                traced_color(&world, [0.1, 5.0, 0.2], DOWN).normalize().round()
             };
             assert_eq!(color(true), if textured { Color::X } else { Color::Z }, "{dialect:?} {object}");
             assert_eq!(color(false), Color::X, "{dialect:?} {object}");
@@ -170,17 +170,17 @@ fn scene_of_2023_without_lights_keeps_its_ambient_light() {
           Node { Transform { translate 3 0 0 } Component<Material> { index 1 } Component<Object> { type sphere radius 1 } } }";
     for official in [true, false] {
         let world = world(text, Dialect::F23, official);
-        close(seen(&world, [0.0, 0.0, 9.0], [0.0, 0.0, -1.0]), [0.25, 0.25, 0.0]);
+        close(traced_color(&world, [0.0, 0.0, 9.0], [0.0, 0.0, -1.0]), [0.25, 0.25, 0.0]);
         // Without a diffuse colour, the program of 2023 uses none for ambient light.
         let bare = if official { [0.0; 3] } else { [0.25, 0.5, 0.0] };
-        close(seen(&world, [3.0, 0.0, 9.0], [0.0, 0.0, -1.0]), bare);
+        close(traced_color(&world, [3.0, 0.0, 9.0], [0.0, 0.0, -1.0]), bare);
     }
     let classic = format!(
         "{CAMERA}Materials {{ numMaterials 1 Material {{ }} }}
          Group {{ numObjects 1 MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}"
     );
     for dialect in [Dialect::F04, Dialect::F12a4, Dialect::F12a5, Dialect::F16] {
-        close(seen(&world(&classic, dialect, true), [0.0, 5.0, 0.0], DOWN), [1.0; 3]);
+        close(traced_color(&world(&classic, dialect, true), [0.0, 5.0, 0.0], DOWN), [1.0; 3]);
     }
 }
 
@@ -197,7 +197,7 @@ fn camera_of_2012_inside_glass_starts_in_air() {
     // A straight line from (0, 0, 0.5) hits the target; Snell's law bends the ray away by far more
     // than the target's size.
     let (origin, to_target) = ([0.0, 0.0, 0.5], [3.0, 0.0, -4.5]);
-    let color = |official| seen(&world(&text, Dialect::F12a5, official), origin, to_target).x;
+    let color = |official| traced_color(&world(&text, Dialect::F12a5, official), origin, to_target).x;
     assert!(color(true) > 0.1 && color(false) < 0.01, "{} {}", color(true), color(false));
 }
 
@@ -276,7 +276,7 @@ fn meshes_are_read_as_by_each_program() {
     // Normals by vertex index point along z; those that the faces name point up, towards the light.
     let light = |official| {
         let world = world_in(folder.path(), &nodes("tilted.obj"), F23, official);
-        seen(&world, [0.5, 5.0, -0.3], DOWN).x
+        traced_color(&world, [0.5, 5.0, -0.3], DOWN).x
     };
     assert_eq!((light(true), light(false)), (0.0, 1.0));
 }

@@ -414,7 +414,7 @@ fn boxes() -> u64 {
     let objects = spheres();
     let boxes: Vec<Aabb> = objects.iter().map(|&(c, r)| Aabb { min: c - 1.001 * r, max: c + 1.001 * r }).collect();
     let tree = Bvh::build(&boxes);
-    let grid = Grid::build(tree.bounds(), Grid::suitable(tree.bounds(), boxes.len()), &boxes, |_, _| true);
+    let grid = Grid::build(tree.bounds(), Grid::suggested_resolution(tree.bounds(), boxes.len()), &boxes, |_, _| true);
     let grid = grid.expect("few cells");
     for ray in rays(&planet(8), 15) {
         let mut found = [None; 2];

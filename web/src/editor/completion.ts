@@ -1,6 +1,6 @@
 import type { Completion, CompletionContext, CompletionResult } from "@codemirror/autocomplete";
 import { hoverTooltip } from "@codemirror/view";
-import type { Word } from "../protocol";
+import type { Keyword } from "../protocol";
 
 /** Keyword of the block that contains a position; `null` outside of all blocks. */
 export function blockAt(text: string, position: number): string | null {
@@ -15,7 +15,7 @@ export function blockAt(text: string, position: number): string | null {
 }
 
 /** Completes the fields of the block at the cursor, and keywords that begin a statement. */
-export function completion(words: () => Word[]) {
+export function completion(words: () => Keyword[]) {
   return (context: CompletionContext): CompletionResult | null => {
     const before = context.matchBefore(/[A-Za-z_]\w*/);
     if (!before && !context.explicit) return null;
@@ -40,7 +40,7 @@ export function completion(words: () => Word[]) {
 }
 
 /** Shows the manual's entry for the keyword under the pointer. */
-export function manual(words: () => Word[]) {
+export function manual(words: () => Keyword[]) {
   return hoverTooltip((view, position) => {
     const at = view.state.wordAt(position);
     if (!at) return null;
@@ -55,7 +55,7 @@ export function manual(words: () => Word[]) {
   });
 }
 
-function entry(text: string, field: Word["fields"][number] | undefined, word: Word | null | undefined) {
+function entry(text: string, field: Keyword["fields"][number] | undefined, word: Keyword | null | undefined) {
   const dom = document.createElement("div");
   dom.className = "manual";
   const head = document.createElement("strong");

@@ -1,6 +1,6 @@
 import { HighlightStyle, StreamLanguage, syntaxHighlighting } from "@codemirror/language";
 import { tags } from "@lezer/highlight";
-import type { Word } from "../protocol";
+import type { Keyword } from "../protocol";
 
 /** State of the tokenizer: the nesting depth of braces. */
 interface State {
@@ -8,7 +8,7 @@ interface State {
 }
 
 /** Syntax highlighting of the scene language, with the keywords that the library lists. */
-export function sceneLanguage(words: Word[]) {
+export function sceneLanguage(words: Keyword[]) {
   const begins = new Set(words.map((word) => word.word));
   const fields = new Set(words.flatMap((word) => word.fields.map((field) => field.word)));
   return StreamLanguage.define<State>({

@@ -1,9 +1,9 @@
-import type { Answer, Ask, Event, Request } from "../protocol";
+import type { Event, EventMessage, Request, RequestMessage } from "../protocol";
 import { decode } from "./wire";
 
 /** Transport of messages to an engine, which is a server or a worker. */
 export interface Line {
-  send(ask: Ask): void;
+  send(ask: RequestMessage): void;
   close(): void;
 }
 
@@ -110,7 +110,7 @@ export class Session {
     return () => this.#handlers.delete(handler);
   }
 
-  receive(answer: Answer, bytes: Uint8Array<ArrayBuffer>) {
+  receive(answer: EventMessage, bytes: Uint8Array<ArrayBuffer>) {
     const { event, id } = answer;
     const waiting = this.#waiting.get(id);
     if (waiting && event.kind === waiting.kind) {

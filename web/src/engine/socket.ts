@@ -1,4 +1,4 @@
-import type { Ask } from "../protocol";
+import type { RequestMessage } from "../protocol";
 import type { Line, LineEvents } from "./engine";
 
 /** WebSocket transport to the page's server. The token is part of the page's address. */
@@ -13,7 +13,7 @@ export function socket(address: string, events: LineEvents): Line {
   socket.onmessage = (message) => events.message(message.data as ArrayBuffer);
   socket.onclose = () => events.closed("the server has stopped");
   return {
-    send(ask: Ask) {
+    send(ask: RequestMessage) {
       const text = JSON.stringify(ask);
       if (socket.readyState === WebSocket.CONNECTING) early.push(text);
       else if (socket.readyState === WebSocket.OPEN) socket.send(text);

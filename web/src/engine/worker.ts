@@ -1,4 +1,4 @@
-import type { Ask } from "../protocol";
+import type { RequestMessage } from "../protocol";
 import type { Line, LineEvents } from "./engine";
 
 /** Transport to a worker that runs the library as WebAssembly. */
@@ -10,7 +10,7 @@ export function worker(events: LineEvents): Line {
   };
   worker.onerror = (error) => events.closed(error.message || "the worker has stopped");
   return {
-    send: (ask: Ask) => worker.postMessage(JSON.stringify(ask)),
+    send: (ask: RequestMessage) => worker.postMessage(JSON.stringify(ask)),
     close: () => worker.terminate(),
   };
 }

@@ -1,4 +1,4 @@
-import type { BoxState } from "../protocol";
+import type { TreeBox } from "../protocol";
 import type { Projector, Vec } from "./space";
 
 /** Edges of a box as pairs of corner indices, which differ in one bit. */
@@ -7,7 +7,7 @@ export const edges: [number, number][] = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((a) =>
 );
 
 /** Returns the edges of boxes as lines in space. */
-export function lines(boxes: BoxState[]): [Vec, Vec][] {
+export function lines(boxes: TreeBox[]): [Vec, Vec][] {
   return boxes.flatMap(({ corners }) =>
     edges.map(([a, b]): [Vec, Vec] => [
       corners.slice(3 * a, 3 * a + 3) as Vec,
@@ -25,7 +25,7 @@ export function Boxes({
   width = 1,
 }: {
   view: Projector;
-  boxes: BoxState[];
+  boxes: TreeBox[];
   color: string;
   opacity?: number;
   width?: number;

@@ -1,7 +1,7 @@
-import type { Row } from "../protocol";
+import type { FormulaRow } from "../protocol";
 
 /** Table of formulas with their numbers. */
-export function Rows({ rows }: { rows: Row[] }) {
+export function Rows({ rows }: { rows: FormulaRow[] }) {
   if (rows.length === 0) return null;
   return (
     <dl class="rows">

@@ -1,5 +1,5 @@
 import { useEffect, useState } from "preact/hooks";
-import type { RayAccount } from "../protocol";
+import type { CameraRay } from "../protocol";
 import { short } from "../ui/slider";
 import type { Store } from "../viewer/store";
 import { Code, Player } from "./code";
@@ -10,7 +10,7 @@ export function Scan({ store, scope }: { store: Store; scope: "row" | "picture" 
   const count = scope === "row" ? width : height;
   const [at, setAt] = useState(0);
   const [plays, setPlays] = useState(true);
-  const [rays, setRays] = useState<(RayAccount | null)[]>([]);
+  const [rays, setRays] = useState<(CameraRay | null)[]>([]);
   const y = scope === "row" ? Math.min(store.pixel?.y ?? 0, height - 1) : Math.min(at, height - 1);
 
   useEffect(() => {
@@ -65,7 +65,7 @@ export function Scan({ store, scope }: { store: Store; scope: "row" | "picture" 
   );
 }
 
-function pixelWords(store: Store, x: number, y: number, ray: RayAccount | null): string {
+function pixelWords(store: Store, x: number, y: number, ray: CameraRay | null): string {
   if (!ray) return `pixel ${x}, ${y}: the camera has no ray for this pixel`;
   if (ray.t === null) return `pixel ${x}, ${y}: nothing is hit, so the pixel shows the background`;
   const name = store.contents?.objects[ray.object ?? -1]?.name ?? `object ${ray.object}`;
@@ -73,7 +73,7 @@ function pixelWords(store: Store, x: number, y: number, ray: RayAccount | null):
 }
 
 /** Describes the results of the rays of a row. */
-export function rowWords(y: number, rays: (RayAccount | null)[]): string {
+export function rowWords(y: number, rays: (CameraRay | null)[]): string {
   const hits = rays.filter((ray) => ray !== null && ray.t !== null).length;
   const there = rays.filter((ray) => ray !== null).length;
   return `row ${y}: ${there} rays, ${hits} hit something, ${there - hits} the background`;

@@ -1,4 +1,4 @@
-import type { CameraState, PixelAccount, Role, Segment, Term } from "../protocol";
+import type { CameraState, PixelExplanation, Segment, SegmentKind, Term } from "../protocol";
 import type { Vec } from "./space";
 import { add, mul } from "./space";
 
@@ -15,14 +15,14 @@ export function flat(term: Term | null | undefined, path = "0"): Place[] {
 }
 
 /** Returns the segments of a tree, each with the path of its term. */
-export function segments(pixel: PixelAccount | null): { path: string; segment: Segment; term: Term }[] {
+export function segments(pixel: PixelExplanation | null): { path: string; segment: Segment; term: Term }[] {
   return flat(pixel?.tree).flatMap(({ path, term }) =>
     term.segment ? [{ path, segment: term.segment, term }] : [],
   );
 }
 
 /** Names of the kinds of rays, for legends. */
-export const roles: Record<Role, string> = {
+export const roles: Record<SegmentKind, string> = {
   camera: "camera ray",
   reflected: "mirrored ray",
   transmitted: "transmitted ray",
@@ -32,7 +32,7 @@ export const roles: Record<Role, string> = {
 };
 
 /** Returns the points that the view should contain: hits, the camera, and nearby lights. */
-export function points(pixel: PixelAccount | null, camera: CameraState | null): Vec[] {
+export function points(pixel: PixelExplanation | null, camera: CameraState | null): Vec[] {
   const all: Vec[] = camera ? [camera.eye] : [];
   for (const { segment } of segments(pixel)) {
     all.push(segment.from);

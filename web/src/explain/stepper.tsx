@@ -1,5 +1,5 @@
 import { useEffect, useState } from "preact/hooks";
-import type { CastAccount } from "../protocol";
+import type { CastResult } from "../protocol";
 import { Choice } from "../ui/choice";
 import { short } from "../ui/slider";
 import type { Store } from "../viewer/store";
@@ -85,7 +85,7 @@ async function load(store: Store): Promise<Step[]> {
     const role = term.segment?.role;
     return role && role !== "lit" && role !== "shadowed" && term.ray;
   });
-  const casts = new Map<string, CastAccount>();
+  const casts = new Map<string, CastResult>();
   for (const { path, term } of rays.slice(0, most)) {
     const [origin, direction] = term.ray ?? [
       [0, 0, 0],

@@ -1,4 +1,4 @@
-import type { CastAccount, PixelAccount, Term } from "../protocol";
+import type { CastResult, PixelExplanation, Term } from "../protocol";
 import { short } from "../ui/slider";
 import { flat } from "./segments";
 
@@ -35,7 +35,7 @@ export interface Step {
 }
 
 /** Returns the steps of a pixel in the order of execution. */
-export function steps(pixel: PixelAccount, casts: Map<string, CastAccount>): Step[] {
+export function steps(pixel: PixelExplanation, casts: Map<string, CastResult>): Step[] {
   const all: Step[] = [
     { line: 0, words: `pixel ${pixel.x}, ${pixel.y}`, path: "0" },
     { line: 1, words: `a ray through position (${short(pixel.at[0])}, ${short(pixel.at[1])})`, path: "0" },
@@ -49,7 +49,7 @@ export function steps(pixel: PixelAccount, casts: Map<string, CastAccount>): Ste
   return all;
 }
 
-function trace(term: Term, path: string, casts: Map<string, CastAccount>, all: Step[]) {
+function trace(term: Term, path: string, casts: Map<string, CastResult>, all: Step[]) {
   all.push({ line: 3, words: term.title, path });
   all.push({ line: 4, words: "nothing is hit yet", path, closest: Number.POSITIVE_INFINITY });
   let closest = Number.POSITIVE_INFINITY;

@@ -2,7 +2,7 @@ import { createContext } from "preact";
 import { useContext, useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Engine, EventOf, Session } from "../engine/engine";
 import type { Vec } from "../explain/space";
-import type { CastAccount, Event, PixelAccount, Request, Setting } from "../protocol";
+import type { CastResult, Event, PixelExplanation, Request, Setting } from "../protocol";
 
 /** The engine that all figures share. */
 export const EngineContext = createContext<Engine | null>(null);
@@ -101,18 +101,18 @@ export function useAnswer<K extends Event["kind"]>(
 }
 
 /** Returns the results of intersecting a ray with all objects of a scene. */
-export function useCast(session: Session, origin: Vec, direction: Vec, scene: string): CastAccount | null {
+export function useCast(session: Session, origin: Vec, direction: Vec, scene: string): CastResult | null {
   return useAnswer(session, { kind: "cast", origin, direction, t_max: null }, "cast", scene)?.cast ?? null;
 }
 
 /** Returns the explanation of a pixel of a session's image. */
-export function usePixel(session: Session, x: number, y: number, key: string): PixelAccount | null {
+export function usePixel(session: Session, x: number, y: number, key: string): PixelExplanation | null {
   return useAnswer(session, { kind: "explain", x, y, sample: null }, "explained", key)?.pixel ?? null;
 }
 
 /** Returns the explanation of the light along a ray, as the single pixel of a camera that looks along it. */
-export function useTrace(session: Session, from: Vec, direction: Vec, key: string): PixelAccount | null {
-  const [pixel, setPixel] = useState<PixelAccount | null>(null);
+export function useTrace(session: Session, from: Vec, direction: Vec, key: string): PixelExplanation | null {
+  const [pixel, setPixel] = useState<PixelExplanation | null>(null);
   const latest = useRef(0);
   useEffect(() => {
     const number = ++latest.current;
@@ -128,7 +128,7 @@ export function useTrace(session: Session, from: Vec, direction: Vec, key: strin
 }
 
 /** Returns the value of a row of an object's test, such as `Δ`. */
-export function numberOf(cast: CastAccount | null, object: number, name: string): number | null {
+export function numberOf(cast: CastResult | null, object: number, name: string): number | null {
   const test = cast?.tests.find((test) => test.object === object);
   return test?.rows.find((row) => row.name === name)?.value ?? null;
 }

@@ -2,7 +2,7 @@ import { useState } from "preact/hooks";
 import type { Session } from "../engine/engine";
 import { Rows } from "../explain/rows";
 import { flat } from "../explain/segments";
-import type { PictureHead } from "../protocol";
+import type { PictureInfo } from "../protocol";
 import { short } from "../ui/slider";
 import { usePixel } from "./context";
 import { Picked } from "./picked";
@@ -15,7 +15,7 @@ interface Props {
   label: string;
   /** Key of the image; a change asks for a new explanation. */
   scene: string;
-  told?(head: PictureHead): void;
+  told?(head: PictureInfo): void;
 }
 
 /** Rendered image, with the terms of the last clicked pixel beside it. */

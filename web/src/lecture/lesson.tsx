@@ -1,6 +1,6 @@
 import type { ComponentChild } from "preact";
 import { useState } from "preact/hooks";
-import type { PictureHead, Setting } from "../protocol";
+import type { PictureInfo, Setting } from "../protocol";
 import { useOpened } from "./context";
 import { Explained } from "./explained";
 import { type Block, blocks, words } from "./markdown";
@@ -87,7 +87,7 @@ function SceneFigure({ label, name, options }: { label: string; name: string; op
   const picture = given.find((option) => option.name === "show")?.value ?? "color";
   const job = given.filter((option) => option.name !== "show");
   const { session, size, refused } = useOpened({ title: label, name, text: null }, job, picture);
-  const [head, setHead] = useState<PictureHead | null>(null);
+  const [head, setHead] = useState<PictureInfo | null>(null);
   const [width, height] = size;
   return (
     <Figure

@@ -1,6 +1,6 @@
 import { useEffect, useRef } from "preact/hooks";
 import type { Session } from "../engine/engine";
-import type { PictureHead } from "../protocol";
+import type { PictureInfo } from "../protocol";
 import { draw } from "../viewer/picture";
 
 interface Props {
@@ -10,7 +10,7 @@ interface Props {
   label: string;
   /** True to show pixels as squares. */
   squares?: boolean;
-  told?(head: PictureHead): void;
+  told?(head: PictureInfo): void;
 }
 
 /** Shows the image that a session renders. */

@@ -1,5 +1,5 @@
 import { useState } from "preact/hooks";
-import type { FieldState, MaterialState, TreeNode } from "../protocol";
+import type { FieldState, MaterialState, SceneNode } from "../protocol";
 import { Dragged } from "../ui/dragged";
 import { Slider } from "../ui/slider";
 import { give } from "./settings";
@@ -51,7 +51,7 @@ export function Model({ store }: { store: Store }) {
   );
 }
 
-function Node({ node, choose }: { node: TreeNode; choose(material: number): void }) {
+function Node({ node, choose }: { node: SceneNode; choose(material: number): void }) {
   const [open, setOpen] = useState(false);
   const inner = node.nodes.length > 0;
   return (

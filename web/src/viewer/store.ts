@@ -1,20 +1,20 @@
 import { useEffect, useReducer } from "preact/hooks";
 import type { Session } from "../engine/engine";
 import type {
-  BoxState,
+  CameraRay,
   CameraState,
-  CastAccount,
-  Contents,
+  CastResult,
   Event,
   Finding,
-  Lamp,
+  Keyword,
+  LightMarker,
   Motion,
   Outline,
-  PictureHead,
-  PixelAccount,
-  RayAccount,
+  PictureInfo,
+  PixelExplanation,
+  SceneSummary,
   Setting,
-  Word,
+  TreeBox,
 } from "../protocol";
 import { cropOf, whole, type Zoom } from "./zoom";
 
@@ -32,30 +32,30 @@ export class Store {
   diskText: string | null = null;
   conflict = false;
   findings: Finding[] = [];
-  contents: Contents | null = null;
+  contents: SceneSummary | null = null;
   valid = true;
   camera: CameraState | null = null;
-  head: PictureHead | null = null;
+  head: PictureInfo | null = null;
   pixels: Uint8Array<ArrayBuffer> | null = null;
-  pixel: PixelAccount | null = null;
-  cast: CastAccount | null = null;
+  pixel: PixelExplanation | null = null;
+  cast: CastResult | null = null;
   /** Path of the selected term in the tree. */
   chosen = "0";
   /** True if the formulas of the selected term are visible. */
   unfolded = false;
   hovered: string | null = null;
   outlines: Outline[] = [];
-  lamps: Lamp[] = [];
-  words: Word[] = [];
+  lamps: LightMarker[] = [];
+  words: Keyword[] = [];
   refused: string | null = null;
   /** The pixel that the step-by-step view has reached, and its ray. */
-  scan: { x: number; y: number; ray: RayAccount | null } | null = null;
+  scan: { x: number; y: number; ray: CameraRay | null } | null = null;
   /** The visible part of the image. */
   zoom: Zoom = whole;
   denoises = false;
   under: [number, number] | null = null;
   /** Bounding boxes of the trees that are drawn. */
-  boxes: BoxState[] = [];
+  boxes: TreeBox[] = [];
   boxLevel: number | null = null;
   tree: Extract<Event, { kind: "tree" }> | null = null;
   picture = "color";
@@ -349,7 +349,7 @@ export function joined(motions: Motion[]): Motion[] {
 }
 
 /** Returns the term at a path such as `0.2.1` in the tree of a pixel. */
-export function termAt(pixel: PixelAccount | null, path: string) {
+export function termAt(pixel: PixelExplanation | null, path: string) {
   let term = pixel?.tree ?? null;
   for (const step of path.split(".").slice(1)) term = term?.terms[Number(step)] ?? null;
   return term;

@@ -3,7 +3,7 @@
 use super::model::{Input, SceneFormat};
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::math::Vec3;
-use durer_scene::scene::{Axis, Group, Node, Object, Scene};
+use durer_scene::scene::{Axis, Group, Object, ObjectKind, Scene};
 use durer_scene::shape::Sphere;
 
 /// Scene format of `.balls` files.
@@ -25,7 +25,7 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
         return None;
     };
     let ball = |ball: &[f32]| Object {
-        node: Node::Primitive(Sphere { center: Vec3::from_slice(ball), radius: ball[3] }.into()),
+        node: ObjectKind::Primitive(Sphere { center: Vec3::from_slice(ball), radius: ball[3] }.into()),
         material: None,
         span: Span::default(),
     };

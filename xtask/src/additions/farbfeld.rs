@@ -1,7 +1,7 @@
 //! Example of a picture format: farbfeld has a signature of eight bytes, width and height, and 16
 //! bits per channel. Source: farbfeld(5), suckless.org.
 
-use super::{Depth, Format, Head, Raster};
+use super::{Depth, Format, ImageHeader, Raster};
 use crate::{Image, ImageError};
 use durer_bvh::math::Vec3;
 
@@ -17,12 +17,12 @@ pub const FORMAT: Format = Format {
     name: NAME,
     extensions: &["ff"],
     depth: Depth::Float,
-    layers: false,
-    most_side: u32::MAX,
-    begins: |bytes| bytes.starts_with(b"farbfeld"),
+    supports_layers: false,
+    max_side: u32::MAX,
+    has_signature: |bytes| bytes.starts_with(b"farbfeld"),
     head: |bytes| {
         let [width, height] = sizes(bytes)?.map(u64::from);
-        Ok(Head { width, height, eight: false, bytes_per_pixel: 12, spare: 0 })
+        Ok(ImageHeader { width, height, is_eight_bit: false, bytes_per_pixel: 12, extra_bytes: 0 })
     },
     decode: |bytes| {
         let [width, height] = sizes(bytes)?;

@@ -35,10 +35,10 @@ impl Projection for ObliqueCamera {
         Some(Ray::new(origin, dir.normalize()))
     }
 
-    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, emit: &mut dyn FnMut(Vec2)) {
         let p = frame.camera_from_world(world);
         let moved = DVec2::new(p.x, p.y) + f64::from(self.slant) * p.z.abs();
-        found((moved / (0.5 * f64::from(self.size))).as_vec2());
+        emit((moved / (0.5 * f64::from(self.size))).as_vec2());
     }
 
     fn footprint(&self, frame: &CameraBasis, _: &CameraSample, _: f32) -> f32 {

@@ -1,7 +1,7 @@
 //! Writes the keywords of the language as Python classes of the package `durer`.
 
 use super::GENERATED;
-use durer::describe::Kind;
+use durer::describe::FieldKind;
 use durer::dialect::{Dialect, DialectSet};
 use durer::format::course::reference::{Chapter, Entry, FieldEntry, entries};
 use std::fmt::Write;
@@ -87,13 +87,13 @@ fn name(field: &FieldEntry) -> String {
     }
 }
 
-fn kind(kind: Kind) -> String {
+fn kind(kind: FieldKind) -> String {
     match kind {
-        Kind::Float => "float".into(),
-        Kind::Int => "Union[int, Material]".into(),
-        Kind::Vec3 | Kind::Rows(_) => "npt.ArrayLike".into(),
-        Kind::Path => "str".into(),
-        Kind::Word(words) => {
+        FieldKind::Float => "float".into(),
+        FieldKind::Int => "Union[int, Material]".into(),
+        FieldKind::Vec3 | FieldKind::Rows(_) => "npt.ArrayLike".into(),
+        FieldKind::Path => "str".into(),
+        FieldKind::Word(words) => {
             format!("Literal[{}]", words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", "))
         }
     }

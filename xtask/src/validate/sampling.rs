@@ -3,7 +3,7 @@
 use super::Table;
 use super::measure::world;
 use anyhow::Result;
-use durer::bsdf::proof::{self, Cells, Furnace, FurnaceView, Verdict};
+use durer::bsdf::validation::{self, DirectionGrid, Furnace, FurnaceView, PdfComparison};
 use durer::bsdf::warp;
 use durer::math::{Ray64, Vec2, Vec3, fp};
 use durer::medium::HenyeyGreenstein;
@@ -22,13 +22,14 @@ pub fn furnaces(table: &mut Table) {
          1 within 0.2 % plus three standard errors (2^18 samples each).",
         "material|>minimum|>maximum",
     );
-    let smooth = proof::filmed().into_iter().map(|(name, material)| (format!("{name}, smooth"), material, 1));
-    let all = proof::lossless().into_iter().map(|(name, material)| (name.to_string(), material, ROUGHNESSES.len()));
+    let smooth = validation::with_films().into_iter().map(|(name, material)| (format!("{name}, smooth"), material, 1));
+    let all =
+        validation::lossless().into_iter().map(|(name, material)| (name.to_string(), material, ROUGHNESSES.len()));
     for (name, material, count) in all.chain(smooth) {
         let furnace = Furnace::new(&material);
         let (mut least, mut most, mut right) = (f64::MAX, f64::MIN, true);
         for (roughness, cosine) in ROUGHNESSES[..count].iter().flat_map(|&r| COSINES.map(|cosine| (r, cosine))) {
-            let (mean, error) = furnace.gives(roughness, cosine, 1 << 18);
+            let (mean, error) = furnace.albedo(roughness, cosine, 1 << 18);
             (least, most) = (least.min(mean), most.max(mean));
             if (mean - 1.0).abs() > 0.002 + 3.0 * error {
                 right = false;
@@ -42,7 +43,7 @@ pub fn furnaces(table: &mut Table) {
 
 /// Adds furnace tests of anisotropic materials, over anisotropy, azimuth and side.
 fn brushed(table: &mut Table) {
-    for (name, material) in proof::brushed() {
+    for (name, material) in validation::brushed() {
         let furnace = Furnace::new(&material);
         let (mut least, mut most, mut right) = (f64::MAX, f64::MIN, true);
         let sides = if material.base_metalness > 0.0 { &[false][..] } else { &[false, true] };
@@ -51,7 +52,7 @@ fn brushed(table: &mut Table) {
         for ((roughness, cosine), anisotropy) in seen {
             for (&inside, turn) in sides.iter().flat_map(|side| [0.0, 0.07, 0.2, 0.25].map(|turn| (side, turn))) {
                 let from = FurnaceView { roughness, anisotropy, cosine, turn, inside, eta: None };
-                let (mean, error) = furnace.gives_to(from, 1 << 14);
+                let (mean, error) = furnace.albedo_for(from, 1 << 14);
                 (least, most) = (least.min(mean), most.max(mean));
                 if (mean - 1.0).abs() > 0.002 + 3.0 * error {
                     right = false;
@@ -81,9 +82,9 @@ const LIGHTS: [(&str, &str); 6] = [
 
 /// Adds the table of chi-square tests of sampled directions.
 pub fn densities(table: &mut Table) -> Result<()> {
-    const CELLS: Cells = Cells { rows: 80, columns: 160, samples: 1_000_000, fine: 12 };
-    let mut rows: Vec<(String, Verdict)> = Vec::new();
-    for (name, lobe) in proof::broad() {
+    const CELLS: DirectionGrid = DirectionGrid { rows: 80, columns: 160, samples: 1_000_000, fine: 12 };
+    let mut rows: Vec<(String, PdfComparison)> = Vec::new();
+    for (name, lobe) in validation::non_delta_lobes() {
         for (cosine, turn) in [(0.95, 0.1), (0.6, 0.7), (0.25, 0.35)] {
             let verdict = CELLS.lobe(11, lobe, warp::polar(cosine, turn));
             rows.push((format!("{name}, viewed at cosine {cosine}"), verdict));
@@ -96,7 +97,7 @@ pub fn densities(table: &mut Table) -> Result<()> {
     }
     let light = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1 walls thin }";
     // The pdf of an area light drops to zero at its edge, so use finer integration there.
-    let finely = Cells { fine: 40, ..CELLS };
+    let finely = DirectionGrid { fine: 40, ..CELLS };
     for (name, group) in LIGHTS {
         let world = world(name, "", light, "", &format!("MaterialIndex 0 {group}"))?;
         rows.push((format!("light: {name}"), of_lights(&world, finely)));
@@ -120,7 +121,7 @@ pub fn densities(table: &mut Table) -> Result<()> {
         ),
         "sampler|>integral of pdf|>deviate",
     );
-    for (name, Verdict { deviate, density }) in rows {
+    for (name, PdfComparison { deviate, density }) in rows {
         table.row(&format!("| {name} | {density:.4} | {deviate:+.2} |"), deviate < most && density < 1.002);
     }
     Ok(())
@@ -135,7 +136,7 @@ fn back(v: Vec3) -> Vec3 {
     Vec3::new(v.x, v.z, -v.y)
 }
 
-fn of_lights(world: &World, cells: Cells) -> Verdict {
+fn of_lights(world: &World, cells: DirectionGrid) -> PdfComparison {
     let point = Vec3::ZERO.as_dvec3();
     let to = Receiver { point, n: Vec3::ZERO, far: Receiver::FAR };
     let sample = |choice: f32, u: Vec2| {

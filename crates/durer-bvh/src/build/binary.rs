@@ -1,11 +1,11 @@
 //! Builds a binary tree over references, top down, by the surface area heuristic.
 
 use super::builder::{Bin, Builder, half_area};
-use super::cut::HALVING_DEPTH;
-use super::reference::{Reference, area_scale, lane, lane_number};
+use super::object_split::HALVING_DEPTH;
+use super::reference::{Reference, area_scale, decode_lane, encode_lane};
 use super::settings::BuildSettings;
-use super::spatial::{MIN_REFERENCES, Searches};
-use crate::lanes::listed;
+use super::spatial_split::{MIN_REFERENCES, SearchHistory};
+use crate::lanes::parallel_vec;
 use crate::math::{Aabb, Vec3};
 use crate::parallel;
 use glam::Vec4;
@@ -34,13 +34,13 @@ impl BinaryNode {
     pub const NONE: BinaryNode = BinaryNode { min: Vec4::ZERO, max: Vec4::ZERO };
 
     pub fn leaf(mut min: Vec4, mut max: Vec4, count: u32, first: u32) -> Self {
-        (min.w, max.w) = (lane(LEAF, count), lane(LEAF, first));
+        (min.w, max.w) = (encode_lane(LEAF, count), encode_lane(LEAF, first));
         BinaryNode { min, max }
     }
 
     pub fn inner(mut min: Vec4, mut max: Vec4, count: u32, right: usize) -> Self {
         debug_assert!(right.is_multiple_of(2));
-        (min.w, max.w) = (lane(INNER, count), lane(INNER, (right / 2) as u32));
+        (min.w, max.w) = (encode_lane(INNER, count), encode_lane(INNER, (right / 2) as u32));
         BinaryNode { min, max }
     }
 
@@ -58,19 +58,19 @@ impl BinaryNode {
     /// Number of references in the subtree.
     #[inline]
     pub fn count(&self) -> usize {
-        lane_number(self.min.w) as usize
+        decode_lane(self.min.w) as usize
     }
 
     /// Position of a leaf's first reference.
     #[inline]
     pub fn first(&self) -> usize {
-        lane_number(self.max.w) as usize
+        decode_lane(self.max.w) as usize
     }
 
     /// Distance from the node to its right child, in nodes.
     #[inline]
     pub fn right(&self) -> usize {
-        2 * lane_number(self.max.w) as usize
+        2 * decode_lane(self.max.w) as usize
     }
 
     pub fn bounds(&self) -> Aabb {
@@ -79,11 +79,11 @@ impl BinaryNode {
 }
 
 /// A binary BVH during construction. `scale` is the factor for sizes before areas are compared.
-pub struct Tree {
+pub struct BinaryTree {
     pub nodes: Vec<BinaryNode>,
     pub scale: f32,
     /// True if a primitive is in several leaves.
-    pub is_cut: bool,
+    pub has_splits: bool,
 }
 
 /// Part of the list of references from which a subtree is built.
@@ -92,7 +92,7 @@ struct BuildRange<'a> {
     references: &'a mut [Reference],
     /// Position of the first reference in the list of all references.
     first: usize,
-    searches: Searches,
+    searches: SearchHistory,
 }
 
 /// Result of building a subtree: the number of references in it, and of nodes reserved for it.
@@ -108,20 +108,20 @@ pub fn build(
     mut references: Vec<Reference>,
     settings: &BuildSettings,
     corners: &[[Vec3; 3]],
-) -> (Tree, Vec<Reference>) {
+) -> (BinaryTree, Vec<Reference>) {
     let all = Bin::of(&references);
     let scale = area_scale(all.bounds());
     let area = half_area(all.min, all.max, scale);
-    let builder = Builder { scale, area, whole: settings.whole, bins: settings.bins, corners };
-    let (first, spare) = (references[0], settings.spare(references.len()));
+    let builder = Builder { scale, area, whole: settings.compact_leaf_size, bins: settings.bins, corners };
+    let (first, spare) = (references[0], settings.max_added_references(references.len()));
     parallel::extend(&mut references, spare, 1, |_| first);
-    let mut nodes = listed(2 * references.len() - 1, 0, |_| BinaryNode::NONE);
-    let room = BuildRange { references: &mut references, first: 0, searches: Searches::default() };
-    let counts = builder.subtree(room, &mut nodes, &all, 0);
+    let mut nodes = parallel_vec(2 * references.len() - 1, 0, |_| BinaryNode::NONE);
+    let space = BuildRange { references: &mut references, first: 0, searches: SearchHistory::default() };
+    let counts = builder.subtree(space, &mut nodes, &all, 0);
     nodes.truncate(counts.nodes);
     // Most of the space was for leaves with one reference.
     nodes.shrink_to_fit();
-    (Tree { nodes, scale, is_cut: counts.references > all.count }, references)
+    (BinaryTree { nodes, scale, has_splits: counts.references > all.count }, references)
 }
 
 impl BuildRange<'_> {
@@ -141,43 +141,43 @@ impl BuildRange<'_> {
 }
 
 impl Builder<'_> {
-    /// Builds a subtree over the first `all.count` references of `room`. `nodes` must have space
-    /// for twice as many nodes as `room` has references, minus one.
-    fn subtree(&self, mut room: BuildRange, nodes: &mut [BinaryNode], all: &Bin, depth: usize) -> SubtreeSize {
+    /// Builds a subtree over the first `all.count` references of `space`. `nodes` must have space
+    /// for twice as many nodes as `space` has references, minus one.
+    fn subtree(&self, mut space: BuildRange, nodes: &mut [BinaryNode], all: &Bin, depth: usize) -> SubtreeSize {
         let (Bin { min, max, .. }, count) = (*all, all.count as usize);
-        let spare = room.references.len() - count;
-        let references = &mut room.references[..count];
-        if count == 1 || count <= self.whole && self.is_whole(references, all) {
-            nodes[0] = BinaryNode::leaf(min, max, all.count, room.first as u32);
+        let spare = space.references.len() - count;
+        let references = &mut space.references[..count];
+        if count == 1 || count <= self.whole && self.is_compact(references, all) {
+            nodes[0] = BinaryNode::leaf(min, max, all.count, space.first as u32);
             return SubtreeSize { references: all.count, nodes: 1 };
         }
-        let cut = self.cut(references, all, depth);
+        let cut = self.object_split(references, all, depth);
         let parts = match depth < HALVING_DEPTH {
-            true => self.parts(references, spare, all, &cut, &mut room.searches),
+            true => self.spatial_split(references, spare, all, &cut, &mut space.searches),
             false => None,
         };
         let (boxes, middle) = match parts {
             Some([left, right]) => {
-                let middle = room.middle(left.len(), right.len());
-                room.references[..left.len()].copy_from_slice(&left);
-                room.references[middle..][..right.len()].copy_from_slice(&right);
+                let middle = space.middle(left.len(), right.len());
+                space.references[..left.len()].copy_from_slice(&left);
+                space.references[middle..][..right.len()].copy_from_slice(&right);
                 ([Bin::of(&left), Bin::of(&right)], middle)
             }
             None => {
                 let (boxes, left) = self.divide(references, &cut);
-                let middle = room.middle(left, count - left);
+                let middle = space.middle(left, count - left);
                 if left < middle {
-                    room.references.copy_within(left..count, middle);
+                    space.references.copy_within(left..count, middle);
                 }
                 (boxes, middle)
             }
         };
         let (here, below) = nodes.split_first_mut().expect("the list has space for a node");
-        let (left, right) = room.references.split_at_mut(middle);
+        let (left, right) = space.references.split_at_mut(middle);
         let [left_all, right_all] = &boxes;
-        let left = BuildRange { references: left, ..room };
-        let right = BuildRange { references: right, first: room.first + middle, ..room };
-        let build = |room, nodes: &mut _, all| self.subtree(room, nodes, all, depth + 1);
+        let left = BuildRange { references: left, ..space };
+        let right = BuildRange { references: right, first: space.first + middle, ..space };
+        let build = |space, nodes: &mut _, all| self.subtree(space, nodes, all, depth + 1);
         let [left, right] = if left_all.count + right_all.count > PARALLEL {
             let nodes = 2 * middle - 1;
             let (left_nodes, right_nodes) = below.split_at_mut(nodes);
@@ -196,7 +196,7 @@ impl Builder<'_> {
 
     /// Returns true if the references are so close together that separate boxes would save few
     /// tests.
-    fn is_whole(&self, references: &[Reference], all: &Bin) -> bool {
+    fn is_compact(&self, references: &[Reference], all: &Bin) -> bool {
         let areas = references.iter().map(|r| half_area(r.min, r.max, self.scale));
         half_area(all.min, all.max, self.scale) <= 4.0 * areas.fold(f32::INFINITY, f32::min)
     }
@@ -210,10 +210,10 @@ mod tests {
     use crate::node::MAX_ITEMS;
     use crate::triangles::tests::bars;
 
-    /// Checks a tree over `triangles` triangles with space for `room` references. Returns the
+    /// Checks a tree over `triangles` triangles with space for `space` references. Returns the
     /// number of unused nodes.
-    fn check(tree: &Tree, references: &[Reference], triangles: usize, room: usize) -> usize {
-        let (mut is_node, mut is_taken) = (vec![false; tree.nodes.len()], vec![false; room]);
+    fn check(tree: &BinaryTree, references: &[Reference], triangles: usize, space: usize) -> usize {
+        let (mut is_node, mut is_taken) = (vec![false; tree.nodes.len()], vec![false; space]);
         let (mut is_visited, mut stack) = (vec![false; triangles], vec![0]);
         while let Some(i) = stack.pop() {
             let node = tree.nodes[i];
@@ -228,8 +228,8 @@ mod tests {
                 continue;
             }
             let mut bounds = Aabb::EMPTY;
-            let places = node.first()..node.first() + node.count();
-            for (is_taken, r) in is_taken[places.clone()].iter_mut().zip(&references[places]) {
+            let range = node.first()..node.first() + node.count();
+            for (is_taken, r) in is_taken[range.clone()].iter_mut().zip(&references[range]) {
                 assert!(!std::mem::replace(is_taken, true));
                 is_visited[r.number() as usize] = true;
                 bounds = bounds.union(r.bounds());
@@ -239,7 +239,7 @@ mod tests {
         assert!(is_visited.iter().all(|hits| *hits));
         let taken = is_taken.iter().filter(|taken| **taken).count();
         assert_eq!(taken, tree.nodes[0].count());
-        assert_eq!(tree.is_cut, taken > triangles);
+        assert_eq!(tree.has_splits, taken > triangles);
         let nothing = tree.nodes.iter().zip(&is_node).filter(|(_, is_node)| !**is_node);
         nothing.inspect(|(node, _)| assert!(!node.is_there())).count()
     }
@@ -254,11 +254,12 @@ mod tests {
         for count in [1, 2, 5, 700, 4_096, 4_097, 20_000] {
             let (vertices, triangles) = bars(&mut random, (count - count / 10) as u32, count / 10);
             let corners: Vec<[Vec3; 3]> = triangles.iter().map(|t| t.map(|i| vertices[i as usize])).collect();
-            let taken = [0.0, 0.1, 2.0].map(|splits| {
-                let settings = BuildSettings { splits, ..BuildSettings::triangles(BuildQuality::Best) };
+            let taken = [0.0, 0.1, 2.0].map(|max_added_share| {
+                let settings = BuildSettings { max_added_share, ..BuildSettings::triangles(BuildQuality::Best) };
                 let references = triangle_references(count, &settings, &|i| corners[i as usize]);
                 let (tree, references) = build(references, &settings, &corners);
-                with_gaps += usize::from(check(&tree, &references, count, count + settings.spare(count)) > 0);
+                with_gaps +=
+                    usize::from(check(&tree, &references, count, count + settings.max_added_references(count)) > 0);
                 tree.nodes[0].count()
             });
             cut += usize::from(taken[2] > count);

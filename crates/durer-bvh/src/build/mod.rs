@@ -3,19 +3,19 @@
 
 mod binary;
 mod builder;
-mod cut;
+mod object_split;
 mod reference;
 mod reinsert;
 mod settings;
-mod spatial;
+mod spatial_split;
 mod wide;
 
-use crate::lanes::listed;
+use crate::lanes::parallel_vec;
 use crate::math::{Aabb, Vec3};
 use crate::node::{MAX_ITEMS, WideNode};
 use reference::{Reference, triangle_references};
 pub(crate) use reference::{is_finite, references};
-use reinsert::Linked;
+use reinsert::LinkedTree;
 pub use settings::BuildQuality;
 pub(crate) use settings::BuildSettings;
 use settings::MIN_GAIN;
@@ -23,7 +23,7 @@ use wide::CollapsePlan;
 
 /// Number of reinsertion passes after which a tree with split triangles is compared with the best
 /// one so far. A better binary tree can give a worse wide tree, especially after splits.
-const TRUSTED_PASSES: usize = 2;
+const UNCHECKED_PASSES: usize = 2;
 
 /// A finished tree with eight children per node, from which [`Bvh`](super::Bvh) and
 /// [`TriangleBvh`](super::TriangleBvh) are made.
@@ -46,11 +46,11 @@ pub(super) fn build_triangles(
     settings: &BuildSettings,
 ) -> Tree {
     assert!(count <= MAX_ITEMS, "a tree holds fewer than 2^28 triangles");
-    if settings.splits == 0.0 {
+    if settings.max_added_share == 0.0 {
         return build_of(triangle_references(count, settings, corners_of), settings, Vec::new());
     }
     // The search for split planes needs the same corners at many levels.
-    let corners = listed(count, 0, |i| corners_of(i as u32));
+    let corners = parallel_vec(count, 0, |i| corners_of(i as u32));
     build_of(triangle_references(count, settings, &|i| corners[i as usize]), settings, corners)
 }
 
@@ -60,7 +60,7 @@ fn build_of(references: Vec<Reference>, settings: &BuildSettings, corners: Vec<[
     }
     let (mut tree, references) = binary::build(references, settings, &corners);
     drop(corners);
-    let numbers = listed(references.len(), 0, |i| references[i].number());
+    let numbers = parallel_vec(references.len(), 0, |i| references[i].number());
     drop(references);
     let bounds = tree.nodes[0].bounds();
     let plans = improved(&mut tree, settings);
@@ -69,17 +69,17 @@ fn build_of(references: Vec<Reference>, settings: &BuildSettings, corners: Vec<[
 }
 
 /// Improves a tree by reinsertion as long as that pays, and returns the best collapse plan.
-fn improved(tree: &mut binary::Tree, settings: &BuildSettings) -> CollapsePlan {
+fn improved(tree: &mut binary::BinaryTree, settings: &BuildSettings) -> CollapsePlan {
     let mut plans = CollapsePlan::new(&tree.nodes, tree.scale, settings);
     // With fewer than five nodes, there are no nodes below the root's children that could be moved.
     if settings.reinsertions == 0 || tree.nodes.len() < 5 {
         return plans;
     }
-    let mut work = Linked::new(tree);
+    let mut work = LinkedTree::new(tree);
     for pass in 1..=settings.reinsertions {
         // Also stops if areas are NaN.
         let goes_on = work.pass() >= MIN_GAIN && pass < settings.reinsertions;
-        if !goes_on || pass == TRUSTED_PASSES && tree.is_cut {
+        if !goes_on || pass == UNCHECKED_PASSES && tree.has_splits {
             let Some(nodes) = work.in_order() else { break };
             let others = CollapsePlan::new(&nodes, tree.scale, settings);
             // At equal cost, fewer triangles are tested.

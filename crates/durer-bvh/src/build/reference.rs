@@ -1,7 +1,7 @@
 //! References to primitives: the numbered boxes from which trees are built.
 
 use super::settings::BuildSettings;
-use crate::lanes::listed;
+use crate::lanes::parallel_vec;
 use crate::math::{Aabb, Vec3};
 use crate::node::MAX_ITEMS;
 use crate::parallel;
@@ -17,11 +17,11 @@ pub struct Reference {
 
 impl Reference {
     pub fn new(bounds: Aabb, number: u32) -> Self {
-        Reference { min: bounds.min.extend(lane(3, number)), max: bounds.max.extend(0.0) }
+        Reference { min: bounds.min.extend(encode_lane(3, number)), max: bounds.max.extend(0.0) }
     }
 
     pub fn number(&self) -> u32 {
-        lane_number(self.min.w)
+        decode_lane(self.min.w)
     }
 
     pub fn bounds(&self) -> Aabb {
@@ -30,19 +30,19 @@ impl Reference {
 
     /// Twice the centre.
     #[inline]
-    pub fn middle(&self) -> Vec4 {
+    pub fn double_center(&self) -> Vec4 {
         self.min + self.max
     }
 }
 
 /// Encodes a number below 2^28 and a tag of 2 or 3 as a normal `f32` for the fourth lane of a
 /// vector. Normal numbers do not slow down arithmetic on the lane.
-pub fn lane(tag: u32, number: u32) -> f32 {
+pub fn encode_lane(tag: u32, number: u32) -> f32 {
     f32::from_bits(number | tag << 28)
 }
 
-/// Decodes the number from a value of [`lane`].
-pub fn lane_number(lane: f32) -> u32 {
+/// Decodes the number from a value of [`encode_lane`].
+pub fn decode_lane(lane: f32) -> u32 {
     lane.to_bits() & !(3 << 28)
 }
 
@@ -65,7 +65,7 @@ pub fn triangle_references(
     settings: &BuildSettings,
     corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync),
 ) -> Vec<Reference> {
-    let mut references = listed(count, settings.spare(count), |i| {
+    let mut references = parallel_vec(count, settings.max_added_references(count), |i| {
         let corners = corners_of(i as u32);
         Reference::new(if is_finite(&corners) { Aabb::around(corners) } else { Aabb::EMPTY }, i as u32)
     });

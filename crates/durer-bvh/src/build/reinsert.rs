@@ -3,10 +3,10 @@
 //! Source: Meister, Bittner, *Parallel Reinsertion for Bounding Volume Hierarchy Optimization*,
 //! Eurographics 2018.
 
-use super::binary::{BinaryNode, Tree};
+use super::binary::{BinaryNode, BinaryTree};
 use super::builder::half_area;
 use super::settings::MIN_GAIN;
-use crate::lanes::room;
+use crate::lanes::vec_on_large_pages;
 use crate::node::MAX_DEPTH;
 use crate::parallel;
 
@@ -15,22 +15,23 @@ use crate::parallel;
 const SHARE: f64 = 0.04;
 /// Additional shares of the nodes that a pass examines if possible savings do not predict actual
 /// ones.
-const MAX_SHARES: usize = 3;
+const EXTRA_SHARES: usize = 3;
 /// Maximum number of nodes visited in a search for a better place.
-const PATIENCE: usize = 1 << 8;
+const MAX_VISITS: usize = 1 << 8;
 
 const NONE: u32 = u32::MAX;
 
 /// A binary BVH with links to parents and children, so that reinsertion can move its subtrees.
-pub struct Linked {
-    nodes: Vec<Link>,
+pub struct LinkedTree {
+    nodes: Vec<LinkedNode>,
     scale: f32,
     area: f64,
 }
 
-/// A node of [`Linked`], with its scaled half area and the positions of its parent and children.
+/// A node of [`LinkedTree`], with its scaled half area and the positions of its parent and
+/// children.
 #[derive(Clone, Copy)]
-struct Link {
+struct LinkedNode {
     node: BinaryNode,
     area: f32,
     parent: u32,
@@ -59,10 +60,10 @@ fn greatest(nodes: &mut [Candidate], count: usize) -> (&[Candidate], &mut [Candi
     (greatest, others)
 }
 
-impl Linked {
-    pub fn new(tree: &Tree) -> Self {
+impl LinkedTree {
+    pub fn new(tree: &BinaryTree) -> Self {
         let scale = tree.scale;
-        let mut nodes: Vec<Link> = room(tree.nodes.len());
+        let mut nodes: Vec<LinkedNode> = vec_on_large_pages(tree.nodes.len());
         // Nodes are in depth-first order: each is a child of the last node with fewer than two
         // children.
         let mut parents = Vec::new();
@@ -76,13 +77,13 @@ impl Linked {
             if !node.is_leaf() {
                 parents.extend([i, i]);
             }
-            nodes.push(Link { node, area: half_area(node.min, node.max, scale), parent, children: [NONE; 2] });
+            nodes.push(LinkedNode { node, area: half_area(node.min, node.max, scale), parent, children: [NONE; 2] });
         }
         let area = nodes.iter().map(|link| f64::from(link.area)).sum();
-        Linked { nodes, scale, area }
+        LinkedTree { nodes, scale, area }
     }
 
-    fn at(&self, i: u32) -> &Link {
+    fn at(&self, i: u32) -> &LinkedNode {
         &self.nodes[i as usize]
     }
 
@@ -96,10 +97,10 @@ impl Linked {
     pub fn pass(&mut self) -> f64 {
         // Removing a subtree saves at least its parent's area, and inserting it costs at least its
         // own area. `max` also replaces the NaN difference of infinite areas.
-        let spared = |i: u32| ((self.at(self.at(i).parent).area - self.at(i).area).max(0.0), i);
+        let savings = |i: u32| ((self.at(self.at(i).parent).area - self.at(i).area).max(0.0), i);
         // The root and its children are never moved.
         let movable = |&i: &u32| i != 0 && self.at(i).parent != 0;
-        let mut candidates: Vec<Candidate> = (0..self.nodes.len() as u32).filter(movable).map(spared).collect();
+        let mut candidates: Vec<Candidate> = (0..self.nodes.len() as u32).filter(movable).map(savings).collect();
         let count = ((self.nodes.len() as f64 * SHARE) as usize).clamp(16, 1 << 24);
         let (first, rest) = greatest(&mut candidates, count);
         let (next, rest) = greatest(rest, count / 4);
@@ -110,7 +111,7 @@ impl Linked {
         let is_even = 4.0 * gain(&more) >= (0.25 * gain(&moves)).max(MIN_GAIN * self.area);
         moves.extend(more);
         if is_even {
-            moves.extend(self.moves(greatest(rest, MAX_SHARES * count).0));
+            moves.extend(self.moves(greatest(rest, EXTRA_SHARES * count).0));
         }
         moves.sort_unstable_by(|a, b| b.gain.total_cmp(&a.gain).then(a.from.cmp(&b.from)));
         let mut touched = vec![false; self.nodes.len()];
@@ -146,8 +147,9 @@ impl Linked {
     /// Finds the best place for a subtree: searches upwards from its position, and from there down
     /// into the siblings.
     fn find(&self, from: u32) -> Option<Move> {
-        let Link { node, area, parent, .. } = *self.at(from);
-        let merged = |other: &Link| half_area(node.min.min(other.node.min), node.max.max(other.node.max), self.scale);
+        let LinkedNode { node, area, parent, .. } = *self.at(from);
+        let merged =
+            |other: &LinkedNode| half_area(node.min.min(other.node.min), node.max.max(other.node.max), self.scale);
         let mut best = Move { gain: 0.0, from, to: NONE };
         // Removing the subtree removes its parent, and the boxes above shrink.
         let mut saved = self.at(parent).area;
@@ -155,7 +157,7 @@ impl Linked {
         let mut sibling = self.sibling(from);
         let mut shrunk = (self.at(sibling).node.min, self.at(sibling).node.max);
         let mut stack: Vec<(f32, u32)> = Vec::with_capacity(64);
-        let mut patience = PATIENCE;
+        let mut patience = MAX_VISITS;
         loop {
             stack.push((saved, sibling));
             while let Some((saved, to)) = stack.pop() {
@@ -230,7 +232,7 @@ impl Linked {
 
     /// Nodes in depth-first order with their counts; `None` if the tree is too deep.
     pub fn in_order(&self) -> Option<Vec<BinaryNode>> {
-        let mut nodes: Vec<BinaryNode> = room(self.nodes.len());
+        let mut nodes: Vec<BinaryNode> = vec_on_large_pages(self.nodes.len());
         let mut stack = vec![(0, 1)];
         while let Some((i, depth)) = stack.pop() {
             if depth > MAX_DEPTH {
@@ -282,7 +284,7 @@ mod tests {
                 .collect();
             // With few references in a leaf, unused nodes remain between subtrees that were built
             // in parallel.
-            let settings = BuildSettings { whole: 3, ..BuildSettings::THINGS };
+            let settings = BuildSettings { compact_leaf_size: 3, ..BuildSettings::PRIMITIVES };
             let (tree, _) = binary::build(references(&boxes), &settings, &[]);
             assert!((count > 4096) == tree.nodes.iter().any(|node| !node.is_there()));
             let leaves = |nodes: &[BinaryNode]| {
@@ -294,9 +296,9 @@ mod tests {
             let area = |node: &BinaryNode| half_area(node.min, node.max, tree.scale);
             let sum = |nodes: &[BinaryNode]| nodes.iter().map(|node| f64::from(area(node))).sum::<f64>();
             let first = sum(&tree.nodes);
-            let (mut work, mut before) = (Linked::new(&tree), first);
+            let (mut work, mut before) = (LinkedTree::new(&tree), first);
             for _ in 0..4 {
-                let spared = work.pass();
+                let savings = work.pass();
                 assert!(work.nodes.iter().all(|link| link.area == area(&link.node)));
                 let nodes = work.in_order().expect("a shallow tree");
                 for (i, node) in nodes.iter().enumerate().filter(|(_, node)| !node.is_leaf()) {
@@ -306,7 +308,7 @@ mod tests {
                 }
                 assert_eq!(leaves(&nodes), leaves(&tree.nodes));
                 let now = sum(&nodes);
-                assert!((spared - (before - now) / before).abs() < 1e-9, "{spared} of {before}, {now}");
+                assert!((savings - (before - now) / before).abs() < 1e-9, "{savings} of {before}, {now}");
                 before = now;
             }
             assert!(count == 5 || before < 0.99 * first, "{count}: {first} to {before}");

@@ -38,7 +38,7 @@ pub struct BuildSettings {
     pub memory_cost: f32,
     /// Maximum number of references that are put into one leaf of the binary tree if they are close
     /// to each other.
-    pub whole: usize,
+    pub compact_leaf_size: usize,
     /// Maximum number of bins for a number of references.
     pub bins: fn(usize) -> usize,
     /// Maximum number of primitives in a leaf.
@@ -46,32 +46,32 @@ pub struct BuildSettings {
     /// Maximum number of reinsertion passes.
     pub reinsertions: usize,
     /// Number of references that splits may add, as a share of the number of triangles.
-    pub splits: f32,
+    pub max_added_share: f32,
 }
 
 impl BuildSettings {
     /// Settings for primitives whose test costs as much as several nodes.
-    pub const THINGS: BuildSettings = BuildSettings {
+    pub const PRIMITIVES: BuildSettings = BuildSettings {
         leaf_cost: |count| 2.0 * count as f32,
         // For 100,000 small primitives, this takes 0.64 of the memory, 1.01 of the tests, and 0.8
         // of the time.
         memory_cost: 2.0,
-        whole: 1,
+        compact_leaf_size: 1,
         bins: |_| BINS,
         leaf_size: 4,
         reinsertions: 2,
-        splits: 0.0,
+        max_added_share: 0.0,
     };
 
     /// Number of references that splits may add to `count`.
-    pub fn spare(&self, count: usize) -> usize {
-        ((count as f32 * self.splits) as usize).min(MAX_ITEMS - count)
+    pub fn max_added_references(&self, count: usize) -> usize {
+        ((count as f32 * self.max_added_share) as usize).min(MAX_ITEMS - count)
     }
 
     /// Settings for blocks of triangles, each of which is a leaf.
     pub fn blocks(quality: BuildQuality) -> BuildSettings {
-        let of_triangles = BuildSettings { splits: 0.0, ..BuildSettings::triangles(quality) };
-        BuildSettings { whole: 1, leaf_size: 1, ..of_triangles }
+        let of_triangles = BuildSettings { max_added_share: 0.0, ..BuildSettings::triangles(quality) };
+        BuildSettings { compact_leaf_size: 1, leaf_size: 1, ..of_triangles }
     }
 
     /// Settings for meshes whose leaves hold up to eight triangles, which are tested at once.
@@ -79,12 +79,19 @@ impl BuildSettings {
         // All triangles of a leaf are tested at once.
         let leaf_cost = |count| 1.2 + 0.05 * count as f32;
         let most = LEAF_SIZE;
-        let settings =
-            BuildSettings { leaf_cost, memory_cost: 0.0, whole: most, leaf_size: most, ..BuildSettings::THINGS };
+        let settings = BuildSettings {
+            leaf_cost,
+            memory_cost: 0.0,
+            compact_leaf_size: most,
+            leaf_size: most,
+            ..BuildSettings::PRIMITIVES
+        };
         match quality {
             BuildQuality::Fast => BuildSettings { bins: |count| 4 + count / 16, reinsertions: 0, ..settings },
             BuildQuality::Balanced => settings,
-            BuildQuality::Best => BuildSettings { whole: 3, reinsertions: 4, splits: 0.5, ..settings },
+            BuildQuality::Best => {
+                BuildSettings { compact_leaf_size: 3, reinsertions: 4, max_added_share: 0.5, ..settings }
+            }
         }
     }
 }

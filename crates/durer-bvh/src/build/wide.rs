@@ -13,7 +13,7 @@
 use super::binary;
 use super::builder::half_area;
 use super::settings::BuildSettings;
-use crate::lanes::{WIDTH, listed, room};
+use crate::lanes::{WIDTH, parallel_vec, vec_on_large_pages};
 use crate::math::Aabb;
 use crate::node::{self, LEAF, LEAF_SIZE, WideNode};
 use crate::parallel;
@@ -31,23 +31,23 @@ pub struct CollapsePlan {
 
 impl CollapsePlan {
     pub fn new(nodes: &[binary::BinaryNode], scale: f32, settings: &BuildSettings) -> Self {
-        let mut plans = listed(nodes.len(), 0, |_| Plan::default());
+        let mut plans = parallel_vec(nodes.len(), 0, |_| Plan::default());
         let all = half_area(nodes[0].min, nodes[0].max, scale);
         let node_cost = settings.memory_cost * all / nodes[0].count() as f32;
-        let cost = plan(nodes, &mut plans, &Prices { scale, node_cost, settings })[0];
+        let cost = plan(nodes, &mut plans, &CostParameters { scale, node_cost, settings })[0];
         CollapsePlan { plans, cost }
     }
 }
 
 /// Builds the wide nodes and lists the primitives of their leaves. `numbers` holds the primitive
 /// numbers in the order of the binary tree's leaves.
-pub fn collapse(tree: &binary::Tree, numbers: &[u32], plans: CollapsePlan) -> (Vec<WideNode>, Vec<u32>) {
+pub fn collapse(tree: &binary::BinaryTree, numbers: &[u32], plans: CollapsePlan) -> (Vec<WideNode>, Vec<u32>) {
     let writer = NodeWriter { tree, numbers, plans: plans.plans };
     let mut cuts = CutPoints::default();
     writer.cuts(0, &mut cuts);
     let subtrees: Vec<SubtreeNodes> = parallel::map(&cuts.below, |&i| writer.subtree(i));
     let count = cuts.above + subtrees.iter().map(|subtree| subtree.nodes.len()).sum::<usize>();
-    let mut all = SubtreeNodes { nodes: room(count), order: room(writer.node(0).count()) };
+    let mut all = SubtreeNodes { nodes: vec_on_large_pages(count), order: vec_on_large_pages(writer.node(0).count()) };
     // A tree of one leaf still needs a node.
     all.nodes.push(WideNode::EMPTY);
     writer.fill(&mut all, 0, 0, &mut subtrees.iter());
@@ -80,7 +80,7 @@ impl Plan {
 /// Minimal cost of two children's forests with `roots` roots in total, and the number of roots in
 /// the left child.
 #[inline(always)]
-fn shared(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
+fn split_roots(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
     let most = WIDTH - 1;
     let mut best = (f32::INFINITY, 1);
     for k in roots.saturating_sub(most).max(1)..=(roots - 1).min(most) {
@@ -91,7 +91,7 @@ fn shared(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
 }
 
 /// Parameters of the cost function by which a binary tree is collapsed.
-struct Prices<'a> {
+struct CostParameters<'a> {
     /// Factor for sizes before areas are computed.
     scale: f32,
     /// Cost of a node's memory.
@@ -100,8 +100,8 @@ struct Prices<'a> {
 }
 
 /// Finds the cheapest choices for all nodes of a subtree.
-fn plan(nodes: &[binary::BinaryNode], plans: &mut [Plan], prices: &Prices) -> Costs {
-    let (node, &Prices { scale, node_cost, settings }) = (&nodes[0], prices);
+fn plan(nodes: &[binary::BinaryNode], plans: &mut [Plan], prices: &CostParameters) -> Costs {
+    let (node, &CostParameters { scale, node_cost, settings }) = (&nodes[0], prices);
     let (area, count) = (half_area(node.min, node.max, scale), node.count());
     let leaf = if count <= settings.leaf_size { area * (settings.leaf_cost)(count) } else { f32::INFINITY };
     if node.is_leaf() {
@@ -118,16 +118,16 @@ fn plan(nodes: &[binary::BinaryNode], plans: &mut [Plan], prices: &Prices) -> Co
     };
     // The number of roots is limited by the number of references.
     let most = count.min(WIDTH);
-    let (opened, k) = shared(&left, &right, most);
+    let (opened, k) = split_roots(&left, &right, most);
     own.set_left(WIDTH, k);
     let opened = area + opened;
     // If costs are NaN, for example for infinite areas, small subtrees become leaves.
-    let dearer = opened < leaf;
-    let is_leaf = count <= settings.leaf_size && !dearer;
+    let opens = opened < leaf;
+    let is_leaf = count <= settings.leaf_size && !opens;
     own.0 |= u32::from(is_leaf);
     let mut costs = [if is_leaf { leaf } else { opened + node_cost }; WIDTH - 1];
     for roots in 2..=most.min(WIDTH - 1) {
-        let (cost, k) = shared(&left, &right, roots);
+        let (cost, k) = split_roots(&left, &right, roots);
         if cost < costs[roots - 2] {
             costs[roots - 1..].fill(cost);
             own.set_left(roots, k);
@@ -138,7 +138,7 @@ fn plan(nodes: &[binary::BinaryNode], plans: &mut [Plan], prices: &Prices) -> Co
 
 /// Writer of wide nodes from a binary tree and its [`CollapsePlan`].
 struct NodeWriter<'a> {
-    tree: &'a binary::Tree,
+    tree: &'a binary::BinaryTree,
     numbers: &'a [u32],
     plans: Vec<Plan>,
 }
@@ -244,8 +244,8 @@ impl NodeWriter<'_> {
         let list = &children.list[..children.count];
         let mut bounds = [Aabb::EMPTY; WIDTH];
         bounds.iter_mut().zip(list).for_each(|(bounds, &i)| *bounds = self.node(i).bounds());
-        let (from_last, places) = places(&bounds[..list.len()]);
-        subtree.nodes[number].from_last = from_last;
+        let (reversed_octants, slots) = child_slots(&bounds[..list.len()]);
+        subtree.nodes[number].reversed_octants = reversed_octants;
         let first = subtree.nodes.len();
         let mut inner = Children::default();
         for (k, &i) in list.iter().enumerate() {
@@ -257,7 +257,7 @@ impl NodeWriter<'_> {
                 subtree.nodes[number].first = node::node_offset(first);
                 node::node_offset(first + inner.count - 1)
             };
-            subtree.nodes[number].set(places[k], bounds[k], child);
+            subtree.nodes[number].set(slots[k], bounds[k], child);
         }
         subtree.nodes.resize(first + inner.count, WideNode::EMPTY);
         (first, inner)
@@ -275,7 +275,7 @@ impl NodeWriter<'_> {
                 break;
             }
         }
-        if self.tree.is_cut {
+        if self.tree.has_splits {
             // Parts of a split primitive that are in the same leaf again count only once.
             items[..count].sort_unstable();
             let mut different = 1;
@@ -321,7 +321,7 @@ impl SubtreeNodes {
 /// since a ray usually starts on a surface, which then is the nearest geometry. If the farthest box
 /// is much smaller than the nearest one, a hit there is less likely, and the order is from near to
 /// far.
-fn from_last(axis: usize, [first, last]: [f32; 2]) -> [u32; 2] {
+fn reversed_octants(axis: usize, [first, last]: [f32; 2]) -> [u32; 2] {
     const NEGATIVE: [u32; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
     const SMALL: f32 = 0.5;
     let negative = NEGATIVE[axis];
@@ -333,7 +333,7 @@ fn from_last(axis: usize, [first, last]: [f32; 2]) -> [u32; 2] {
 ///
 /// Children are sorted along the axis that separates them best. Every ray visits two separated
 /// children in the right order, and the larger they are, the more likely it is to hit both.
-fn places(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
+fn child_slots(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
     let mut areas = [0.0; WIDTH];
     areas.iter_mut().zip(bounds).for_each(|(area, bounds)| *area = bounds.half_area());
     let greatest = areas.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
@@ -347,19 +347,19 @@ fn places(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
     }
     let axis = (1..3).fold(0, |best, axis| if apart[axis] > apart[best] { axis } else { best });
     // Ties keep the order of the children.
-    let mut places = [0; WIDTH];
+    let mut slots = [0; WIDTH];
     for (i, a) in bounds.iter().enumerate() {
         let center = a.center()[axis];
         for (j, b) in bounds[..i].iter().enumerate() {
             let after = b.center()[axis].total_cmp(&center).is_gt();
-            places[if after { j } else { i }] += 1;
+            slots[if after { j } else { i }] += 1;
         }
     }
     let ends = [0, bounds.len() - 1].map(|end| {
-        let child = places.iter().position(|place| *place == end);
+        let child = slots.iter().position(|slot| *slot == end);
         areas[child.expect("each slot is in use")]
     });
-    (from_last(axis, ends), places)
+    (reversed_octants(axis, ends), slots)
 }
 
 #[cfg(test)]
@@ -385,13 +385,17 @@ mod tests {
                 if swapped {
                     bounds.reverse();
                 }
-                let (from_last, places) = places(&bounds);
-                assert_eq!(places[..2], if swapped { [1, 0] } else { [0, 1] });
+                let (reversed_octants, slots) = child_slots(&bounds);
+                assert_eq!(slots[..2], if swapped { [1, 0] } else { [0, 1] });
                 let negative = octant >> axis & 1;
                 let far = 1 - negative;
                 let first = if small[far] { negative } else { far };
                 let expected = [negative, first].map(|first| first as u32);
-                assert_eq!(from_last.map(|octants| octants >> octant & 1), expected, "{axis} {lower} {upper} {octant}");
+                assert_eq!(
+                    reversed_octants.map(|octants| octants >> octant & 1),
+                    expected,
+                    "{axis} {lower} {upper} {octant}"
+                );
             }
         }
     }

@@ -1,8 +1,8 @@
 //! SIMD operations with AVX2 and FMA.
 
-use super::operations::{Kernel, Lanes, Numbers};
+use super::operations::{FloatLanes, Kernel, Lanes};
 use super::stack::Stack;
-use super::wide::Two;
+use super::wide::TwoVectors;
 use crate::math::Triple;
 use crate::node::WIDTH;
 use std::arch::asm;
@@ -51,7 +51,7 @@ macro_rules! operations {
 }
 pub(super) use operations;
 
-/// Implements [`Numbers`] on eight lanes, except comparisons.
+/// Implements [`FloatLanes`] on eight lanes, except comparisons.
 macro_rules! arithmetic_of_eight {
     () => {
         $crate::lanes::avx2::operations! { __m256:
@@ -83,11 +83,11 @@ macro_rules! order_of_eight {
             proven!(_mm256_loadu_ps(from.as_ptr()))
         }
         #[inline(always)]
-        fn triple(self, v: glam::Vec3A) -> $crate::lanes::avx2::Four {
+        fn triple(self, v: glam::Vec3A) -> $crate::lanes::avx2::FourDoubles {
             $crate::lanes::avx2::triple(v)
         }
         #[inline(always)]
-        fn turn(self, v: glam::Vec3A, order: &[u32; 4]) -> glam::Vec3A {
+        fn permute(self, v: glam::Vec3A, order: &[u32; 4]) -> glam::Vec3A {
             proven!(_mm_permutevar_ps(v.into(), _mm_loadu_si128(order.as_ptr().cast())).into())
         }
         #[inline(always)]
@@ -97,7 +97,7 @@ macro_rules! order_of_eight {
             to
         }
         #[inline(always)]
-        fn corners(self, from: &$crate::lanes::Rows, columns: $crate::lanes::Columns) -> [[__m256; 3]; 3] {
+        fn corners(self, from: &$crate::lanes::Rows, columns: $crate::lanes::CornerColumns) -> [[__m256; 3]; 3] {
             $crate::lanes::avx2::corners(from, columns)
         }
         #[inline(always)]
@@ -105,15 +105,15 @@ macro_rules! order_of_eight {
             $crate::lanes::avx2::transpose(rows)
         }
         #[inline(always)]
-        fn sooner(self, a: __m256, b: __m256) -> __m256 {
+        fn min_as_int(self, a: __m256, b: __m256) -> __m256 {
             proven!(_mm256_castsi256_ps(_mm256_min_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b))))
         }
         #[inline(always)]
-        fn later(self, a: __m256, b: __m256) -> __m256 {
+        fn max_as_int(self, a: __m256, b: __m256) -> __m256 {
             proven!(_mm256_castsi256_ps(_mm256_max_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b))))
         }
         #[inline(always)]
-        fn before(self, a: __m256, b: __m256) -> __m256 {
+        fn lt_as_int(self, a: __m256, b: __m256) -> __m256 {
             proven!($crate::lanes::avx2::is_greater(b, a))
         }
         #[inline(always)]
@@ -123,8 +123,8 @@ macro_rules! order_of_eight {
         #[inline(always)]
         fn interval(self, [x, y, z]: [[__m256; 2]; 3], within: [__m256; 2]) -> [__m256; 2] {
             use $crate::lanes::avx2::{greater, lesser};
-            let enter = self.later(y[0], self.later(x[0], within[0]));
-            let leave = self.sooner(y[1], self.sooner(x[1], within[1]));
+            let enter = self.max_as_int(y[0], self.max_as_int(x[0], within[0]));
+            let leave = self.min_as_int(y[1], self.min_as_int(x[1], within[1]));
             proven!([greater(z[0], enter), lesser(z[1], leave)])
         }
         #[inline(always)]
@@ -160,11 +160,11 @@ pub(super) use order_of_eight;
 #[inline(always)]
 pub(super) fn corners(
     from: &super::operations::Rows,
-    super::operations::Columns { starts, corner }: super::operations::Columns,
+    super::operations::CornerColumns { starts, corner }: super::operations::CornerColumns,
 ) -> [[__m256; 3]; 3] {
     macro_rules! row {
         ($corner:literal, $k:literal) => {
-            // SAFETY: by `Columns::new`, the vector begins in one of the first nine rows. The
+            // SAFETY: by `CornerColumns::new`, the vector begins in one of the first nine rows. The
             // caller proves that the processor has the instructions.
             unsafe { _mm256_loadu_ps(from.as_ptr().add(starts[$k]).add($corner * corner)) }
         };
@@ -277,9 +277,9 @@ pub(super) use doubles;
 
 /// Four `f64` in an AVX register.
 #[derive(Clone, Copy)]
-pub struct Four(__m256d);
+pub struct FourDoubles(__m256d);
 
-doubles! { Four:
+doubles! { FourDoubles:
     add = _mm256_add_pd;
     sub = _mm256_sub_pd;
     mul = _mm256_mul_pd;
@@ -291,11 +291,11 @@ doubles! { Four:
 
 /// Converts a vector to double precision.
 #[inline(always)]
-pub(super) fn triple(v: glam::Vec3A) -> Four {
-    proven!(Four(_mm256_cvtps_pd(v.into())))
+pub(super) fn triple(v: glam::Vec3A) -> FourDoubles {
+    proven!(FourDoubles(_mm256_cvtps_pd(v.into())))
 }
 
-impl Triple for Four {
+impl Triple for FourDoubles {
     type Component = f64;
 
     #[inline(always)]
@@ -310,12 +310,12 @@ impl Triple for Four {
         }
     }
     #[inline(always)]
-    fn turned(self) -> Self {
-        proven!(Four(_mm256_permute4x64_pd::<0b11_00_10_01>(self.0)))
+    fn yzx(self) -> Self {
+        proven!(FourDoubles(_mm256_permute4x64_pd::<0b11_00_10_01>(self.0)))
     }
 }
 
-impl Numbers for Avx2 {
+impl FloatLanes for Avx2 {
     type Floats = __m256;
 
     arithmetic_of_eight!();
@@ -330,37 +330,37 @@ impl Numbers for Avx2 {
 }
 
 impl Lanes for Avx2 {
-    type Wide = Two<Self>;
-    type Doubles = (Four, Four);
-    type Triple = Four;
+    type Wide = TwoVectors<Self>;
+    type Doubles = (FourDoubles, FourDoubles);
+    type Triple = FourDoubles;
 
     order_of_eight!();
 
     #[inline(always)]
-    fn wide(self) -> Two<Self> {
-        Two(self)
+    fn wide(self) -> TwoVectors<Self> {
+        TwoVectors(self)
     }
     #[inline(always)]
     fn join(self, [low, high]: [__m256; 2]) -> (__m256, __m256) {
         (low, high)
     }
     #[inline(always)]
-    fn doubles(self, a: __m256) -> (Four, Four) {
+    fn doubles(self, a: __m256) -> (FourDoubles, FourDoubles) {
         proven! {
             let (low, high) = (_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a));
-            (Four(_mm256_cvtps_pd(low)), Four(_mm256_cvtps_pd(high)))
+            (FourDoubles(_mm256_cvtps_pd(low)), FourDoubles(_mm256_cvtps_pd(high)))
         }
     }
     #[inline(always)]
-    fn splat_double(self, x: f64) -> (Four, Four) {
-        proven!((Four(_mm256_set1_pd(x)), Four(_mm256_set1_pd(x))))
+    fn splat_double(self, x: f64) -> (FourDoubles, FourDoubles) {
+        proven!((FourDoubles(_mm256_set1_pd(x)), FourDoubles(_mm256_set1_pd(x))))
     }
     #[inline(always)]
-    fn load_doubles(self, from: &[f64; WIDTH]) -> (Four, Four) {
-        proven!((Four(_mm256_loadu_pd(from.as_ptr())), Four(_mm256_loadu_pd(from.as_ptr().add(4)))))
+    fn load_doubles(self, from: &[f64; WIDTH]) -> (FourDoubles, FourDoubles) {
+        proven!((FourDoubles(_mm256_loadu_pd(from.as_ptr())), FourDoubles(_mm256_loadu_pd(from.as_ptr().add(4)))))
     }
     #[inline(always)]
-    fn store_doubles(self, (low, high): (Four, Four)) -> [f64; WIDTH] {
+    fn store_doubles(self, (low, high): (FourDoubles, FourDoubles)) -> [f64; WIDTH] {
         let mut to = [0.0; WIDTH];
         proven! {
             _mm256_storeu_pd(to.as_mut_ptr(), low.0);
@@ -369,14 +369,14 @@ impl Lanes for Avx2 {
         to
     }
     #[inline(always)]
-    fn le_doubles(self, a: (Four, Four), b: (Four, Four)) -> u32 {
+    fn le_doubles(self, a: (FourDoubles, FourDoubles), b: (FourDoubles, FourDoubles)) -> u32 {
         proven! {
             let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a.0.0, b.0.0));
             (low | _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a.1.0, b.1.0)) << 4) as u32
         }
     }
     #[inline(always)]
-    fn singles(self, (low, high): (Four, Four)) -> __m256 {
+    fn singles(self, (low, high): (FourDoubles, FourDoubles)) -> __m256 {
         proven!(_mm256_set_m128(_mm256_cvtpd_ps(high.0), _mm256_cvtpd_ps(low.0)))
     }
 

@@ -1,7 +1,7 @@
 //! SIMD operations with AVX-512, on eight lanes with mask registers and on sixteen lanes.
 
-use super::avx2::{Four, arithmetic_of_eight, doubles, operations, order_of_eight, proven};
-use super::operations::{Kernel, Lanes, Numbers, WIDE, Wide};
+use super::avx2::{FourDoubles, arithmetic_of_eight, doubles, operations, order_of_eight, proven};
+use super::operations::{FloatLanes, Kernel, Lanes, WIDE, WideLanes};
 use super::stack::Stack;
 use crate::node::WIDTH;
 use std::arch::x86_64::*;
@@ -26,7 +26,7 @@ pub unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(Avx512(()))
 }
 
-impl Numbers for Avx512 {
+impl FloatLanes for Avx512 {
     type Floats = __m256;
 
     arithmetic_of_eight!();
@@ -41,44 +41,44 @@ impl Numbers for Avx512 {
 }
 
 impl Lanes for Avx512 {
-    type Wide = Sixteen;
-    type Doubles = Eight;
-    type Triple = Four;
+    type Wide = SixteenFloats;
+    type Doubles = EightDoubles;
+    type Triple = FourDoubles;
 
     order_of_eight!();
 
     #[inline(always)]
-    fn wide(self) -> Sixteen {
-        Sixteen(())
+    fn wide(self) -> SixteenFloats {
+        SixteenFloats(())
     }
     #[inline(always)]
     fn join(self, [low, high]: [__m256; 2]) -> __m512 {
         proven!(_mm512_insertf32x8::<1>(_mm512_castps256_ps512(low), high))
     }
     #[inline(always)]
-    fn doubles(self, a: __m256) -> Eight {
-        proven!(Eight(_mm512_cvtps_pd(a)))
+    fn doubles(self, a: __m256) -> EightDoubles {
+        proven!(EightDoubles(_mm512_cvtps_pd(a)))
     }
     #[inline(always)]
-    fn splat_double(self, x: f64) -> Eight {
-        proven!(Eight(_mm512_set1_pd(x)))
+    fn splat_double(self, x: f64) -> EightDoubles {
+        proven!(EightDoubles(_mm512_set1_pd(x)))
     }
     #[inline(always)]
-    fn load_doubles(self, from: &[f64; WIDTH]) -> Eight {
-        proven!(Eight(_mm512_loadu_pd(from.as_ptr())))
+    fn load_doubles(self, from: &[f64; WIDTH]) -> EightDoubles {
+        proven!(EightDoubles(_mm512_loadu_pd(from.as_ptr())))
     }
     #[inline(always)]
-    fn store_doubles(self, a: Eight) -> [f64; WIDTH] {
+    fn store_doubles(self, a: EightDoubles) -> [f64; WIDTH] {
         let mut to = [0.0; WIDTH];
         proven!(_mm512_storeu_pd(to.as_mut_ptr(), a.0));
         to
     }
     #[inline(always)]
-    fn le_doubles(self, a: Eight, b: Eight) -> u32 {
+    fn le_doubles(self, a: EightDoubles, b: EightDoubles) -> u32 {
         proven!(u32::from(_mm512_cmp_pd_mask::<_CMP_LE_OQ>(a.0, b.0)))
     }
     #[inline(always)]
-    fn singles(self, a: Eight) -> __m256 {
+    fn singles(self, a: EightDoubles) -> __m256 {
         proven!(_mm512_cvtpd_ps(a.0))
     }
     #[inline(always)]
@@ -89,9 +89,9 @@ impl Lanes for Avx512 {
 
 /// Eight `f64` in an AVX-512 register. A value also proves that the processor supports AVX-512.
 #[derive(Clone, Copy)]
-pub struct Eight(__m512d);
+pub struct EightDoubles(__m512d);
 
-doubles! { Eight:
+doubles! { EightDoubles:
     add = _mm512_add_pd;
     sub = _mm512_sub_pd;
     mul = _mm512_mul_pd;
@@ -104,9 +104,9 @@ doubles! { Eight:
 /// SIMD level AVX-512 for vectors of sixteen `f32`. A value proves that the processor supports
 /// AVX-512.
 #[derive(Clone, Copy)]
-pub struct Sixteen(());
+pub struct SixteenFloats(());
 
-impl Numbers for Sixteen {
+impl FloatLanes for SixteenFloats {
     type Floats = __m512;
 
     operations! { __m512:
@@ -133,7 +133,7 @@ impl Numbers for Sixteen {
     }
 }
 
-impl Wide for Sixteen {
+impl WideLanes for SixteenFloats {
     #[inline(always)]
     fn load(self, from: &[f32; WIDE]) -> __m512 {
         proven!(_mm512_loadu_ps(from.as_ptr()))

@@ -24,18 +24,18 @@ pub enum SimdLevel {
 /// Error from [`SimdLevel::from_environment`]: `DURER_SIMD` is not the name of a level that this
 /// processor supports.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct UnknownSimdLevel {
+pub struct UnsupportedSimdLevel {
     word: String,
     known: String,
 }
 
-impl fmt::Display for UnknownSimdLevel {
+impl fmt::Display for UnsupportedSimdLevel {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "DURER_SIMD is `{}`, but this processor supports only: {}", self.word, self.known)
     }
 }
 
-impl std::error::Error for UnknownSimdLevel {}
+impl std::error::Error for UnsupportedSimdLevel {}
 
 impl SimdLevel {
     const ALL: [(SimdLevel, &str); 5] = [
@@ -62,13 +62,15 @@ impl SimdLevel {
     /// # Errors
     ///
     /// If the variable does not name a level that this processor supports.
-    pub fn from_environment() -> Result<SimdLevel, UnknownSimdLevel> {
+    pub fn from_environment() -> Result<SimdLevel, UnsupportedSimdLevel> {
         let word = std::env::var("DURER_SIMD").unwrap_or_default();
         if word.is_empty() {
             return Ok(Self::best());
         }
         let known = || Self::available().map(SimdLevel::name).collect::<Vec<_>>().join(", ");
-        Self::available().find(|level| level.name() == word).ok_or_else(|| UnknownSimdLevel { word, known: known() })
+        Self::available()
+            .find(|level| level.name() == word)
+            .ok_or_else(|| UnsupportedSimdLevel { word, known: known() })
     }
 
     /// Returns the level from [`SimdLevel::from_environment`], or the best one if the variable is
@@ -114,13 +116,13 @@ pub trait PlainKernel {
 /// Runs a [`PlainKernel`] at the chosen SIMD level.
 #[inline(always)]
 pub fn run_plain<K: PlainKernel>(kernel: K) -> K::Output {
-    Available::chosen().run_plain(kernel)
+    AvailableLevel::chosen().run_plain(kernel)
 }
 
 /// Adapter that runs a [`PlainKernel`] as a [`Kernel`].
-struct Plain<K>(K);
+struct PlainAdapter<K>(K);
 
-impl<K: PlainKernel> Kernel for Plain<K> {
+impl<K: PlainKernel> Kernel for PlainAdapter<K> {
     type Output = K::Output;
 
     #[inline(always)]
@@ -131,22 +133,22 @@ impl<K: PlainKernel> Kernel for Plain<K> {
 
 /// A SIMD level that the processor is known to support, so that kernels can be run at it safely.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Available(SimdLevel);
+pub(crate) struct AvailableLevel(SimdLevel);
 
-impl Available {
+impl AvailableLevel {
     pub fn chosen() -> Self {
-        Available(SimdLevel::chosen())
+        AvailableLevel(SimdLevel::chosen())
     }
 
     /// Wraps `level`, or the scalar level if the processor does not support it.
     pub fn or_scalar(level: SimdLevel) -> Self {
-        Available(if level.is_available() { level } else { SimdLevel::Scalar })
+        AvailableLevel(if level.is_available() { level } else { SimdLevel::Scalar })
     }
 
     /// Runs a [`PlainKernel`] at this level.
     #[inline(always)]
     pub fn run_plain<K: PlainKernel>(self, kernel: K) -> K::Output {
-        self.run(Plain(kernel))
+        self.run(PlainAdapter(kernel))
     }
 
     /// Runs a kernel at this level.

@@ -1,8 +1,8 @@
 //! SIMD operations with NEON: eight lanes as two vectors of four.
 
-use super::operations::{Lanes, Numbers};
+use super::operations::{FloatLanes, Lanes};
 use super::stack::Stack;
-use super::wide::Two;
+use super::wide::TwoVectors;
 use crate::math::Doubles;
 use crate::node::WIDTH;
 use std::arch::aarch64::*;
@@ -72,7 +72,7 @@ unsafe fn bits(a: uint32x4_t, b: uint32x4_t) -> u32 {
     }
 }
 
-impl Numbers for Neon {
+impl FloatLanes for Neon {
     type Floats = Pair;
 
     #[inline(always)]
@@ -122,13 +122,13 @@ impl Numbers for Neon {
 }
 
 impl Lanes for Neon {
-    type Wide = Two<Self>;
+    type Wide = TwoVectors<Self>;
     type Doubles = ((TwoDoubles, TwoDoubles), (TwoDoubles, TwoDoubles));
     type Triple = [f64; 3];
 
     #[inline(always)]
-    fn wide(self) -> Two<Self> {
-        Two(self)
+    fn wide(self) -> TwoVectors<Self> {
+        TwoVectors(self)
     }
     #[inline(always)]
     fn join(self, [low, high]: [Pair; 2]) -> (Pair, Pair) {
@@ -183,8 +183,8 @@ impl Lanes for Neon {
         v.as_dvec3().to_array()
     }
     #[inline(always)]
-    fn turn(self, v: glam::Vec3A, order: &[u32; 4]) -> glam::Vec3A {
-        super::scalar::Scalar.turn(v, order)
+    fn permute(self, v: glam::Vec3A, order: &[u32; 4]) -> glam::Vec3A {
+        super::scalar::Scalar.permute(v, order)
     }
     #[inline(always)]
     fn load(self, from: &[f32; WIDTH]) -> Pair {
@@ -194,7 +194,7 @@ impl Lanes for Neon {
     fn corners(
         self,
         from: &super::operations::Rows,
-        super::operations::Columns { starts, corner }: super::operations::Columns,
+        super::operations::CornerColumns { starts, corner }: super::operations::CornerColumns,
     ) -> [[Pair; 3]; 3] {
         std::array::from_fn(|k| {
             starts.map(|start| match from[k * corner + start..].first_chunk() {
@@ -213,21 +213,21 @@ impl Lanes for Neon {
         to
     }
     #[inline(always)]
-    fn sooner(self, a: Pair, b: Pair) -> Pair {
+    fn min_as_int(self, a: Pair, b: Pair) -> Pair {
         proven! {
             let sooner = |a, b| vreinterpretq_f32_s32(vminq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b)));
             Pair(sooner(a.0, b.0), sooner(a.1, b.1))
         }
     }
     #[inline(always)]
-    fn later(self, a: Pair, b: Pair) -> Pair {
+    fn max_as_int(self, a: Pair, b: Pair) -> Pair {
         proven! {
             let later = |a, b| vreinterpretq_f32_s32(vmaxq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b)));
             Pair(later(a.0, b.0), later(a.1, b.1))
         }
     }
     #[inline(always)]
-    fn before(self, a: Pair, b: Pair) -> Pair {
+    fn lt_as_int(self, a: Pair, b: Pair) -> Pair {
         proven! {
             let before =
                 |a, b| vreinterpretq_f32_u32(vcltq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b)));

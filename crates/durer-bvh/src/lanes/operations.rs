@@ -9,7 +9,7 @@ use std::mem::offset_of;
 
 /// Arithmetic on vectors of `f32`, implemented by each SIMD level. A value of the type proves that
 /// the processor supports the level.
-pub(crate) trait Numbers: Copy {
+pub(crate) trait FloatLanes: Copy {
     /// Vector of `f32`, one in each lane.
     type Floats: Copy;
 
@@ -38,9 +38,9 @@ pub(crate) trait Numbers: Copy {
 }
 
 /// Operations on vectors of eight lanes that ray queries need, implemented by each SIMD level.
-pub(crate) trait Lanes: Numbers {
+pub(crate) trait Lanes: FloatLanes {
     /// Operations on sixteen lanes.
-    type Wide: Wide;
+    type Wide: WideLanes;
     /// Vector of eight `f64`.
     type Doubles: Doubles;
     /// Three `f64`: a vector in double precision.
@@ -48,7 +48,7 @@ pub(crate) trait Lanes: Numbers {
 
     fn wide(self) -> Self::Wide;
     /// Joins two vectors of eight lanes.
-    fn join(self, halves: [Self::Floats; 2]) -> <Self::Wide as Numbers>::Floats;
+    fn join(self, halves: [Self::Floats; 2]) -> <Self::Wide as FloatLanes>::Floats;
     fn doubles(self, a: Self::Floats) -> Self::Doubles;
     /// Rounds to single precision.
     fn singles(self, a: Self::Doubles) -> Self::Floats;
@@ -69,21 +69,21 @@ pub(crate) trait Lanes: Numbers {
     fn triple(self, v: Vec3A) -> Self::Triple;
 
     /// Permutes the components of a vector.
-    fn turn(self, v: Vec3A, axes: &AxisOrder) -> Vec3A;
+    fn permute(self, v: Vec3A, axes: &AxisOrder) -> Vec3A;
 
     fn load(self, from: &[f32; WIDTH]) -> Self::Floats;
     /// Loads the corners of a leaf's triangles. Lanes beyond the number of triangles are
     /// meaningless.
-    fn corners(self, from: &Rows, columns: Columns) -> [[Self::Floats; 3]; 3];
+    fn corners(self, from: &Rows, columns: CornerColumns) -> [[Self::Floats; 3]; 3];
     fn store(self, a: Self::Floats) -> [f32; WIDTH];
-    /// Minimum by comparison as signed integers: equals [`Numbers::min`] if neither operand is
+    /// Minimum by comparison as signed integers: equals [`FloatLanes::min`] if neither operand is
     /// negative, and is negative if either is.
-    fn sooner(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// Maximum by comparison as signed integers: equals [`Numbers::max`] if at least one operand is
-    /// not negative.
-    fn later(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    fn min_as_int(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// Maximum by comparison as signed integers: equals [`FloatLanes::max`] if at least one operand
+    /// is not negative.
+    fn max_as_int(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// Sets all bits in the lanes where a < b, compared as signed integers, and clears the others.
-    fn before(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    fn lt_as_int(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// Mask of the lanes with a sign bit.
     fn signs(self, a: Self::Floats) -> u32;
     /// Intersects three slab intervals with the interval `within` of the ray: returns the last
@@ -91,8 +91,8 @@ pub(crate) trait Lanes: Numbers {
     /// one last that is loaded last.
     #[inline(always)]
     fn interval(self, [x, y, z]: [[Self::Floats; 2]; 3], within: [Self::Floats; 2]) -> [Self::Floats; 2] {
-        let enter = self.later(z[0], self.later(y[0], self.later(x[0], within[0])));
-        let leave = self.sooner(z[1], self.sooner(y[1], self.sooner(x[1], within[1])));
+        let enter = self.max_as_int(z[0], self.max_as_int(y[0], self.max_as_int(x[0], within[0])));
+        let leave = self.min_as_int(z[1], self.min_as_int(y[1], self.min_as_int(x[1], within[1])));
         [enter, leave]
     }
     /// Minimum of `a` over the lanes in which all bits of `which` are set. The last eight bits of
@@ -114,7 +114,7 @@ pub const WIDE: usize = 2 * WIDTH;
 
 /// Operations on vectors of sixteen lanes, for ray packets, implemented with one AVX-512 vector or
 /// two vectors of eight lanes.
-pub(crate) trait Wide: Numbers {
+pub(crate) trait WideLanes: FloatLanes {
     fn load(self, from: &[f32; WIDE]) -> Self::Floats;
     fn store(self, a: Self::Floats) -> [f32; WIDE];
     /// `a` in the lanes whose mask bits are set, `b` in the others. Keeps the bits.
@@ -130,21 +130,21 @@ pub const ROWS: usize = 10;
 
 /// Storage for the rows of a triangle leaf, long enough to load a vector from the start of any of
 /// the first nine rows.
-pub type Rows = [f32; ROOM_OF_ROWS];
+pub type Rows = [f32; ROWS_LEN];
 
 /// Number of values in [`Rows`].
-pub const ROOM_OF_ROWS: usize = ROWS * WIDTH;
+pub const ROWS_LEN: usize = ROWS * WIDTH;
 
 /// Access to the near and far box planes, by the signs of a ray's direction, in all nodes of a
 /// tree.
-pub(crate) struct Sides<'a> {
+pub(crate) struct NodePlanes<'a> {
     nodes: &'a [WideNode],
     /// Addresses of the planes in the first node, by axis.
     near: [*const u8; 3],
     far: [*const u8; 3],
 }
 
-impl<'a> Sides<'a> {
+impl<'a> NodePlanes<'a> {
     /// Selects the planes for rays with negative directions along the axes whose bits are set in
     /// `negative`.
     #[inline(always)]
@@ -155,33 +155,34 @@ impl<'a> Sides<'a> {
         let side = |axis: usize, upper: u32| first.wrapping_add((2 * axis + upper as usize) * ROW);
         let [x, y, z] = [negative & 1, negative >> 1 & 1, negative >> 2 & 1];
         let (near, far) = ([side(0, x), side(1, y), side(2, z)], [side(0, x ^ 1), side(1, y ^ 1), side(2, z ^ 1)]);
-        Sides { nodes, near, far }
+        NodePlanes { nodes, near, far }
     }
 
     /// Node at a [`node_offset`](node::node_offset).
     #[inline(always)]
-    pub fn at(&self, address: usize) -> At<'a, '_> {
+    pub fn at(&self, address: usize) -> NodeAccess<'a, '_> {
         // If the offset is misaligned, rotating moves its low bits to the top, so the bounds check
         // fails.
         let number = address.rotate_right(node::UNITS.trailing_zeros());
         assert!(number < self.nodes.len());
-        At { sides: self, offset: address * node::UNIT, node: &self.nodes[number] }
+        NodeAccess { sides: self, offset: address * node::UNIT, node: &self.nodes[number] }
     }
 }
 
-/// A node in a traversal, with the near and far planes of its boxes; returned by [`Sides::at`].
-pub(crate) struct At<'a, 's> {
-    sides: &'s Sides<'a>,
+/// A node in a traversal, with the near and far planes of its boxes; returned by
+/// [`NodePlanes::at`].
+pub(crate) struct NodeAccess<'a, 's> {
+    sides: &'s NodePlanes<'a>,
     offset: usize,
     pub node: &'a WideNode,
 }
 
-impl<'a> At<'a, '_> {
+impl<'a> NodeAccess<'a, '_> {
     /// Planes where the ray enters along an axis.
     #[inline(always)]
     pub fn near(&self, axis: usize) -> &'a [f32; WIDTH] {
-        // SAFETY: the row lies in the first node, and by `Sides::at` there is a node `offset` bytes
-        // further.
+        // SAFETY: the row lies in the first node, and by `NodePlanes::at` there is a node `offset`
+        // bytes further.
         unsafe { &*self.sides.near[axis].wrapping_add(self.offset).cast() }
     }
 
@@ -204,7 +205,7 @@ impl<'a> At<'a, '_> {
 
 /// Values of a ray in memory: origin, direction, and interval.
 #[inline(always)]
-pub(crate) fn numbers_of(ray: &Ray) -> &[f32; WIDTH] {
+pub(crate) fn as_floats(ray: &Ray) -> &[f32; WIDTH] {
     const { assert!(size_of::<Ray>() == size_of::<[f32; WIDTH]>()) };
     // SAFETY: a ray is eight numbers, in the order of their declaration.
     unsafe { &*std::ptr::from_ref(ray).cast() }
@@ -212,27 +213,27 @@ pub(crate) fn numbers_of(ray: &Ray) -> &[f32; WIDTH] {
 
 /// Positions of the corners of a leaf's triangles in [`Rows`], with permuted axes.
 #[derive(Clone, Copy)]
-pub(crate) struct Columns {
+pub(crate) struct CornerColumns {
     /// Start of the rows of the first corner, by axis.
     pub starts: [usize; 3],
     /// Distance between the rows of two corners.
     pub corner: usize,
 }
 
-impl Columns {
+impl CornerColumns {
     /// Positions in a leaf of `count` triangles.
     #[inline(always)]
     pub fn new(&[x, y, z, _]: &AxisOrder, count: usize) -> Self {
         assert!(count <= WIDTH);
         // The mask keeps the start within the rows.
-        Columns { starts: [x, y, z].map(|axis| (axis & 3) as usize * count), corner: 3 * count }
+        CornerColumns { starts: [x, y, z].map(|axis| (axis & 3) as usize * count), corner: 3 * count }
     }
 
     /// Corners of one triangle.
     #[inline(always)]
     pub fn triangle(self, from: &Rows, lane: usize) -> [Vec3A; 3] {
         assert!(lane < WIDTH);
-        let Columns { starts: [x, y, z], corner } = self;
+        let CornerColumns { starts: [x, y, z], corner } = self;
         // SAFETY: by `new` and the assertion, the last value lies in one of the first ten rows of
         // at most eight numbers.
         let at = |place: usize| unsafe { *from.get_unchecked(place + lane) };

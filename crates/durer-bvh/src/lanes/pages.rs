@@ -3,24 +3,24 @@
 use crate::parallel;
 
 /// Creates an empty list with capacity for `count` items, on large pages.
-pub fn room<T>(count: usize) -> Vec<T> {
-    let room = Vec::with_capacity(count);
-    large_pages(room.as_ptr(), count);
-    room
+pub fn vec_on_large_pages<T>(count: usize) -> Vec<T> {
+    let list = Vec::with_capacity(count);
+    large_pages(list.as_ptr(), count);
+    list
 }
 
 /// Creates a list of `of(0)`, ..., `of(count - 1)` on large pages, with capacity for `more` further
 /// items. The list is filled by all threads, because the first access to each page is slow.
-pub fn listed<T: Send>(count: usize, more: usize, of: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+pub fn parallel_vec<T: Send>(count: usize, more: usize, of: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     const AT_ONCE: usize = 4096;
-    let mut all = room(count + more);
+    let mut all = vec_on_large_pages(count + more);
     parallel::extend(&mut all, count, AT_ONCE, of);
     all
 }
 
 /// Prefetches a value into the cache on x86-64; does nothing on other processors.
 #[inline]
-pub fn bring_near<T>(value: &T) {
+pub fn prefetch<T>(value: &T) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
@@ -37,7 +37,7 @@ pub fn bring_near<T>(value: &T) {
 /// Asks the system for large pages for the uninitialised memory of `count` items, if it is large
 /// enough. This saves TLB misses, since the processor caches the addresses of only a limited number
 /// of pages.
-fn large_pages<T>(room: *const T, count: usize) {
+fn large_pages<T>(list: *const T, count: usize) {
     #[cfg(target_os = "linux")]
     {
         use std::ffi::{c_int, c_void};
@@ -48,14 +48,14 @@ fn large_pages<T>(room: *const T, count: usize) {
         /// Linux's `MADV_HUGEPAGE`.
         const USE_LARGE_PAGES: c_int = 14;
         const LARGE: usize = 2 << 20;
-        let start = room.addr().next_multiple_of(LARGE);
-        let end = (room.addr() + count * size_of::<T>()) / LARGE * LARGE;
+        let start = list.addr().next_multiple_of(LARGE);
+        let end = (list.addr() + count * size_of::<T>()) / LARGE * LARGE;
         if start < end {
             // Failure is harmless: memory then stays on small pages.
             // SAFETY: this advice does not change the contents of memory.
-            let _ = unsafe { madvise(room.with_addr(start).cast_mut().cast(), end - start, USE_LARGE_PAGES) };
+            let _ = unsafe { madvise(list.with_addr(start).cast_mut().cast(), end - start, USE_LARGE_PAGES) };
         }
     }
     #[cfg(not(target_os = "linux"))]
-    let _ = (room, count);
+    let _ = (list, count);
 }

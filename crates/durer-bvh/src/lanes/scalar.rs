@@ -1,8 +1,8 @@
 //! SIMD operations in scalar code, for any processor.
 
-use super::operations::{Lanes, Numbers};
+use super::operations::{FloatLanes, Lanes};
 use super::stack::Stack;
-use super::wide::Two;
+use super::wide::TwoVectors;
 use crate::math::Doubles;
 use crate::node::WIDTH;
 use std::array::from_fn;
@@ -16,23 +16,23 @@ type F = [f32; WIDTH];
 
 /// Eight `f64` in an array.
 #[derive(Clone, Copy)]
-pub struct Plain([f64; WIDTH]);
+pub struct ScalarDoubles([f64; WIDTH]);
 
 macro_rules! plain {
     ($($name:ident)*) => {$(
         #[inline(always)]
         fn $name(self, other: Self) -> Self {
-            Plain(from_fn(|i| Doubles::$name(self.0[i], other.0[i])))
+            ScalarDoubles(from_fn(|i| Doubles::$name(self.0[i], other.0[i])))
         }
     )*};
 }
 
-impl Doubles for Plain {
+impl Doubles for ScalarDoubles {
     plain! { add sub mul div min max copysign }
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Plain(self.0.map(f64::sqrt))
+        ScalarDoubles(self.0.map(f64::sqrt))
     }
 }
 
@@ -40,7 +40,7 @@ fn mask(test: impl Fn(usize) -> bool) -> u32 {
     (0..WIDTH).fold(0, |mask, i| mask | u32::from(test(i)) << i)
 }
 
-impl Numbers for Scalar {
+impl FloatLanes for Scalar {
     type Floats = F;
 
     #[inline(always)]
@@ -90,40 +90,40 @@ impl Numbers for Scalar {
 }
 
 impl Lanes for Scalar {
-    type Wide = Two<Self>;
-    type Doubles = Plain;
+    type Wide = TwoVectors<Self>;
+    type Doubles = ScalarDoubles;
     type Triple = [f64; 3];
 
     #[inline(always)]
-    fn wide(self) -> Two<Self> {
-        Two(self)
+    fn wide(self) -> TwoVectors<Self> {
+        TwoVectors(self)
     }
     #[inline(always)]
     fn join(self, [low, high]: [F; 2]) -> (F, F) {
         (low, high)
     }
     #[inline(always)]
-    fn doubles(self, a: F) -> Plain {
-        Plain(a.map(f64::from))
+    fn doubles(self, a: F) -> ScalarDoubles {
+        ScalarDoubles(a.map(f64::from))
     }
     #[inline(always)]
-    fn splat_double(self, x: f64) -> Plain {
-        Plain([x; WIDTH])
+    fn splat_double(self, x: f64) -> ScalarDoubles {
+        ScalarDoubles([x; WIDTH])
     }
     #[inline(always)]
-    fn load_doubles(self, from: &[f64; WIDTH]) -> Plain {
-        Plain(*from)
+    fn load_doubles(self, from: &[f64; WIDTH]) -> ScalarDoubles {
+        ScalarDoubles(*from)
     }
     #[inline(always)]
-    fn store_doubles(self, a: Plain) -> [f64; WIDTH] {
+    fn store_doubles(self, a: ScalarDoubles) -> [f64; WIDTH] {
         a.0
     }
     #[inline(always)]
-    fn le_doubles(self, a: Plain, b: Plain) -> u32 {
+    fn le_doubles(self, a: ScalarDoubles, b: ScalarDoubles) -> u32 {
         mask(|i| a.0[i] <= b.0[i])
     }
     #[inline(always)]
-    fn singles(self, a: Plain) -> F {
+    fn singles(self, a: ScalarDoubles) -> F {
         a.0.map(|x| x as f32)
     }
     #[inline(always)]
@@ -131,7 +131,7 @@ impl Lanes for Scalar {
         v.as_dvec3().to_array()
     }
     #[inline(always)]
-    fn turn(self, v: glam::Vec3A, [x, y, z, _]: &[u32; 4]) -> glam::Vec3A {
+    fn permute(self, v: glam::Vec3A, [x, y, z, _]: &[u32; 4]) -> glam::Vec3A {
         let [a, b, c] = v.to_array();
         let v = [a, b, c, c];
         glam::Vec3A::new(v[*x as usize & 3], v[*y as usize & 3], v[*z as usize & 3])
@@ -144,7 +144,7 @@ impl Lanes for Scalar {
     fn corners(
         self,
         from: &super::operations::Rows,
-        super::operations::Columns { starts, corner }: super::operations::Columns,
+        super::operations::CornerColumns { starts, corner }: super::operations::CornerColumns,
     ) -> [[F; 3]; 3] {
         from_fn(|k| starts.map(|start| from_fn(|lane| from[k * corner + start + lane])))
     }
@@ -153,15 +153,15 @@ impl Lanes for Scalar {
         a
     }
     #[inline(always)]
-    fn sooner(self, a: F, b: F) -> F {
+    fn min_as_int(self, a: F, b: F) -> F {
         from_fn(|i| f32::from_bits((a[i].to_bits() as i32).min(b[i].to_bits() as i32) as u32))
     }
     #[inline(always)]
-    fn later(self, a: F, b: F) -> F {
+    fn max_as_int(self, a: F, b: F) -> F {
         from_fn(|i| f32::from_bits((a[i].to_bits() as i32).max(b[i].to_bits() as i32) as u32))
     }
     #[inline(always)]
-    fn before(self, a: F, b: F) -> F {
+    fn lt_as_int(self, a: F, b: F) -> F {
         let is_before = |i: usize| (a[i].to_bits() as i32) < b[i].to_bits() as i32;
         from_fn(|i| f32::from_bits(if is_before(i) { u32::MAX } else { 0 }))
     }

@@ -5,12 +5,12 @@ use std::mem::MaybeUninit;
 
 /// Maximum height of the stack for a tree of [`MAX_DEPTH`](crate::node::MAX_DEPTH) levels, plus
 /// space for storing a full vector.
-const ROOM: usize = (WIDTH - 1) * MAX_DEPTH + 2 * WIDTH;
+const CAPACITY: usize = (WIDTH - 1) * MAX_DEPTH + 2 * WIDTH;
 
 /// Uninitialised memory for the [`Stack`] of a traversal.
 pub struct StackStorage {
-    children: MaybeUninit<[u32; ROOM]>,
-    near: MaybeUninit<[f32; ROOM]>,
+    children: MaybeUninit<[u32; CAPACITY]>,
+    near: MaybeUninit<[f32; CAPACITY]>,
 }
 
 impl StackStorage {
@@ -25,14 +25,14 @@ impl StackStorage {
 pub struct Stack<'a> {
     // Separate from the height, since otherwise an empty stack would be copied from a constant for
     // every ray.
-    room: &'a mut StackStorage,
+    storage: &'a mut StackStorage,
     height: usize,
 }
 
 impl<'a> Stack<'a> {
     #[inline(always)]
-    pub fn new(room: &'a mut StackStorage) -> Self {
-        Stack { room, height: 0 }
+    pub fn new(storage: &'a mut StackStorage) -> Self {
+        Stack { storage, height: 0 }
     }
 
     #[inline(always)]
@@ -78,14 +78,14 @@ impl<'a> Stack<'a> {
         assert!(self.height > 0);
         self.height -= usize::from(wanted);
         // SAFETY: everything below the previous height was written.
-        unsafe { *self.room.children.as_ptr().cast::<u32>().add(self.height - usize::from(!wanted)) }
+        unsafe { *self.storage.children.as_ptr().cast::<u32>().add(self.height - usize::from(!wanted)) }
     }
 
     /// Pointers to the top of the stack, with space for a full vector. Call [`Stack::grow`] after
     /// writing to it.
     #[inline(always)]
     pub(super) fn top(&mut self) -> (*mut u32, *mut f32) {
-        assert!(self.height <= ROOM - WIDTH);
+        assert!(self.height <= CAPACITY - WIDTH);
         let (children, near, height) = self.all();
         // SAFETY: there is space for a vector above the height.
         unsafe { (children.add(height), near.add(height)) }
@@ -104,6 +104,6 @@ impl<'a> Stack<'a> {
     /// Pointers to the bottom child and distance, and the height.
     #[inline(always)]
     pub(super) fn all(&mut self) -> (*mut u32, *mut f32, usize) {
-        (self.room.children.as_mut_ptr().cast::<u32>(), self.room.near.as_mut_ptr().cast::<f32>(), self.height)
+        (self.storage.children.as_mut_ptr().cast::<u32>(), self.storage.near.as_mut_ptr().cast::<f32>(), self.height)
     }
 }

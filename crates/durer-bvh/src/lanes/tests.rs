@@ -4,7 +4,7 @@ use super::*;
 use crate::math::random::{Random, rounds};
 use crate::math::{Doubles, Triple};
 use crate::watertight::AxisOrder;
-use crate::watertight::turned_axes;
+use crate::watertight::axis_order_for;
 use glam::Vec3A;
 
 /// Special values of arithmetic: zeros, infinities, NaN, and very large and small numbers.
@@ -54,15 +54,15 @@ impl Input {
         let mut eight = || std::array::from_fn(|_| number(random));
         let floats = [eight(), eight(), eight()];
         let rows = std::array::from_fn(|_| number(random));
-        let turn = turned_axes(random.below(3), random.below(2));
+        let turn = axis_order_for(random.below(3), random.below(2));
         let order = std::array::from_fn(|_| random.below(WIDTH) as u8);
         let (count, mask) = (random.below(WIDTH + 1) as u32, random.below(256) as u32);
         Input { floats, rows, stride: 1 + random.below(WIDTH), turn, order, count, mask }
     }
 }
 
-/// Kernel that runs all operations except [`Numbers::mul_add`] and returns the bits of the results.
-/// NaN always gives the same bits.
+/// Kernel that runs all operations except [`FloatLanes::mul_add`] and returns the bits of the
+/// results. NaN always gives the same bits.
 struct AllOperations<'a>(&'a Input);
 
 /// Number of vectors computed for each input: arithmetic, double precision, two joined halves,
@@ -76,16 +76,16 @@ impl Kernel for AllOperations<'_> {
     fn run<L: Lanes>(self, lanes: L) -> Vec<u32> {
         let Input { floats, rows, stride, turn, order, count, mask } = self.0;
         let [a, b, c] = [lanes.load(&floats[0]), lanes.load(&floats[1]), lanes.load(&floats[2])];
-        let mut found = Vec::with_capacity(WIDTH * OPERATIONS + 16);
+        let mut results = Vec::with_capacity(WIDTH * OPERATIONS + 16);
         let number = |x: f32| if x.is_nan() { f32::NAN.to_bits() } else { x.to_bits() };
         // Read each vector by pushing it onto a stack.
         let mut record = |v: L::Floats, count: usize| {
-            let mut room = StackStorage::new();
-            let mut stack = Stack::new(&mut room);
+            let mut storage = StackStorage::new();
+            let mut stack = Stack::new(&mut storage);
             lanes.push(&mut stack, &[7; WIDTH], v, &[0, 1, 2, 3, 4, 5, 6, 7], count as u32);
             let (_, near, height) = stack.all();
             // SAFETY: everything below the height was written.
-            (0..height).for_each(|i| found.push(number(unsafe { *near.add(i) })));
+            (0..height).for_each(|i| results.push(number(unsafe { *near.add(i) })));
         };
         record(lanes.add(a, b), WIDTH);
         record(lanes.sub(a, b), WIDTH);
@@ -94,16 +94,16 @@ impl Kernel for AllOperations<'_> {
         record(lanes.abs(a), WIDTH);
         record(lanes.min(a, c), WIDTH);
         record(lanes.max(a, c), WIDTH);
-        record(lanes.sooner(a, c), WIDTH);
-        record(lanes.later(a, c), WIDTH);
+        record(lanes.min_as_int(a, c), WIDTH);
+        record(lanes.max_as_int(a, c), WIDTH);
         lanes.interval([[a, c], [b, a], [c, b]], [b, c]).into_iter().for_each(|end| record(end, WIDTH));
-        for corner in lanes.corners(rows, Columns::new(turn, *stride)) {
+        for corner in lanes.corners(rows, CornerColumns::new(turn, *stride)) {
             corner.into_iter().for_each(|row| record(row, *stride));
         }
         record(lanes.select(*mask, a, b), WIDTH);
         lanes.transpose([a, b, c, b, a, c, a, b]).into_iter().for_each(|row| record(row, WIDTH));
-        found.extend(lanes.store(a).map(number));
-        found.extend(wide(lanes.wide(), floats, *mask).map(number));
+        results.extend(lanes.store(a).map(number));
+        results.extend(wide(lanes.wide(), floats, *mask).map(number));
         let (p, q) = (lanes.doubles(a), lanes.doubles(c).mul(lanes.splat_double(0.1)));
         let bits = |x: f64| if x.is_nan() { [0; 2] } else { [x.to_bits() as u32, (x.to_bits() >> 32) as u32] };
         // The language does not specify the sign of a NaN.
@@ -111,40 +111,40 @@ impl Kernel for AllOperations<'_> {
         let of_one = [p, p.sqrt(), p.copysign(signed)];
         for doubles in of_one.into_iter().chain([p.add(q), p.sub(q), p.mul(q), p.div(q), p.min(q), p.max(q)]) {
             let numbers = lanes.store_doubles(doubles);
-            found.extend([lanes.le_doubles(doubles, q), lanes.le_doubles(p, doubles)]);
-            found.extend(numbers.into_iter().flat_map(bits));
+            results.extend([lanes.le_doubles(doubles, q), lanes.le_doubles(p, doubles)]);
+            results.extend(numbers.into_iter().flat_map(bits));
             let again = lanes.load_doubles(&numbers).add(lanes.splat_double(numbers[0]));
-            found.extend(lanes.store(lanes.singles(again)).map(number));
+            results.extend(lanes.store(lanes.singles(again)).map(number));
         }
-        found.extend(lanes.wide().store(lanes.join([a, b])).map(number));
+        results.extend(lanes.wide().store(lanes.join([a, b])).map(number));
         let triple = |i: usize| lanes.triple(Vec3A::from_slice(&floats[i]));
         let (p, q) = (triple(0), triple(1).mul(triple(2)));
         for v in [p.add(q), p.sub(q), p.mul(q), p.div(q), p.min(q), p.max(q), p.cross(q)] {
-            let all = [v.z(), v.turned().z(), v.turned().turned().z(), v.sum(), v.dot(p)];
-            found.extend(all.into_iter().flat_map(bits));
+            let all = [v.z(), v.yzx().z(), v.yzx().yzx().z(), v.sum(), v.dot(p)];
+            results.extend(all.into_iter().flat_map(bits));
         }
-        let turned = lanes.turn(Vec3A::from_slice(&floats[0]), turn);
-        found.extend(turned.to_array().map(number));
-        found.extend([lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a)]);
+        let turned = lanes.permute(Vec3A::from_slice(&floats[0]), turn);
+        results.extend(turned.to_array().map(number));
+        results.extend([lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a)]);
         // The lane is arbitrary if none is hit.
-        let (enter, leave) = (lanes.later(a, lanes.splat(0.0)), b);
-        let before = lanes.before(enter, leave);
+        let (enter, leave) = (lanes.max_as_int(a, lanes.splat(0.0)), b);
+        let before = lanes.lt_as_int(enter, leave);
         let (hits, nearest) = (lanes.signs(before), lanes.nearest(enter, before, &[10, 250, 12, 30, 14, 15, 201, 17]));
-        found.extend(if hits == 0 { [0; 2] } else { [hits, nearest] });
-        found.push(lanes.signs(a));
-        let mut room = StackStorage::new();
-        let mut stack = Stack::new(&mut room);
+        results.extend(if hits == 0 { [0; 2] } else { [hits, nearest] });
+        results.push(lanes.signs(a));
+        let mut storage = StackStorage::new();
+        let mut stack = Stack::new(&mut storage);
         let children = [10, 11, 12, 13, 14, 15, 16, 17];
         lanes.push(&mut stack, &children, a, order, *count);
         lanes.push(&mut stack, &children, b, order, WIDTH as u32 - count);
-        found.extend(std::iter::from_fn(|| stack.pop_near()).flat_map(|(child, near)| [child, number(near)]));
-        found
+        results.extend(std::iter::from_fn(|| stack.pop_near()).flat_map(|(child, near)| [child, number(near)]));
+        results
     }
 }
 
 /// Results of all operations on sixteen lanes.
 #[inline(always)]
-fn wide<W: Wide>(lanes: W, [a, b, c]: &[[f32; WIDTH]; 3], mask: u32) -> [f32; 8 * WIDE + 6] {
+fn wide<W: WideLanes>(lanes: W, [a, b, c]: &[[f32; WIDTH]; 3], mask: u32) -> [f32; 8 * WIDE + 6] {
     let join =
         |a: &[f32; WIDTH], b: &[f32; WIDTH]| std::array::from_fn(|i| if i < WIDTH { a[i] } else { b[i - WIDTH] });
     let (a, b) = (lanes.load(&join(a, b)), lanes.load(&join(b, c)));
@@ -164,10 +164,10 @@ fn wide<W: Wide>(lanes: W, [a, b, c]: &[[f32; WIDTH]; 3], mask: u32) -> [f32; 8 
     let [p, q, r, s] = masks;
     // Zeros of either sign compare equal.
     let others = [lanes.least(ordered) + 0.0, lanes.greatest(ordered) + 0.0, p, q, r, s];
-    let mut found = [0.0; 8 * WIDE + 6];
+    let mut results = [0.0; 8 * WIDE + 6];
     let all = vectors.into_iter().flat_map(|v| lanes.store(v)).chain(others);
-    found.iter_mut().zip(all).for_each(|(to, x)| *to = x);
-    found
+    results.iter_mut().zip(all).for_each(|(to, x)| *to = x);
+    results
 }
 
 /// Tests 10^6 lanes; 10^9 in the long run.
@@ -179,7 +179,7 @@ fn every_level_gives_the_same_bits() {
         let input = Input::random(&mut random);
         let expected = AllOperations(&input).run(scalar::Scalar);
         for level in SimdLevel::available() {
-            assert_eq!(Available::or_scalar(level).run(AllOperations(&input)), expected, "{round} {level:?}");
+            assert_eq!(AvailableLevel::or_scalar(level).run(AllOperations(&input)), expected, "{round} {level:?}");
         }
     }
     println!("{} lanes at {} levels", inputs * WIDTH * OPERATIONS, SimdLevel::available().count());
@@ -210,7 +210,7 @@ fn plain_code_has_the_same_bits_on_every_level() {
     for _ in 0..rounds(10_000) {
         let numbers = std::array::from_fn(|_| std::array::from_fn(|_| random.between(-2.0, 2.0)));
         for level in SimdLevel::available() {
-            assert_eq!(Available::or_scalar(level).run_plain(Sums(numbers)), Sums(numbers).run(), "{level:?}");
+            assert_eq!(AvailableLevel::or_scalar(level).run_plain(Sums(numbers)), Sums(numbers).run(), "{level:?}");
         }
     }
 }

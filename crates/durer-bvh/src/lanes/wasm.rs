@@ -4,9 +4,9 @@
 //! time, since a module either contains the instructions or not. Relaxed SIMD is not used, because
 //! its results can differ between machines.
 
-use super::operations::{Columns, Lanes, Numbers, Rows};
+use super::operations::{CornerColumns, FloatLanes, Lanes, Rows};
 use super::stack::Stack;
-use super::wide::Two;
+use super::wide::TwoVectors;
 use crate::math::Doubles;
 use crate::node::WIDTH;
 use std::arch::wasm32::*;
@@ -92,7 +92,7 @@ fn bits(low: v128, high: v128) -> u32 {
     u32::from(i32x4_bitmask(low)) | u32::from(i32x4_bitmask(high)) << 4
 }
 
-impl Numbers for Simd128 {
+impl FloatLanes for Simd128 {
     type Floats = Pair;
 
     operations! {
@@ -125,7 +125,7 @@ impl Numbers for Simd128 {
 }
 
 impl Lanes for Simd128 {
-    type Wide = Two<Self>;
+    type Wide = TwoVectors<Self>;
     type Doubles = ((TwoDoubles, TwoDoubles), (TwoDoubles, TwoDoubles));
     type Triple = [f64; 3];
 
@@ -136,8 +136,8 @@ impl Lanes for Simd128 {
     }
 
     #[inline(always)]
-    fn wide(self) -> Two<Self> {
-        Two(self)
+    fn wide(self) -> TwoVectors<Self> {
+        TwoVectors(self)
     }
     #[inline(always)]
     fn join(self, [low, high]: [Pair; 2]) -> (Pair, Pair) {
@@ -184,7 +184,7 @@ impl Lanes for Simd128 {
         v.as_dvec3().to_array()
     }
     #[inline(always)]
-    fn turn(self, v: glam::Vec3A, order: &[u32; 4]) -> glam::Vec3A {
+    fn permute(self, v: glam::Vec3A, order: &[u32; 4]) -> glam::Vec3A {
         // Byte indices of each component: 4k, 4k + 1, 4k + 2, 4k + 3.
         let first = i32x4_mul(load!(order, 0), u32x4_splat(0x0404_0404));
         u8x16_swizzle(v.into(), i32x4_add(first, u32x4_splat(0x0302_0100))).into()
@@ -194,8 +194,9 @@ impl Lanes for Simd128 {
         Pair(load!(from, 0), load!(from, 4))
     }
     #[inline(always)]
-    fn corners(self, from: &Rows, Columns { starts, corner }: Columns) -> [[Pair; 3]; 3] {
-        // By `Columns::new`, each row begins in one of the first nine, so eight numbers follow.
+    fn corners(self, from: &Rows, CornerColumns { starts, corner }: CornerColumns) -> [[Pair; 3]; 3] {
+        // By `CornerColumns::new`, each row begins in one of the first nine, so eight numbers
+        // follow.
         std::array::from_fn(|k| {
             starts.map(|start| Pair(load!(from, k * corner + start), load!(from, k * corner + start + 4)))
         })

@@ -1,11 +1,11 @@
 //! Sixteen lanes for ray packets: one AVX-512 vector, or two vectors of eight lanes.
 
-use super::operations::{Lanes, Numbers, WIDE, Wide};
+use super::operations::{FloatLanes, Lanes, WIDE, WideLanes};
 use crate::node::WIDTH;
 
 /// Sixteen lanes as two vectors of eight, for SIMD levels without longer vectors.
 #[derive(Clone, Copy)]
-pub struct Two<L>(pub L);
+pub struct TwoVectors<L>(pub L);
 
 #[inline(always)]
 fn halves(from: &[f32; WIDE]) -> (&[f32; WIDTH], &[f32; WIDTH]) {
@@ -24,7 +24,7 @@ macro_rules! two {
     )*};
 }
 
-impl<L: Lanes> Numbers for Two<L> {
+impl<L: Lanes> FloatLanes for TwoVectors<L> {
     type Floats = (L::Floats, L::Floats);
 
     two! {
@@ -52,7 +52,7 @@ impl<L: Lanes> Numbers for Two<L> {
     }
 }
 
-impl<L: Lanes> Wide for Two<L> {
+impl<L: Lanes> WideLanes for TwoVectors<L> {
     #[inline(always)]
     fn load(self, from: &[f32; WIDE]) -> Self::Floats {
         let (low, high) = halves(from);

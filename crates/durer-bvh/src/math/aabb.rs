@@ -15,12 +15,12 @@ impl Aabb {
 
     /// Smallest box around some points.
     pub fn around(points: impl IntoIterator<Item = Vec3>) -> Self {
-        points.into_iter().fold(Aabb::EMPTY, Aabb::with)
+        points.into_iter().fold(Aabb::EMPTY, Aabb::union_point)
     }
 
     /// Smallest box around this one and a point.
     #[inline]
-    pub fn with(self, point: Vec3) -> Self {
+    pub fn union_point(self, point: Vec3) -> Self {
         Aabb { min: self.min.min(point), max: self.max.max(point) }
     }
 
@@ -32,13 +32,13 @@ impl Aabb {
 
     /// Largest absolute value among the coordinates of the corners.
     #[inline]
-    pub fn reach(&self) -> f32 {
+    pub fn max_abs_coordinate(&self) -> f32 {
         self.min.abs().max(self.max.abs()).max_element()
     }
 
     /// Returns true if the point lies in the box or on its boundary.
     #[inline]
-    pub fn holds(&self, point: Vec3) -> bool {
+    pub fn contains(&self, point: Vec3) -> bool {
         point.cmpge(self.min).all() && point.cmple(self.max).all()
     }
 

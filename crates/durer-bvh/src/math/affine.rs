@@ -41,7 +41,7 @@ impl Affine {
 
     /// Returns true if the map reverses handedness.
     #[inline]
-    pub fn mirrors(&self) -> bool {
+    pub fn flips_handedness(&self) -> bool {
         self.forward.matrix3.determinant() < 0.0
     }
 
@@ -84,13 +84,13 @@ impl Affine {
 
     /// Maps a unit normal backward: the inverse of [`Affine::normal`].
     #[inline]
-    pub fn local_normal(&self, n: Vec3) -> Vec3 {
+    pub fn inverse_normal(&self, n: Vec3) -> Vec3 {
         (self.forward.matrix3.transpose() * n.as_dvec3()).normalize_or(n.as_dvec3()).as_vec3()
     }
 
     /// Maps a normal forward as [`Affine::normal`] does, without normalising the result.
     #[inline]
-    pub fn long_normal(&self, n: Vec3) -> Vec3 {
+    pub fn unnormalized_normal(&self, n: Vec3) -> Vec3 {
         (self.inverse.matrix3.transpose() * n.as_dvec3()).as_vec3()
     }
 
@@ -117,20 +117,20 @@ impl Affine {
     /// single precision in object space.
     pub fn point_error(&self, p: Vec3, error: Vec3) -> Vec3 {
         const DOUBLE: f32 = 1.0 / (1u64 << 40) as f32;
-        let far = self.forward.translation.abs().as_vec3() + self.spread(p.abs());
-        DOUBLE * far + self.spread(error + gamma(2) * p.abs())
+        let far = self.forward.translation.abs().as_vec3() + self.error_bound(p.abs());
+        DOUBLE * far + self.error_bound(error + gamma(2) * p.abs())
     }
 
     /// Maps a bound on the absolute components of a vector to a bound for the image of the vector.
     #[inline]
-    pub fn spread(&self, bound: Vec3) -> Vec3 {
+    pub fn error_bound(&self, bound: Vec3) -> Vec3 {
         (self.forward.matrix3.abs() * bound.as_dvec3()).as_vec3()
     }
 
     /// Maps a bound on the absolute components of a vector by the inverse map; see
     /// [`Affine::spread`].
     #[inline]
-    pub fn inverse_spread(&self, bound: Vec3) -> Vec3 {
+    pub fn inverse_error_bound(&self, bound: Vec3) -> Vec3 {
         (self.inverse.matrix3.abs() * bound.as_dvec3()).as_vec3()
     }
 
@@ -138,7 +138,7 @@ impl Affine {
     pub fn bounds(&self, b: Aabb) -> Aabb {
         let image = Aabb::around(b.corners().map(|c| self.point(c)));
         let largest = b.min.abs().max(b.max.abs());
-        let error = gamma(2) * (image.min.abs().max(image.max.abs()) + self.spread(largest));
+        let error = gamma(2) * (image.min.abs().max(image.max.abs()) + self.error_bound(largest));
         Aabb { min: image.min - error, max: image.max + error }
     }
 }

@@ -25,7 +25,7 @@ pub(crate) trait Triple: Doubles {
     /// Sum of the components, in the order (x + y) + z.
     fn sum(self) -> Self::Component;
     /// Components rotated to (y, z, x).
-    fn turned(self) -> Self;
+    fn yzx(self) -> Self;
 
     #[inline(always)]
     fn dot(self, other: Self) -> Self::Component {
@@ -34,7 +34,7 @@ pub(crate) trait Triple: Doubles {
 
     #[inline(always)]
     fn cross(self, other: Self) -> Self {
-        self.mul(other.turned()).sub(self.turned().mul(other)).turned()
+        self.mul(other.yzx()).sub(self.yzx().mul(other)).yzx()
     }
 }
 
@@ -122,7 +122,7 @@ impl<D: Doubles> Triple for [D; 3] {
         self[0].add(self[1]).add(self[2])
     }
     #[inline(always)]
-    fn turned(self) -> Self {
+    fn yzx(self) -> Self {
         [self[1], self[2], self[0]]
     }
 }

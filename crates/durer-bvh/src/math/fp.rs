@@ -138,14 +138,14 @@ pub fn atan2(y: f32, x: f32) -> f32 {
 /// Other cases use libm.
 #[inline]
 pub fn pow(base: f32, exponent: f32) -> f32 {
-    let usual = usual_pow(base, exponent);
+    let usual = fast_pow(base, exponent);
     if usual.is_nan() { libm::powf(base, exponent) } else { usual }
 }
 
 /// Computes [`pow`] for ordinary numbers, and NaN for all others. Branchless, so that compilers can
 /// vectorise it.
 #[inline(always)]
-pub fn usual_pow(base: f32, exponent: f32) -> f32 {
+pub fn fast_pow(base: f32, exponent: f32) -> f32 {
     let power = f64::from(exponent) * log2(base);
     // The cast rounds results outside the range of single precision; NaN fails both tests.
     let is_usual = (base == base.clamp(f32::MIN_POSITIVE, f32::MAX)) & (power.abs() < 1000.0);
@@ -275,10 +275,13 @@ mod tests {
                 (1.0 - 0.01 * random.unit(), 2000.0 * random.unit()),
             ] {
                 let wanted = libm::pow(base.into(), exponent.into());
-                let found = pow(base, exponent);
+                let actual = pow(base, exponent);
                 let next = f32::from_bits((wanted as f32).to_bits() + 1) - wanted as f32;
-                assert!((found - wanted as f32).abs() <= next || found == wanted as f32, "{base}^{exponent}: {found}");
-                off += u32::from(found != wanted as f32);
+                assert!(
+                    (actual - wanted as f32).abs() <= next || actual == wanted as f32,
+                    "{base}^{exponent}: {actual}"
+                );
+                off += u32::from(actual != wanted as f32);
             }
         }
         assert!(off < 5, "{off}");
@@ -310,12 +313,12 @@ mod tests {
         ];
         for base in numbers {
             for exponent in numbers {
-                let (found, wanted) = (pow(base, exponent), libm::powf(base, exponent));
+                let (actual, wanted) = (pow(base, exponent), libm::powf(base, exponent));
                 // In some places, libm itself has an error of one rounding.
-                let near = (found - wanted).abs() <= f32::EPSILON * wanted.abs();
+                let near = (actual - wanted).abs() <= f32::EPSILON * wanted.abs();
                 assert!(
-                    found == wanted || near || found.is_nan() && wanted.is_nan(),
-                    "{base}^{exponent}: {found} {wanted}"
+                    actual == wanted || near || actual.is_nan() && wanted.is_nan(),
+                    "{base}^{exponent}: {actual} {wanted}"
                 );
             }
         }

@@ -13,7 +13,7 @@ pub use aabb::Aabb;
 pub use affine::Affine;
 pub(crate) use doubles::{Doubles, Triple};
 pub use glam::{Vec2, Vec3};
-pub use ray::{Line, Ray, Ray64, Side};
+pub use ray::{Line, Ray, Ray64, StartSide};
 pub use rounding::{UNIT_ROUNDOFF, gamma};
 
 /// Unit normal (b - a) x (c - a) of a triangle; zero if the triangle has no area.

@@ -54,33 +54,33 @@ pub struct Ray64 {
     /// The ray with its origin rounded to single precision.
     pub rounded: Ray,
     /// Part of the origin that rounding removed.
-    pub rest: Vec3,
+    pub origin_error: Vec3,
     /// Primitive that the ray leaves, and the side on which the ray starts.
-    pub side: Side,
+    pub side: StartSide,
 }
 
 /// Primitive on whose surface a ray starts, and the side, inside or outside, on which it starts.
 /// Near an edge, the origin is too inexact to determine the side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 // 0 if unknown, else 2 * number + 1, plus 1 if inside.
-pub struct Side(u32);
+pub struct StartSide(u32);
 
-impl Side {
+impl StartSide {
     /// Side of a ray that does not start on a primitive, or starts on an unknown one.
-    pub const ANY: Side = Side(0);
+    pub const UNKNOWN: StartSide = StartSide(0);
 
     /// Creates the inside or outside of a primitive, which is numbered by the caller. Numbers above
-    /// 2^31 - 2 give [`Side::ANY`].
+    /// 2^31 - 2 give [`StartSide::UNKNOWN`].
     #[inline]
-    pub fn of(primitive: u32, inside: bool) -> Side {
-        if primitive < (1 << 31) - 1 { Side(2 * primitive + 1 + u32::from(inside)) } else { Side::ANY }
+    pub fn of(primitive: u32, inside: bool) -> StartSide {
+        if primitive < (1 << 31) - 1 { StartSide(2 * primitive + 1 + u32::from(inside)) } else { StartSide::UNKNOWN }
     }
 
     /// Returns true if the ray starts inside the primitive; `None` if it starts on a different
     /// primitive or an unknown one.
     #[inline]
     pub fn inside(self, primitive: u32) -> Option<bool> {
-        (self != Side::ANY && (self.0 - 1) / 2 == primitive).then_some(self.0.is_multiple_of(2))
+        (self != StartSide::UNKNOWN && (self.0 - 1) / 2 == primitive).then_some(self.0.is_multiple_of(2))
     }
 }
 
@@ -89,20 +89,20 @@ impl Ray64 {
     #[inline]
     pub fn new(origin: DVec3, dir: Vec3, t_min: f32, t_max: f32) -> Self {
         let near = origin.as_vec3();
-        let rest = (origin - near.as_dvec3()).as_vec3();
-        Ray64 { rounded: Ray { origin: near, dir, t_min, t_max }, rest, side: Side::ANY }
+        let origin_error = (origin - near.as_dvec3()).as_vec3();
+        Ray64 { rounded: Ray { origin: near, dir, t_min, t_max }, origin_error, side: StartSide::UNKNOWN }
     }
 
     /// Sets the primitive and side that the ray leaves.
     #[inline]
-    pub fn on_side(self, side: Side) -> Self {
+    pub fn on_side(self, side: StartSide) -> Self {
         Ray64 { side, ..self }
     }
 
     /// Origin: the point at `t` = 0.
     #[inline]
     pub fn origin(&self) -> DVec3 {
-        self.rounded.origin.as_dvec3() + self.rest.as_dvec3()
+        self.rounded.origin.as_dvec3() + self.origin_error.as_dvec3()
     }
 
     /// Direction; its length is one unit of `t`.
@@ -121,7 +121,7 @@ impl Ray64 {
 impl From<Ray> for Ray64 {
     #[inline]
     fn from(rounded: Ray) -> Self {
-        Ray64 { rounded, rest: Vec3::ZERO, side: Side::ANY }
+        Ray64 { rounded, origin_error: Vec3::ZERO, side: StartSide::UNKNOWN }
     }
 }
 
@@ -163,7 +163,7 @@ impl Line {
 
     /// Returns true if the line can hit anything: it is finite, and its direction is not zero.
     #[inline]
-    pub fn is_sound(&self) -> bool {
+    pub fn is_valid(&self) -> bool {
         self.origin.is_finite() && self.dir.is_finite() && self.dir != DVec3::ZERO
     }
 }

@@ -4,7 +4,7 @@ use super::rows::{number, put};
 use super::tree::TriangleBvh;
 use crate::BuildError;
 use crate::build::{self, BuildQuality, BuildSettings, is_finite};
-use crate::lanes::{ROOM_OF_ROWS, ROWS, listed};
+use crate::lanes::{ROWS, ROWS_LEN, parallel_vec};
 use crate::math::{Aabb, Vec3};
 use crate::{node, parallel};
 use std::mem::MaybeUninit;
@@ -68,11 +68,11 @@ impl TriangleBvh {
     pub fn from_flat(positions: &[f32], indices: &[u32], quality: BuildQuality) -> Result<Self, BuildError> {
         let (vertices, rest) = positions.as_chunks::<3>();
         if !rest.is_empty() {
-            return Err(BuildError::NotInThrees { list: "positions", len: positions.len() });
+            return Err(BuildError::NotMultipleOfThree { list: "positions", len: positions.len() });
         }
         let (triangles, rest) = indices.as_chunks::<3>();
         if !rest.is_empty() {
-            return Err(BuildError::NotInThrees { list: "indices", len: indices.len() });
+            return Err(BuildError::NotMultipleOfThree { list: "indices", len: indices.len() });
         }
         let vertices: Vec<Vec3> = vertices.iter().map(|v| Vec3::from_array(*v)).collect();
         Self::try_build(&vertices, triangles, quality)
@@ -82,7 +82,7 @@ impl TriangleBvh {
         let settings = BuildSettings::triangles(quality);
         let corners_of = |number: u32| triangles[number as usize].map(|i| vertices[i as usize]);
         let tree = build::build_triangles(triangles.len(), &corners_of, &settings);
-        let leaves = listed(ROWS * tree.order.len() + ROOM_OF_ROWS, 0, |_| 0.0);
+        let leaves = parallel_vec(ROWS * tree.order.len() + ROWS_LEN, 0, |_| 0.0);
         let mut bvh = TriangleBvh::of(tree.nodes, leaves, tree.bounds, triangles.len());
         bvh.pack(Some(&tree.order), vertices, triangles);
         bvh
@@ -106,7 +106,7 @@ impl TriangleBvh {
     /// If an index is out of range, or the number of triangles differs from that at build time.
     pub fn try_refit(&mut self, vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), BuildError> {
         if triangles.len() != self.count {
-            return Err(BuildError::OtherTriangles { built: self.count, given: triangles.len() });
+            return Err(BuildError::TriangleCountMismatch { built: self.count, refitted: triangles.len() });
         }
         check_indices(vertices, triangles)?;
         if self.heights.is_some() {
@@ -122,7 +122,7 @@ impl TriangleBvh {
             Aabb::around(corners.filter(is_finite).flatten())
         });
         self.bounds = node::bounds(&nodes);
-        self.reach = self.bounds.reach();
+        self.reach = self.bounds.max_abs_coordinate();
         self.nodes = nodes;
         Ok(())
     }
@@ -135,7 +135,7 @@ impl TriangleBvh {
     /// Number of triangles in all leaves: more than [`TriangleBvh::triangle_count`] if some were
     /// split.
     pub(super) fn items(&self) -> usize {
-        (self.leaves.len() - ROOM_OF_ROWS) / ROWS
+        (self.leaves.len() - ROWS_LEN) / ROWS
     }
 
     /// Writes the rows of all leaves, with triangle numbers from `order`, or the present ones if

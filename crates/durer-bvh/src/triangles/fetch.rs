@@ -5,21 +5,21 @@ use crate::lanes::{Lanes, ROWS};
 use crate::node;
 
 /// Number of cache lines to prefetch for a child alone: a node has four, and a leaf up to six.
-pub const ITSELF: usize = 6;
+pub const CHILD_LINES: usize = 6;
 /// Number of cache lines to prefetch if siblings, which follow the child in memory, will probably
 /// be visited too. Tuned by measurement.
-pub const AND_SIBLINGS: usize = 12;
+pub const SIBLING_LINES: usize = 12;
 
 /// Addresses of the nodes and leaves of a [`TriangleBvh`], for prefetching.
 #[derive(Clone, Copy)]
-pub(super) struct Places {
+pub(super) struct PrefetchAddresses {
     nodes_and_leaves: [*const u8; 2],
 }
 
-impl Places {
+impl PrefetchAddresses {
     #[inline(always)]
     pub fn new(bvh: &TriangleBvh) -> Self {
-        Places { nodes_and_leaves: [bvh.nodes.as_ptr().cast(), bvh.leaves.as_ptr().cast()] }
+        PrefetchAddresses { nodes_and_leaves: [bvh.nodes.as_ptr().cast(), bvh.leaves.as_ptr().cast()] }
     }
 
     /// Prefetches `LINES` cache lines of a child.

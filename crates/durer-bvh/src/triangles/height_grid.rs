@@ -34,7 +34,7 @@ impl HeightGrid {
     pub fn new(xs: Vec<f32>, zs: Vec<f32>, heights: Vec<f32>) -> Result<Self, BuildError> {
         let (columns, rows) = (xs.len(), zs.len());
         if columns < 2 || rows < 2 || columns.checked_mul(rows) != Some(heights.len()) {
-            return Err(BuildError::NoGrid { columns, rows, heights: heights.len() });
+            return Err(BuildError::InvalidGridSize { columns, rows, heights: heights.len() });
         }
         if [&xs, &zs, &heights].iter().any(|list| list.iter().any(|x| !x.is_finite())) {
             return Err(BuildError::NotFinite);

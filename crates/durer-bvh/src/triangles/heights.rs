@@ -7,7 +7,7 @@ use super::height_grid::HeightGrid;
 use super::rows::put;
 use super::tree::TriangleBvh;
 use crate::build::{self, BuildQuality, BuildSettings, is_finite};
-use crate::lanes::{ROOM_OF_ROWS, ROWS};
+use crate::lanes::{ROWS, ROWS_LEN};
 use crate::math::{Aabb, Vec3};
 use crate::node::{self, LEAF, LEAF_SIZE};
 use crate::{BuildError, parallel};
@@ -65,7 +65,7 @@ impl TriangleBvh {
                 put(&mut rows[lane..], some.len(), (grid.triangle_count() + first + lane) as u32, *corners);
             }
         }
-        leaves.resize(ROWS * others.len() + ROOM_OF_ROWS, 0.0);
+        leaves.resize(ROWS * others.len() + ROWS_LEN, 0.0);
         let count = grid.triangle_count() + others.len();
         let mut bvh = TriangleBvh::of(tree.nodes, leaves, tree.bounds, count);
         let first_block = bvh.first_block();
@@ -106,13 +106,13 @@ impl TriangleBvh {
         all.change_leaves(|leaf| {
             let (first, count) = node::items(leaf);
             let Some(block) = first.checked_sub(first_block) else { return leaf };
-            let mut rows = [0.0; ROOM_OF_ROWS];
+            let mut rows = [0.0; ROWS_LEN];
             grid.write_rows(block, &mut rows);
             leaves.extend(&rows[..ROWS * count]);
             items += count;
             node::leaf(items - count, count)
         });
-        leaves.resize(ROWS * items + ROOM_OF_ROWS, 0.0);
+        leaves.resize(ROWS * items + ROWS_LEN, 0.0);
         TriangleBvh { leaves, ..all }
     }
 }

@@ -6,7 +6,7 @@
 //! test decides the others. For any-hit rays, bounds on t are usually sufficient. For the closest
 //! hit, t is computed in double precision for every crossed triangle.
 
-use crate::lanes::Numbers;
+use crate::lanes::FloatLanes;
 
 /// Calls a macro for each corner and axis. (A closure might not be inlined, and would then be
 /// compiled without the instructions of the SIMD level.)
@@ -23,7 +23,7 @@ pub(super) use by_corner;
 
 /// Triangles projected along rays, with their edge functions: several triangles for one ray, or one
 /// triangle for several rays.
-pub struct Flat<N: Numbers> {
+pub struct ProjectedTriangles<N: FloatLanes> {
     /// Projected position of each corner in the plane across the ray, and its height along the
     /// third axis.
     corners: [[N::Floats; 3]; 3],
@@ -35,13 +35,13 @@ pub struct Flat<N: Numbers> {
 }
 
 /// Bounds on the t at which rays cross triangles, in single precision; NaN if unknown. Returned by
-/// [`Flat::span`].
-pub struct Span<N: Numbers> {
+/// [`ProjectedTriangles::span`].
+pub struct TBounds<N: FloatLanes> {
     pub near: N::Floats,
     pub far: N::Floats,
 }
 
-impl<N: Numbers> Flat<N> {
+impl<N: FloatLanes> ProjectedTriangles<N> {
     /// Projects corners. Corners and origins have permuted axes, as in
     /// [`WatertightRay`](crate::watertight::WatertightRay).
     ///
@@ -49,20 +49,20 @@ impl<N: Numbers> Flat<N> {
     /// unless they are zero.
     #[inline(always)]
     pub fn new(numbers: N, corners: [[N::Floats; 3]; 3], origin: [N::Floats; 3], shear: [N::Floats; 2]) -> Self {
-        Flat::seen(numbers, from_origin(numbers, corners, origin), shear)
+        ProjectedTriangles::new_relative(numbers, from_origin(numbers, corners, origin), shear)
     }
 
-    /// Projects corners [relative to the origin](from_origin); see [`Flat::new`].
+    /// Projects corners [relative to the origin](from_origin); see [`ProjectedTriangles::new`].
     #[inline(always)]
-    pub fn seen(numbers: N, corners: [[N::Floats; 3]; 3], shear: [N::Floats; 2]) -> Self {
+    pub fn new_relative(numbers: N, corners: [[N::Floats; 3]; 3], shear: [N::Floats; 2]) -> Self {
         let corners @ [a, b, c] = [
-            across(numbers, corners[0], shear),
-            across(numbers, corners[1], shear),
-            across(numbers, corners[2], shear),
+            project(numbers, corners[0], shear),
+            project(numbers, corners[1], shear),
+            project(numbers, corners[2], shear),
         ];
         let edges @ [u, v, w] = [edge(numbers, b, c), edge(numbers, c, a), edge(numbers, a, b)];
         let sign = numbers.mul(numbers.min(u, numbers.min(v, w)), numbers.max(u, numbers.max(v, w)));
-        Flat { corners, edges, sign }
+        ProjectedTriangles { corners, edges, sign }
     }
 
     /// Mask of the triangles that the ray's line certainly misses.
@@ -99,7 +99,7 @@ impl<N: Numbers> Flat<N> {
     /// `inverse_z` is `1 / dz`. The longest component dz of the direction must lie between 10^-15
     /// and 10^15, and coordinates must be below 10^15.
     #[inline(always)]
-    pub fn span(&self, numbers: N, inverse_z: f32) -> Span<N> {
+    pub fn span(&self, numbers: N, inverse_z: f32) -> TBounds<N> {
         const E: f32 = f32::EPSILON;
         let tiny = numbers.splat(f32::MIN_POSITIVE);
         let ([a, b, c], [u, v, w]) = (self.corners, self.edges);
@@ -114,19 +114,19 @@ impl<N: Numbers> Flat<N> {
         let error = numbers.mul_add(moved, numbers.abs(inverse), numbers.mul(height_most, numbers.splat(12.0 * E)));
         let error = numbers.mul_add(error, numbers.splat(inverse_z.abs()), tiny);
         let t = numbers.mul(height, numbers.splat(inverse_z));
-        Span { near: numbers.sub(t, error), far: numbers.add(t, error) }
+        TBounds { near: numbers.sub(t, error), far: numbers.add(t, error) }
     }
 }
 
 /// Minimum and maximum of three numbers.
 #[inline(always)]
-pub fn ends<N: Numbers>(numbers: N, [a, b, c]: [N::Floats; 3]) -> [N::Floats; 2] {
+pub fn ends<N: FloatLanes>(numbers: N, [a, b, c]: [N::Floats; 3]) -> [N::Floats; 2] {
     [numbers.min(a, numbers.min(b, c)), numbers.max(a, numbers.max(b, c))]
 }
 
 /// Corners relative to an origin.
 #[inline(always)]
-pub fn from_origin<N: Numbers>(
+pub fn from_origin<N: FloatLanes>(
     numbers: N,
     corners: [[N::Floats; 3]; 3],
     origin: [N::Floats; 3],
@@ -142,12 +142,12 @@ pub fn from_origin<N: Numbers>(
 /// Projects a point, given relative to the origin, onto the plane across the ray. The third
 /// component is the height along the third axis.
 #[inline(always)]
-pub fn across<N: Numbers>(numbers: N, [x, y, z]: [N::Floats; 3], shear: [N::Floats; 2]) -> [N::Floats; 3] {
+pub fn project<N: FloatLanes>(numbers: N, [x, y, z]: [N::Floats; 3], shear: [N::Floats; 2]) -> [N::Floats; 3] {
     [numbers.sub(x, numbers.mul(shear[0], z)), numbers.sub(y, numbers.mul(shear[1], z)), z]
 }
 
 /// Edge function of the edge from `p` to `q` at the origin.
 #[inline(always)]
-fn edge<N: Numbers>(numbers: N, p: [N::Floats; 3], q: [N::Floats; 3]) -> N::Floats {
+fn edge<N: FloatLanes>(numbers: N, p: [N::Floats; 3], q: [N::Floats; 3]) -> N::Floats {
     numbers.sub(numbers.mul(q[0], p[1]), numbers.mul(q[1], p[0]))
 }

@@ -9,19 +9,19 @@ mod nearest;
 mod packet;
 mod query;
 mod rows;
-mod stored;
+mod serialize;
 mod stream;
 mod tree;
 
-use super::lanes::{Available, SimdLevel};
+use super::lanes::{AvailableLevel, SimdLevel};
 use super::node;
-use super::shown::{self, TreeBox};
+use super::tree_boxes::{self, TreeBox};
 use super::{TraversalCounter, TraversalStats};
 use crate::math::{self, Aabb, Ray, Vec3};
 use crate::watertight::WatertightRay;
 pub use height_grid::HeightGrid;
 pub use nearest::NearestPoint;
-use query::{All, Any, Filter, Filtered, HitCollector, Nearest, Query};
+use query::{AllHits, AnyHit, ClosestHit, Filter, Filtered, HitCollector, Query};
 use rows::number;
 use std::cell::Cell;
 use std::mem::MaybeUninit;
@@ -39,7 +39,7 @@ fn counting<T: TraversalCounter, A>(
     }
     let mut counts = TraversalStats::default();
     let answer = counted(&mut counts);
-    counter.work(counts.nodes, counts.tests);
+    counter.count_work(counts.nodes, counts.primitive_tests);
     answer
 }
 
@@ -54,24 +54,24 @@ fn in_order(mut all: Vec<TriangleHit>) -> Vec<TriangleHit> {
 impl TriangleBvh {
     /// Sets the SIMD level, or the scalar level if the processor does not support it.
     pub fn at_level(self, level: SimdLevel) -> Self {
-        TriangleBvh { level: Available::or_scalar(level), ..self }
+        TriangleBvh { level: AvailableLevel::or_scalar(level), ..self }
     }
 
     /// Sets the least |(b - a) x (c - a) · d| of a triangle that rays with direction d can hit, to
     /// cull slivers and edge-on triangles. With 0, all triangles can be hit.
-    pub fn least_volume(self, least_volume: f64) -> Self {
-        TriangleBvh { least_volume, culls_slivers: least_volume != 0.0, ..self }
+    pub fn min_volume(self, min_volume: f64) -> Self {
+        TriangleBvh { min_volume, culls_slivers: min_volume != 0.0, ..self }
     }
 
     /// Prepares a ray for tests of single triangles, with the least volume of the tree.
     #[inline]
     pub fn watertight_ray(&self, ray: &Ray) -> WatertightRay {
-        WatertightRay::new(ray).least_volume(self.least_volume)
+        WatertightRay::new(ray).min_volume(self.min_volume)
     }
 
     /// Closest hit in the ray's open interval (`t_min`, `t_max`).
     pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
-        self.query::<_, Nearest>(ray, ())
+        self.query::<_, ClosestHit>(ray, ())
     }
 
     /// Finds the [closest](TriangleBvh::closest) hit and counts nodes and tests.
@@ -82,7 +82,7 @@ impl TriangleBvh {
 
     /// Returns true if the ray hits anything in its open interval.
     pub fn occluded(&self, ray: &Ray) -> bool {
-        self.query::<_, Any>(ray, ())
+        self.query::<_, AnyHit>(ray, ())
     }
 
     /// Tests [occlusion](TriangleBvh::occluded) and counts nodes and tests.
@@ -124,7 +124,7 @@ impl TriangleBvh {
 
     /// Hits in the ray's open interval, sorted by `t`, then by triangle number.
     pub fn all_hits(&self, ray: &Ray) -> Vec<TriangleHit> {
-        in_order(self.query::<_, All>(ray, ()))
+        in_order(self.query::<_, AllHits>(ray, ()))
     }
 
     /// Finds all [hits](TriangleBvh::all_hits) and counts nodes and tests.
@@ -136,23 +136,23 @@ impl TriangleBvh {
     // These functions are not generic, so that they are compiled only once and not for each caller.
 
     pub(crate) fn closest_filtered(&self, ray: &Ray, filter: Filter) -> Option<TriangleHit> {
-        self.query_with(ray, (), Filtered { inner: Nearest::default(), filter })
+        self.query_with(ray, (), Filtered { inner: ClosestHit::default(), filter })
     }
 
     pub(crate) fn occluded_filtered(&self, ray: &Ray, filter: Filter) -> bool {
-        self.query_with(ray, (), Filtered { inner: Any, filter })
+        self.query_with(ray, (), Filtered { inner: AnyHit, filter })
     }
 
     fn closest_counted(&self, ray: &Ray, counts: &mut TraversalStats) -> Option<TriangleHit> {
-        self.query::<_, Nearest>(ray, counts)
+        self.query::<_, ClosestHit>(ray, counts)
     }
 
     fn occluded_counted(&self, ray: &Ray, counts: &mut TraversalStats) -> bool {
-        self.query::<_, Any>(ray, counts)
+        self.query::<_, AnyHit>(ray, counts)
     }
 
     fn all_hits_counted(&self, ray: &Ray, counts: &mut TraversalStats) -> Vec<TriangleHit> {
-        in_order(self.query::<_, All>(ray, counts))
+        in_order(self.query::<_, AllHits>(ray, counts))
     }
 
     /// Number of triangles that the ray crosses in its open interval: odd from inside a closed
@@ -178,7 +178,7 @@ impl TriangleBvh {
         self.packets::<false>(
             rays,
             |i, hit| hits[i].set(hit),
-            |rest| self.each::<Nearest>(rays, rest, |i, hit| hits[i].set(hit)),
+            |rest| self.trace_each::<ClosestHit>(rays, rest, |i, hit| hits[i].set(hit)),
         );
     }
 
@@ -194,7 +194,7 @@ impl TriangleBvh {
         self.packets::<true>(
             rays,
             |i, hit| answers[i].set(hit.is_some()),
-            |rest| self.each::<Any>(rays, rest, |i, answer| answers[i].set(answer)),
+            |rest| self.trace_each::<AnyHit>(rays, rest, |i, answer| answers[i].set(answer)),
         );
     }
 
@@ -220,10 +220,10 @@ impl TriangleBvh {
     }
 
     #[inline]
-    fn query_with<T: TraversalCounter, F: HitCollector>(&self, ray: &Ray, counter: T, found: F) -> F::Answer {
+    fn query_with<T: TraversalCounter, F: HitCollector>(&self, ray: &Ray, counter: T, collector: F) -> F::Answer {
         match self.nodes.is_empty() {
             true => F::Answer::default(),
-            false => self.level.run(Query { bvh: self, ray, counter, found }),
+            false => self.level.run(Query { bvh: self, ray, counter, collector }),
         }
     }
 
@@ -237,7 +237,7 @@ impl TriangleBvh {
         if let Some(grid) = grid {
             return Some(grid.corners(triangle as usize));
         }
-        let leaf_of = self.leaf_of.get_or_init(|| self.note_leaves());
+        let leaf_of = self.leaf_of.get_or_init(|| self.index_leaves());
         // 0 means that the triangle is in no leaf.
         let leaf = *leaf_of.get(triangle as usize).filter(|leaf| **leaf != 0)?;
         let mut room = MaybeUninit::uninit();
@@ -249,7 +249,7 @@ impl TriangleBvh {
     }
 
     #[cold]
-    fn note_leaves(&self) -> Vec<u32> {
+    fn index_leaves(&self) -> Vec<u32> {
         let mut leaf_of = vec![0; self.count];
         for (_, _, leaf) in self.nodes.iter().flat_map(|node| node.children()) {
             if leaf & node::LEAF != 0 {
@@ -297,7 +297,7 @@ impl TriangleBvh {
 
     /// Iterates over the boxes of the tree, level by level.
     pub fn boxes(&self) -> impl Iterator<Item = TreeBox> {
-        shown::boxes(&self.nodes).map(|(_, found)| found)
+        tree_boxes::boxes(&self.nodes).map(|(_, bounds)| bounds)
     }
 }
 

@@ -42,7 +42,7 @@ impl TriangleBvh {
     /// assert_eq!(tree.nearest_point(Vec3::splat(9.0), 1.0), None);
     /// ```
     pub fn nearest_point(&self, point: Vec3, within: f64) -> Option<NearestPoint> {
-        let mut best = Best { squared: within * within, found: None };
+        let mut best = NearestSoFar { squared: within * within, found: None };
         if self.nodes.is_empty() || !point.is_finite() || within.is_nan() || within < 0.0 {
             return None;
         }
@@ -54,7 +54,7 @@ impl TriangleBvh {
                 continue;
             }
             if child & LEAF == 0 {
-                let node = &self.nodes[node::number(child)];
+                let node = &self.nodes[node::node_index(child)];
                 let (squares, first) = (squares(node, point), stack.len());
                 let near = (0..WIDTH).filter(|&i| squares[i] <= best.squared && squares[i] < f64::INFINITY);
                 stack.extend(near.map(|i| (squares[i], node.children[i])));
@@ -90,18 +90,18 @@ fn corners(rows: &Rows, count: usize, lane: usize) -> [DVec3; 3] {
 }
 
 /// Nearest point found so far by a closest-point query, and its squared distance.
-struct Best {
+struct NearestSoFar {
     squared: f64,
     found: Option<(DVec3, [f64; 2], u32)>,
 }
 
-impl Best {
+impl NearestSoFar {
     fn offer(&mut self, point: DVec3, corners: [DVec3; 3], triangle: u32) {
         let (squared, nearest, uv) = nearest_of(point, corners);
         // NaN corners give a NaN distance, which never compares less.
         let is_first = self.found.is_none_or(|(.., known)| triangle < known);
         if squared < self.squared || squared == self.squared && is_first {
-            *self = Best { squared, found: Some((nearest, uv, triangle)) };
+            *self = NearestSoFar { squared, found: Some((nearest, uv, triangle)) };
         }
     }
 }
@@ -142,7 +142,7 @@ mod tests {
     use crate::triangles::tests::{Mesh, bars, soup, torus};
 
     fn brute_force((vertices, triangles): &Mesh, point: Vec3, within: f64) -> Option<NearestPoint> {
-        let mut best = Best { squared: within * within, found: None };
+        let mut best = NearestSoFar { squared: within * within, found: None };
         for (i, triangle) in triangles.iter().enumerate() {
             best.offer(point.as_dvec3(), triangle.map(|i| vertices[i as usize].as_dvec3()), i as u32);
         }

@@ -1,14 +1,14 @@
 //! Ray queries on a [`TriangleBvh`]: one traversal for closest-hit, any-hit, and all-hits rays.
 
-use super::fetch::{AND_SIBLINGS, Places};
-use super::leaf::Flat;
+use super::fetch::{PrefetchAddresses, SIBLING_LINES};
+use super::leaf::ProjectedTriangles;
 use super::rows::number;
 use super::tree::{Facing, TriangleBvh, TriangleHit};
 use crate::TraversalCounter;
-use crate::lanes::{Columns, Kernel, Lanes, Rows, WIDTH};
+use crate::lanes::{CornerColumns, Kernel, Lanes, Rows, WIDTH};
 use crate::math::{Ray, Vec2};
 use crate::traverse::{FAST_RANGE, NodeHits, TraversalRay, Visitor, traverse};
-use crate::watertight::{Plane, PreciseLine, WatertightRay, turn};
+use crate::watertight::{Plane, PreciseLine, WatertightRay, axis_order};
 use glam::Vec3A;
 use std::mem::MaybeUninit;
 
@@ -18,7 +18,7 @@ pub struct Query<'a, T, F> {
     pub bvh: &'a TriangleBvh,
     pub ray: &'a Ray,
     pub counter: T,
-    pub found: F,
+    pub collector: F,
 }
 
 /// A ray prepared for tests of the triangles of a [`TriangleBvh`].
@@ -44,21 +44,21 @@ pub trait HitCollector {
 }
 
 /// [`HitCollector`] that keeps the closest hit.
-pub struct Nearest {
+pub struct ClosestHit {
     /// Closest hit so far. Before the first hit, its triangle is [`NONE`].
     best: TriangleHit,
 }
 
 const NONE: u32 = u32::MAX;
 
-impl Default for Nearest {
+impl Default for ClosestHit {
     #[inline(always)]
     fn default() -> Self {
-        Nearest { best: TriangleHit { t: f32::INFINITY, uv: Vec2::ZERO, triangle: NONE } }
+        ClosestHit { best: TriangleHit { t: f32::INFINITY, uv: Vec2::ZERO, triangle: NONE } }
     }
 }
 
-impl HitCollector for Nearest {
+impl HitCollector for ClosestHit {
     type Answer = Option<TriangleHit>;
 
     const ANY: bool = false;
@@ -80,9 +80,9 @@ impl HitCollector for Nearest {
 
 /// [`HitCollector`] that stops at the first hit, for occlusion queries.
 #[derive(Default)]
-pub struct Any;
+pub struct AnyHit;
 
-impl HitCollector for Any {
+impl HitCollector for AnyHit {
     type Answer = bool;
 
     const ANY: bool = true;
@@ -100,9 +100,9 @@ impl HitCollector for Any {
 
 /// [`HitCollector`] that keeps all hits, including duplicates from split triangles.
 #[derive(Default)]
-pub struct All(Vec<TriangleHit>);
+pub struct AllHits(Vec<TriangleHit>);
 
-impl HitCollector for All {
+impl HitCollector for AllHits {
     type Answer = Vec<TriangleHit>;
 
     const ANY: bool = false;
@@ -150,7 +150,7 @@ impl RayInTree<'_> {
     /// Corners of a triangle with permuted axes, and its number.
     #[inline(always)]
     fn triangle(&self, (rows, count): (&Rows, usize), lane: usize) -> ([Vec3A; 3], u32) {
-        (Columns::new(self.sheared.axes(), count).triangle(rows, lane), number(rows, count, lane))
+        (CornerColumns::new(self.sheared.axes(), count).triangle(rows, lane), number(rows, count, lane))
     }
 
     #[inline(always)]
@@ -177,8 +177,8 @@ impl<T: TraversalCounter, F: HitCollector> Kernel for Query<'_, T, F> {
 impl<T: TraversalCounter, F: HitCollector> Query<'_, T, F> {
     #[inline(always)]
     fn search<L: Lanes, const FAST: bool>(self, lanes: L, boxes: &TraversalRay) -> F::Answer {
-        let Query { bvh, ray, counter, found } = self;
-        let mut leaves = Leaves::new(lanes, bvh, ray, boxes, counter, found);
+        let Query { bvh, ray, counter, collector } = self;
+        let mut leaves = LeafTester::new(lanes, bvh, ray, boxes, counter, collector);
         let t_max = traverse::<L, _, FAST>(lanes, &bvh.nodes, boxes, ray.t_max, &mut leaves);
         leaves.answer(t_max)
     }
@@ -186,17 +186,17 @@ impl<T: TraversalCounter, F: HitCollector> Query<'_, T, F> {
 
 /// Traversal visitor that tests a ray against the triangles of leaves and passes hits to a
 /// collector.
-pub struct Leaves<'a, T, F> {
+pub struct LeafTester<'a, T, F> {
     ray_in_tree: RayInTree<'a>,
-    places: Places,
+    places: PrefetchAddresses,
     counter: T,
-    found: F,
+    collector: F,
     /// True if the products of edge functions cannot overflow, so that vector arithmetic can be
     /// used.
-    side_by_side: bool,
+    can_use_vectors: bool,
 }
 
-impl<'a, T, F: HitCollector> Leaves<'a, T, F> {
+impl<'a, T, F: HitCollector> LeafTester<'a, T, F> {
     #[inline(always)]
     pub fn new<L: Lanes>(
         lanes: L,
@@ -204,28 +204,28 @@ impl<'a, T, F: HitCollector> Leaves<'a, T, F> {
         ray: &'a Ray,
         boxes: &TraversalRay,
         counter: T,
-        found: F,
+        collector: F,
     ) -> Self {
         let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
-        let axes = turn(dir);
-        let sheared = WatertightRay::turned(axes, lanes.turn(origin, axes), lanes.turn(dir, axes));
-        Leaves {
+        let axes = axis_order(dir);
+        let sheared = WatertightRay::permuted(axes, lanes.permute(origin, axes), lanes.permute(dir, axes));
+        LeafTester {
             ray_in_tree: RayInTree { bvh, ray, sheared },
-            places: Places::new(bvh),
+            places: PrefetchAddresses::new(bvh),
             counter,
-            found,
-            side_by_side: boxes.moderate,
+            collector,
+            can_use_vectors: boxes.is_in_range,
         }
     }
 
     /// Returns the result at the end of the traversal.
     #[inline(always)]
     pub fn answer(&mut self, t_max: f32) -> F::Answer {
-        self.found.answer(t_max == f32::NEG_INFINITY)
+        self.collector.answer(t_max == f32::NEG_INFINITY)
     }
 }
 
-impl<T: TraversalCounter, F: HitCollector> Visitor for Leaves<'_, T, F> {
+impl<T: TraversalCounter, F: HitCollector> Visitor for LeafTester<'_, T, F> {
     type TraversalCounter = T;
 
     const ANY: bool = F::ANY;
@@ -238,22 +238,22 @@ impl<T: TraversalCounter, F: HitCollector> Visitor for Leaves<'_, T, F> {
     #[inline(always)]
     fn fetch<L: Lanes>(&self, lanes: L, hits: &NodeHits<L>, likely: u32) {
         let child = hits.child(likely);
-        self.places.fetch::<L, AND_SIBLINGS>(lanes, child);
+        self.places.fetch::<L, SIBLING_LINES>(lanes, child);
     }
 
     #[inline(always)]
     fn leaf<L: Lanes, const FAST: bool>(&mut self, lanes: L, leaf: u32, mut t_max: f32) -> f32 {
         let mut room = MaybeUninit::uninit();
         let (rows, count) = self.ray_in_tree.bvh.rows(leaf, &mut room);
-        self.counter.work(0, count as u64);
-        if !FAST && !self.side_by_side {
+        self.counter.count_work(0, count as u64);
+        if !FAST && !self.can_use_vectors {
             return self.one_by_one(leaf, (1 << count) - 1, t_max);
         }
         let RayInTree { bvh, sheared, .. } = &self.ray_in_tree;
         let (origin, shear) = (lanes.splat3(sheared.ray().0.to_array()), sheared.shear());
-        let columns = Columns::new(sheared.axes(), count);
+        let columns = CornerColumns::new(sheared.axes(), count);
         let corners = lanes.corners(rows, columns);
-        let flat = Flat::new(lanes, corners, origin, [lanes.splat(shear.x), lanes.splat(shear.y)]);
+        let flat = ProjectedTriangles::new(lanes, corners, origin, [lanes.splat(shear.x), lanes.splat(shear.y)]);
         let there = (1 << count) - 1;
         let mut unsure = !flat.missed(lanes) & there;
         if unsure == 0 {
@@ -288,7 +288,7 @@ impl<T: TraversalCounter, F: HitCollector> Visitor for Leaves<'_, T, F> {
                 if self.ray_in_tree.is_wanted(t, t_max) {
                     let uv = sheared.uv([a, b, c]);
                     let hit = TriangleHit { t, uv, triangle: number(rows, count, lane) };
-                    t_max = self.found.on_hit(hit, t_max, || Facing::of(sheared, [a, b, c]));
+                    t_max = self.collector.on_hit(hit, t_max, || Facing::of(sheared, [a, b, c]));
                 }
             }
         }
@@ -299,11 +299,11 @@ impl<T: TraversalCounter, F: HitCollector> Visitor for Leaves<'_, T, F> {
     }
 }
 
-impl<T: TraversalCounter, F: HitCollector> Leaves<'_, T, F> {
+impl<T: TraversalCounter, F: HitCollector> LeafTester<'_, T, F> {
     /// Tests triangles with the exact scalar test.
     #[cold]
     fn one_by_one(&mut self, leaf: u32, which: u32, mut t_max: f32) -> f32 {
-        let sheared = self.ray_in_tree.sheared.least_volume(self.ray_in_tree.bvh.least_volume);
+        let sheared = self.ray_in_tree.sheared.min_volume(self.ray_in_tree.bvh.min_volume);
         let mut room = MaybeUninit::uninit();
         let rows = self.ray_in_tree.bvh.rows(leaf, &mut room);
         for lane in (0..WIDTH).filter(|lane| which >> lane & 1 == 1) {
@@ -312,7 +312,7 @@ impl<T: TraversalCounter, F: HitCollector> Leaves<'_, T, F> {
                 && let Some(t) = sheared.t(corners).filter(|t| self.ray_in_tree.is_wanted(*t, t_max))
             {
                 let hit = TriangleHit { t, uv: sheared.uv(corners), triangle };
-                t_max = self.found.on_hit(hit, t_max, || Facing::of(&sheared, corners));
+                t_max = self.collector.on_hit(hit, t_max, || Facing::of(&sheared, corners));
             }
         }
         t_max

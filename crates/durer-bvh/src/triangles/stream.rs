@@ -6,13 +6,13 @@
 //! Rays at inner nodes and rays at leaves are on separate lists, so no branch chooses between the
 //! two: each step writes its ray to both lists, but only one of them grows.
 
-use super::fetch::{ITSELF, Places};
-use super::query::{HitCollector, Leaves};
+use super::fetch::{CHILD_LINES, PrefetchAddresses};
+use super::query::{HitCollector, LeafTester};
 use super::tree::TriangleBvh;
 use crate::lanes::{Kernel, Lanes, Stack, StackStorage};
 use crate::math::{Ray, Vec3};
-use crate::node::{LEAF, PLACE, WideNode};
-use crate::traverse::{Slabs, TraversalRay, Visitor, end_of, intersect_node};
+use crate::node::{LEAF, SLOT_BITS, WideNode};
+use crate::traverse::{Slabs, TraversalRay, Visitor, extreme_bit, intersect_node};
 use std::hint::select_unpredictable;
 use std::marker::PhantomData;
 
@@ -30,7 +30,7 @@ const FEWEST: usize = 4;
 
 impl TriangleBvh {
     /// Runs a query for each of the numbered rays.
-    pub(super) fn each<F: HitCollector + Default>(
+    pub(super) fn trace_each<F: HitCollector + Default>(
         &self,
         rays: &[Ray],
         numbers: &[u32],
@@ -67,7 +67,7 @@ struct Stream<'a, F, A> {
 struct InFlightRay<'a, F> {
     number: usize,
     boxes: TraversalRay,
-    leaves: Leaves<'a, (), F>,
+    leaves: LeafTester<'a, (), F>,
     t_max: f32,
     child: u32,
 }
@@ -105,11 +105,11 @@ impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Stream<'a, F, A>
                 }
             }
             flight.number = number;
-            flight.leaves = Leaves::new(lanes, self.bvh, ray, &flight.boxes, (), F::default());
+            flight.leaves = LeafTester::new(lanes, self.bvh, ray, &flight.boxes, (), F::default());
             (flight.t_max, flight.child) = (ray.t_max, 0);
             stack.clear();
             stack.push(END, f32::NEG_INFINITY);
-            Places::new(self.bvh).fetch::<L, ITSELF>(lanes, 0);
+            PrefetchAddresses::new(self.bvh).fetch::<L, CHILD_LINES>(lanes, 0);
             return true;
         }
         false
@@ -122,10 +122,10 @@ fn step<L: Lanes, F: HitCollector>(lanes: L, nodes: &[WideNode], flight: &mut In
     let slabs = Slabs::new(lanes, nodes, &flight.boxes);
     let hits = intersect_node::<L, true>(lanes, &slabs, flight.child as usize, lanes.splat(flight.t_max));
     let order = hits.node.order(F::ANY, flight.boxes.negative);
-    let next = hits.next::<true>(lanes, F::ANY, end_of(hits.mask, order != 0));
+    let next = hits.next::<true>(lanes, F::ANY, extreme_bit(hits.mask, order != 0));
     hits.push(lanes, stack, next, order);
     // If nothing was hit, nothing was pushed.
-    flight.child = select_unpredictable(hits.mask == 0, stack.pop_if(hits.mask == 0), hits.child(next & PLACE));
+    flight.child = select_unpredictable(hits.mask == 0, stack.pop_if(hits.mask == 0), hits.child(next & SLOT_BITS));
 }
 
 impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Kernel for Stream<'a, F, A> {
@@ -134,7 +134,7 @@ impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Kernel for Strea
     #[inline(always)]
     fn run<L: Lanes>(mut self, lanes: L) {
         let bvh = self.bvh;
-        let places = Places::new(bvh);
+        let places = PrefetchAddresses::new(bvh);
         let count = IN_FLIGHT.min(self.numbers.len());
         let mut rooms: Vec<StackStorage> = (0..count).map(|_| StackStorage::new()).collect();
         let mut stacks: Vec<Stack> = rooms.iter_mut().map(Stack::new).collect();
@@ -143,7 +143,7 @@ impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Kernel for Strea
         let place = |_| InFlightRay {
             number: 0,
             boxes,
-            leaves: Leaves::new(lanes, bvh, NOWHERE, &boxes, (), F::default()),
+            leaves: LeafTester::new(lanes, bvh, NOWHERE, &boxes, (), F::default()),
             t_max: 0.0,
             child: END,
         };
@@ -160,7 +160,7 @@ impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Kernel for Strea
                 let number = inner.numbers[k];
                 let (flight, stack) = (&mut flights[usize::from(number)], &mut stacks[usize::from(number)]);
                 step(lanes, &bvh.nodes, flight, stack);
-                places.fetch::<L, ITSELF>(lanes, flight.child);
+                places.fetch::<L, CHILD_LINES>(lanes, flight.child);
                 inner.add(number, flight.child & LEAF == 0);
                 leaves.add(number, flight.child & LEAF != 0);
             }
@@ -186,7 +186,7 @@ impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Kernel for Strea
                     }
                 } else {
                     flight.child = stack.pop_until(flight.t_max);
-                    places.fetch::<L, ITSELF>(lanes, flight.child);
+                    places.fetch::<L, CHILD_LINES>(lanes, flight.child);
                 }
                 inner.add(number, flight.child & LEAF == 0);
                 leaves.add(number, flight.child & LEAF != 0);

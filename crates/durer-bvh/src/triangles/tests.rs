@@ -5,7 +5,7 @@ use crate::BuildQuality;
 use crate::math::random::{Random, rounds};
 use crate::math::{Vec2, Vec3};
 use crate::tests::codes_are_right;
-use crate::traverse::is_sound;
+use crate::traverse::is_valid;
 
 mod heights;
 mod queries;
@@ -133,7 +133,7 @@ pub fn ray((vertices, triangles): &Mesh, random: &mut Random, scale: f32, offset
 
 /// Finds every hit without a tree.
 pub fn brute_force((vertices, triangles): &Mesh, ray: &Ray) -> Vec<TriangleHit> {
-    if !is_sound(ray) {
+    if !is_valid(ray) {
         return Vec::new();
     }
     let sheared = WatertightRay::new(ray);
@@ -295,7 +295,7 @@ fn batches_answer_like_single_rays() {
             let mesh = scaled(&mesh, scale, offset);
             let tree = TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Best);
             let size = f64::from(scale);
-            let culls_slivers = tree.clone().least_volume(0.01 * size * size * size);
+            let culls_slivers = tree.clone().min_volume(0.01 * size * size * size);
             let trees: Vec<_> =
                 SimdLevel::available().map(|level| tree.clone().at_level(level)).chain([culls_slivers]).collect();
             for round in 0..rounds(4) {
@@ -316,8 +316,8 @@ fn batches_answer_like_single_rays() {
                         .for_each(|(rays, to)| tree.occluded_batch(rays, to));
                     // Also trace the rays as a stream, as in a large tree.
                     let (numbers, mut streamed) = ((0..rays.len() as u32).collect::<Vec<_>>(), hits.clone());
-                    tree.stream::<Nearest>(&rays, &numbers, |i, hit| streamed[i] = hit);
-                    tree.stream::<Any>(&rays, &numbers, |i, any| assert_eq!(any, occluded[i], "{name}"));
+                    tree.stream::<ClosestHit>(&rays, &numbers, |i, hit| streamed[i] = hit);
+                    tree.stream::<AnyHit>(&rays, &numbers, |i, any| assert_eq!(any, occluded[i], "{name}"));
                     assert_eq!(format!("{streamed:?}"), format!("{hits:?}"), "{name}");
                     for (i, ray) in rays.iter().enumerate() {
                         let (hit, context) = (tree.closest(ray), || format!("{name} {scale} {offset} {i} {ray:?}"));

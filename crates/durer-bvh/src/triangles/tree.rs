@@ -1,7 +1,7 @@
 //! [`TriangleBvh`], and the hits that its queries return.
 
 use super::height_grid::HeightGrid;
-use crate::lanes::{Available, ROOM_OF_ROWS, ROWS, Rows};
+use crate::lanes::{AvailableLevel, ROWS, ROWS_LEN, Rows};
 use crate::math::{Aabb, Vec2};
 use crate::node::{self, WideNode};
 use crate::watertight::WatertightRay;
@@ -55,9 +55,9 @@ pub struct TriangleBvh {
     pub(super) bounds: Aabb,
     /// Largest absolute coordinate.
     pub(super) reach: f32,
-    pub(super) level: Available,
-    pub(super) least_volume: f64,
-    /// True if `least_volume` is not zero.
+    pub(super) level: AvailableLevel,
+    pub(super) min_volume: f64,
+    /// True if `min_volume` is not zero.
     pub(super) culls_slivers: bool,
     /// Number of triangles at build time.
     pub(super) count: usize,
@@ -102,9 +102,9 @@ impl TriangleBvh {
             nodes,
             leaves,
             bounds,
-            reach: bounds.reach(),
-            level: Available::chosen(),
-            least_volume: 0.0,
+            reach: bounds.max_abs_coordinate(),
+            level: AvailableLevel::chosen(),
+            min_volume: 0.0,
             culls_slivers: false,
             count,
             leaf_of: OnceLock::new(),
@@ -133,7 +133,7 @@ impl TriangleBvh {
     #[inline(never)]
     fn block<'a>(&self, first: usize, room: &'a mut MaybeUninit<Rows>) -> &'a Rows {
         let Some(heights) = &self.heights else { unreachable!("all leaves have rows") };
-        let rows = room.write([0.0; ROOM_OF_ROWS]);
+        let rows = room.write([0.0; ROWS_LEN]);
         heights.write_rows(first - self.first_block(), rows);
         rows
     }

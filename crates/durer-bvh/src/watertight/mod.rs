@@ -40,36 +40,36 @@ pub struct WatertightRay {
     dir: Vec3A,
     /// Direction divided by its third component.
     shear: Vec3A,
-    least_volume: f64,
+    min_volume: f64,
 }
 
 impl WatertightRay {
     /// Prepares a ray. A ray without a direction, or with an infinite one, hits nothing.
     #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
-        let axes = turn(ray.dir.into());
-        let [origin, dir] = [ray.origin, ray.dir].map(|v| turned(axes, v.as_ref()));
-        let sheared = Self::turned(axes, origin, dir);
+        let axes = axis_order(ray.dir.into());
+        let [origin, dir] = [ray.origin, ray.dir].map(|v| permuted(axes, v.as_ref()));
+        let sheared = Self::permuted(axes, origin, dir);
         let shear = if sheared.dir.z.is_finite() { sheared.shear } else { Vec3A::NAN };
         WatertightRay { shear, ..sheared }
     }
 
     /// Creates a ray with a finite direction from an origin and a direction that are permuted
-    /// already, by the axes of [`turn`].
+    /// already, by the axes of [`axis_order`].
     #[inline(always)]
-    pub(crate) fn turned(axes: &'static AxisOrder, origin: Vec3A, dir: Vec3A) -> Self {
-        WatertightRay { axes, origin, dir, shear: dir / dir.z, least_volume: 0.0 }
+    pub(crate) fn permuted(axes: &'static AxisOrder, origin: Vec3A, dir: Vec3A) -> Self {
+        WatertightRay { axes, origin, dir, shear: dir / dir.z, min_volume: 0.0 }
     }
 
     /// Sets the least |(b - a) x (c - a) · d| of a triangle that the ray with direction d can hit.
-    pub fn least_volume(self, least_volume: f64) -> Self {
-        WatertightRay { least_volume, ..self }
+    pub fn min_volume(self, min_volume: f64) -> Self {
+        WatertightRay { min_volume, ..self }
     }
 
     /// Crossing with a triangle in the open interval (`t_min`, `t_max`), from either side.
     #[inline(always)]
     pub fn intersect(&self, corners: [Vec3; 3], t_min: f32, t_max: f32) -> Option<Crossing> {
-        let corners = corners.map(|corner| turned(self.axes, corner.as_ref()));
+        let corners = corners.map(|corner| permuted(self.axes, corner.as_ref()));
         if !self.crosses(corners) {
             return None;
         }
@@ -125,7 +125,7 @@ impl WatertightRay {
     #[inline(always)]
     pub(crate) fn t(&self, corners: [Vec3A; 3]) -> Option<f32> {
         let [t, volume] = PreciseLine::single(self.origin, self.dir).t(&Plane::single(corners));
-        if volume.abs() < self.least_volume {
+        if volume.abs() < self.min_volume {
             return None;
         }
         Some(t as f32)
@@ -236,7 +236,7 @@ pub(crate) type AxisOrder = [u32; 4];
 
 /// Axis order of a ray, by the longest component of its direction and its sign (1 if negative).
 #[inline(always)]
-pub(crate) const fn turned_axes(longest: usize, negative: usize) -> AxisOrder {
+pub(crate) const fn axis_order_for(longest: usize, negative: usize) -> AxisOrder {
     const AXES: [[AxisOrder; 2]; 4] =
         [[[1, 2, 0, 0], [2, 1, 0, 0]], [[2, 0, 1, 0], [0, 2, 1, 0]], [[0, 1, 2, 0], [1, 0, 2, 0]], [[0; 4]; 2]];
     // The masks remove bounds checks.
@@ -245,7 +245,7 @@ pub(crate) const fn turned_axes(longest: usize, negative: usize) -> AxisOrder {
 
 /// Axis order of a ray with direction `dir`.
 #[inline(always)]
-pub(crate) fn turn(dir: Vec3A) -> &'static AxisOrder {
+pub(crate) fn axis_order(dir: Vec3A) -> &'static AxisOrder {
     let length = dir.abs();
     let longest = length.cmpeq(Vec3A::splat(length.max_element())).bitmask();
     &TURNED[longest as usize & 7][dir.is_negative_bitmask() as usize & 7]
@@ -258,14 +258,14 @@ static TURNED: [[AxisOrder; 8]; 8] = {
     let mut at = 8;
     while at < 64 {
         let (longest, signs) = ((at as u32 / 8).ilog2() as usize, at % 8);
-        table[at / 8][signs] = turned_axes(longest, signs >> longest & 1);
+        table[at / 8][signs] = axis_order_for(longest, signs >> longest & 1);
         at += 1;
     }
     table
 };
 
 #[inline(always)]
-fn turned([x, y, z, _]: &AxisOrder, v: &[f32; 3]) -> Vec3A {
+fn permuted([x, y, z, _]: &AxisOrder, v: &[f32; 3]) -> Vec3A {
     Vec3A::new(v[*x as usize], v[*y as usize], v[*z as usize])
 }
 

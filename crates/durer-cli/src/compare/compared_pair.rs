@@ -98,10 +98,10 @@ fn explained(found: &Comparison) -> Vec<String> {
         match i {
             // The place of a difference does not explain it.
             0 if finding.kind.ends_with("-parts") => {
-                format!("{} ({percent} of the squared difference is there)", finding.words)
+                format!("{} ({percent} of the squared difference is there)", finding.description)
             }
-            0 => format!("{}: explains {percent} of the squared difference", finding.words),
-            _ => format!("and {}: together {percent}", finding.words),
+            0 => format!("{}: explains {percent} of the squared difference", finding.description),
+            _ => format!("and {}: together {percent}", finding.description),
         }
     };
     found.findings.iter().enumerate().map(line).collect()

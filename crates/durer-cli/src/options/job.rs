@@ -121,5 +121,5 @@ pub fn accel(args: &JobArgs) -> Result<AccelKind, Failure> {
 
 /// Returns the requested aspect ratio, width over height.
 pub fn aspect(args: &JobArgs) -> Option<f32> {
-    args.options.given_size().map(|(width, height)| width as f32 / height.max(1) as f32)
+    args.options.requested_size().map(|(width, height)| width as f32 / height.max(1) as f32)
 }

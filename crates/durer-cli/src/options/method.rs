@@ -2,7 +2,7 @@
 
 use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
-use durer::describe::{DescribedList, Kind, Value};
+use durer::describe::{DescribedKind, FieldKind, Value};
 use durer::integrator::IntegratorKind;
 use durer::job::{RenderJob, option_name};
 use durer::options::{integrator_help, integrator_options};
@@ -20,8 +20,8 @@ impl Args for IntegratorArgs {
             .help(integrator_help());
         integrator_options().into_iter().fold(command.arg(integrator), |command, (field, help)| {
             let (value, parser) = match field.kind {
-                Kind::Word(words) => ("WORD", PossibleValuesParser::new(words).map(Value::Word).into()),
-                Kind::Int => ("N", clap::value_parser!(u32).map(Value::Int).into()),
+                FieldKind::Word(words) => ("WORD", PossibleValuesParser::new(words).map(Value::Word).into()),
+                FieldKind::Int => ("N", clap::value_parser!(u32).map(Value::Int).into()),
                 _ => ("NUMBER", ValueParser::new(number)),
             };
             let name = option_name(&field);

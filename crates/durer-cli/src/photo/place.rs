@@ -20,7 +20,7 @@ use durer::film::aov::Aov;
 use durer::image::{Image, Layer, Transfer, decode_srgb};
 use durer::math::Vec3;
 use durer::render::{Control, Crop, Job, Sampling, raster, render};
-use durer::scene::{Group, Node, Object};
+use durer::scene::{Group, Object, ObjectKind};
 use durer::world::World;
 use durer_photo::photo;
 use std::sync::Arc;
@@ -46,7 +46,7 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
     let mut with = read(&args.scene, &options, args.quiet, &mut guard)?.compile(&options, &mut guard)?;
     let stand_in = stand_ins(&with, &args.stand_in)?;
     let mut job = job::job(&args.job, None, &with.loaded, false)?;
-    if args.job.options.given_size().is_some_and(|size| size != (width, height)) {
+    if args.job.options.requested_size().is_some_and(|size| size != (width, height)) {
         return Err(bad(format!("the picture has the photograph's size, {width}x{height}: remove --size")));
     }
     (job.width, job.height) = (width, height);
@@ -99,11 +99,11 @@ fn stand_ins(compiled: &CompiledInput, numbers: &[u32]) -> Result<Vec<bool>, Fai
 }
 
 /// Returns the children of a node.
-fn parts(node: &Node) -> &[Object] {
+fn parts(node: &ObjectKind) -> &[Object] {
     match node {
-        Node::Group(group) => &group.objects,
-        Node::Solid(_, parts) => parts,
-        Node::Transform(_, object) => std::slice::from_ref(object),
+        ObjectKind::Group(group) => &group.objects,
+        ObjectKind::Solid(_, parts) => parts,
+        ObjectKind::Transform(_, object) => std::slice::from_ref(object),
         _ => &[],
     }
 }
@@ -125,8 +125,10 @@ fn kept(objects: Vec<Object>, stand_in: &[bool]) -> Vec<Object> {
             return None;
         }
         object.node = match object.node {
-            Node::Group(group) => Node::Group(Group { objects: kept(group.objects, stand_in) }),
-            Node::Transform(ops, inner) => Node::Transform(ops, Box::new(kept(vec![*inner], stand_in).pop()?)),
+            ObjectKind::Group(group) => ObjectKind::Group(Group { objects: kept(group.objects, stand_in) }),
+            ObjectKind::Transform(ops, inner) => {
+                ObjectKind::Transform(ops, Box::new(kept(vec![*inner], stand_in).pop()?))
+            }
             node => node,
         };
         Some(object)

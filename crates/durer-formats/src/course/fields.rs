@@ -5,7 +5,7 @@ use super::reader::{Reader, names};
 use super::words::begins_block;
 use crate::report::shown;
 use durer_diag::{Diagnostic, Span, did_you_mean};
-use durer_scene::describe::{Constraint, DescribedList, Field, FileName, Kind, Value};
+use durer_scene::describe::{Constraint, DescribedKind, Field, FieldKind, FileName, Value};
 use durer_scene::dialect::{Dialect, DialectSet, Quirk};
 use durer_scene::math::Vec3;
 
@@ -20,7 +20,7 @@ pub(super) enum Order {
 impl Reader<'_, '_> {
     /// Reads `{ field value ... }` into `item`. `extra` is called for words that are not fields; it
     /// returns true if it handled the word.
-    pub(super) fn fields<T: DescribedList>(
+    pub(super) fn fields<T: DescribedKind>(
         &mut self,
         item: &mut T,
         keyword: Span,
@@ -33,7 +33,7 @@ impl Reader<'_, '_> {
             return;
         }
         // If only the Dürer dialect has the statement, report the keyword but not its fields too.
-        let ours = item.is_ours();
+        let ours = item.is_durer_only();
         let fields = item.fields();
         let mut given = vec![None; fields.len()];
         let mut last = 0;
@@ -51,13 +51,13 @@ impl Reader<'_, '_> {
                     self.unclosed();
                     return;
                 }
-                let after_path = fields.get(last).is_some_and(|f| f.kind == Kind::Path) && given[last].is_some();
+                let after_path = fields.get(last).is_some_and(|f| f.kind == FieldKind::Path) && given[last].is_some();
                 self.unknown_field(fields, &name, &word, span, after_path);
                 continue;
             };
             let field = &fields[index];
-            if !ours && field.spelling(self.options.dialect) != Some(word.as_str()) {
-                let set = field.spellings.iter().find(|(w, _)| *w == word).map_or(0, |s| s.1);
+            if !ours && field.keyword(self.options.dialect) != Some(word.as_str()) {
+                let set = field.keywords.iter().find(|(w, _)| *w == word).map_or(0, |s| s.1);
                 self.foreign(&word, span, set);
             }
             if order == Order::Listed && index < last && self.options.strict {
@@ -84,7 +84,7 @@ impl Reader<'_, '_> {
         for (field, _) in fields.iter().zip(&given).filter(|(f, g)| f.required && g.is_none()) {
             // A field that has no word in this dialect has a fixed value, such as the centre of a
             // sphere in a node.
-            let Some(word) = field.spelling(dialect) else { continue };
+            let Some(word) = field.keyword(dialect) else { continue };
             let error = Diagnostic::error(format!("`{name}` has no `{word}`")).code("missing-field").at(keyword);
             self.error(match example(word) {
                 Some(value) => error.help(format!("add it to the block, for example `{word} {value}`")),
@@ -96,8 +96,8 @@ impl Reader<'_, '_> {
     /// Returns the index of the field that a word names. If two fields share the word, this is the
     /// first one without a value.
     fn field_of(&self, fields: &[Field], given: &[Option<Span>], word: &str) -> Option<usize> {
-        let named = |f: &Field| f.spellings.iter().any(|(w, _)| *w == word);
-        let native = |f: &Field| f.spelling(self.options.dialect) == Some(word);
+        let named = |f: &Field| f.keywords.iter().any(|(w, _)| *w == word);
+        let native = |f: &Field| f.keyword(self.options.dialect) == Some(word);
         let free = |i: &usize| given[*i].is_none();
         let all =
             |test: &dyn Fn(&Field) -> bool| -> Vec<usize> { (0..fields.len()).filter(|&i| test(&fields[i])).collect() };
@@ -105,8 +105,8 @@ impl Reader<'_, '_> {
         // `attenuation` takes one number in 2020 and three in 2004, so the count decides.
         let numbers = (0..3).take_while(|&i| self.number_ahead(i)).count();
         let fits = |f: &Field| match f.kind {
-            Kind::Float => numbers == 1,
-            Kind::Vec3 => numbers == 3,
+            FieldKind::Float => numbers == 1,
+            FieldKind::Vec3 => numbers == 3,
             _ => true,
         };
         if !candidates.iter().any(|&i| fits(&fields[i])) {
@@ -119,7 +119,7 @@ impl Reader<'_, '_> {
         // Only fields with equal spellings in all dialects can share a word, as the two
         // `materialIndex` fields do.
         let first = *candidates.first()?;
-        candidates.retain(|&i| fields[i].spellings == fields[first].spellings);
+        candidates.retain(|&i| fields[i].keywords == fields[first].keywords);
         candidates.iter().copied().find(free).or(candidates.last().copied())
     }
 
@@ -146,7 +146,7 @@ impl Reader<'_, '_> {
             if depth == 0 {
                 let Some(next) = self.ahead(i + 1) else { return false };
                 let word = self.text(next.span);
-                let field = fields.iter().any(|f| f.spellings.iter().any(|(w, _)| *w == word));
+                let field = fields.iter().any(|f| f.keywords.iter().any(|(w, _)| *w == word));
                 return field || !self.at_open() && next.kind == TokenKind::Close;
             }
         }
@@ -154,9 +154,9 @@ impl Reader<'_, '_> {
     }
 
     fn unknown_field(&mut self, fields: &[Field], name: &str, word: &str, span: Span, after_path: bool) {
-        let known = || fields.iter().flat_map(|f| f.spellings.iter().map(|s| s.0));
+        let known = || fields.iter().flat_map(|f| f.keywords.iter().map(|s| s.0));
         let help = self.advice(word, known()).unwrap_or_else(|| {
-            let mut words: Vec<&str> = fields.iter().filter_map(|f| f.spelling(self.options.dialect)).collect();
+            let mut words: Vec<&str> = fields.iter().filter_map(|f| f.keyword(self.options.dialect)).collect();
             words.dedup();
             // A list of seventy words would not help the user.
             let many = words.len() > 24;
@@ -181,11 +181,11 @@ impl Reader<'_, '_> {
     fn value(&mut self, item: &str, field: &Field, word: &str, keyword: Span) -> Option<Value> {
         let start = self.peek().map_or(keyword, |t| t.span);
         let value = match field.kind {
-            Kind::Float => Value::Float(self.number(word, 1, 1)?),
-            Kind::Int if word == "materialIndex" => Value::Int(self.material_number(word)?),
-            Kind::Int => Value::Int(self.whole(word)?),
-            Kind::Vec3 => Value::Vec3(self.vec3(word)?),
-            Kind::Path => {
+            FieldKind::Float => Value::Float(self.number(word, 1, 1)?),
+            FieldKind::Int if word == "materialIndex" => Value::Int(self.material_number(word)?),
+            FieldKind::Int => Value::Int(self.whole(word)?),
+            FieldKind::Vec3 => Value::Vec3(self.vec3(word)?),
+            FieldKind::Path => {
                 let token = self.peek().filter(|t| t.kind == TokenKind::Word);
                 let Some(token) = token else {
                     self.expected("a path", word);
@@ -194,14 +194,14 @@ impl Reader<'_, '_> {
                 self.advance();
                 Value::Path(FileName { path: self.text(token.span), span: token.span })
             }
-            Kind::Word(words) => Value::Word(self.one_of(word, words)?),
-            Kind::Rows(width) => Value::Rows(self.rows(word, keyword, width)?),
+            FieldKind::Word(words) => Value::Word(self.one_of(word, words)?),
+            FieldKind::Rows(width) => Value::Rows(self.rows(word, keyword, width)?),
         };
-        if field.rule != Constraint::Any
-            && let Err(violation) = field.rule.validate(&value)
+        if field.constraint != Constraint::Any
+            && let Err(violation) = field.constraint.validate(&value)
         {
-            let span = start.to(self.last_span());
-            if let Some(drawn) = self.any_values().then(|| field.drawn_anyway(item, &value)).flatten() {
+            let span = start.join(self.last_span());
+            if let Some(drawn) = self.any_values().then(|| field.quirk_value(item, &value)).flatten() {
                 let warning = Diagnostic::warning(format!("`{word}` {violation}")).code("bad-value").at(span);
                 self.diagnostics.push(warning.effect("rendered anyway, as the official program does"));
                 return Some(drawn);
@@ -274,7 +274,7 @@ impl Reader<'_, '_> {
         if numbers.len() % width != 0 {
             let message =
                 format!("`{field}` needs rows of {width} numbers, but has {} numbers in total", numbers.len());
-            self.error(Diagnostic::error(message).at(open.to(self.last_span())).related(keyword, "in this block"));
+            self.error(Diagnostic::error(message).at(open.join(self.last_span())).related(keyword, "in this block"));
             return None;
         }
         Some(numbers.chunks_exact(width).map(<[f32]>::to_vec).collect())

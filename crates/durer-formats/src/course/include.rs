@@ -110,7 +110,7 @@ impl Splicer<'_, '_, '_> {
         if let Some(message) = refused {
             // Report that there are too many files only once.
             if self.files <= MAX_FILES + 1 {
-                self.diagnostics.push(Diagnostic::error(message).code("include").at(keyword.to(at)));
+                self.diagnostics.push(Diagnostic::error(message).code("include").at(keyword.join(at)));
             }
             return Vec::new();
         }
@@ -124,7 +124,7 @@ impl Splicer<'_, '_, '_> {
             }
             IncludedFile::Nowhere => {
                 let message = "a text without a folder cannot include files";
-                self.diagnostics.push(Diagnostic::error(message).code("include").at(keyword.to(at)));
+                self.diagnostics.push(Diagnostic::error(message).code("include").at(keyword.join(at)));
                 return Vec::new();
             }
         };

@@ -7,7 +7,7 @@ use super::words::dialects_of;
 use crate::growth::MAX_OBJECTS;
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::dialect::set;
-use durer_scene::scene::{Group, Node, Object};
+use durer_scene::scene::{Group, Object, ObjectKind};
 
 impl Reader<'_, '_> {
     /// Reads the name of a material, which can precede its block.
@@ -105,7 +105,7 @@ impl Reader<'_, '_> {
     }
 
     /// Reads `use NAME`; returns a copy of the defined object.
-    pub(super) fn used(&mut self, keyword: Span) -> Option<Node> {
+    pub(super) fn used(&mut self, keyword: Span) -> Option<ObjectKind> {
         self.foreign("use", keyword, set::DURER);
         let (name, span) = self.name_after("use")?;
         if self.named.broken.contains(&name) {
@@ -125,7 +125,7 @@ impl Reader<'_, '_> {
         self.named.used = self.named.used.saturating_add(*count);
         if self.named.used > MAX_OBJECTS {
             let message = format!("the scene has more than {MAX_OBJECTS} objects, counting each use");
-            self.error(Diagnostic::error(message).code("limit").at(keyword.to(span)));
+            self.error(Diagnostic::error(message).code("limit").at(keyword.join(span)));
             self.stop();
             return None;
         }
@@ -134,7 +134,7 @@ impl Reader<'_, '_> {
             paint(&mut object, material);
         }
         // A group with a single object cannot have a material.
-        Some(Node::Group(Group { objects: vec![object] }))
+        Some(ObjectKind::Group(Group { objects: vec![object] }))
     }
 }
 
@@ -142,9 +142,9 @@ impl Reader<'_, '_> {
 fn count(object: &Object) -> usize {
     let all = |objects: &[Object]| objects.iter().map(count).fold(0, usize::saturating_add);
     1 + match &object.node {
-        Node::Group(group) => all(&group.objects),
-        Node::Transform(_, inner) => count(inner),
-        Node::Solid(_, parts) => all(parts),
+        ObjectKind::Group(group) => all(&group.objects),
+        ObjectKind::Transform(_, inner) => count(inner),
+        ObjectKind::Solid(_, parts) => all(parts),
         _ => 0,
     }
 }

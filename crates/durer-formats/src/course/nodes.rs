@@ -6,11 +6,11 @@ use super::words::camera_of;
 use crate::report::shown;
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::camera::Camera;
-use durer_scene::describe::DescribedList;
+use durer_scene::describe::DescribedKind;
 use durer_scene::dialect::{Dialect, Quirk, set};
 use durer_scene::light::Light;
 use durer_scene::math::Vec3;
-use durer_scene::scene::{Group, MatrixOp, MatrixRules, Node, Object, Operation, Spanned};
+use durer_scene::scene::{CsgOperation, Group, MatrixOp, MatrixRules, Object, ObjectKind, Spanned};
 use durer_scene::shape::{HeightField, Primitive, TriangleMesh};
 use glam::DVec3;
 
@@ -50,8 +50,8 @@ impl Reader<'_, '_> {
         let has = |compat: Quirk| self.options.compat & compat.bit() != 0;
         MatrixRules {
             matrix_on_left: has(Quirk::MatrixOnLeft),
-            dropped_shear: has(Quirk::DroppedShear),
-            dropped_tiny: has(Quirk::TinyTransforms),
+            drop_shear: has(Quirk::DroppedShear),
+            ignore_tiny: has(Quirk::TinyTransforms),
         }
     }
 
@@ -109,10 +109,10 @@ impl Reader<'_, '_> {
                     let node = self.component_object(span);
                     inside.objects.extend(node.map(|node| Object { node, material: None, span }));
                 }
-                _ => match Operation::from_keyword(&word) {
+                _ => match CsgOperation::from_keyword(&word) {
                     Some(operation) => {
                         self.foreign(&word, span, set::DURER);
-                        let node = Node::Solid(operation, self.node_parts(span));
+                        let node = ObjectKind::Solid(operation, self.node_parts(span));
                         inside.objects.push(Object { node, material: None, span });
                     }
                     None => self.unknown(&word, span, "in a node", &KNOWN),
@@ -191,7 +191,7 @@ impl Reader<'_, '_> {
             }
             index = self.whole(&word);
             match index {
-                Some(index) => self.material_uses.push((index, span.to(self.last_span()))),
+                Some(index) => self.material_uses.push((index, span.join(self.last_span()))),
                 None => self.skip_values(),
             }
         }
@@ -247,7 +247,7 @@ impl Reader<'_, '_> {
         Some((Spanned { value: light, span: keyword }, position))
     }
 
-    fn component_object(&mut self, keyword: Span) -> Option<Node> {
+    fn component_object(&mut self, keyword: Span) -> Option<ObjectKind> {
         // Shapes that nodes lack have the names of the Dürer dialect.
         let own = Primitive::kinds().into_iter().map(|shape| shape.keyword(Dialect::F23));
         let own: Vec<&str> = own.filter(|word| word.starts_with(char::is_uppercase)).chain(["HeightField"]).collect();
@@ -258,23 +258,23 @@ impl Reader<'_, '_> {
         if kind == "HeightField" {
             let mut field = HeightField::default();
             self.component_fields(&mut field, keyword);
-            return Some(Node::HeightField(field));
+            return Some(ObjectKind::HeightField(field));
         }
         if kind == "mesh" {
             let mut mesh = TriangleMesh::default();
             self.component_fields(&mut mesh, keyword);
-            return Some(Node::Mesh(mesh));
+            return Some(ObjectKind::Mesh(mesh));
         }
         let mut shape = Primitive::from_keyword(&kind)?;
         if let Primitive::Sphere(sphere) = &mut shape {
             sphere.center = Vec3::ZERO;
         }
         self.component_fields(&mut shape, keyword);
-        Some(Node::Primitive(shape))
+        Some(ObjectKind::Primitive(shape))
     }
 
     /// Reads the fields of a component, except `type`.
-    fn component_fields<T: DescribedList>(&mut self, item: &mut T, keyword: Span) {
+    fn component_fields<T: DescribedKind>(&mut self, item: &mut T, keyword: Span) {
         self.fields(item, keyword, Order::Any, |reader, word, _| {
             let is_type = word == "type";
             if is_type {
@@ -307,10 +307,10 @@ impl NodeContent {
         let alone = objects.len() == 1 && (ops.is_some() || !has_nodes);
         let inner = match alone.then(|| objects.pop()).flatten() {
             Some(object) => object,
-            None => Object { node: Node::Group(Group { objects }), material, span },
+            None => Object { node: ObjectKind::Group(Group { objects }), material, span },
         };
         Some(match ops {
-            Some(ops) => Object { node: Node::Transform(ops, Box::new(inner)), material, span },
+            Some(ops) => Object { node: ObjectKind::Transform(ops, Box::new(inner)), material, span },
             None => inner,
         })
     }
@@ -320,9 +320,9 @@ impl NodeContent {
 pub(super) fn paint(object: &mut Object, material: u32) {
     object.material.get_or_insert(material);
     match &mut object.node {
-        Node::Group(group) => group.objects.iter_mut().for_each(|object| paint(object, material)),
-        Node::Transform(_, inner) => paint(inner, material),
-        Node::Solid(_, parts) => parts.iter_mut().for_each(|part| paint(part, material)),
-        Node::Primitive(_) | Node::Mesh(_) | Node::HeightField(_) | Node::Voxels(..) => {}
+        ObjectKind::Group(group) => group.objects.iter_mut().for_each(|object| paint(object, material)),
+        ObjectKind::Transform(_, inner) => paint(inner, material),
+        ObjectKind::Solid(_, parts) => parts.iter_mut().for_each(|part| paint(part, material)),
+        ObjectKind::Primitive(_) | ObjectKind::Mesh(_) | ObjectKind::HeightField(_) | ObjectKind::Voxels(..) => {}
     }
 }

@@ -57,7 +57,7 @@ pub fn value(bytes: &[u8], keyword: Span, field: &str) -> Option<Span> {
     let values = &own[at + 1..];
     let numbers = values.iter().take_while(|token| text(token.span).parse::<f32>().is_ok()).count();
     let first = values.first()?.span;
-    Some(first.to(values[numbers.max(1) - 1].span))
+    Some(first.join(values[numbers.max(1) - 1].span))
 }
 
 /// Returns the span of a complete block, from its keyword to its closing brace.

@@ -2,14 +2,16 @@
 //! fuzzing, the fuzzer's bytes make the choices.
 
 use durer_scene::camera::Camera;
-use durer_scene::describe::{Constraint, DescribedList, Field, FileName, Kind, Value};
+use durer_scene::describe::{Constraint, DescribedKind, Field, FieldKind, FileName, Value};
 use durer_scene::dialect::Dialect;
 use durer_scene::light::Light;
-use durer_scene::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid, is_material_index};
+use durer_scene::material::{
+    ColorNoise, HairMaterial, PatternMaterial, PhongMaterial, PrincipledMaterial, is_material_index,
+};
 use durer_scene::math::Vec3;
 use durer_scene::medium::Fog;
 use durer_scene::scene::{
-    Assets, Background, Group, Material, MatrixOp, NamedTexture, Node, Object, Operation, Scene, Spanned,
+    Assets, Background, CsgOperation, Group, Material, MatrixOp, NamedTexture, Object, ObjectKind, Scene, Spanned,
 };
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
@@ -70,44 +72,46 @@ impl Random {
     fn value(&mut self, field: &Field, materials: usize) -> Value {
         loop {
             let value = match field.kind {
-                Kind::Float => Value::Float(self.float()),
-                Kind::Int if is_material_index(field) => Value::Int(self.below(materials) as u32),
-                Kind::Int => Value::Int(self.below(40) as u32),
-                Kind::Vec3 => Value::Vec3(self.vec3()),
-                Kind::Path if self.tame => {
+                FieldKind::Float => Value::Float(self.float()),
+                FieldKind::Int if is_material_index(field) => Value::Int(self.below(materials) as u32),
+                FieldKind::Int => Value::Int(self.below(40) as u32),
+                FieldKind::Vec3 => Value::Vec3(self.vec3()),
+                FieldKind::Path if self.tame => {
                     let path = if field.name == "obj_file" { "a.obj" } else { "a.ppm" }.into();
                     Value::Path(FileName { path, ..Default::default() })
                 }
-                Kind::Path => {
+                FieldKind::Path => {
                     let path = ["a.obj", "meshes/B-2.OBJ", "../x", "Sphere", "\\w\\é.bmp"][self.below(5)].into();
                     Value::Path(FileName { path, ..Default::default() })
                 }
-                Kind::Word(words) => Value::Word(words[self.below(words.len())].into()),
-                Kind::Rows(width) => {
+                FieldKind::Word(words) => Value::Word(words[self.below(words.len())].into()),
+                FieldKind::Rows(width) => {
                     Value::Rows((0..self.below(6)).map(|_| (0..width).map(|_| self.float()).collect()).collect())
                 }
             };
             // A random number is rarely in the range of a narrow constraint, so draw it from that
             // range.
-            let value = match (field.rule, value) {
+            let value = match (field.constraint, value) {
                 (Constraint::Counts(most), _) => {
                     Value::Vec3(Vec3::from([0; 3].map(|_| 1.0 + self.below(most as usize) as f32)))
                 }
-                (Constraint::From(low, high), _) => Value::Float(low + (high - low) * self.below(1001) as f32 / 1000.0),
+                (Constraint::Within(low, high), _) => {
+                    Value::Float(low + (high - low) * self.below(1001) as f32 / 1000.0)
+                }
                 (Constraint::Between(low, high), _) => {
                     Value::Float(low + (high - low) * (1 + self.below(998)) as f32 / 1000.0)
                 }
-                (Constraint::Share, _) => Value::Float(self.below(1001) as f32 / 1000.0),
+                (Constraint::UnitInterval, _) => Value::Float(self.below(1001) as f32 / 1000.0),
                 (Constraint::UpTo(high), _) => Value::Float(high * (1 + self.below(1000)) as f32 / 1000.0),
                 (_, value) => value,
             };
-            if field.rule.validate(&value).is_ok() {
+            if field.constraint.validate(&value).is_ok() {
                 return value;
             }
         }
     }
 
-    fn item<T: DescribedList>(&mut self, materials: usize) -> T {
+    fn item<T: DescribedKind>(&mut self, materials: usize) -> T {
         let mut kinds = T::kinds();
         let mut entry = kinds.remove(self.below(kinds.len()));
         for (i, field) in entry.fields().iter().enumerate() {
@@ -154,25 +158,25 @@ impl Random {
         }
         let material = *current;
         let node = match self.below(if depth > 4 { 5 } else { 8 }) {
-            0 | 1 => Node::Primitive(self.item::<Primitive>(materials)),
-            2 => Node::Mesh(self.item::<TriangleMesh>(materials)),
-            3 => Node::HeightField(self.item::<HeightField>(materials)),
-            4 => Node::Voxels(
+            0 | 1 => ObjectKind::Primitive(self.item::<Primitive>(materials)),
+            2 => ObjectKind::Mesh(self.item::<TriangleMesh>(materials)),
+            3 => ObjectKind::HeightField(self.item::<HeightField>(materials)),
+            4 => ObjectKind::Voxels(
                 self.item::<VoxelGrid>(materials),
                 (0..self.below(3))
                     .map(|_| Sphere { center: self.vec3(), radius: 1.0 + self.below(9) as f32 })
                     .collect(),
             ),
-            5 => Node::Solid(
-                Operation::ALL[self.below(5)].1,
+            5 => ObjectKind::Solid(
+                CsgOperation::ALL[self.below(5)].1,
                 (0..self.below(4)).map(|_| self.object(depth + 1, materials, current, true)).collect(),
             ),
-            6 => Node::Group(Group {
+            6 => ObjectKind::Group(Group {
                 objects: (0..self.below(4)).map(|_| self.object(depth + 1, materials, current, true)).collect(),
             }),
             _ => {
                 let ops = self.matrices();
-                Node::Transform(ops, Box::new(self.object(depth + 1, materials, current, false)))
+                ObjectKind::Transform(ops, Box::new(self.object(depth + 1, materials, current, false)))
             }
         };
         Object { node, material, span: Default::default() }
@@ -197,7 +201,7 @@ impl Random {
         let mut materials = Vec::new();
         for i in 0..self.below(6) {
             materials.push(spanned(if i > 0 && self.below(3) == 0 {
-                Material::Solid(self.item::<Solid>(i), self.matrices())
+                Material::Solid(self.item::<PatternMaterial>(i), self.matrices())
             } else if dialect == Dialect::Durer && self.below(3) == 0 {
                 Material::Principled(Box::new(self.item::<PrincipledMaterial>(i)))
             } else if dialect == Dialect::Durer && self.below(4) == 0 {
@@ -211,7 +215,7 @@ impl Random {
             // Scenes with nodes support only two kinds of lights.
             let mut value = loop {
                 let value = random.item::<Light>(0);
-                if !(nodes && value.is_ours()) {
+                if !(nodes && value.is_durer_only()) {
                     break value;
                 }
             };
@@ -234,7 +238,7 @@ impl Random {
             root: (nodes || self.below(8) > 0).then_some(Group { objects }),
             assets: if dialect == Dialect::Durer { self.textures() } else { Default::default() },
             up: None,
-            lumens: None,
+            lumens_per_watt: None,
             camera_span: Default::default(),
             background_span: Default::default(),
         }

@@ -5,13 +5,13 @@
 
 use super::write::write_item;
 use durer_scene::camera::Camera;
-use durer_scene::describe::{Constraint, DescribedList, Kind, Value};
+use durer_scene::describe::{Constraint, DescribedKind, FieldKind, Value};
 use durer_scene::dialect::{Dialect, DialectSet, set};
 use durer_scene::light::Light;
-use durer_scene::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid};
+use durer_scene::material::{ColorNoise, HairMaterial, PatternMaterial, PhongMaterial, PrincipledMaterial};
 use durer_scene::math::Vec3;
 use durer_scene::medium::Fog;
-use durer_scene::scene::{Background, NamedTexture, Operation};
+use durer_scene::scene::{Background, CsgOperation, NamedTexture};
 use durer_scene::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
 
 /// Chapter of the scene language reference, by which its entries are grouped.
@@ -85,7 +85,7 @@ pub struct FieldEntry {
     /// Name of the field in code.
     pub name: &'static str,
     /// Type of the value.
-    pub kind: Kind,
+    pub kind: FieldKind,
     /// Spellings of the field's name, by dialect.
     pub words: Vec<Spelling>,
     /// Type and range of the value, as text.
@@ -311,12 +311,12 @@ pub fn entries() -> Vec<Entry> {
     all.extend(of::<HairMaterial>(Chapter::Materials));
     let noise = of::<ColorNoise>(Chapter::Materials);
     all.extend(noise.into_iter().map(|entry| Entry { example: example_of("Noise in a material"), ..entry }));
-    all.extend(of::<Solid>(Chapter::Materials));
+    all.extend(of::<PatternMaterial>(Chapter::Materials));
     all.extend(of::<Primitive>(Chapter::Shapes));
     all.extend(of::<TriangleMesh>(Chapter::Shapes));
     all.extend(of::<HeightField>(Chapter::Shapes));
     all.extend(of::<VoxelGrid>(Chapter::Shapes));
-    all.extend(Operation::ALL.map(|(word, operation)| Entry {
+    all.extend(CsgOperation::ALL.map(|(word, operation)| Entry {
         keywords: vec![(word, set::DURER)],
         chapter: Chapter::Solids,
         doc: operation.doc().into(),
@@ -339,7 +339,7 @@ pub fn entries() -> Vec<Entry> {
 }
 
 /// Returns the entries for a list of described statements.
-fn of<T: DescribedList>(chapter: Chapter) -> Vec<Entry> {
+fn of<T: DescribedKind>(chapter: Chapter) -> Vec<Entry> {
     let entry = |mut kind: T| {
         let keywords = kind.keywords().to_vec();
         let own = keywords.iter().fold(0, |all, keyword| all | keyword.1);
@@ -367,15 +367,15 @@ fn example_of(name: &str) -> String {
     EXAMPLES.iter().find(|row| row.0 == name).map_or(String::new(), |row| row.1.into())
 }
 
-fn field<T: DescribedList>(kind: &T, i: usize, own: DialectSet) -> FieldEntry {
+fn field<T: DescribedKind>(kind: &T, i: usize, own: DialectSet) -> FieldEntry {
     let field = &kind.fields()[i];
-    let words = field.spellings.iter().map(|&(word, dialects)| (word, dialects & own)).collect();
+    let words = field.keywords.iter().map(|&(word, dialects)| (word, dialects & own)).collect();
     let default = kind.get(i).filter(|_| !field.required).map(|value| value_text(&value));
     FieldEntry {
         name: field.name,
         kind: field.kind,
         words,
-        value: value_of(field.kind, field.rule),
+        value: value_of(field.kind, field.constraint),
         required: field.required,
         default: default.filter(|text| !text.is_empty()),
         doc: one_line(field.doc),
@@ -392,14 +392,14 @@ pub fn dialect_names(dialects: DialectSet) -> String {
 }
 
 /// Describes the values that a type and a constraint allow.
-fn value_of(kind: Kind, rule: Constraint) -> String {
+fn value_of(kind: FieldKind, rule: Constraint) -> String {
     let kind = match kind {
-        Kind::Float => "number".to_string(),
-        Kind::Int => "whole number".into(),
-        Kind::Vec3 => "three numbers".into(),
-        Kind::Path => "path".into(),
-        Kind::Word(words) => return words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", "),
-        Kind::Rows(width) => format!("`{{ }}` with rows of {width} numbers"),
+        FieldKind::Float => "number".to_string(),
+        FieldKind::Int => "whole number".into(),
+        FieldKind::Vec3 => "three numbers".into(),
+        FieldKind::Path => "path".into(),
+        FieldKind::Word(words) => return words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", "),
+        FieldKind::Rows(width) => format!("`{{ }}` with rows of {width} numbers"),
     };
     let rule = match rule {
         Constraint::Any => return kind,
@@ -407,11 +407,11 @@ fn value_of(kind: Kind, rule: Constraint) -> String {
         Constraint::NonNegative => "0 or more".into(),
         Constraint::NonZero => "not 0 0 0".into(),
         Constraint::Between(low, high) => format!("more than {low}, less than {high}"),
-        Constraint::From(low, high) => format!("from {low} to {high}"),
-        Constraint::Share => "from 0 to 1".into(),
+        Constraint::Within(low, high) => format!("from {low} to {high}"),
+        Constraint::UnitInterval => "from 0 to 1".into(),
         Constraint::UpTo(high) => format!("more than 0, at most {high}"),
         Constraint::AtMost(most) => format!("at most {most}"),
-        Constraint::Numbered(last) => format!("from 1 to {last}"),
+        Constraint::OneTo(last) => format!("from 1 to {last}"),
         Constraint::Rows(least, most) if least == most => format!("{least} of them"),
         Constraint::Rows(least, most) => format!("{least} to {most} of them"),
         Constraint::Counts(most) => format!("whole, 1 to {most}"),

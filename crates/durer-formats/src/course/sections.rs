@@ -6,13 +6,13 @@ use super::reader::Reader;
 use super::words::{OURS, SECTIONS, camera_of, home_of, is_section};
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::camera::Camera;
-use durer_scene::describe::{DescribedList, FileName};
+use durer_scene::describe::{DescribedKind, FileName};
 use durer_scene::dialect::{Dialect, DialectSet, Quirk, set};
 use durer_scene::light::Light;
 use durer_scene::material::presets;
-use durer_scene::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid};
+use durer_scene::material::{ColorNoise, HairMaterial, PatternMaterial, PhongMaterial, PrincipledMaterial};
 use durer_scene::medium::Fog;
-use durer_scene::scene::{Background, Group, Material, NamedTexture, Node, Object, Operation, Spanned};
+use durer_scene::scene::{Background, CsgOperation, Group, Material, NamedTexture, Object, ObjectKind, Spanned};
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
 /// Words allowed in a group. The first [`OBJECTS`] of them begin objects.
@@ -109,7 +109,7 @@ impl Reader<'_, '_> {
     }
 
     /// Warns about a keyword that this dialect does not have.
-    pub(super) fn check_keyword<T: DescribedList>(&mut self, item: &T, keyword: Span) {
+    pub(super) fn check_keyword<T: DescribedKind>(&mut self, item: &T, keyword: Span) {
         let word = self.text(keyword);
         let set = item.keywords().iter().find(|(w, _)| *w == word).map_or(0, |k| k.1);
         self.foreign(&word, keyword, set);
@@ -145,7 +145,7 @@ impl Reader<'_, '_> {
                     self.diagnostics.push(warning.related(first, "first given here"));
                 }
                 match self.whole(&word) {
-                    Some(n) => count = Some((n, span.to(self.last_span()))),
+                    Some(n) => count = Some((n, span.join(self.last_span()))),
                     None => self.skip_values(),
                 }
             } else if element(self, &word, span) {
@@ -237,7 +237,7 @@ impl Reader<'_, '_> {
     /// Reads a material if the word begins one.
     pub(super) fn material(&mut self, word: &str, span: Span) -> Option<Material> {
         let errors = self.errors();
-        if let Some(mut solid) = Solid::from_keyword(word) {
+        if let Some(mut solid) = PatternMaterial::from_keyword(word) {
             self.check_keyword(&solid, span);
             let mut transform = Vec::new();
             self.fields(&mut solid, span, Order::Listed, |reader, word, span| {
@@ -257,7 +257,7 @@ impl Reader<'_, '_> {
             // A preset comes first, so that later fields can change it.
             let first = self.ahead(1).filter(|token| self.at_open() && self.text(token.span) == "preset");
             let name = first.and_then(|_| self.ahead(2)).map(|token| self.text(token.span));
-            principled = name.as_deref().and_then(presets::named).unwrap_or(principled);
+            principled = name.as_deref().and_then(presets::preset).unwrap_or(principled);
             let mut seen = first.map(|token| token.span.start);
             self.fields(&mut principled, span, Order::Any, |reader, word, span| {
                 let known = word == "preset";
@@ -309,7 +309,7 @@ impl Reader<'_, '_> {
     fn preset(&mut self, word: Span, first: bool) {
         let Some(name) = self.peek_word() else { return self.expected("a name", "preset") };
         let span = self.advance();
-        if presets::named(&name).is_none() {
+        if presets::preset(&name).is_none() {
             let near = did_you_mean(&name, presets::PRESETS.iter().map(|row| row.0));
             let error = Diagnostic::error(format!("unknown preset `{name}`")).code("unknown-word").at(span);
             self.error(match near {
@@ -323,7 +323,7 @@ impl Reader<'_, '_> {
     }
 
     /// Checks that a solid texture uses only earlier materials, which prevents cycles.
-    fn check_solid(&mut self, solid: &Solid, span: Span) {
+    fn check_solid(&mut self, solid: &PatternMaterial, span: Span) {
         let own = self.scene.materials.len() as u32;
         if let Some(index) = durer_scene::material::Pattern::materials(solid).into_iter().find(|index| *index >= own) {
             let message = format!("material {own} may use only earlier materials, but {index} is not before {own}");
@@ -340,7 +340,7 @@ impl Reader<'_, '_> {
                     match reader.material_number(word) {
                         Some(index) => {
                             reader.material = Some(index);
-                            reader.material_uses.push((index, span.to(reader.last_span())));
+                            reader.material_uses.push((index, span.join(reader.last_span())));
                         }
                         None => reader.skip_values(),
                     }
@@ -367,7 +367,7 @@ impl Reader<'_, '_> {
 
     /// Reads a voxel grid: a box of cells, and spheres that fill cells. In files with nodes, it is
     /// a component of type `Grid`.
-    pub(super) fn voxels(&mut self, keyword: Span) -> Node {
+    pub(super) fn voxels(&mut self, keyword: Span) -> ObjectKind {
         let (mut grid, mut balls) = (VoxelGrid::default(), Vec::new());
         self.fields(&mut grid, keyword, Order::Any, |reader, word, span| {
             match word {
@@ -383,7 +383,7 @@ impl Reader<'_, '_> {
             }
             true
         });
-        Node::Voxels(grid, balls)
+        ObjectKind::Voxels(grid, balls)
     }
 
     /// Reads an object if the word begins one.
@@ -396,27 +396,27 @@ impl Reader<'_, '_> {
         let material = self.material;
         let classic = |words: &[(&str, DialectSet)]| words.iter().any(|(w, s)| *w == word && s & set::CLASSIC != 0);
         let node = if word == "Group" {
-            Some(Node::Group(self.group(span)))
+            Some(ObjectKind::Group(self.group(span)))
         } else if word == "Transform" {
             self.transform(span)
         } else if word == "use" {
             self.used(span)
-        } else if let Some(operation) = Operation::from_keyword(word) {
+        } else if let Some(operation) = CsgOperation::from_keyword(word) {
             self.foreign(word, span, set::DURER);
-            Some(Node::Solid(operation, self.group(span).objects))
+            Some(ObjectKind::Solid(operation, self.group(span).objects))
         } else if word == "HeightField" {
             let mut field = HeightField::default();
             self.check_keyword(&field, span);
             self.fields(&mut field, span, Order::Any, |_, _, _| false);
-            Some(Node::HeightField(field))
+            Some(ObjectKind::HeightField(field))
         } else if let Some(mut shape) = Primitive::from_keyword(word).filter(|s| classic(s.keywords())) {
             self.check_keyword(&shape, span);
             self.fields(&mut shape, span, Order::Listed, |_, _, _| false);
-            Some(Node::Primitive(shape))
+            Some(ObjectKind::Primitive(shape))
         } else if word == "TriangleMesh" {
             let mut mesh = TriangleMesh::default();
             self.fields(&mut mesh, span, Order::Listed, |_, _, _| false);
-            Some(Node::Mesh(mesh))
+            Some(ObjectKind::Mesh(mesh))
         } else if word == "Grid" {
             Some(self.voxels(span))
         } else {

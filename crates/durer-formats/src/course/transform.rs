@@ -7,11 +7,11 @@ use super::words::home_of;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::dialect::{Dialect, set};
 use durer_scene::math::Vec3;
-use durer_scene::scene::{MatrixOp, Node};
+use durer_scene::scene::{MatrixOp, ObjectKind};
 
 impl Reader<'_, '_> {
     /// Reads `Transform { matrix ... object }`.
-    pub(super) fn transform(&mut self, keyword: Span) -> Option<Node> {
+    pub(super) fn transform(&mut self, keyword: Span) -> Option<ObjectKind> {
         let errors = self.errors();
         if !self.open(keyword) {
             return None;
@@ -51,7 +51,7 @@ impl Reader<'_, '_> {
                 error.help("write the object after its matrices: `Transform { Translate 0 1 0 Sphere { ... } }`"),
             );
         }
-        Some(Node::Transform(ops, Box::new(object?)))
+        Some(ObjectKind::Transform(ops, Box::new(object?)))
     }
 
     /// Reads the matrices of a block whose `{` is already read.
@@ -69,7 +69,7 @@ impl Reader<'_, '_> {
     /// Reports a matrix that alone flattens space.
     pub(super) fn check_flat(&mut self, op: Option<MatrixOp>, span: Span) {
         if let Some(error) = op.and_then(flat) {
-            let at = span.to(self.last_span());
+            let at = span.join(self.last_span());
             if self.any_values() {
                 let warning = Diagnostic::warning(error.message).code("flat-transform").at(at);
                 return self.diagnostics.push(warning.effect("applied anyway, as the official program does"));
@@ -111,7 +111,7 @@ impl Reader<'_, '_> {
         if self.errors() == errors
             && let Some(error) = op.and_then(senseless)
         {
-            self.error(error.at(span.to(self.last_span())));
+            self.error(error.at(span.join(self.last_span())));
         }
         Some(op)
     }
@@ -129,7 +129,7 @@ impl Reader<'_, '_> {
         if count != 4 && count != 1 {
             return false;
         }
-        let whole = word.to(last);
+        let whole = word.join(last);
         let numbers = self.text(Span { start: word.end, ..whole }).trim().to_string();
         let error = Diagnostic::error("`Rotate` needs braces around its axis and angle").code("syntax").at(whole);
         self.error(match count {
@@ -154,7 +154,7 @@ impl Reader<'_, '_> {
         }
         let number = self.text(last);
         let error =
-            Diagnostic::error("`Scale` takes three numbers, one for each axis").code("syntax").at(word.to(last));
+            Diagnostic::error("`Scale` takes three numbers, one for each axis").code("syntax").at(word.join(last));
         self.error(
             error
                 .help(format!("for the same scale along all axes, write `UniformScale {number}`"))

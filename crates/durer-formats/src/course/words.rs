@@ -1,12 +1,12 @@
 //! Table of all words of the language.
 
 use durer_scene::camera::Camera;
-use durer_scene::describe::DescribedList;
+use durer_scene::describe::DescribedKind;
 use durer_scene::dialect::{DialectSet, set};
 use durer_scene::light::Light;
-use durer_scene::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid};
+use durer_scene::material::{ColorNoise, HairMaterial, PatternMaterial, PhongMaterial, PrincipledMaterial};
 use durer_scene::medium::Fog;
-use durer_scene::scene::{Background, NamedTexture, Operation};
+use durer_scene::scene::{Background, CsgOperation, NamedTexture};
 use durer_scene::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -57,7 +57,7 @@ static WORDS: LazyLock<HashMap<&'static str, DialectSet>> = LazyLock::new(|| {
     list::<Camera>(&mut words);
     list::<Light>(&mut words);
     list::<Primitive>(&mut words);
-    list::<Solid>(&mut words);
+    list::<PatternMaterial>(&mut words);
     list::<PhongMaterial>(&mut words);
     list::<PrincipledMaterial>(&mut words);
     list::<HairMaterial>(&mut words);
@@ -68,16 +68,16 @@ static WORDS: LazyLock<HashMap<&'static str, DialectSet>> = LazyLock::new(|| {
     list::<Background>(&mut words);
     list::<Fog>(&mut words);
     list::<NamedTexture>(&mut words);
-    let operations = Operation::ALL.map(|(word, _)| (word, set::DURER));
+    let operations = CsgOperation::ALL.map(|(word, _)| (word, set::DURER));
     for (word, set) in GRAMMAR.into_iter().chain(operations) {
         *words.entry(word).or_insert(0) |= set;
     }
     words
 });
 
-fn list<T: DescribedList>(words: &mut HashMap<&'static str, DialectSet>) {
+fn list<T: DescribedKind>(words: &mut HashMap<&'static str, DialectSet>) {
     for kind in T::kinds() {
-        let spellings = kind.fields().iter().flat_map(|field| field.spellings);
+        let spellings = kind.fields().iter().flat_map(|field| field.keywords);
         for (word, set) in kind.keywords().iter().chain(spellings) {
             *words.entry(word).or_insert(0) |= set;
         }
@@ -111,7 +111,7 @@ pub(super) fn home_of(word: &str) -> Option<&'static str> {
         "Translate" | "Scale" | "UniformScale" | "XRotate" | "YRotate" | "ZRotate" | "Rotate" | "Matrix"
         | "Matrix4f" | "translate" | "scale" | "x_rotate" | "y_rotate" | "z_rotate" => "Transform",
         _ if begins_block(word) && Primitive::from_keyword(word).is_some() => "Group",
-        _ if Operation::from_keyword(word).is_some() => "Group",
+        _ if CsgOperation::from_keyword(word).is_some() => "Group",
         _ => return None,
     })
 }

@@ -1,10 +1,10 @@
 //! Writer of scenes in the scene language.
 
-use durer_scene::describe::{DescribedList, Value};
+use durer_scene::describe::{DescribedKind, Value};
 use durer_scene::dialect::Dialect;
 use durer_scene::light::{Light, PointLight};
 use durer_scene::math::Vec3;
-use durer_scene::scene::{Group, Material, MatrixOp, Node, Object, Scene};
+use durer_scene::scene::{Group, Material, MatrixOp, Object, ObjectKind, Scene};
 use durer_scene::shape::{Sphere, VoxelGrid};
 use std::fmt::Write;
 
@@ -19,7 +19,7 @@ pub fn write(scene: &Scene, dialect: Dialect) -> String {
 }
 
 /// Formats one statement alone, as [`write`] does.
-pub(super) fn write_item<T: DescribedList>(item: &T, dialect: Dialect) -> String {
+pub(super) fn write_item<T: DescribedKind>(item: &T, dialect: Dialect) -> String {
     let mut writer = Writer { out: String::new(), depth: 0, dialect, material: None };
     writer.item(item);
     writer.out
@@ -49,25 +49,25 @@ impl Writer {
         self.line("}");
     }
 
-    fn fields<T: DescribedList>(&mut self, item: &T) {
+    fn fields<T: DescribedKind>(&mut self, item: &T) {
         let plain = T::from_keyword(item.keywords()[0].0);
         // Statements of the Dürer dialect use only its own words.
-        let ours = item.is_ours();
+        let ours = item.is_durer_only();
         let dialect = if ours { Dialect::Durer } else { self.dialect };
         for (i, field) in item.fields().iter().enumerate() {
             let Some(value) = item.get(i) else { continue };
-            let (word, text) = (field.spelling(dialect), value_text(&value));
+            let (word, text) = (field.keyword(dialect), value_text(&value));
             // Omit a default value if the dialect has no word for the field. Compare texts, since
             // they distinguish 0 from -0.
             let plain_text = plain.as_ref().and_then(|plain| plain.get(i)).map(|value| value_text(&value));
             if word.is_none() && plain_text.as_ref() == Some(&text) {
                 continue;
             }
-            self.line(format!("{} {text}", word.unwrap_or(field.spellings[0].0)));
+            self.line(format!("{} {text}", word.unwrap_or(field.keywords[0].0)));
         }
     }
 
-    fn item<T: DescribedList>(&mut self, entry: &T) {
+    fn item<T: DescribedKind>(&mut self, entry: &T) {
         self.block(entry.keyword(self.dialect), |w| w.fields(entry));
     }
 
@@ -141,8 +141,8 @@ impl Writer {
 
     fn object(&mut self, object: &Object) {
         match &object.node {
-            Node::Group(group) => self.group(group),
-            Node::Transform(ops, inner) => self.block("Transform", |w| {
+            ObjectKind::Group(group) => self.group(group),
+            ObjectKind::Transform(ops, inner) => self.block("Transform", |w| {
                 ops.iter().for_each(|op| w.matrix(op));
                 match inner.material == object.material {
                     true => w.object(inner),
@@ -150,11 +150,11 @@ impl Writer {
                     false => w.group(&Group { objects: vec![Object::clone(inner)] }),
                 }
             }),
-            Node::Primitive(shape) => self.item(shape),
-            Node::Mesh(mesh) => self.item(mesh),
-            Node::HeightField(field) => self.item(field),
-            Node::Solid(operation, parts) => self.block(operation.keyword(), |w| w.objects(parts)),
-            Node::Voxels(grid, balls) => self.block(grid.keyword(self.dialect), |w| w.voxels(grid, balls)),
+            ObjectKind::Primitive(shape) => self.item(shape),
+            ObjectKind::Mesh(mesh) => self.item(mesh),
+            ObjectKind::HeightField(field) => self.item(field),
+            ObjectKind::Solid(operation, parts) => self.block(operation.keyword(), |w| w.objects(parts)),
+            ObjectKind::Voxels(grid, balls) => self.block(grid.keyword(self.dialect), |w| w.voxels(grid, balls)),
         }
     }
 
@@ -204,26 +204,26 @@ impl Writer {
 
     fn node(&mut self, object: &Object) {
         self.block("Node", |w| {
-            if let Node::Transform(ops, _) = &object.node {
+            if let ObjectKind::Transform(ops, _) = &object.node {
                 w.block("Transform", |w| ops.iter().for_each(|op| w.node_matrix(op)));
             }
             if let Some(index) = object.material {
                 w.line(format!("Component<Material> {{ index {index} }}"));
             }
             match &object.node {
-                Node::Group(group) => group.objects.iter().for_each(|inner| w.node(inner)),
-                Node::Primitive(shape) => w.component("Object", shape),
-                Node::Mesh(mesh) => w.component("Object", mesh),
-                Node::HeightField(field) => w.component("Object", field),
-                Node::Solid(operation, parts) => {
+                ObjectKind::Group(group) => group.objects.iter().for_each(|inner| w.node(inner)),
+                ObjectKind::Primitive(shape) => w.component("Object", shape),
+                ObjectKind::Mesh(mesh) => w.component("Object", mesh),
+                ObjectKind::HeightField(field) => w.component("Object", field),
+                ObjectKind::Solid(operation, parts) => {
                     w.block(operation.keyword(), |w| parts.iter().for_each(|part| w.node(part)));
                 }
-                Node::Voxels(grid, balls) => w.voxels_component(grid, balls),
-                Node::Transform(_, inner) => match &inner.node {
+                ObjectKind::Voxels(grid, balls) => w.voxels_component(grid, balls),
+                ObjectKind::Transform(_, inner) => match &inner.node {
                     _ if inner.material != object.material => w.node(inner),
-                    Node::Primitive(shape) => w.component("Object", shape),
-                    Node::Mesh(mesh) => w.component("Object", mesh),
-                    Node::Voxels(grid, balls) => w.voxels_component(grid, balls),
+                    ObjectKind::Primitive(shape) => w.component("Object", shape),
+                    ObjectKind::Mesh(mesh) => w.component("Object", mesh),
+                    ObjectKind::Voxels(grid, balls) => w.voxels_component(grid, balls),
                     _ => w.node(inner),
                 },
             }
@@ -241,7 +241,7 @@ impl Writer {
         });
     }
 
-    fn component<T: DescribedList>(&mut self, name: &str, item: &T) {
+    fn component<T: DescribedKind>(&mut self, name: &str, item: &T) {
         self.block(&format!("Component<{name}>"), |w| {
             w.line(format!("type {}", item.keyword(w.dialect)));
             w.fields(item);

@@ -65,17 +65,17 @@ fn nothing_outside_the_folder_is_read_unless_allowed() {
 #[test]
 fn missing_file_suggests_a_name_from_inside_only() {
     let (_root, source) = house();
-    let near = |name: &str| match source.read(name) {
-        Err(SourceError::Missing { near, tried, .. }) => {
+    let similar = |name: &str| match source.read(name) {
+        Err(SourceError::Missing { similar, tried, .. }) => {
             assert!(!tried.is_empty());
-            near
+            similar
         }
         other => panic!("{other:?}"),
     };
-    assert_eq!(near("neat.obj").as_deref(), Some("near.obj"));
-    assert_eq!(near("models/Cubes.OBJ").as_deref(), Some("cube.obj"));
-    assert_eq!(near("nothing/like/it.txt"), None);
-    assert_eq!(near("../outside/secrets.obj"), None);
+    assert_eq!(similar("neat.obj").as_deref(), Some("near.obj"));
+    assert_eq!(similar("models/Cubes.OBJ").as_deref(), Some("cube.obj"));
+    assert_eq!(similar("nothing/like/it.txt"), None);
+    assert_eq!(similar("../outside/secrets.obj"), None);
 }
 
 #[test]

@@ -30,7 +30,7 @@ impl Model<'_> {
     /// Sets the transforms and weights of the nodes to those of the first animation at the
     /// requested time.
     pub(super) fn animate(&self, root: &JsonRef, nodes: &mut [NodeData]) {
-        let (at, animations) = match (self.input.scene_defaults.at, root.get("animations")) {
+        let (at, animations) = match (self.input.scene_defaults.animation_time, root.get("animations")) {
             (Some(at), Some(animations)) => (at, animations),
             (Some(_), None) => return root.warning("no-animation", "the file has no animation: `--at` has no effect"),
             (None, Some(animations)) => return at_rest(&animations),

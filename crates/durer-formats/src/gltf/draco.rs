@@ -8,7 +8,7 @@ use super::accessor::Component;
 use super::buffers::{Slice, View};
 use super::json::JsonRef;
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, Mesh, MeshDecoder, PointAttribute, PointIndex};
-use durer_image::panics::caught;
+use durer_image::panics::catch_panic;
 
 const DRACO: &str = "KHR_draco_mesh_compression";
 
@@ -101,7 +101,7 @@ fn decoded(bytes: &[u8], left: u64) -> Result<Mesh, String> {
         let mut buffer = DecoderBuffer::new(bytes).with_limits(limits);
         MeshDecoder::new().decode(&mut buffer, &mut mesh).map(|()| mesh)
     };
-    match caught(decode) {
+    match catch_panic(decode) {
         Some(Ok(mesh)) if mesh.num_points() <= u32::MAX as usize => Ok(mesh),
         Some(Ok(_)) => Err("too many points".into()),
         Some(Err(error)) => Err(error.to_string()),

@@ -31,7 +31,7 @@ use container::{Parts, open, recognise};
 use deform::Skin;
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::material::PrincipledMaterial;
-use durer_scene::scene::{Axis, Material, Picture, PictureBytes, Scene, Spanned};
+use durer_scene::scene::{Axis, Material, PictureBytes, Scene, Spanned, TextureImage};
 use durer_scene::texture::Mapping;
 use json::{JsonRef, JsonReport};
 use primitive::Primitives;
@@ -83,7 +83,7 @@ struct Model<'a> {
     /// Picture, mapping, and span of the picture's name, for each texture.
     textures: Vec<Option<(PictureBytes, Mapping, Span)>>,
     /// Pictures used by materials, by asset name.
-    pictures: RefCell<BTreeMap<String, Picture>>,
+    pictures: RefCell<BTreeMap<String, TextureImage>>,
     material_count: usize,
     /// Index of the selected material variant, if the file has variants.
     variant: Option<usize>,
@@ -153,7 +153,7 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let findings = JsonReport::new(text, report);
     let scene = scene(input, parts, JsonRef::root(&value, &findings));
     let scene = findings.finish().finish(diagnostics, scene)?;
-    input.files.borrow_mut().cut(input.file, end, diagnostics);
+    input.files.borrow_mut().truncate(input.file, end, diagnostics);
     scene
 }
 

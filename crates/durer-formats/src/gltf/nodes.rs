@@ -8,7 +8,7 @@ use crate::report::shown;
 use durer_diag::Span;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::{Affine, Vec3};
-use durer_scene::scene::{Material, MatrixOp, Node, Object, Scene, Spanned};
+use durer_scene::scene::{Material, MatrixOp, Object, ObjectKind, Scene, Spanned};
 use durer_scene::shape::MeshData;
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use std::sync::Arc;
@@ -290,7 +290,7 @@ impl Model<'_> {
             return Some(Object { node: mesh, material, span });
         }
         let inner = Object { node: mesh, material, span };
-        Some(Object { node: Node::Transform(vec![op], Box::new(inner)), material, span })
+        Some(Object { node: ObjectKind::Transform(vec![op], Box::new(inner)), material, span })
     }
 
     /// Returns the index of a white material for meshes with vertex colours but without a material.

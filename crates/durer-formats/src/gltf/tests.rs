@@ -17,8 +17,13 @@ mod places;
 mod vertices;
 
 /// Reads bytes as a file in a folder; returns the diagnostics with severity, code and message.
-fn read(bytes: &[u8], folder: &Path, name: &str, at: Option<f32>) -> (Option<Scene>, Vec<(Severity, String)>) {
-    staged(bytes, folder, name, &SceneDefaults { at, ..SceneDefaults::default() })
+fn read(
+    bytes: &[u8],
+    folder: &Path,
+    name: &str,
+    animation_time: Option<f32>,
+) -> (Option<Scene>, Vec<(Severity, String)>) {
+    staged(bytes, folder, name, &SceneDefaults { animation_time, ..SceneDefaults::default() })
 }
 
 fn staged(
@@ -308,7 +313,7 @@ fn white_material_exists_only_for_colours_without_material() {
     let accessors = format!(r#"{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",{BOUNDS}}}"#);
     let count = |attributes: &str| {
         let text = document(r#"{"buffer":0,"byteLength":36}"#, &accessors, attributes, &bytes);
-        let bare = SceneDefaults { bare: true, ..SceneDefaults::default() };
+        let bare = SceneDefaults { convert_only: true, ..SceneDefaults::default() };
         let (scene, findings) = staged(text.as_bytes(), Path::new("."), "a.gltf", &bare);
         scene.unwrap_or_else(|| panic!("{findings:?}")).materials.len()
     };

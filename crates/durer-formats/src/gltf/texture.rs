@@ -6,7 +6,7 @@ use super::json::JsonRef;
 use durer_diag::Span;
 use durer_scene::describe::FileName;
 use durer_scene::math::fp;
-use durer_scene::scene::{Picture, PictureBytes};
+use durer_scene::scene::{PictureBytes, TextureImage};
 use durer_scene::texture::{Mapping, Wrap};
 
 /// Returns the wrap mode for a sampler's `wrapS` or `wrapT`.
@@ -44,7 +44,7 @@ impl Model<'_> {
                     if !kind.starts_with("image/") {
                         uri.error("IMAGE_MIME_TYPE_INVALID", format!("unexpected media type `{kind}`"));
                     }
-                    PictureBytes::Here(name, bytes)
+                    PictureBytes::Memory(name, bytes)
                 }
             },
             (None, Some(view)) => {
@@ -56,7 +56,7 @@ impl Model<'_> {
                     view.error("IMAGE_BUFFER_VIEW_WITH_BYTESTRIDE", "the view of an image must not have a stride");
                 }
                 self.charge(found.length, 1, at)?;
-                PictureBytes::Here(name, found.slice?.bytes().into())
+                PictureBytes::Memory(name, found.slice?.bytes().into())
             }
         };
         Some(found)
@@ -88,7 +88,7 @@ impl Model<'_> {
         mapping.second = set == 1;
         change(&mut mapping);
         let path = format!("{}#{}{role}", self.input.name, at.pointer());
-        self.pictures.borrow_mut().insert(path.clone(), Picture { bytes: image, mapping });
+        self.pictures.borrow_mut().insert(path.clone(), TextureImage { bytes: image, mapping });
         Some(FileName { path, span })
     }
 

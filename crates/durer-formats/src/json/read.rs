@@ -10,9 +10,11 @@ use durer_diag::{Diagnostic, Diagnostics};
 use durer_scene::camera::Camera;
 use durer_scene::dialect::Dialect;
 use durer_scene::light::Light;
-use durer_scene::material::{ColorNoise, HairMaterial, Pattern, PhongMaterial, PrincipledMaterial, Solid, presets};
+use durer_scene::material::{
+    ColorNoise, HairMaterial, Pattern, PatternMaterial, PhongMaterial, PrincipledMaterial, presets,
+};
 use durer_scene::math::Vec3;
-use durer_scene::scene::{Group, Material, MatrixOp, NamedTexture, Node as What, Object, Operation, Scene};
+use durer_scene::scene::{CsgOperation, Group, Material, MatrixOp, NamedTexture, Object, ObjectKind as What, Scene};
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
 /// A parsed JSON file that has not yet been converted to a scene. See [`Document::scene`].
@@ -125,7 +127,7 @@ impl Reader<'_> {
     fn material(&mut self, node: &Node, own: u32) -> Option<Material> {
         let known = schema::materials();
         let (word, mut members) = self.typed(node, "material", &known)?;
-        let material = if let Some(mut solid) = schema::of_keyword::<Solid>(word) {
+        let material = if let Some(mut solid) = schema::of_keyword::<PatternMaterial>(word) {
             let transform = members.take("transform").map(|node| self.matrices(node, "transform", senseless));
             self.fields(&mut solid, &mut members);
             if let Some(index) = solid.materials().into_iter().find(|index| *index >= own) {
@@ -135,7 +137,7 @@ impl Reader<'_> {
             Material::Solid(solid, transform.unwrap_or_default())
         } else if schema::of_keyword::<PrincipledMaterial>(word).is_some() {
             let name = members.take("preset").and_then(|node| Some((node, self.string(node, "preset")?)));
-            let preset = name.and_then(|(_, name)| presets::named(name));
+            let preset = name.and_then(|(_, name)| presets::preset(name));
             if let (Some((node, name)), None) = (name, &preset) {
                 let help = suggest(name, presets::PRESETS.iter().map(|row| row.0));
                 let help = help.unwrap_or("`durer words preset` lists them".into());
@@ -229,7 +231,7 @@ impl Reader<'_> {
             self.material = index.or(self.material);
         }
         let mut material = self.material;
-        let what = if let Some(operation) = Operation::from_keyword(word) {
+        let what = if let Some(operation) = CsgOperation::from_keyword(word) {
             What::Solid(operation, self.inside(&mut members))
         } else if let Some(mut shape) = schema::of_keyword::<Primitive>(word) {
             self.fields(&mut shape, &mut members);

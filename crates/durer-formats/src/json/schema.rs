@@ -3,40 +3,40 @@
 
 use super::DEEPEST;
 use durer_scene::camera::Camera;
-use durer_scene::describe::{Constraint, DescribedList, Field, Kind};
+use durer_scene::describe::{Constraint, DescribedKind, Field, FieldKind};
 use durer_scene::dialect::Dialect;
 use durer_scene::light::Light;
-use durer_scene::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid, presets};
+use durer_scene::material::{ColorNoise, HairMaterial, PatternMaterial, PhongMaterial, PrincipledMaterial, presets};
 use durer_scene::medium::Fog;
-use durer_scene::scene::{Background, MatrixOp, NamedTexture, Operation};
+use durer_scene::scene::{Background, CsgOperation, MatrixOp, NamedTexture};
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 use serde_json::{Map, Value, json};
 
 /// Returns the keywords of all kinds in a described list.
-pub(super) fn keywords<T: DescribedList>() -> Vec<&'static str> {
+pub(super) fn keywords<T: DescribedKind>() -> Vec<&'static str> {
     T::kinds().iter().map(word).collect()
 }
 
 /// Returns the keyword of a described item in the Dürer dialect.
-pub(super) fn word<T: DescribedList>(item: &T) -> &'static str {
+pub(super) fn word<T: DescribedKind>(item: &T) -> &'static str {
     item.keyword(Dialect::Durer)
 }
 
 /// Returns the item for a keyword, with default values.
-pub(super) fn of_keyword<T: DescribedList>(keyword: &str) -> Option<T> {
+pub(super) fn of_keyword<T: DescribedKind>(keyword: &str) -> Option<T> {
     T::kinds().into_iter().find(|item| word(item) == keyword)
 }
 
 /// Returns the keywords of all materials.
 pub(super) fn materials() -> Vec<&'static str> {
     let own = [keywords::<PhongMaterial>(), keywords::<PrincipledMaterial>(), keywords::<HairMaterial>()].concat();
-    [own, keywords::<Solid>()].concat()
+    [own, keywords::<PatternMaterial>()].concat()
 }
 
 /// Returns the keywords of all objects.
 pub(super) fn objects() -> Vec<&'static str> {
     let others = [keywords::<TriangleMesh>(), keywords::<HeightField>(), keywords::<VoxelGrid>()].concat();
-    let made = ["Group", "Transform"].into_iter().chain(Operation::ALL.map(|row| row.0));
+    let made = ["Group", "Transform"].into_iter().chain(CsgOperation::ALL.map(|row| row.0));
     keywords::<Primitive>().into_iter().chain(others).chain(made).collect()
 }
 
@@ -111,18 +111,18 @@ fn about(doc: &str) -> String {
 /// Returns the schema of a field's value.
 fn field(field: &Field) -> Value {
     let mut value = match field.kind {
-        Kind::Float => json!({"type": "number"}),
-        Kind::Int => json!({"type": "integer", "minimum": 0, "maximum": u32::MAX}),
-        Kind::Vec3 => reference("vector"),
-        Kind::Path => reference("path"),
-        Kind::Word(words) => json!({ "enum": words }),
-        Kind::Rows(width) => json!({
+        FieldKind::Float => json!({"type": "number"}),
+        FieldKind::Int => json!({"type": "integer", "minimum": 0, "maximum": u32::MAX}),
+        FieldKind::Vec3 => reference("vector"),
+        FieldKind::Path => reference("path"),
+        FieldKind::Word(words) => json!({ "enum": words }),
+        FieldKind::Rows(width) => json!({
             "type": "array",
             "items": {"type": "array", "items": reference("number"), "minItems": width, "maxItems": width},
         }),
     };
-    match field.rule {
-        Constraint::Any if field.kind == Kind::Float => value = reference("number"),
+    match field.constraint {
+        Constraint::Any if field.kind == FieldKind::Float => value = reference("number"),
         Constraint::Any => {}
         Constraint::Positive => (value["exclusiveMinimum"], value["maximum"]) = (json!(0), number(f32::MAX)),
         Constraint::NonNegative => (value["minimum"], value["maximum"]) = (json!(0), number(f32::MAX)),
@@ -130,11 +130,11 @@ fn field(field: &Field) -> Value {
         Constraint::Between(low, high) => {
             (value["exclusiveMinimum"], value["exclusiveMaximum"]) = (number(low), number(high));
         }
-        Constraint::From(low, high) => (value["minimum"], value["maximum"]) = (number(low), number(high)),
+        Constraint::Within(low, high) => (value["minimum"], value["maximum"]) = (number(low), number(high)),
         Constraint::UpTo(high) => (value["exclusiveMinimum"], value["maximum"]) = (json!(0), number(high)),
-        Constraint::Share => (value["minimum"], value["maximum"]) = (json!(0), json!(1)),
+        Constraint::UnitInterval => (value["minimum"], value["maximum"]) = (json!(0), json!(1)),
         Constraint::AtMost(most) => value["maximum"] = json!(most),
-        Constraint::Numbered(last) => (value["minimum"], value["maximum"]) = (json!(1), json!(last)),
+        Constraint::OneTo(last) => (value["minimum"], value["maximum"]) = (json!(1), json!(last)),
         Constraint::Rows(least, most) => (value["minItems"], value["maxItems"]) = (json!(least), json!(most)),
         Constraint::Counts(most) => value["items"] = json!({"type": "integer", "minimum": 1, "maximum": most}),
     }
@@ -154,7 +154,7 @@ fn object(doc: &str, members: Value, required: &[&str]) -> Value {
 }
 
 /// Returns the schema of a described item with further members.
-fn described<T: DescribedList>(item: &T, more: Value, also: &[&'static str]) -> Value {
+fn described<T: DescribedKind>(item: &T, more: Value, also: &[&'static str]) -> Value {
     let mut members = Map::new();
     if let Value::Object(more) = more {
         members.extend(more);
@@ -166,12 +166,12 @@ fn described<T: DescribedList>(item: &T, more: Value, also: &[&'static str]) -> 
 }
 
 /// Returns the schema of an item without a `type`.
-fn record<T: DescribedList + Default>(more: Value) -> Value {
+fn record<T: DescribedKind + Default>(more: Value) -> Value {
     described(&T::default(), more, &[])
 }
 
 /// Returns the schema of an item with its `type`.
-fn named<T: DescribedList>(item: &T, more: &Value) -> Value {
+fn named<T: DescribedKind>(item: &T, more: &Value) -> Value {
     described(item, with(more, "type", json!({ "const": word(item) })), &["type"])
 }
 
@@ -186,7 +186,7 @@ fn with(members: &Value, name: &str, value: Value) -> Value {
     all
 }
 
-fn items<T: DescribedList>() -> Vec<Value> {
+fn items<T: DescribedKind>() -> Vec<Value> {
     T::kinds().iter().map(|item| named(item, &json!({}))).collect()
 }
 
@@ -198,7 +198,7 @@ fn material_items() -> Vec<Value> {
     let transform = json!({"transform": matrices("From world to pattern space: the product of these matrices.")});
     let mut all = vec![named(&PhongMaterial::default(), &noise), named(&PrincipledMaterial::default(), &preset)];
     all.extend(items::<HairMaterial>());
-    all.extend(Solid::kinds().iter().map(|solid| named(solid, &transform)));
+    all.extend(PatternMaterial::kinds().iter().map(|solid| named(solid, &transform)));
     all
 }
 
@@ -248,7 +248,7 @@ fn object_items() -> Vec<Value> {
     let moved = json!({"matrices": matrices("Their product transforms the object; the first is applied last."), "object": reference("object")});
     all.push(made("Transform", "A transformed object.", &moved, &["type", "object"]));
     all.extend(
-        Operation::ALL
+        CsgOperation::ALL
             .map(|(word, operation)| made(word, operation.doc(), &json!({"objects": inside}), &["type", "objects"])),
     );
     all

@@ -6,7 +6,7 @@ use crate::course;
 use crate::course::random::Random;
 use durer_diag::{Diagnostics, Files, Severity};
 use durer_scene::dialect::Dialect;
-use durer_scene::scene::{Material, Node, Scene};
+use durer_scene::scene::{Material, ObjectKind, Scene};
 use serde_json::{Value, json};
 
 /// Reads a scene; returns the diagnostics as `line:column message`.
@@ -74,9 +74,9 @@ fn handwritten_scene_is_read() {
     // An object without a material has that of the previous object; a transform has that of its
     // object.
     assert_eq!(objects.iter().map(|object| object.material).collect::<Vec<_>>(), [Some(2), Some(1)]);
-    let Node::Transform(_, inner) = &objects[1].node else { panic!() };
-    let Node::Group(group) = &inner.node else { panic!() };
-    let Node::Mesh(mesh) = &group.objects[0].node else { panic!() };
+    let ObjectKind::Transform(_, inner) = &objects[1].node else { panic!() };
+    let ObjectKind::Group(group) = &inner.node else { panic!() };
+    let ObjectKind::Mesh(mesh) = &group.objects[0].node else { panic!() };
     assert_eq!((mesh.obj_file.path.as_str(), group.objects[0].material), ("a.obj", Some(1)));
 }
 
@@ -91,9 +91,9 @@ fn material_inside_a_transform_round_trips_in_the_language() {
         let options = course::ReadOptions { dialect, strict: false, compat: 0 };
         let again = course::read(words.as_bytes(), 0, options, &mut Diagnostics::default()).unwrap();
         let objects = again.root.unwrap().objects;
-        let Node::Transform(_, inner) = &objects[0].node else { panic!("{words}") };
+        let ObjectKind::Transform(_, inner) = &objects[0].node else { panic!("{words}") };
         let inner = match &inner.node {
-            Node::Group(group) => &group.objects[0],
+            ObjectKind::Group(group) => &group.objects[0],
             _ => inner,
         };
         assert_eq!((inner.material, objects[1].material), (Some(1), Some(1)), "{words}");

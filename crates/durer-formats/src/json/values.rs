@@ -7,7 +7,7 @@ use crate::course::is_word;
 use crate::report::{Report, counted, shown};
 use crate::shared_report::suggest;
 use durer_diag::Span;
-use durer_scene::describe::{self, Constraint, DescribedList, FileName, Kind};
+use durer_scene::describe::{self, Constraint, DescribedKind, FieldKind, FileName};
 use durer_scene::math::Vec3;
 use durer_scene::scene::Spanned;
 use std::ops::Range;
@@ -184,12 +184,12 @@ impl Reader<'_> {
     }
 
     /// Reads a value of a field's type and checks its constraint.
-    fn value(&mut self, node: &Node, name: &str, kind: Kind, rule: Constraint) -> Option<describe::Value> {
+    fn value(&mut self, node: &Node, name: &str, kind: FieldKind, rule: Constraint) -> Option<describe::Value> {
         let value = match kind {
-            Kind::Float => describe::Value::Float(self.number(node, name)?),
-            Kind::Int => describe::Value::Int(self.whole(node, name)?),
-            Kind::Vec3 => describe::Value::Vec3(Vec3::from(self.numbers::<3>(node, name)?)),
-            Kind::Path => {
+            FieldKind::Float => describe::Value::Float(self.number(node, name)?),
+            FieldKind::Int => describe::Value::Int(self.whole(node, name)?),
+            FieldKind::Vec3 => describe::Value::Vec3(Vec3::from(self.numbers::<3>(node, name)?)),
+            FieldKind::Path => {
                 let path = self.string(node, name)?;
                 if !is_word(path) {
                     let help = "a path must not contain spaces or braces, as in the scene language".to_string();
@@ -201,8 +201,8 @@ impl Reader<'_> {
                 let span = self.span(&(node.at.start + 1..node.at.end - 1));
                 describe::Value::Path(FileName { path: path.to_string(), span })
             }
-            Kind::Word(words) => describe::Value::Word(self.one_of(node, name, words)?.to_string()),
-            Kind::Rows(width) => describe::Value::Rows(self.rows(node, name, width)?),
+            FieldKind::Word(words) => describe::Value::Word(self.one_of(node, name, words)?.to_string()),
+            FieldKind::Rows(width) => describe::Value::Rows(self.rows(node, name, width)?),
         };
         if let Err(violation) = rule.validate(&value) {
             self.error(node.head(), "bad-value", format!("`{name}` {violation}"), None);
@@ -230,11 +230,11 @@ impl Reader<'_> {
     }
 
     /// Reads the fields of a described item from an object, which may have further members.
-    pub fn fields<T: DescribedList>(&mut self, item: &mut T, members: &mut Members) {
+    pub fn fields<T: DescribedKind>(&mut self, item: &mut T, members: &mut Members) {
         for (i, field) in item.fields().iter().enumerate() {
             match members.take(field.name) {
                 Some(node) => {
-                    if let Some(value) = self.value(node, field.name, field.kind, field.rule) {
+                    if let Some(value) = self.value(node, field.name, field.kind, field.constraint) {
                         item.set(i, value);
                     }
                 }
@@ -248,7 +248,7 @@ impl Reader<'_> {
     }
 
     /// Reads a described item from an object that has no other members.
-    pub fn item<T: DescribedList>(&mut self, mut entry: T, node: &Node, name: &str) -> T {
+    pub fn item<T: DescribedKind>(&mut self, mut entry: T, node: &Node, name: &str) -> T {
         if let Some(mut members) = self.members(node, name) {
             self.fields(&mut entry, &mut members);
             self.finish(members);
@@ -279,7 +279,7 @@ impl Reader<'_> {
     }
 
     /// Reads one kind of a described list, selected by the object's `type`.
-    pub fn choice<T: DescribedList>(&mut self, node: &Node, what: &str) -> Option<T> {
+    pub fn choice<T: DescribedKind>(&mut self, node: &Node, what: &str) -> Option<T> {
         let (word, mut members) = self.typed(node, what, &schema::keywords::<T>())?;
         let mut item = schema::of_keyword::<T>(word)?;
         self.fields(&mut item, &mut members);

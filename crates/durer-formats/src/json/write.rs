@@ -1,10 +1,10 @@
 //! Writer of scenes as JSON text.
 
 use super::schema::word;
-use durer_scene::describe::{DescribedList, Value};
+use durer_scene::describe::{DescribedKind, Value};
 use durer_scene::dialect::Dialect;
 use durer_scene::math::Vec3;
-use durer_scene::scene::{Material, MatrixOp, Node, Object, Scene};
+use durer_scene::scene::{Material, MatrixOp, Object, ObjectKind, Scene};
 
 /// Maximum width of a line in columns, unless its value cannot be split.
 const WIDTH: usize = 120;
@@ -62,7 +62,7 @@ fn vector(v: Vec3) -> Json {
 }
 
 /// Members for the fields that have values.
-fn fields<T: DescribedList>(item: &T) -> Vec<(&'static str, Json)> {
+fn fields<T: DescribedKind>(item: &T) -> Vec<(&'static str, Json)> {
     let value = |value: Value| match value {
         Value::Float(x) => number(x),
         Value::Int(i) => Json::Plain(i.to_string()),
@@ -78,7 +78,7 @@ fn typed(word: &str, more: Vec<(&'static str, Json)>) -> Vec<(&'static str, Json
     [("type", string(word))].into_iter().chain(more).collect()
 }
 
-fn item<T: DescribedList>(entry: &T) -> Json {
+fn item<T: DescribedKind>(entry: &T) -> Json {
     Json::Object(typed(word(entry), fields(entry)))
 }
 
@@ -119,15 +119,15 @@ fn objects(list: &[Object]) -> Json {
 
 fn object(object: &Object) -> Json {
     let (word, mut members) = match &object.node {
-        Node::Group(group) => ("Group", vec![("objects", objects(&group.objects))]),
-        Node::Solid(operation, parts) => (operation.keyword(), vec![("objects", objects(parts))]),
-        Node::Transform(ops, inner) => {
+        ObjectKind::Group(group) => ("Group", vec![("objects", objects(&group.objects))]),
+        ObjectKind::Solid(operation, parts) => (operation.keyword(), vec![("objects", objects(parts))]),
+        ObjectKind::Transform(ops, inner) => {
             ("Transform", vec![("matrices", matrices(ops)), ("object", self::object(inner))])
         }
-        Node::Primitive(shape) => (word(shape), fields(shape)),
-        Node::Mesh(mesh) => (word(mesh), fields(mesh)),
-        Node::HeightField(field) => (word(field), fields(field)),
-        Node::Voxels(grid, balls) => {
+        ObjectKind::Primitive(shape) => (word(shape), fields(shape)),
+        ObjectKind::Mesh(mesh) => (word(mesh), fields(mesh)),
+        ObjectKind::HeightField(field) => (word(field), fields(field)),
+        ObjectKind::Voxels(grid, balls) => {
             let balls = balls.iter().map(|ball| Json::Object(fields(ball))).collect();
             (word(grid), fields(grid).into_iter().chain([("balls", Json::List(balls))]).collect())
         }

@@ -6,7 +6,7 @@ use crate::number::parse_f32;
 use crate::shared_report::SharedReport;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::shape::MeshData;
-use durer_scene::shape::tessellate::tube::{Piece, add_tube, of_spline, places, rounded, straight};
+use durer_scene::shape::tessellate::tube::{Piece, add_tube, from_b_spline, sample_curve, straight, with_round_caps};
 use glam::DVec4;
 use std::ops::Range;
 
@@ -37,11 +37,11 @@ pub(super) fn tubes(
     let is_round = !is_spline && count <= MANY;
     for pieces in &curves {
         for run in runs(pieces, is_round) {
-            let mut tube = places(&pieces[run.clone()], count);
+            let mut tube = sample_curve(&pieces[run.clone()], count);
             for place in &mut tube {
-                place.share = (run.start as f64 + place.share * run.len() as f64) / pieces.len() as f64;
+                place.u = (run.start as f64 + place.u * run.len() as f64) / pieces.len() as f64;
             }
-            add_tube(&mut data, &if is_round { rounded(tube) } else { tube }, count > MANY);
+            add_tube(&mut data, &if is_round { with_round_caps(tube) } else { tube }, count > MANY);
         }
     }
     Some(data)
@@ -83,7 +83,7 @@ fn parse(bytes: &[u8], is_spline: bool) -> Result<Vec<Vec<Piece>>, ParseError> {
             }
         }
         let pieces: Vec<Piece> = match is_spline {
-            true => points.windows(4).map(|p| of_spline(&[p[0], p[1], p[2], p[3]])).collect(),
+            true => points.windows(4).map(|p| from_b_spline(&[p[0], p[1], p[2], p[3]])).collect(),
             false => points.windows(2).map(|p| straight([p[0], p[1]])).collect(),
         };
         if pieces.is_empty() && !points.is_empty() {

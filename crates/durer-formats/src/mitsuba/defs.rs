@@ -5,7 +5,7 @@ use durer_diag::Span;
 use durer_scene::describe::FileName;
 use durer_scene::material::{HairMaterial, PrincipledMaterial};
 use durer_scene::math::{Color, Vec3};
-use durer_scene::scene::Picture;
+use durer_scene::scene::TextureImage;
 use durer_scene::texture::Sky;
 use glam::DAffine3;
 use std::rc::Rc;
@@ -68,7 +68,7 @@ pub(super) fn matte(base_color: Color) -> PrincipledMaterial {
 /// Emission of a shape, from its `area` emitter: radiance, and a picture that multiplies it.
 pub(super) struct AreaEmitter {
     pub color: Color,
-    pub picture: Option<Picture>,
+    pub picture: Option<TextureImage>,
     /// True if both sides emit.
     pub both: bool,
     pub at: Span,

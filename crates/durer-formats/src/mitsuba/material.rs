@@ -18,7 +18,7 @@ use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::material::mix::Mix;
 use durer_scene::material::principled::{Backs, Surroundings, Switch, Walls};
 use durer_scene::material::two_sided::TwoSided;
-use durer_scene::material::{HairMaterial, PrincipledMaterial, Solid};
+use durer_scene::material::{HairMaterial, PatternMaterial, PrincipledMaterial};
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Material, Spanned};
 use durer_scene::spectrum::SpectrumSource;
@@ -411,7 +411,7 @@ impl Reader<'_> {
             MaterialDef::Sides(front, back) => match (self.numbered(front, emitter, at), self.numbered(back, None, at))
             {
                 (Some(material1), Some(material2)) => {
-                    Material::Solid(Solid::from(TwoSided { material1, material2 }), Vec::new())
+                    Material::Solid(PatternMaterial::from(TwoSided { material1, material2 }), Vec::new())
                 }
                 (only, other) => return only.or(other),
             },
@@ -419,7 +419,7 @@ impl Reader<'_> {
                 match (self.numbered(a, emitter, at), self.numbered(b, emitter, at)) {
                     (Some(material1), Some(material2)) => {
                         let mix = Mix { material1, material2, share: *share, share_texture: picture.clone() };
-                        Material::Solid(Solid::from(mix), Vec::new())
+                        Material::Solid(PatternMaterial::from(mix), Vec::new())
                     }
                     (Some(only), None) | (None, Some(only)) => {
                         self.report

@@ -15,7 +15,7 @@ use crate::smooth::smoothed;
 use durer_diag::{Diagnostic, Span};
 use durer_image::Transfer;
 use durer_scene::math::Vec3;
-use durer_scene::scene::{Group, Node, Object};
+use durer_scene::scene::{Group, Object, ObjectKind};
 use durer_scene::shape::{Disc, MeshData, Sphere};
 use glam::{DAffine3, DMat3, DVec3};
 use std::rc::Rc;
@@ -80,7 +80,7 @@ impl Reader<'_> {
             match self.number(material.as_ref(), area_emitter.as_ref(), inside, at) {
                 Some(number) => {
                     let inner = Object { node, material: Some(number), span: at };
-                    self.add(objects, inner.placed(map));
+                    self.add(objects, inner.transformed(map));
                 }
                 None if area_emitter.is_some() => report.once(at, "a `null` surface does not emit light"),
                 None => {}
@@ -101,7 +101,7 @@ impl Reader<'_> {
         map: DAffine3,
         objects: &mut Vec<Object>,
         depth: u32,
-    ) -> Option<(Node, DAffine3)> {
+    ) -> Option<(ObjectKind, DAffine3)> {
         let groups = self.parts(plugin, Some("shape"));
         let Some((property, group)) = groups.into_iter().find(|(_, group)| group.kind == "shapegroup") else {
             self.report.bad(plugin.at, "an `instance` needs a `shapegroup`");
@@ -121,8 +121,8 @@ impl Reader<'_> {
         };
         // Count the instance itself too, since its content may be empty.
         if self.room_for(count + 1, property.at) {
-            let inner = Object { node: Node::Group((*group).clone()), material: None, span: plugin.at };
-            objects.push(inner.placed(map));
+            let inner = Object { node: ObjectKind::Group((*group).clone()), material: None, span: plugin.at };
+            objects.push(inner.transformed(map));
         }
         None
     }
@@ -163,7 +163,7 @@ impl Reader<'_> {
         plugin.truth(self.report, "flip_normals").unwrap_or(false)
     }
 
-    fn sphere(&self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+    fn sphere(&self, plugin: &Plugin, map: DAffine3) -> Option<(ObjectKind, DAffine3)> {
         let radius = plugin.positive(self.report, "radius").unwrap_or(1.0);
         let center = plugin.vector(self.report, "center").unwrap_or(DVec3::ZERO);
         if is_inside_out(plugin, self.report) && !self.parts(plugin, Some("emitter")).is_empty() {
@@ -181,20 +181,20 @@ impl Reader<'_> {
             false if map.matrix3 == DMat3::IDENTITY => (map.translation.as_vec3(), DAffine3::IDENTITY),
             false => (Vec3::ZERO, map),
         };
-        Some((Node::Primitive(Sphere { center, radius }.into()), map))
+        Some((ObjectKind::Primitive(Sphere { center, radius }.into()), map))
     }
 
-    fn disk(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+    fn disk(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(ObjectKind, DAffine3)> {
         // Discs have different texture coordinates in Dürer.
         if self.is_pictured(plugin) || self.is_brushed(plugin) || self.is_leaning(plugin) {
             return self.mesh(plugin, "disk", map, || Some(solid::with_tangents(solid::disk())));
         }
         let normal = if self.is_flipped(plugin) { Vec3::NEG_Z } else { Vec3::Z };
         let disc = Disc { center: Vec3::ZERO, normal, radius: 1.0, inner_radius: 0.0 };
-        Some((Node::Primitive(disc.into()), map))
+        Some((ObjectKind::Primitive(disc.into()), map))
     }
 
-    fn cylinder(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+    fn cylinder(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(ObjectKind, DAffine3)> {
         let report = self.report;
         let end = |name, usual| plugin.vector(report, name).unwrap_or(usual);
         let ends = [end("p0", DVec3::ZERO), end("p1", DVec3::Z)];
@@ -228,7 +228,7 @@ impl Reader<'_> {
         Some(number as u32)
     }
 
-    fn file(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+    fn file(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(ObjectKind, DAffine3)> {
         let report = self.report;
         let (path, at) = self.path(plugin)?;
         let number = match plugin.kind.as_str() {
@@ -287,7 +287,7 @@ impl Reader<'_> {
     }
 
     /// Builds tubes for a curve file.
-    fn curves(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+    fn curves(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(ObjectKind, DAffine3)> {
         let report = self.report;
         let (path, at) = self.path(plugin)?;
         let (input, is_spline) = (self.input, plugin.kind == "bsplinecurve");
@@ -302,7 +302,7 @@ impl Reader<'_> {
         name: &str,
         map: DAffine3,
         make: impl FnOnce() -> Option<MeshData>,
-    ) -> Option<(Node, DAffine3)> {
+    ) -> Option<(ObjectKind, DAffine3)> {
         let flipped = self.is_flipped(plugin);
         let name = format!("{name}{}", if flipped { "#flipped" } else { "" });
         let data = match self.meshes.get(&name) {

@@ -78,7 +78,7 @@ impl Reader<'_> {
         let sky = Sky::new(way.as_vec3(), turbidity);
         let to_world = to_world * DAffine3::from_mat3(up.transpose());
         if plugin.kind != "sun" && sky_scale > 0.0 {
-            let found = PI * sky.on_level_ground().dot(LUMINANCE);
+            let found = PI * sky.mean_on_horizontal().dot(LUMINANCE);
             let height = fp::asin_f64(way.y).to_degrees() as f32;
             let scale = sky_scale * level(turbidity, height) / found.max(1.0) / LUMENS;
             self.far(InfiniteLight::Sky { sky, at: plugin.at, scale, to_world });
@@ -102,7 +102,7 @@ impl Reader<'_> {
             self.report.bad(plugin.at, "this date does not exist");
             return Vec3::Y;
         }
-        almanac::way(almanac::sun([number("latitude", 35.689), number("longitude", 139.6917)], &moment))
+        almanac::direction(almanac::sun([number("latitude", 35.689), number("longitude", 139.6917)], &moment))
     }
 }
 

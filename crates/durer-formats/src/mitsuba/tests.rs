@@ -7,7 +7,7 @@ mod shapes;
 
 use crate::testing::{folder, read_in};
 use durer_scene::math::random::Random;
-use durer_scene::scene::{Material, Node, Object, Scene};
+use durer_scene::scene::{Material, Object, ObjectKind, Scene};
 use durer_scene::shape::Primitive;
 use std::path::Path;
 
@@ -26,10 +26,10 @@ fn clean(inner: &str) -> Scene {
 fn objects(scene: &Scene) -> Vec<&Object> {
     fn gather<'a>(object: &'a Object, all: &mut Vec<&'a Object>) {
         match &object.node {
-            Node::Group(group) => group.objects.iter().for_each(|object| gather(object, all)),
-            Node::Transform(_, inner) => gather(inner, all),
+            ObjectKind::Group(group) => group.objects.iter().for_each(|object| gather(object, all)),
+            ObjectKind::Transform(_, inner) => gather(inner, all),
             // Skip the ground of the default scene setup.
-            Node::Primitive(Primitive::Plane(_)) => {}
+            ObjectKind::Primitive(Primitive::Plane(_)) => {}
             _ => all.push(object),
         }
     }

@@ -8,7 +8,7 @@ use durer_diag::Span;
 use durer_image::{decode_linear, decode_srgb};
 use durer_scene::describe::FileName;
 use durer_scene::math::{Color, LUMINANCE, Vec3};
-use durer_scene::scene::{Picture, PictureBytes};
+use durer_scene::scene::{PictureBytes, TextureImage};
 use durer_scene::texture::{Mapping, Wrap};
 use glam::DAffine3;
 
@@ -17,7 +17,7 @@ use glam::DAffine3;
 pub(super) enum Texture {
     Even(Color),
     /// Picture, the factor on its values, and true if its bytes are linear (`raw`).
-    Picture(Picture, Color, bool),
+    Picture(TextureImage, Color, bool),
 }
 
 impl Reader<'_> {
@@ -38,7 +38,7 @@ impl Reader<'_> {
     }
 
     /// Returns the picture with sRGB encoding; converts it if its bytes are linear (`raw`).
-    pub fn without_curve(&self, picture: Picture, raw: bool, at: Span) -> Picture {
+    pub fn without_curve(&self, picture: TextureImage, raw: bool, at: Span) -> TextureImage {
         if raw { self.pictures().recoded(&picture, at, true, |x| x).unwrap_or(picture) } else { picture }
     }
 
@@ -147,7 +147,7 @@ impl Reader<'_> {
     }
 
     /// Reads the picture of a `bitmap` texture.
-    pub fn bitmap(&self, texture: &Plugin) -> Option<Picture> {
+    pub fn bitmap(&self, texture: &Plugin) -> Option<TextureImage> {
         let eight_bits = |name: &str, at| Some((self.pictures().eight_bits(name, at)?, 1.0));
         self.bitmap_as(texture, eight_bits).map(|(picture, _)| picture)
     }
@@ -157,7 +157,7 @@ impl Reader<'_> {
         &self,
         texture: &Plugin,
         make: impl FnOnce(&str, Span) -> Option<(PictureBytes, f32)>,
-    ) -> Option<(Picture, f32)> {
+    ) -> Option<(TextureImage, f32)> {
         let report = self.report;
         let Some(name) = texture.text(report, "filename") else {
             report.bad(texture.at, "a `bitmap` needs a `filename`");
@@ -189,7 +189,7 @@ impl Reader<'_> {
         // In Mitsuba, a picture's alpha does not cut holes; only `mask` does.
         mapping.cutoff = Some(0.0);
         let (bytes, scale) = make(&self.loader.path(&name), texture.place("filename"))?;
-        Some((Picture { bytes, mapping }, scale))
+        Some((TextureImage { bytes, mapping }, scale))
     }
 
     /// Reads the mapping of a texture. In Mitsuba, v grows downwards from the upper edge, as in
@@ -222,7 +222,7 @@ impl Reader<'_> {
             }
         });
         match checkerboard(one, other) {
-            Some((bytes, most)) => Texture::Picture(Picture { bytes, mapping }, Vec3::splat(most), false),
+            Some((bytes, most)) => Texture::Picture(TextureImage { bytes, mapping }, Vec3::splat(most), false),
             None => Texture::Even(0.5 * (one + other)),
         }
     }

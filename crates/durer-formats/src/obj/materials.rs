@@ -13,7 +13,7 @@ use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::Vec3;
-use durer_scene::scene::{Picture, PictureBytes};
+use durer_scene::scene::{PictureBytes, TextureImage};
 use durer_scene::spectrum::space::color_of_xyz;
 use durer_scene::texture::{Channel, Mapping, Wrap};
 use glam::DVec3;
@@ -24,7 +24,7 @@ use std::ops::Range;
 #[derive(Default)]
 pub(super) struct Library {
     pub materials: BTreeMap<String, PrincipledMaterial>,
-    pub pictures: BTreeMap<String, Picture>,
+    pub pictures: BTreeMap<String, TextureImage>,
 }
 
 /// Reads the files of an `mtllib` statement, which names one file with spaces in its name, or
@@ -276,7 +276,7 @@ impl Reader<'_, '_> {
         if behind.is_some() {
             self.leave_out("options after a picture's name", keyword.at);
         }
-        let span = named.first().zip(named.last()).map_or(keyword.at, |(first, last)| first.at.to(last.at));
+        let span = named.first().zip(named.last()).map_or(keyword.at, |(first, last)| first.at.join(last.at));
         let name = named.iter().map(|word| word.text.as_str()).collect::<Vec<_>>().join(" ");
         let name = unquoted(&name).to_string();
         let word = &keyword.text;
@@ -286,7 +286,7 @@ impl Reader<'_, '_> {
             return None;
         };
         let path = format!("{}#{}/{word}", self.path, m.name);
-        self.library.pictures.insert(path.clone(), Picture { bytes: PictureBytes::File(file.path), mapping });
+        self.library.pictures.insert(path.clone(), TextureImage { bytes: PictureBytes::File(file.path), mapping });
         Some(FileName { path, span })
     }
 

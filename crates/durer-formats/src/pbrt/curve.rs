@@ -5,7 +5,9 @@
 use super::params::Params;
 use crate::shared_report::suggest;
 use durer_scene::shape::MeshData;
-use durer_scene::shape::tessellate::tube::{add_tube, of_spline, places, raised, ribbon, widened};
+use durer_scene::shape::tessellate::tube::{
+    add_tube, elevate_degree, from_b_spline, ribbon, sample_curve, with_widths,
+};
 use glam::{DVec3, DVec4};
 
 /// Maximum number of control points of a curve.
@@ -42,7 +44,7 @@ pub(super) fn mesh(params: &Params, reversed: bool, many: bool) -> Option<MeshDa
     if kind == "flat" {
         report.once(params.at, "curves of type `flat` have no counterpart: round tubes are used");
     }
-    let places = places(&widened(&pieces, widths), pieces.len());
+    let places = sample_curve(&with_widths(&pieces, widths), pieces.len());
     if places.len() < 2 {
         return None;
     }
@@ -99,9 +101,9 @@ fn pieces(params: &Params) -> Option<Vec<[DVec3; 4]>> {
     let points: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
     let piece = |p: &[DVec3]| match (basis, degree) {
         ("bezier", 3) => [p[0], p[1], p[2], p[3]],
-        ("bezier", _) => raised([p[0], p[1], p[2]]),
-        (_, 2) => raised([0.5 * (p[0] + p[1]), p[1], 0.5 * (p[1] + p[2])]),
-        _ => of_spline(&[p[0], p[1], p[2], p[3]].map(|p| p.extend(0.0))).map(DVec4::truncate),
+        ("bezier", _) => elevate_degree([p[0], p[1], p[2]]),
+        (_, 2) => elevate_degree([0.5 * (p[0] + p[1]), p[1], 0.5 * (p[1] + p[2])]),
+        _ => from_b_spline(&[p[0], p[1], p[2], p[3]].map(|p| p.extend(0.0))).map(DVec4::truncate),
     };
     Some(points.windows(degree + 1).step_by(step).map(piece).collect())
 }

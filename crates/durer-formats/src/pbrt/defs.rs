@@ -4,7 +4,7 @@ use durer_diag::Span;
 use durer_scene::describe::FileName;
 use durer_scene::material::{HairMaterial, PrincipledMaterial};
 use durer_scene::math::Color;
-use durer_scene::scene::Picture;
+use durer_scene::scene::TextureImage;
 use glam::DAffine3;
 
 /// Material defined in a pbrt file, before a shape uses it and it gets an index in the scene.
@@ -38,7 +38,7 @@ pub(super) struct Opacity {
 pub(super) enum Texture {
     Even(Color),
     /// Picture, and the factor on its values.
-    Picture(Picture, Color),
+    Picture(TextureImage, Color),
 }
 
 /// Area light of pbrt that applies to the shapes after it.

@@ -8,7 +8,7 @@ use super::transform::{look_at, matrix, numbers, rotation, sound};
 use crate::packed::read_unpacked;
 use crate::shared_report::suggest;
 use durer_diag::{Diagnostic, Span};
-use durer_scene::scene::{Node, Object, Scene};
+use durer_scene::scene::{Object, ObjectKind, Scene};
 use durer_scene::source::SourceError;
 use durer_scene::spectrum::space::RgbSpace;
 use glam::{DAffine3, DVec3};
@@ -400,8 +400,8 @@ impl Reader<'_> {
         if !self.growth.has_objects(group.objects.len() + 1, self.report, at) {
             return;
         }
-        let inner = Object { node: Node::Group((*group).clone()), material: None, span: at };
-        let object = inner.placed(self.map(at));
+        let inner = Object { node: ObjectKind::Group((*group).clone()), material: None, span: at };
+        let object = inner.transformed(self.map(at));
         self.add(object);
     }
 
@@ -423,7 +423,7 @@ impl Reader<'_> {
             Ok(bytes) => bytes,
             Err(error) => {
                 let near = match &error {
-                    SourceError::Missing { near: Some(near), .. } => Some(format!("did you mean `{near}`?")),
+                    SourceError::Missing { similar: Some(near), .. } => Some(format!("did you mean `{near}`?")),
                     _ => None,
                 };
                 let missing = Diagnostic::error(format!("{error}")).code("missing-file").at(at);

@@ -21,7 +21,7 @@ use std::rc::Rc;
 /// Returns the colour of a light: the parameter `name` times `scale`.
 fn color(params: &Params, name: &'static str) -> Color {
     if params.language == Language::Third {
-        return params.spectrum(name).map_or(Vec3::ONE, |spectrum| spectrum.plain()) * colored_scale(params);
+        return params.spectrum(name).map_or(Vec3::ONE, |spectrum| spectrum.pbrt_v3_color()) * colored_scale(params);
     }
     let color = params.spectrum(name).map_or(Vec3::ONE, |spectrum| spectrum.light());
     color * params.float("scale").unwrap_or(1.0).max(0.0)
@@ -34,7 +34,7 @@ fn colored_scale(params: &Params) -> Color {
             params.report.once(param.at, "`scale` of a light is a colour in pbrt-v3: this number is ignored");
             Vec3::ONE
         }
-        _ => params.spectrum("scale").map_or(Vec3::ONE, |spectrum| spectrum.plain()),
+        _ => params.spectrum("scale").map_or(Vec3::ONE, |spectrum| spectrum.pbrt_v3_color()),
     }
 }
 

@@ -235,7 +235,7 @@ fn values(text: &mut Lexer, head: Span, report: &SharedReport) -> Option<(Values
         text.next(report);
         sound = add(first.clone(), text);
     }
-    let at = first.at.to(end);
+    let at = first.at.join(end);
     for filled in [!numbers.is_empty(), !texts.is_empty(), !bools.is_empty()] {
         kinds += u32::from(filled);
     }

@@ -9,7 +9,7 @@ use crate::files::mesh_file;
 use crate::shared_report::suggest;
 use durer_diag::Span;
 use durer_scene::math::{Color, Vec3};
-use durer_scene::scene::{Node, Object};
+use durer_scene::scene::{Object, ObjectKind};
 use durer_scene::shape::{Disc, MeshData, Sphere};
 use glam::{DAffine3, DMat3, DVec3};
 use std::f32::consts::PI;
@@ -23,7 +23,7 @@ const MANY: usize = 1 << 20;
 
 /// Geometry of a pbrt shape, before it gets a material and is added to the scene.
 struct MaterialDef {
-    node: Node,
+    node: ObjectKind,
     /// Total area in world space, and the number of area lights that it counts as.
     area: f32,
     lights: usize,
@@ -133,7 +133,7 @@ impl Reader<'_> {
         };
         if self.growth.has_objects(1, self.report, at) {
             let inner = Object { node: made.node, material: Some(material), span: at };
-            self.add(inner.placed(made.map));
+            self.add(inner.transformed(made.map));
         }
     }
 
@@ -163,7 +163,7 @@ impl Reader<'_> {
             true => (map.translation.as_vec3(), DAffine3::IDENTITY),
             false => (Vec3::ZERO, map),
         };
-        let node = Node::Primitive(Sphere { center, radius }.into());
+        let node = ObjectKind::Primitive(Sphere { center, radius }.into());
         Some(MaterialDef { node, area: 4.0 * PI * world * world, lights: 1, map, inside_out: flipped })
     }
 
@@ -182,7 +182,7 @@ impl Reader<'_> {
         let normal = if flipped { Vec3::NEG_Z } else { Vec3::Z };
         let stretch = map.transform_vector3(DVec3::X).cross(map.transform_vector3(DVec3::Y)).length() as f32;
         let area = PI * (radius * radius - inner_radius * inner_radius) * stretch;
-        let node = Node::Primitive(Disc { center: height * Vec3::Z, normal, radius, inner_radius }.into());
+        let node = ObjectKind::Primitive(Disc { center: height * Vec3::Z, normal, radius, inner_radius }.into());
         Some(MaterialDef { node, area, lights: 1, map, inside_out: false })
     }
 

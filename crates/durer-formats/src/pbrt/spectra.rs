@@ -30,7 +30,7 @@ fn spectrum_of(param: &Param, params: &Params) -> Option<SpectrumSource> {
         (SpectrumSource::Blackbody(_), [_, factor, ..]) => *factor as f32,
         _ => 1.0,
     };
-    Some(SpectrumSource::Rgb(factor.max(0.0) * found.plain()))
+    Some(SpectrumSource::Rgb(factor.max(0.0) * found.pbrt_v3_color()))
 }
 
 fn written(param: &Param, params: &Params) -> Option<SpectrumSource> {

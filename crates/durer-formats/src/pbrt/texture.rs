@@ -10,7 +10,7 @@ use durer_diag::Span;
 use durer_image::{decode_srgb, linear_from_srgb};
 use durer_scene::describe::FileName;
 use durer_scene::math::{Color, Vec3, fp};
-use durer_scene::scene::{Picture, PictureBytes};
+use durer_scene::scene::{PictureBytes, TextureImage};
 use durer_scene::texture::{Mapping, Wrap};
 use std::rc::Rc;
 
@@ -173,7 +173,7 @@ impl Reader<'_> {
     }
 
     /// Returns the mean of a picture, for a parameter that can only be a number in Dürer.
-    pub fn mean_of(&self, params: &Params, name: &'static str, picture: &Picture) -> Option<f32> {
+    pub fn mean_of(&self, params: &Params, name: &'static str, picture: &TextureImage) -> Option<f32> {
         let at = params.place(name);
         self.report.once(at, format!("a picture for `{name}` has no counterpart: its mean is used"));
         self.pictures().mean(picture, at)
@@ -220,7 +220,7 @@ impl Reader<'_> {
     }
 
     /// Adds a picture to the scene and returns its name.
-    pub fn asset(&mut self, picture: Picture, span: Span) -> FileName {
+    pub fn asset(&mut self, picture: TextureImage, span: Span) -> FileName {
         pictures::asset(&mut self.scene, picture, span)
     }
 
@@ -260,7 +260,7 @@ impl Reader<'_> {
             let scale = Vec3::splat(params.float("scale").unwrap_or(1.0));
             let plain = params.truth("gamma") == Some(false);
             let bytes = self.eight_bits(name, at)?;
-            let picture = Picture { bytes, mapping };
+            let picture = TextureImage { bytes, mapping };
             let curved = if plain { self.pictures().recoded(&picture, at, true, |x| x) } else { None };
             return Some(Texture::Picture(curved.unwrap_or(picture), scale));
         }
@@ -268,7 +268,7 @@ impl Reader<'_> {
         let inverted = params.truth("invert") == Some(true);
         params.known(&["maxanisotropy", "trilinear"]);
         let scale = Vec3::splat(params.float("scale").unwrap_or(1.0));
-        let picture = Picture { bytes: self.eight_bits(name, at)?, mapping };
+        let picture = TextureImage { bytes: self.eight_bits(name, at)?, mapping };
         if gamma.is_none() && !inverted {
             return Some(Texture::Picture(picture, scale));
         }
@@ -317,7 +317,7 @@ impl Reader<'_> {
         mapping.transform = [[0.5 * su, 0.0, 0.25 + 0.5 * du], [0.0, 0.5 * sv, 0.25 + 0.5 * dv]];
         mapping.wrap = [Wrap::Clamp; 2];
         match pictures::four([v01, v11, v00, v10]) {
-            Some((bytes, most)) => Texture::Picture(Picture { bytes, mapping }, Vec3::splat(most)),
+            Some((bytes, most)) => Texture::Picture(TextureImage { bytes, mapping }, Vec3::splat(most)),
             None => Texture::Even(0.25 * (v00 + v01 + v10 + v11)),
         }
     }
@@ -345,7 +345,7 @@ impl Reader<'_> {
         mapping.transform = [[0.5 * su, 0.0, 0.5 * du], [0.0, 0.5 * sv, 1.0 - 0.5 * sv - 0.5 * dv]];
         mapping.nearest = true;
         match pictures::checkerboard(odd, even) {
-            Some((bytes, most)) => Texture::Picture(Picture { bytes, mapping }, Vec3::splat(most)),
+            Some((bytes, most)) => Texture::Picture(TextureImage { bytes, mapping }, Vec3::splat(most)),
             None => Texture::Even(0.5 * (even + odd)),
         }
     }

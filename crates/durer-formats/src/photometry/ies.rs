@@ -5,7 +5,7 @@
 //! angles, and the candela values.
 
 use durer_diag::{Diagnostic, Diagnostics, Severity, Span};
-use durer_scene::light::photometric::{Profile, ProfileKind};
+use durer_scene::light::photometric::{PhotometricProfile, ProfileKind};
 
 /// Maximum number of angles; more than any photometer measures.
 const MAX_ANGLES: f64 = 4_000.0;
@@ -78,13 +78,13 @@ impl Numbers<'_> {
 }
 
 /// Reads an IES file. Returns `None` after pushing errors to the diagnostics.
-pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<Profile> {
+pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<PhotometricProfile> {
     let (profile, odd) = parse(text, file).map_err(|error| diagnostics.push(*error)).ok()?;
     odd.into_iter().for_each(|warning| diagnostics.push(warning));
     Some(profile)
 }
 
-fn parse(text: &str, file: u32) -> Result<(Profile, Vec<Diagnostic>), Box<Diagnostic>> {
+fn parse(text: &str, file: u32) -> Result<(PhotometricProfile, Vec<Diagnostic>), Box<Diagnostic>> {
     let mut numbers = Numbers { text, at: 0, file };
     let mut tilt = None;
     let mut place = 0;
@@ -183,12 +183,12 @@ fn parse(text: &str, file: u32) -> Result<(Profile, Vec<Diagnostic>), Box<Diagno
     if let Some(more) = more {
         warn(more, "more numbers follow the last candela value: are there decimal commas or too few angles?");
     }
-    Ok((Profile { kind, vertical, horizontal, candela }, odd))
+    Ok((PhotometricProfile { kind, vertical, horizontal, candela }, odd))
 }
 
 /// Encodes a profile as an IES file that reads back bit for bit.
-pub fn write(profile: &Profile) -> Vec<u8> {
-    let Profile { kind, vertical, horizontal, candela } = profile;
+pub fn write(profile: &PhotometricProfile) -> Vec<u8> {
+    let PhotometricProfile { kind, vertical, horizontal, candela } = profile;
     let kind = match kind {
         ProfileKind::C => 1,
         ProfileKind::B => 2,
@@ -211,7 +211,7 @@ mod tests {
     use super::*;
     use durer_diag::Files;
 
-    fn parsed(text: &str) -> Result<Profile, String> {
+    fn parsed(text: &str) -> Result<PhotometricProfile, String> {
         let mut files = Files::default();
         let file = files.add("lamp.ies", text.as_bytes().into());
         let mut diagnostics = Diagnostics::default();
@@ -252,7 +252,7 @@ mod tests {
             let rising = |count: usize| (0..count).map(|i| i as f32 * 90.0 / count as f32).collect::<Vec<_>>();
             let (vertical, horizontal) = (rising(23), rising(11));
             let candela = (0..23 * 11).map(|i| random.unit() * [1e-6, 0.1, 1.0, 2e3, 1e9][i % 5]).collect();
-            let profile = Profile { kind, vertical, horizontal, candela };
+            let profile = PhotometricProfile { kind, vertical, horizontal, candela };
             let text = String::from_utf8(write(&profile)).unwrap();
             assert!(text.lines().all(|line| line.len() < 256));
             assert_eq!(parsed(&text).unwrap(), profile);
@@ -293,7 +293,7 @@ mod tests {
         let file = |horizontal: &str, values: &str, count: usize| {
             parsed(&format!("TILT=NONE\n1 1 1 2 {count} 1 2 0 0 0 1 1 1\n0 90\n{horizontal}\n{values}")).unwrap()
         };
-        let at = |profile: &Profile, degrees: f64| {
+        let at = |profile: &PhotometricProfile, degrees: f64| {
             let (sin, cos) = durer_scene::math::fp::sin_cos_degrees(degrees);
             profile.at(durer_scene::math::Vec3::new(cos as f32, sin as f32, 0.0))
         };

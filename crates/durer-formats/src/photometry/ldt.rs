@@ -10,7 +10,7 @@
 //! it.
 
 use durer_diag::{Diagnostic, Diagnostics, Severity, Span};
-use durer_scene::light::photometric::{Profile, ProfileKind};
+use durer_scene::light::photometric::{PhotometricProfile, ProfileKind};
 
 /// Limits of the format: number of planes, and number of angles in each plane.
 const MAX_PLANES: usize = 721;
@@ -113,11 +113,11 @@ pub(super) fn recognise(text: &str) -> bool {
 }
 
 /// Reads a EULUMDAT file. Returns `None` after pushing errors to the diagnostics.
-pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<Profile> {
+pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<PhotometricProfile> {
     parse(text, file, diagnostics).map_err(|error| diagnostics.push(*error)).ok()
 }
 
-fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<Profile> {
+fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<PhotometricProfile> {
     let mut lines = Lines { text, at: 0, file };
     lines.skip(2, "manufacturer and file type")?;
     let symmetry = match lines.whole("symmetry", 0, 4)? {
@@ -162,7 +162,7 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<Prof
         }
         candela.push(value);
     }
-    let mut profile = Profile { kind: ProfileKind::C, vertical, horizontal, candela };
+    let mut profile = PhotometricProfile { kind: ProfileKind::C, vertical, horizontal, candela };
     match symmetry {
         // Close the circle with the first plane.
         Symmetry::None if count > 1 && profile.horizontal[count - 1] < 360.0 => {
@@ -210,7 +210,7 @@ impl Lines<'_> {
 }
 
 /// Replaces the half-planes from -90 to 90 degrees by their mirror images, from 90 to 270 degrees.
-fn turned(profile: &mut Profile) {
+fn turned(profile: &mut PhotometricProfile) {
     let verticals = profile.vertical.len();
     profile.horizontal = profile.horizontal.iter().rev().map(|c| 180.0 - c).collect();
     profile.candela = profile.candela.chunks(verticals).rev().flatten().copied().collect();
@@ -241,7 +241,7 @@ mod tests {
         lines.join("\r\n") + "\r\n"
     }
 
-    fn parsed(text: &str) -> Result<Profile, String> {
+    fn parsed(text: &str) -> Result<PhotometricProfile, String> {
         let mut files = Files::default();
         let file = files.add("lamp.ldt", text.as_bytes().into());
         let mut diagnostics = Diagnostics::default();

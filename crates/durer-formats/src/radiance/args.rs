@@ -25,7 +25,7 @@ impl RadPrimitive {
             let word = words.next();
             if word.is_none() {
                 let error = Diagnostic::error("the file ends within this primitive").code("incomplete");
-                report.push(error.at(start.to(words.end())));
+                report.push(error.at(start.join(words.end())));
             }
             word
         };
@@ -49,7 +49,7 @@ impl RadPrimitive {
 
     /// Returns the span of the type and the name.
     pub fn at(&self) -> Span {
-        self.kind.at.to(self.name.at)
+        self.kind.at.join(self.name.at)
     }
 
     /// Returns true if the number of real arguments is one of `counts`; reports an error if not.

@@ -4,7 +4,7 @@ use super::args::RadPrimitive;
 use super::converted::{ConvertedModifier, Kind, PatternEffect};
 use super::state::Reader;
 use crate::number::parse_f32;
-use durer_scene::material::Solid;
+use durer_scene::material::PatternMaterial;
 use durer_scene::material::mix::Mix;
 use durer_scene::scene::{Material, Spanned};
 use std::collections::BTreeMap;
@@ -41,7 +41,7 @@ impl Reader<'_> {
                 numbers[0]
             }
             [Some(material1), Some(material2)] => {
-                let solid = Solid::from(Mix { material1, material2, share, share_texture: None });
+                let solid = PatternMaterial::from(Mix { material1, material2, share, share_texture: None });
                 self.scene.materials.push(Spanned { value: Material::Solid(solid, Vec::new()), span: at });
                 Some((self.scene.materials.len() - 1) as u32)
             }
@@ -70,7 +70,7 @@ impl Reader<'_> {
         let Spanned { mut value, span } = self.scene.materials[number as usize].clone();
         match &mut value {
             Material::Principled(layers) => layers.opacity *= share,
-            Material::Solid(Solid::Mix(mix), _) => {
+            Material::Solid(PatternMaterial::Mix(mix), _) => {
                 mix.material1 = self.there_in_part(mix.material1, share, made);
                 mix.material2 = self.there_in_part(mix.material2, share, made);
             }

@@ -69,7 +69,7 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     }
     let mut scene = reader.finish();
     // The manual of rtrace specifies 179 lm/W, and these weights of the colours.
-    scene.lumens = Some(179.0 * Vec3::new(0.265, 0.670, 0.065));
+    scene.lumens_per_watt = Some(179.0 * Vec3::new(0.265, 0.670, 0.065));
     let sound = !report.has_errors() && !diagnostics.has_errors();
     diagnostics.extend(report.finish());
     sound.then_some(scene)

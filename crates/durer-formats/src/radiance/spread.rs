@@ -6,7 +6,7 @@
 use super::args::RadPrimitive;
 use super::data::Table;
 use super::words::Word;
-use durer_scene::light::photometric::{Profile, ProfileKind};
+use durer_scene::light::photometric::{PhotometricProfile, ProfileKind};
 use durer_scene::math::fp;
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
@@ -176,7 +176,7 @@ impl Spread {
 
     /// Returns the light profile of a surface, per unit of area and radiance. `shows` returns the
     /// projected area in a direction, as a fraction of the area, and the cosine to the normal.
-    pub fn profile(&self, shows: impl Fn(DVec3) -> (f64, f64)) -> Profile {
+    pub fn profile(&self, shows: impl Fn(DVec3) -> (f64, f64)) -> PhotometricProfile {
         let [down, front] = self.axes();
         let side = front.cross(down);
         let whole = |steps: u32, most: f64| (0..=steps).map(move |i| most * f64::from(i) / f64::from(steps));
@@ -212,6 +212,6 @@ impl Spread {
             (horizontal, candela) = (vec![0.0], candela[..rows].to_vec());
         }
         let single = |angles: Vec<f64>| angles.into_iter().map(|angle| angle as f32).collect();
-        Profile { kind: ProfileKind::C, vertical: single(vertical), horizontal: single(horizontal), candela }
+        PhotometricProfile { kind: ProfileKind::C, vertical: single(vertical), horizontal: single(horizontal), candela }
     }
 }

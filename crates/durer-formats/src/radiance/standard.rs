@@ -7,7 +7,7 @@ use super::state::Reader;
 use super::view::View;
 use super::words::Word;
 use durer_diag::Span;
-use durer_scene::scene::Node;
+use durer_scene::scene::ObjectKind;
 use durer_scene::shape::Shape;
 use glam::DVec3;
 
@@ -90,7 +90,7 @@ impl Reader<'_> {
     fn cube(&self) -> [DVec3; 2] {
         let objects = self.scene.root.iter().flat_map(|root| &root.objects);
         let shapes = objects.filter_map(|object| match &object.node {
-            Node::Primitive(shape) => shape.bounds().map(|bounds| [bounds.min, bounds.max]),
+            ObjectKind::Primitive(shape) => shape.bounds().map(|bounds| [bounds.min, bounds.max]),
             _ => None,
         });
         let all = shapes.chain(self.bodies.values().map(|body| body.bounds()));

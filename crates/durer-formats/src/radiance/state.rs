@@ -13,7 +13,7 @@ use crate::shared_report::{SharedReport, suggest};
 use durer_diag::{Diagnostic, Span};
 use durer_scene::camera::Projection;
 use durer_scene::medium::Fog;
-use durer_scene::scene::{Group, Node, Object, Scene, Spanned};
+use durer_scene::scene::{Group, Object, ObjectKind, Scene, Spanned};
 use glam::DAffine3;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -277,7 +277,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds an object to the scene.
-    pub fn add(&mut self, node: Node, material: u32, span: Span) {
+    pub fn add(&mut self, node: ObjectKind, material: u32, span: Span) {
         let object = Object { node, material: Some(material), span };
         self.scene.root.get_or_insert_default().objects.push(object);
     }

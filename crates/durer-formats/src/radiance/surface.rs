@@ -9,7 +9,7 @@ use super::state::Reader;
 use super::words::Word;
 use durer_diag::Span;
 use durer_scene::math::Vec3;
-use durer_scene::scene::Node;
+use durer_scene::scene::ObjectKind;
 use durer_scene::shape::{Disc, Sphere};
 use glam::DVec3;
 
@@ -55,7 +55,7 @@ impl Reader<'_> {
                     _ => number,
                 };
                 let sphere = Sphere { center: center.as_vec3(), radius: radius as f32 };
-                self.add(Node::Primitive(sphere.into()), number, at);
+                self.add(ObjectKind::Primitive(sphere.into()), number, at);
             }
             "polygon" => {
                 if primitive.numbers.len() < 9 || !primitive.numbers.len().is_multiple_of(3) {
@@ -93,7 +93,7 @@ impl Reader<'_> {
                 let [center, normal] = [center, normal].map(|v| v.as_vec3());
                 if inner < outer {
                     let ring = Disc { center, normal, radius: outer as f32, inner_radius: inner as f32 };
-                    self.add(Node::Primitive(ring.into()), number, at);
+                    self.add(ObjectKind::Primitive(ring.into()), number, at);
                 }
             }
             kind @ ("cone" | "cup" | "cylinder" | "tube") => {

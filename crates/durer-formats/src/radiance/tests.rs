@@ -10,7 +10,7 @@ use crate::testing::{folder, read_in};
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Walls;
 use durer_scene::math::Vec3;
-use durer_scene::scene::{Material, Node, Scene};
+use durer_scene::scene::{Material, ObjectKind, Scene};
 use std::path::Path;
 
 fn read(text: &str) -> (Option<Scene>, Vec<String>) {
@@ -51,7 +51,9 @@ fn names_comments_quotes_and_aliases() {
          \"other wall\" sphere ball\n0\n0\n4 1 2 3 .5",
     );
     let object = &scene.root.as_ref().unwrap().objects[0];
-    let Node::Primitive(durer_scene::shape::Primitive::Sphere(sphere)) = &object.node else { panic!("{object:?}") };
+    let ObjectKind::Primitive(durer_scene::shape::Primitive::Sphere(sphere)) = &object.node else {
+        panic!("{object:?}")
+    };
     assert_eq!((sphere.center, sphere.radius), (Vec3::new(1.0, 2.0, 3.0), 0.5));
     assert_eq!(layers(&scene, object.material.unwrap()).base_color, Vec3::new(0.1, 0.2, 0.3));
     // A second definition of a name takes effect from its position on. An alias with `inherit`
@@ -99,7 +101,7 @@ fn commands_are_emulated() {
     assert_eq!(messages, [""; 0]);
     let scene = scene.unwrap();
     let object = &scene.root.as_ref().unwrap().objects[0];
-    let Node::Primitive(durer_scene::shape::Primitive::Sphere(sphere)) = &object.node else { panic!() };
+    let ObjectKind::Primitive(durer_scene::shape::Primitive::Sphere(sphere)) = &object.node else { panic!() };
     assert!((sphere.center - Vec3::new(0.0, 4.0, 0.0)).length() < 1e-6, "{}", sphere.center);
     assert_eq!(layers(&scene, object.material.unwrap()).base_color, Vec3::X);
 }
@@ -113,7 +115,7 @@ fn materials_become_layers() {
     // In rough plastic the specular part is white at all angles. Its roughness is the square root
     // of the slope.
     let scene = clean("void plastic m 0 0 5 .8 .4 .2 .04 .09 m sphere s 0 0 4 1 2 3 .5");
-    let Material::Solid(durer_scene::material::Solid::Mix(mix), _) = &scene.materials[2].value else {
+    let Material::Solid(durer_scene::material::PatternMaterial::Mix(mix), _) = &scene.materials[2].value else {
         panic!("no mixture")
     };
     assert_eq!((mix.material1, mix.material2, mix.share), (0, 1, 0.04));

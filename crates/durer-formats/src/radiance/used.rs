@@ -2,7 +2,7 @@
 
 use super::args::RadPrimitive;
 use super::state::Reader;
-use durer_scene::material::{Pattern, Solid};
+use durer_scene::material::{Pattern, PatternMaterial};
 use durer_scene::scene::{Material, Scene};
 
 /// Function files that are installed with Radiance.
@@ -58,7 +58,7 @@ pub(super) fn keep_used(scene: &mut Scene) {
         used[i - 1]
     });
     for material in &mut scene.materials {
-        if let Material::Solid(Solid::Mix(mix), _) = &mut material.value {
+        if let Material::Solid(PatternMaterial::Mix(mix), _) = &mut material.value {
             (mix.material1, mix.material2) = (numbers[mix.material1 as usize], numbers[mix.material2 as usize]);
         }
     }

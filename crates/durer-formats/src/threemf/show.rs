@@ -10,7 +10,7 @@ use crate::sticks::{ball, stick};
 use durer_diag::Span;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::{Vec2, Vec3};
-use durer_scene::scene::{self, Material, Node, Picture, PictureBytes, Scene};
+use durer_scene::scene::{self, Material, ObjectKind, PictureBytes, Scene, TextureImage};
 use durer_scene::shape::MeshData;
 use durer_scene::texture::{Mapping, Wrap};
 use glam::DAffine3;
@@ -88,10 +88,10 @@ impl SceneMaker<'_> {
                 self.report.bad(place.at, message);
                 return objects;
             }
-            let inner = scene::Object { node: Node::Group((*group).clone()), material: None, span: place.at };
+            let inner = scene::Object { node: ObjectKind::Group((*group).clone()), material: None, span: place.at };
             // Translations are in the unit of the part that contains the build item.
             let unit = self.models.get(part).and_then(Option::as_ref).map_or(1.0, |model| model.unit);
-            objects.push(inner.placed(DAffine3 { translation: unit * place.map.translation, ..place.map }));
+            objects.push(inner.transformed(DAffine3 { translation: unit * place.map.translation, ..place.map }));
         }
         objects
     }
@@ -217,7 +217,7 @@ impl SceneMaker<'_> {
             };
         }
         let made = bytes.map(|bytes| {
-            let picture = Picture { bytes: PictureBytes::Here(name.clone(), bytes), mapping };
+            let picture = TextureImage { bytes: PictureBytes::Memory(name.clone(), bytes), mapping };
             let base_color_texture = Some(asset(&mut self.scene, picture, *named));
             self.scene
                 .add_material(Material::Principled(Box::new(PrincipledMaterial { base_color_texture, ..plastic() })))

@@ -6,7 +6,7 @@ use durer_diag::{Diagnostics, Files};
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::Vec3;
 use durer_scene::math::random::Random;
-use durer_scene::scene::{Material, MatrixOp, MatrixRules, Node, Object, Scene};
+use durer_scene::scene::{Material, MatrixOp, MatrixRules, Object, ObjectKind, Scene};
 use durer_scene::shape::Primitive;
 use glam::{DAffine3, DVec3};
 use rawzip::{CompressionMethod, ZipArchiveWriter};
@@ -83,10 +83,12 @@ fn clean(model: &str) -> Scene {
 fn shown(scene: &Scene) -> Vec<(DAffine3, &Object)> {
     fn gather<'a>(object: &'a Object, map: DAffine3, all: &mut Vec<(DAffine3, &'a Object)>) {
         match &object.node {
-            Node::Group(group) => group.objects.iter().for_each(|object| gather(object, map, all)),
-            Node::Transform(ops, inner) => gather(inner, map * MatrixOp::product(ops, MatrixRules::default()), all),
+            ObjectKind::Group(group) => group.objects.iter().for_each(|object| gather(object, map, all)),
+            ObjectKind::Transform(ops, inner) => {
+                gather(inner, map * MatrixOp::product(ops, MatrixRules::default()), all)
+            }
             // Skip the default ground.
-            Node::Primitive(Primitive::Plane(_)) => {}
+            ObjectKind::Primitive(Primitive::Plane(_)) => {}
             _ => all.push((map, object)),
         }
     }

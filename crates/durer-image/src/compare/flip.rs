@@ -28,7 +28,7 @@ const EDGE_WIDTH: f64 = 0.082;
 
 /// Exponent of colour differences, and the knee of their mapping. 2020, sections 4.1 to 4.3.
 const COLOR_EXPONENT: f32 = 0.7;
-const KNEE: (f32, f32) = (0.4, 0.95);
+const ERROR_KNEE: (f32, f32) = (0.4, 0.95);
 
 /// Filters and constants of FLIP, which depend only on the viewing distance.
 struct Filters {
@@ -124,7 +124,7 @@ fn flip_of(
     let finish = |_: usize, rows: &[Vec<f32>], out: &mut [f32]| {
         let (first, second) = rows.split_at(8);
         for (x, out) in out.iter_mut().enumerate() {
-            *out = error(&filters, &seen(&filters, first, x), &seen(&filters, second, x));
+            *out = error(&filters, &pixel_features(&filters, first, x), &pixel_features(&filters, second, x));
         }
     };
     filter_rows((width, height), 6, &both, planes, finish)
@@ -156,7 +156,7 @@ fn picture_filters(filters: &Filters) -> [Filter<'_>; 8] {
 }
 
 #[inline(always)]
-fn seen(filters: &Filters, rows: &[Vec<f32>], x: usize) -> PixelFeatures {
+fn pixel_features(filters: &Filters, rows: &[Vec<f32>], x: usize) -> PixelFeatures {
     let [l, rg, wide, narrow, edge_x, edge_y, point_x, point_y] = std::array::from_fn(|filter| rows[filter][x]);
     let by = filters.blue_yellow[0].0 * wide + filters.blue_yellow[1].0 * narrow;
     // Clip colours that a screen cannot show.
@@ -176,11 +176,11 @@ fn error(filters: &Filters, a: &PixelFeatures, b: &PixelFeatures) -> f32 {
     }
     // Differences that occur in ordinary pictures are mapped to most of the range. Larger ones
     // share the rest.
-    let (difference, knee) = (fp::pow(distance, COLOR_EXPONENT), KNEE.0 * filters.largest);
+    let (difference, knee) = (fp::pow(distance, COLOR_EXPONENT), ERROR_KNEE.0 * filters.largest);
     let color = if difference < knee {
-        KNEE.1 / knee * difference
+        ERROR_KNEE.1 / knee * difference
     } else {
-        KNEE.1 + (difference - knee) / (filters.largest - knee) * (1.0 - KNEE.1)
+        ERROR_KNEE.1 + (difference - knee) / (filters.largest - knee) * (1.0 - ERROR_KNEE.1)
     };
     let feature = (a.edge - b.edge).abs().max((a.point - b.point).abs());
     let feature = (std::f32::consts::FRAC_1_SQRT_2 * feature).sqrt();

@@ -82,7 +82,7 @@ pub(super) fn measure(pair: &Pair, tolerance: f32) -> (Measures, Vec<f32>) {
         let large = pair.width.min(pair.height) >= 11;
         (large.then_some(1.0), vec![0.0; pair.reference.len()])
     } else {
-        let [a, b] = pair.shown();
+        let [a, b] = pair.displayed_light();
         let similarity = || match pair.scale {
             Scale::Display => ssim(pair.width, pair.height, &pair.reference, &pair.test),
             Scale::Linear => {

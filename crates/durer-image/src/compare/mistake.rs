@@ -15,7 +15,7 @@ mod tests;
 use super::picture::{Pair, Scale};
 use durer_bvh::math::Vec3;
 use rayon::prelude::*;
-use rule::{Rule, TURNS};
+use rule::{ORIENTATIONS, Rule};
 use sample::{Sample, View};
 
 /// A common mistake, such as a mirrored picture, that explains a difference between two pictures.
@@ -24,7 +24,7 @@ pub struct Finding {
     /// Keyword of the mistake, such as `mirrored`, `shifted`, or `factor`.
     pub kind: &'static str,
     /// Description of the mistake, without a full stop: "it is mirrored left to right".
-    pub words: String,
+    pub description: String,
     /// Share of the squared difference, from 0 to 1, that this finding and the ones before it
     /// explain.
     ///
@@ -33,29 +33,29 @@ pub struct Finding {
 }
 
 /// Minimum share of the difference that a mistake in a part of the picture must explain.
-const WELL: f64 = 0.9;
+const MIN_EXPLAINED_PART: f64 = 0.9;
 /// Unexplained share of the difference above which findings are dropped, since a wrong explanation
 /// is worse than none.
 const MAX_LEFT: f64 = 0.05;
 /// Unexplained share above which findings are dropped if they have fitted parameters.
 const MAX_LEFT_FITTED: f64 = 0.02;
 /// Minimum number of differing pixels in which a pattern can be recognised.
-const FEWEST: usize = 12;
+const MIN_DIFFERING_PIXELS: usize = 12;
 /// Minimum share of the remaining difference that a finding must explain.
-const ENOUGH: f64 = 0.5;
+const MAX_REST: f64 = 0.5;
 /// Maximum number of mistakes that are combined.
-const STEPS: usize = 3;
+const MAX_MISTAKES: usize = 3;
 
 /// Maximum remaining difference, relative to the variance of the picture. Without this limit, a
 /// nearly uniform picture could be explained from any reference by moving and darkening it.
 const MAX_CONTRAST: f64 = 0.1;
 /// Minimum share of the pixels that the rules must reproduce for a finding without "something more
 /// is different".
-const MATCHED: f64 = 0.97;
+const MIN_MATCHED: f64 = 0.97;
 /// Smallest visible difference, for values from 0 to 1.
-const SEEN: f32 = 2.5 / 255.0;
+const VISIBLE: f32 = 2.5 / 255.0;
 /// Half a step of 8-bit values.
-const HALF: f32 = 0.5 / 255.0;
+const HALF_STEP: f32 = 0.5 / 255.0;
 
 /// Finds the mistakes that best explain the difference between two pictures. The list is empty if
 /// no mistake explains half of the difference. If a single mistake explains nearly all of it but
@@ -71,16 +71,16 @@ pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
     let fit = Fit::of(pair, &rules, &test, &samples);
     let fitted = rules.iter().any(Rule::is_fitted);
     let most = if fitted { MAX_LEFT_FITTED } else { MAX_LEFT };
-    let close = !rules.is_empty() && fit.left <= most && fit.contrast <= MAX_CONTRAST;
-    if close && fit.matched >= MATCHED {
+    let close = !rules.is_empty() && fit.remaining <= most && fit.contrast <= MAX_CONTRAST;
+    if close && fit.matched >= MIN_MATCHED {
         return findings;
     }
     let differing = samples.iter().filter(|s| (s.test - s.reference).abs().max_element() > 1.5 / 255.0).count();
-    let part = (differing >= FEWEST).then(|| parts::finding(&reference, &test, &samples)).flatten();
+    let part = (differing >= MIN_DIFFERING_PIXELS).then(|| parts::finding(&reference, &test, &samples)).flatten();
     match part {
-        Some(finding) if finding.explained > WELL => vec![finding],
+        Some(finding) if finding.explained > MIN_EXPLAINED_PART => vec![finding],
         _ if close && findings.len() == 1 => {
-            findings[0].words = format!("nearly: {}, but something more is different", findings[0].words);
+            findings[0].description = format!("nearly: {}, but something more is different", findings[0].description);
             findings
         }
         _ => Vec::new(),
@@ -92,21 +92,21 @@ pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
 fn chain(pair: &Pair, test: &View, total: f64) -> (Vec<Rule>, Vec<Finding>) {
     let (mut rules, mut findings) = (Vec::new(), Vec::new());
     let mut reference = pair.reference.clone();
-    for _ in 0..STEPS {
+    for _ in 0..MAX_MISTAKES {
         let view = View::of(pair, &reference);
         let samples = sample::samples(&view, test);
         let Some((rule, rest)) = best_rule(&view, test, &samples) else { break };
         // A rule that explains less than half of the remaining difference is a guess.
-        if rest > ENOUGH * difference(&samples) {
+        if rest > MAX_REST * difference(&samples) {
             break;
         }
-        let left = rest / total;
-        findings.push(Finding { kind: rule.kind(), words: words::of(&rule), explained: 1.0 - left });
+        let remaining = rest / total;
+        findings.push(Finding { kind: rule.kind(), description: words::of(&rule), explained: 1.0 - remaining });
         rules.push(rule);
-        if left < 0.02 {
+        if remaining < 0.02 {
             break;
         }
-        reference = rule.made(&view);
+        reference = rule.apply(&view);
     }
     (rules, findings)
 }
@@ -115,7 +115,7 @@ fn chain(pair: &Pair, test: &View, total: f64) -> (Vec<Rule>, Vec<Finding>) {
 /// moves in from outside are ignored.
 struct Fit {
     /// Remaining share of the squared difference.
-    left: f64,
+    remaining: f64,
     /// Remaining squared difference, relative to the picture's variance.
     contrast: f64,
     /// Share of correctly reproduced pixels (up to rounding), among those in which the reproduction
@@ -126,14 +126,14 @@ struct Fit {
 impl Fit {
     fn of(pair: &Pair, rules: &[Rule], test: &View, samples: &[Sample]) -> Fit {
         // The values of the reference may have been rounded by up to half a step.
-        let made = |offset: f32| {
+        let with_offset = |offset: f32| {
             let start: Vec<Vec3> = pair.reference.iter().map(|value| pair.scale.clamp(*value + offset)).collect();
-            rules.iter().fold(start, |pixels, rule| rule.made(&View::of(pair, &pixels)))
+            rules.iter().fold(start, |pixels, rule| rule.apply(&View::of(pair, &pixels)))
         };
-        let step = if pair.scale == Scale::Display { HALF } else { 0.0 };
-        let [low, exact, high] = [-step, 0.0, step].map(made);
+        let step = if pair.scale == Scale::Display { HALF_STEP } else { 0.0 };
+        let [low, exact, high] = [-step, 0.0, step].map(with_offset);
         let known: Vec<&Sample> =
-            samples.iter().filter(|s| rules.iter().all(|rule| rule.knows(test, s.x, s.y))).collect();
+            samples.iter().filter(|s| rules.iter().all(|rule| rule.determines(test, s.x, s.y))).collect();
         let count = known.len().max(1) as f64;
         let mean = known.iter().map(|s| s.test).sum::<Vec3>() / count as f32;
         let (mut total, mut rest, mut spread, mut either, mut agree) = (0.0, 0.0, 0.0, 0_usize, 0_usize);
@@ -142,16 +142,20 @@ impl Fit {
             total += f64::from((s.test - s.reference).length_squared());
             rest += f64::from((s.test - exact[at]).length_squared());
             spread += f64::from((s.test - mean).length_squared());
-            let seen = |a: Vec3, b: Vec3| (a - b).abs().max_element() > pair.scale.visible(b, SEEN);
-            if seen(s.reference, s.test) || seen(exact[at], s.test) {
-                let slack = Vec3::splat(pair.scale.visible(s.test, SEEN));
+            let is_visible = |a: Vec3, b: Vec3| (a - b).abs().max_element() > pair.scale.visible(b, VISIBLE);
+            if is_visible(s.reference, s.test) || is_visible(exact[at], s.test) {
+                let slack = Vec3::splat(pair.scale.visible(s.test, VISIBLE));
                 let (least, most) = (low[at].min(high[at]).min(exact[at]), low[at].max(high[at]).max(exact[at]));
                 either += 1;
                 agree += usize::from(s.test.cmpge(least - slack).all() && s.test.cmple(most + slack).all());
             }
         }
         let share = |part: f64, of: f64| if of > 0.0 { part / of } else { 1.0 };
-        Fit { left: share(rest, total), contrast: share(rest, spread), matched: share(agree as f64, either as f64) }
+        Fit {
+            remaining: share(rest, total),
+            contrast: share(rest, spread),
+            matched: share(agree as f64, either as f64),
+        }
     }
 }
 
@@ -164,9 +168,9 @@ fn difference(samples: &[Sample]) -> f64 {
 /// nearly as good, the simplest one is chosen.
 fn best_rule(reference: &View, test: &View, samples: &[Sample]) -> Option<(Rule, f64)> {
     let rules = candidates(reference, test, samples);
-    let left =
-        |rule: &Rule| -> f64 { samples.iter().map(|s| f64::from(rule.rest(reference, s).length_squared())).sum() };
-    let rests: Vec<f64> = rules.par_iter().map(left).collect();
+    let residual =
+        |rule: &Rule| -> f64 { samples.iter().map(|s| f64::from(rule.residual(reference, s).length_squared())).sum() };
+    let rests: Vec<f64> = rules.par_iter().map(residual).collect();
     let least = rests.iter().copied().fold(f64::INFINITY, f64::min);
     // Candidates are sorted by increasing number of parameters.
     let near = 1.25 * least + 0.01 * difference(samples);
@@ -176,14 +180,15 @@ fn best_rule(reference: &View, test: &View, samples: &[Sample]) -> Option<(Rule,
 /// Candidate rules with fitted parameters, sorted by increasing number of parameters.
 fn candidates(reference: &View, test: &View, samples: &[Sample]) -> Vec<Rule> {
     let square = reference.width == reference.height;
-    let mut rules: Vec<Rule> = TURNS.iter().filter(|t| square || !t.exchanges()).map(|&t| Rule::Turned(t)).collect();
+    let mut rules: Vec<Rule> =
+        ORIENTATIONS.iter().filter(|t| square || !t.exchanges()).map(|&t| Rule::Reoriented(t)).collect();
     rules.extend([[2, 1, 0], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1]].map(Rule::Channels));
     rules.extend([
         Rule::Grey,
         Rule::Inverted([true; 3]),
-        Rule::ThingsInverted,
-        Rule::CurveOnceMore,
-        Rule::CurveOnceLess,
+        Rule::InvertedExceptBlack,
+        Rule::GammaTwice,
+        Rule::GammaMissing,
     ]);
     rules.extend((1..7).map(|bits| Rule::Inverted(std::array::from_fn(|c| bits >> c & 1 == 1))));
     rules.extend(shift::shift(reference, test).map(|(dx, dy)| Rule::Shifted(dx, dy)));

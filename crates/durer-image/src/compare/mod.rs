@@ -32,7 +32,7 @@ pub struct Options {
     /// least 0.
     pub tolerance: f32,
     /// Share of pixels, from 0 to 1, that may exceed the tolerance.
-    pub allowed: f64,
+    pub allowed_share: f64,
     /// Transfer function for a floating-point picture that is compared with an 8-bit one.
     pub transfer: Transfer,
 }
@@ -40,7 +40,7 @@ pub struct Options {
 impl Default for Options {
     /// A tolerance of 1/255 in every pixel, which covers rounding.
     fn default() -> Self {
-        Options { tolerance: 1.0 / 255.0, allowed: 0.0, transfer: Transfer::Srgb }
+        Options { tolerance: 1.0 / 255.0, allowed_share: 0.0, transfer: Transfer::Srgb }
     }
 }
 
@@ -127,7 +127,7 @@ pub fn memory_needed(reference: &Encoded, test: &Encoded) -> Result<u64, Compare
         return Err(CompareError::Sizes { reference: size(a), test: size(b) });
     }
     let compared = (a.0 as u64 * a.1 as u64).saturating_mul(BYTES_PER_PIXEL);
-    Ok(compared.max(reference.needed().saturating_add(test.needed())))
+    Ok(compared.max(reference.memory_needed().saturating_add(test.memory_needed())))
 }
 
 /// Compares a picture with a reference.
@@ -153,7 +153,7 @@ pub fn compare(reference: &Picture, test: &Picture, options: &Options) -> Result
     let pixels = (pair.width * pair.height) as f64;
     let verdict = if measures.largest.is_none() && pair.finite_differs.is_empty() {
         Verdict::Identical
-    } else if measures.over_tolerance as f64 <= options.allowed * pixels {
+    } else if measures.over_tolerance as f64 <= options.allowed_share * pixels {
         Verdict::Same
     } else {
         Verdict::Different

@@ -163,7 +163,7 @@ impl Pair {
     }
 
     /// Linear light from 0 to 1 of both pictures, as a screen would show it.
-    pub fn shown(&self) -> [Vec<Vec3>; 2] {
+    pub fn displayed_light(&self) -> [Vec<Vec3>; 2] {
         let table: [f32; 256] = std::array::from_fn(|value| decode_srgb(value as u8));
         // Nearly all values are 255ths.
         let decode = |value: f32| {

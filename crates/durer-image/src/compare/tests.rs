@@ -111,7 +111,7 @@ fn tolerance_and_share() {
     let mut b = a.clone();
     b.image.pixels[45] = Vec3::splat(102.0 / 255.0);
     let verdict = |tolerance: f32, allowed: f64| {
-        compare(&a, &b, &Options { tolerance, allowed, ..Options::default() }).unwrap().verdict
+        compare(&a, &b, &Options { tolerance, allowed_share: allowed, ..Options::default() }).unwrap().verdict
     };
     assert_eq!(verdict(1.0 / 255.0, 0.0), Verdict::Different);
     assert_eq!(verdict(2.0 / 255.0, 0.0), Verdict::Same);

@@ -1,7 +1,7 @@
 //! Adapters for the decoders and encoders of the `image` crate.
 
-use super::limits::room_for;
-use super::{Head, Image, Image8, ImageError, Raster};
+use super::limits::try_vec;
+use super::{Image, Image8, ImageError, ImageHeader, Raster};
 use ::image::{ColorType, ExtendedColorType, ImageDecoder, ImageEncoder, ImageFormat, ImageReader};
 use durer_bvh::math::Vec3;
 use std::io::Cursor;
@@ -19,20 +19,20 @@ pub fn decoder<'a>(
 }
 
 /// Converts the header that a decoder has read.
-pub fn head(decoder: &impl ImageDecoder) -> Head {
+pub fn head(decoder: &impl ImageDecoder) -> ImageHeader {
     let ((width, height), color) = (decoder.dimensions(), decoder.color_type());
     let stored: u64 = color.bytes_per_pixel().into();
-    let eight = color.bytes_per_pixel() == color.channel_count();
-    Head {
+    let is_eight_bit = color.bytes_per_pixel() == color.channel_count();
+    ImageHeader {
         width: width.into(),
         height: height.into(),
-        eight,
-        bytes_per_pixel: match (color, eight) {
+        is_eight_bit,
+        bytes_per_pixel: match (color, is_eight_bit) {
             (ColorType::Rgb8, _) => stored,
             (_, true) => stored + size_of::<[u8; 3]>() as u64 + u64::from(color.has_alpha()),
             (_, false) => stored + size_of::<[f32; 4]>() as u64,
         },
-        spare: 0,
+        extra_bytes: 0,
     }
 }
 
@@ -43,13 +43,13 @@ pub fn raster(name: &'static str, decoder: impl ImageDecoder) -> Result<Raster, 
     let count = width as usize * height as usize;
     let malformed = |error| ImageError::malformed(name, error);
     if color == ColorType::Rgb8 {
-        let mut pixels = room_for(count, [0; 3])?;
+        let mut pixels = try_vec(count, [0; 3])?;
         decoder.read_image(pixels.as_flattened_mut()).map_err(malformed)?;
         return Ok(Raster::Eight(Image8 { width, height, pixels, alpha: Vec::new() }));
     }
-    let mut bytes = room_for(count * usize::from(color.bytes_per_pixel()), 0)?;
+    let mut bytes = try_vec(count * usize::from(color.bytes_per_pixel()), 0)?;
     decoder.read_image(&mut bytes).map_err(malformed)?;
-    let eight = |pixel: &[u8]| if pixel.len() < 3 { [pixel[0]; 3] } else { [pixel[0], pixel[1], pixel[2]] };
+    let rgb = |pixel: &[u8]| if pixel.len() < 3 { [pixel[0]; 3] } else { [pixel[0], pixel[1], pixel[2]] };
     let sixteen = |bytes: &[u8]| f32::from(u16::from_ne_bytes([bytes[0], bytes[1]])) / 65535.0;
     let float = |bytes: &[u8]| f32::from_ne_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
     let pixels = bytes.chunks_exact(color.bytes_per_pixel().into());
@@ -59,7 +59,7 @@ pub fn raster(name: &'static str, decoder: impl ImageDecoder) -> Result<Raster, 
                 true => filled(count, pixels.clone().map(|pixel| pixel[pixel.len() - 1]))?,
                 false => Vec::new(),
             };
-            Raster::Eight(Image8 { width, height, pixels: filled(count, pixels.map(eight))?, alpha })
+            Raster::Eight(Image8 { width, height, pixels: filled(count, pixels.map(rgb))?, alpha })
         }
         ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16 => {
             let alpha = match color.has_alpha() {
@@ -82,7 +82,7 @@ pub fn raster(name: &'static str, decoder: impl ImageDecoder) -> Result<Raster, 
 
 fn filled<T>(count: usize, items: impl Iterator<Item = T>) -> Result<Vec<T>, ImageError> {
     let mut all = Vec::new();
-    all.try_reserve_exact(count).map_err(|_| ImageError::no_room(count, size_of::<T>()))?;
+    all.try_reserve_exact(count).map_err(|_| ImageError::out_of_memory(count, size_of::<T>()))?;
     all.extend(items.take(count));
     Ok(all)
 }

@@ -6,8 +6,10 @@
 //! `normals.R`. A layer with coverage also has a channel A, and its colours are premultiplied, as
 //! the format requires.
 
-use super::limits::{pixel_limit, room_for};
-use super::{Depth, Format, Head, Image, ImageError, Layer, LayerKind, Raster, RowFormat, Strip, WriteOptions};
+use super::limits::{pixel_limit, try_vec};
+use super::{
+    Depth, Format, Image, ImageError, ImageHeader, Layer, LayerKind, Raster, RowFormat, RowLayout, WriteOptions,
+};
 use ::exr::meta::BlockDescription;
 use ::exr::meta::attribute::{ChannelDescription, SampleType};
 use ::exr::meta::header::Header;
@@ -27,9 +29,9 @@ pub const FORMAT: Format = Format {
     name: NAME,
     extensions: &["exr"],
     depth: Depth::Float,
-    layers: true,
-    most_side: u32::MAX,
-    begins: |bytes| bytes.starts_with(&MAGIC),
+    supports_layers: true,
+    max_side: u32::MAX,
+    has_signature: |bytes| bytes.starts_with(&MAGIC),
     head,
     decode,
     encode,
@@ -45,14 +47,14 @@ fn letters(alpha: bool) -> &'static [&'static str] {
 }
 
 /// Size of a row's values in bytes.
-fn row_bytes(strip: &Strip) -> u64 {
+fn row_bytes(strip: &RowLayout) -> u64 {
     4 * letters(strip.alpha).len() as u64 * u64::from(strip.width)
 }
 
 /// Creates the beginning of a file: magic number, version, attributes, and offsets of the rows.
 ///
 /// Source: *OpenEXR File Layout*, openexr.com.
-fn head_of_rows(strip: &Strip) -> Result<Vec<u8>, ImageError> {
+fn head_of_rows(strip: &RowLayout) -> Result<Vec<u8>, ImageError> {
     // A row begins with its number and its size.
     let row = 8 + row_bytes(strip);
     if row > i32::MAX as u64 {
@@ -71,7 +73,7 @@ fn head_of_rows(strip: &Strip) -> Result<Vec<u8>, ImageError> {
     Ok(bytes)
 }
 
-fn row(strip: &Strip, y: u32, pixels: &[Vec3], coverage: &[f32], out: &mut Vec<u8>) {
+fn row(strip: &RowLayout, y: u32, pixels: &[Vec3], coverage: &[f32], out: &mut Vec<u8>) {
     out.extend(y.to_le_bytes());
     out.extend((row_bytes(strip) as u32).to_le_bytes());
     if strip.alpha {
@@ -173,7 +175,7 @@ fn window(header: &Header) -> (Vec2<usize>, Vec2<i64>) {
     (shown.size, Vec2(offset(from.0, shown.position.0), offset(from.1, shown.position.1)))
 }
 
-fn head(bytes: &[u8]) -> Result<Head, ImageError> {
+fn head(bytes: &[u8]) -> Result<ImageHeader, ImageError> {
     let meta = MetaData::read_from_buffered(bytes, false).map_err(malformed)?;
     let (header, _) = chosen(&meta)?;
     if header.channels.list.iter().any(|channel| channel.sampling != Vec2(1, 1)) {
@@ -188,12 +190,12 @@ fn head(bytes: &[u8]) -> Result<Head, ImageError> {
         return Err(ImageError::TooLarge { width: width as u64, height: height as u64, bytes: bytes.len() });
     }
     let (Vec2(width, height), _) = window(header);
-    Ok(Head {
+    Ok(ImageHeader {
         width: width as u64,
         height: height as u64,
-        eight: false,
+        is_eight_bit: false,
         bytes_per_pixel: size_of::<Vec3>() as u64,
-        spare: block.saturating_mul(3 * header.channels.bytes_per_pixel as u64),
+        extra_bytes: block.saturating_mul(3 * header.channels.bytes_per_pixel as u64),
     })
 }
 
@@ -202,7 +204,7 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     let (header, [red, green, blue]) = chosen(&meta)?;
     let (Vec2(width, height), offset) = window(header);
     // Allocate all memory in advance, so that an error is returned if there is not enough.
-    let room = RefCell::new(room_for(width * height, Vec3::ZERO)?);
+    let room = RefCell::new(try_vec(width * height, Vec3::ZERO)?);
     let is_grey = red == green;
     let channels = read().no_deep_data().largest_resolution_level().specific_channels();
     let picture = if is_grey {
@@ -293,7 +295,7 @@ mod tests {
     #[test]
     fn rows_are_read_by_others() {
         for alpha in [false, true] {
-            let strip = Strip { width: 3, height: 2, alpha, display: Default::default() };
+            let strip = RowLayout { width: 3, height: 2, alpha, display: Default::default() };
             let rows = [[Vec3::X, Vec3::new(f32::MAX, -2.0, 1e-30), Vec3::ZERO], [Vec3::Y, Vec3::Z, Vec3::ONE]];
             let shares = if alpha { &[0.25, 0.5, 1.0][..] } else { &[] };
             let mut bytes = Vec::new();
@@ -313,7 +315,7 @@ mod tests {
             let expected = alpha.then(|| FlatSamples::F32([shares, shares].concat()));
             assert_eq!(values("A"), expected);
         }
-        let strip = Strip { width: 1 << 30, height: 1, alpha: false, display: Default::default() };
+        let strip = RowLayout { width: 1 << 30, height: 1, alpha: false, display: Default::default() };
         assert!(head_of_rows(&strip).is_err());
     }
 
@@ -338,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_seen_everywhere_has_alpha() {
+    fn partial_coverage_adds_alpha() {
         let shares: Vec<f32> = (0..6).map(|i| i as f32 / 5.0).collect();
         let seen = layer("depth", LayerKind::Data, 1.0).with_coverage(shares.clone());
         let mut out = Vec::new();

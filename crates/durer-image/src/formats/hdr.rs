@@ -2,7 +2,7 @@
 //!
 //! Source: Ward, *Real Pixels*, Graphics Gems II, and Radiance's `color.c`.
 
-use super::{Depth, Format, ImageError, RowFormat, Strip, codec, rows};
+use super::{Depth, Format, ImageError, RowFormat, RowLayout, codec, rows};
 use ::image::codecs::hdr::HdrDecoder;
 use durer_bvh::math::Vec3;
 
@@ -12,9 +12,9 @@ pub const FORMAT: Format = Format {
     name: NAME,
     extensions: &["hdr"],
     depth: Depth::Float,
-    layers: false,
-    most_side: u32::MAX,
-    begins: |bytes| bytes.starts_with(b"#?RADIANCE") || bytes.starts_with(b"#?RGBE"),
+    supports_layers: false,
+    max_side: u32::MAX,
+    has_signature: |bytes| bytes.starts_with(b"#?RADIANCE") || bytes.starts_with(b"#?RGBE"),
     head: |bytes| Ok(codec::head(&decoder(bytes)?)),
     decode: |bytes| codec::raster(NAME, decoder(bytes)?),
     encode: |layers, options, out| rows::encode(&ROWS, layers, options, out),
@@ -36,7 +36,7 @@ fn decoder(bytes: &[u8]) -> Result<HdrDecoder<&[u8]>, ImageError> {
 
 static ROWS: RowFormat = RowFormat {
     bottom_up: false,
-    head: |Strip { width, height, .. }| {
+    head: |RowLayout { width, height, .. }| {
         Ok(format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n").into_bytes())
     },
     row: |strip, _, pixels, _, out| {

@@ -1,7 +1,7 @@
 //! JPEG: 8 bits per channel, for photographs and textures. Writing is not supported, since the
 //! format is lossy.
 
-use super::{Depth, Format, Head, ImageError, codec};
+use super::{Depth, Format, ImageError, ImageHeader, codec};
 use ::image::ImageFormat;
 
 const NAME: &str = "JPEG";
@@ -57,13 +57,13 @@ pub const FORMAT: Format = Format {
     name: NAME,
     extensions: &["jpg", "jpeg"],
     depth: Depth::EightBit,
-    layers: false,
-    most_side: 65535,
-    begins: |bytes| bytes.starts_with(b"\xff\xd8\xff"),
+    supports_layers: false,
+    max_side: 65535,
+    has_signature: |bytes| bytes.starts_with(b"\xff\xd8\xff"),
     head: |bytes| {
         let head = codec::head(&codec::decoder(NAME, ImageFormat::Jpeg, bytes)?);
         let beside = frame(bytes).map_or(6 * head.width * head.height, decoding_bytes);
-        Ok(Head { spare: bytes.len() as u64 + beside, ..head })
+        Ok(ImageHeader { extra_bytes: bytes.len() as u64 + beside, ..head })
     },
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Jpeg, bytes)?),
     encode: |_, _, _| Err(ImageError::unsupported(NAME, "writing is not supported: choose PNG")),

@@ -3,7 +3,7 @@
 //!
 //! Source: *KTX File Format Specification*, version 2.0, Khronos Group.
 
-use super::{Depth, Format, Head, Image, Image8, ImageError, Raster};
+use super::{Depth, Format, Image, Image8, ImageError, ImageHeader, Raster};
 use durer_bvh::math::Vec3;
 use std::io::Read;
 
@@ -14,9 +14,9 @@ pub const FORMAT: Format = Format {
     name: NAME,
     extensions: &["ktx2"],
     depth: Depth::Float,
-    layers: false,
-    most_side: u32::MAX,
-    begins: |bytes| bytes.starts_with(MARK),
+    supports_layers: false,
+    max_side: u32::MAX,
+    has_signature: |bytes| bytes.starts_with(MARK),
     head,
     decode,
     encode: |_, _, _| Err(ImageError::unsupported(NAME, "writing is not supported: choose PNG or OpenEXR")),
@@ -25,7 +25,7 @@ pub const FORMAT: Format = Format {
 
 /// Number type of the channels of a KTX2 texture.
 #[derive(Clone, Copy, PartialEq)]
-enum Number {
+enum ChannelType {
     /// Unsigned 8-bit, 0 to 255.
     Eight,
     /// Unsigned 16-bit, 0 to 65535.
@@ -36,41 +36,41 @@ enum Number {
     Single,
 }
 
-impl Number {
+impl ChannelType {
     fn size(self) -> usize {
         match self {
-            Number::Eight => 1,
-            Number::Sixteen | Number::Half => 2,
-            Number::Single => 4,
+            ChannelType::Eight => 1,
+            ChannelType::Sixteen | ChannelType::Half => 2,
+            ChannelType::Single => 4,
         }
     }
 }
 
 /// Supported Vulkan formats: number of the format, number of channels, channel type, and true if
 /// blue comes first.
-const KINDS: [(u32, usize, Number, bool); 22] = [
-    (9, 1, Number::Eight, false),
-    (15, 1, Number::Eight, false),
-    (16, 2, Number::Eight, false),
-    (22, 2, Number::Eight, false),
-    (23, 3, Number::Eight, false),
-    (29, 3, Number::Eight, false),
-    (30, 3, Number::Eight, true),
-    (36, 3, Number::Eight, true),
-    (37, 4, Number::Eight, false),
-    (43, 4, Number::Eight, false),
-    (44, 4, Number::Eight, true),
-    (50, 4, Number::Eight, true),
-    (70, 1, Number::Sixteen, false),
-    (77, 2, Number::Sixteen, false),
-    (84, 3, Number::Sixteen, false),
-    (91, 4, Number::Sixteen, false),
-    (76, 1, Number::Half, false),
-    (83, 2, Number::Half, false),
-    (90, 3, Number::Half, false),
-    (97, 4, Number::Half, false),
-    (106, 3, Number::Single, false),
-    (109, 4, Number::Single, false),
+const KINDS: [(u32, usize, ChannelType, bool); 22] = [
+    (9, 1, ChannelType::Eight, false),
+    (15, 1, ChannelType::Eight, false),
+    (16, 2, ChannelType::Eight, false),
+    (22, 2, ChannelType::Eight, false),
+    (23, 3, ChannelType::Eight, false),
+    (29, 3, ChannelType::Eight, false),
+    (30, 3, ChannelType::Eight, true),
+    (36, 3, ChannelType::Eight, true),
+    (37, 4, ChannelType::Eight, false),
+    (43, 4, ChannelType::Eight, false),
+    (44, 4, ChannelType::Eight, true),
+    (50, 4, ChannelType::Eight, true),
+    (70, 1, ChannelType::Sixteen, false),
+    (77, 2, ChannelType::Sixteen, false),
+    (84, 3, ChannelType::Sixteen, false),
+    (91, 4, ChannelType::Sixteen, false),
+    (76, 1, ChannelType::Half, false),
+    (83, 2, ChannelType::Half, false),
+    (90, 3, ChannelType::Half, false),
+    (97, 4, ChannelType::Half, false),
+    (106, 3, ChannelType::Single, false),
+    (109, 4, ChannelType::Single, false),
 ];
 
 /// A KTX2 texture: its header, and the data of its largest mip level.
@@ -78,7 +78,7 @@ struct Texture<'a> {
     width: u64,
     height: u64,
     channels: usize,
-    number: Number,
+    number: ChannelType,
     blue_first: bool,
     /// Data of the largest mip level. `packed` is true if it is compressed with zlib.
     level: &'a [u8],
@@ -174,13 +174,13 @@ fn value<'a>(mut entries: &'a [u8], key: &[u8]) -> Option<&'a [u8]> {
     }
 }
 
-fn head(bytes: &[u8]) -> Result<Head, ImageError> {
+fn head(bytes: &[u8]) -> Result<ImageHeader, ImageError> {
     let texture = open(bytes)?;
-    let eight = texture.number == Number::Eight;
+    let is_eight_bit = texture.number == ChannelType::Eight;
     let unpacked = if texture.packed { texture.pixel_size() as u64 } else { 0 };
     // The picture and its opacity.
-    let bytes_per_pixel = unpacked + if eight { 4 } else { 16 };
-    Ok(Head { width: texture.width, height: texture.height, eight, bytes_per_pixel, spare: 0 })
+    let bytes_per_pixel = unpacked + if is_eight_bit { 4 } else { 16 };
+    Ok(ImageHeader { width: texture.width, height: texture.height, is_eight_bit, bytes_per_pixel, extra_bytes: 0 })
 }
 
 fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
@@ -208,7 +208,7 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     };
     let places = (0..height).flat_map(|row| (0..width).map(move |column| (row, column)));
     let (width, height) = (texture.width as u32, texture.height as u32);
-    if texture.number == Number::Eight {
+    if texture.number == ChannelType::Eight {
         let mut picture = Image8 { width, height, pixels: Vec::with_capacity(count), alpha: Vec::with_capacity(count) };
         for (row, column) in places {
             let [color @ .., alpha] = texture.swizzled(at(row, column), |channel| channel[0], 0, 255);
@@ -218,8 +218,8 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
         return Ok(Raster::Eight(picture));
     }
     let number = |channel: &[u8]| match (texture.number, channel) {
-        (Number::Sixteen, &[a, b]) => f32::from(u16::from_le_bytes([a, b])) / 65535.0,
-        (Number::Half, &[a, b]) => half(u16::from_le_bytes([a, b])),
+        (ChannelType::Sixteen, &[a, b]) => f32::from(u16::from_le_bytes([a, b])) / 65535.0,
+        (ChannelType::Half, &[a, b]) => half(u16::from_le_bytes([a, b])),
         (_, &[a, b, c, d]) => f32::from_le_bytes([a, b, c, d]),
         _ => 0.0,
     };
@@ -231,7 +231,7 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
         alphas.push(alpha);
     }
     Ok(match texture.number {
-        Number::Sixteen => Raster::Sixteen(picture, alphas),
+        ChannelType::Sixteen => Raster::Sixteen(picture, alphas),
         _ => Raster::Float(picture, alphas),
     })
 }
@@ -304,10 +304,10 @@ mod tests {
         for &(kind, channels, number, blue_first) in &KINDS {
             // Red and blue differ. Channels beyond the third are ignored.
             let one: Vec<u8> = match number {
-                Number::Eight => vec![255],
-                Number::Sixteen => vec![255, 255],
-                Number::Half => white.to_vec(),
-                Number::Single => 1f32.to_le_bytes().to_vec(),
+                ChannelType::Eight => vec![255],
+                ChannelType::Sixteen => vec![255, 255],
+                ChannelType::Half => white.to_vec(),
+                ChannelType::Single => 1f32.to_le_bytes().to_vec(),
             };
             let zero = vec![0; one.len()];
             let pixel: Vec<u8> = (0..channels).flat_map(|i| if i == 0 { one.clone() } else { zero.clone() }).collect();

@@ -1,7 +1,7 @@
 //! Portable float map: red, green, and blue as 32-bit floats, little-endian, bottom row first.
 
-use super::limits::room_for;
-use super::{Depth, Format, Head, Image, ImageError, Raster, RowFormat, rows};
+use super::limits::try_vec;
+use super::{Depth, Format, Image, ImageError, ImageHeader, Raster, RowFormat, rows};
 use durer_bvh::math::Vec3;
 
 const NAME: &str = "PFM";
@@ -10,9 +10,9 @@ pub const FORMAT: Format = Format {
     name: NAME,
     extensions: &["pfm"],
     depth: Depth::Float,
-    layers: false,
-    most_side: u32::MAX,
-    begins: |bytes| matches!(bytes, [b'P', b'F' | b'f', space, ..] if space.is_ascii_whitespace()),
+    supports_layers: false,
+    max_side: u32::MAX,
+    has_signature: |bytes| matches!(bytes, [b'P', b'F' | b'f', space, ..] if space.is_ascii_whitespace()),
     head,
     decode,
     encode: |layers, options, out| rows::encode(&ROWS, layers, options, out),
@@ -49,10 +49,10 @@ fn open(bytes: &[u8]) -> Result<PfmFile<'_>, ImageError> {
     Ok(PfmFile { width, height, channels, little_endian: scale < 0.0, samples: rest })
 }
 
-fn head(bytes: &[u8]) -> Result<Head, ImageError> {
+fn head(bytes: &[u8]) -> Result<ImageHeader, ImageError> {
     let PfmFile { width, height, .. } = open(bytes)?;
     let bytes_per_pixel = size_of::<Vec3>() as u64;
-    Ok(Head { width: width.into(), height: height.into(), eight: false, bytes_per_pixel, spare: 0 })
+    Ok(ImageHeader { width: width.into(), height: height.into(), is_eight_bit: false, bytes_per_pixel, extra_bytes: 0 })
 }
 
 fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
@@ -68,7 +68,7 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
         [grey, ..] => Vec3::splat(sample(grey)),
         [] => Vec3::ZERO,
     };
-    let mut pixels = room_for(count, Vec3::ZERO)?;
+    let mut pixels = try_vec(count, Vec3::ZERO)?;
     let rows = samples.chunks_exact(width as usize * channels).rev();
     pixels.iter_mut().zip(rows.flat_map(|row| row.chunks_exact(channels))).for_each(|(to, pixel)| *to = color(pixel));
     Ok(Raster::Float(Image { width, height, pixels }, Vec::new()))
@@ -116,7 +116,7 @@ mod tests {
     fn a_declared_size_is_not_believed() {
         assert!(matches!(read(b"PF 2000 2000 -1\n", ""), Err(ImageError::Malformed { .. })));
         assert!(matches!(read(b"PF 99999 99999 -1\n", ""), Err(ImageError::TooLarge { .. })));
-        assert!(matches!(read(b"PF 0 5 -1\n", ""), Err(ImageError::Size { .. })));
+        assert!(matches!(read(b"PF 0 5 -1\n", ""), Err(ImageError::InvalidSize { .. })));
         assert!(read(b"PF -1 5 -1\n", "").is_err());
     }
 }

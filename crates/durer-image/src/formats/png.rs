@@ -1,6 +1,6 @@
 //! Portable Network Graphics: 8 bits per channel, lossless, with alpha for layers with coverage.
 
-use super::{Depth, Format, Head, ImageError, Raster, RowFormat, RowWriter, Strip, codec, rows};
+use super::{Depth, Format, ImageError, ImageHeader, Raster, RowFormat, RowLayout, RowWriter, codec, rows};
 use ::image::ImageFormat;
 use ::png::{BitDepth, ColorType, Compression, Encoder, Filter};
 use std::borrow::Cow;
@@ -13,9 +13,9 @@ pub const FORMAT: Format = Format {
     name: NAME,
     extensions: &["png"],
     depth: Depth::EightBit,
-    layers: false,
-    most_side: u32::MAX,
-    begins: |bytes| bytes.starts_with(MARK),
+    supports_layers: false,
+    max_side: u32::MAX,
+    has_signature: |bytes| bytes.starts_with(MARK),
     head,
     decode,
     encode: |layers, options, out| rows::encode(&ROWS, layers, options, out),
@@ -23,9 +23,9 @@ pub const FORMAT: Format = Format {
 };
 
 /// Writes a PNG file row by row, and compresses the rows as they arrive.
-pub(super) fn packed<T, E: From<io::Error>>(
+pub(super) fn write_compressed<T, E: From<io::Error>>(
     format: &'static RowFormat,
-    strip: Strip,
+    strip: RowLayout,
     out: &mut dyn Write,
     rows: impl FnOnce(&mut RowWriter) -> Result<T, E>,
 ) -> Result<T, E> {
@@ -35,16 +35,16 @@ pub(super) fn packed<T, E: From<io::Error>>(
     encoder.set_compression(Compression::Fast);
     encoder.set_filter(Filter::Adaptive);
     let mut file = encoder.write_header().map_err(io::Error::from)?;
-    let mut packed = file.stream_writer().map_err(io::Error::from)?;
-    let made = rows(&mut RowWriter::new(format, strip, &mut packed))?;
-    packed.finish().map_err(io::Error::from)?;
+    let mut compressed = file.stream_writer().map_err(io::Error::from)?;
+    let made = rows(&mut RowWriter::new(format, strip, &mut compressed))?;
+    compressed.finish().map_err(io::Error::from)?;
     file.finish().map_err(io::Error::from)?;
     Ok(made)
 }
 
 /// Reads the size and pixel type from the first chunk. The decoder finds errors in the other
 /// chunks.
-fn head(bytes: &[u8]) -> Result<Head, ImageError> {
+fn head(bytes: &[u8]) -> Result<ImageHeader, ImageError> {
     let first = chunks(bytes).next().filter(|chunk| chunk[4..8] == *b"IHDR").and_then(|chunk| chunk.get(8..18));
     let Some([w @ .., depth, color]) = first else { return Err(ImageError::malformed(NAME, "its header is missing")) };
     let side = |four: &[u8]| four.iter().fold(0, |side, &byte| side << 8 | u64::from(byte));
@@ -52,19 +52,19 @@ fn head(bytes: &[u8]) -> Result<Head, ImageError> {
     // Channels of grey, true colour, palette, grey with alpha, and colour with alpha.
     let channels = [1, 3, 3, 3, 2, 3, 4][usize::from(*color).min(6)];
     let transparent = chunks(bytes).any(|chunk| chunk[4..8] == *b"tRNS");
-    let (stored, eight) = (channels + u64::from(transparent), *depth != 16);
-    let bytes_per_pixel = match (eight, stored) {
+    let (stored, is_eight_bit) = (channels + u64::from(transparent), *depth != 16);
+    let bytes_per_pixel = match (is_eight_bit, stored) {
         (true, 3) => 3,
         (true, 2 | 4) => stored + 4,
         (true, _) => stored + 3,
         // The pixels and their opacity, with four bytes per value.
         (false, _) => 2 * stored + 16,
     };
-    Ok(Head { width, height, eight, bytes_per_pixel, spare: bytes.len() as u64 })
+    Ok(ImageHeader { width, height, is_eight_bit, bytes_per_pixel, extra_bytes: bytes.len() as u64 })
 }
 
 fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
-    codec::raster(NAME, codec::decoder(NAME, ImageFormat::Png, &essence(bytes))?)
+    codec::raster(NAME, codec::decoder(NAME, ImageFormat::Png, &without_ancillary_chunks(bytes))?)
 }
 
 /// Iterates over the chunks of a file. A chunk consists of the length of its content, four letters,
@@ -82,7 +82,7 @@ fn chunks(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
 /// Removes the chunks that do not affect the pixels: animations, dates, profiles, and texts. A few
 /// bytes of profiles and texts could decompress to gigabytes. Critical chunks begin with an
 /// upper-case letter. Source: PNG specification, third edition, 5.3 and 5.4.
-fn essence(bytes: &[u8]) -> Cow<'_, [u8]> {
+fn without_ancillary_chunks(bytes: &[u8]) -> Cow<'_, [u8]> {
     let needed = |chunk: &&[u8]| chunk[4].is_ascii_uppercase() || chunk[4..8] == *b"tRNS";
     match chunks(bytes).all(|chunk| needed(&chunk)) {
         true => Cow::Borrowed(bytes),

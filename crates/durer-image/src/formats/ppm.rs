@@ -1,6 +1,6 @@
 //! Netpbm: written as binary P6, read as any of P1 to P7.
 
-use super::{Depth, Format, RowFormat, Strip, codec, rows};
+use super::{Depth, Format, RowFormat, RowLayout, codec, rows};
 use ::image::ImageFormat;
 
 const NAME: &str = "PPM";
@@ -9,9 +9,9 @@ pub const FORMAT: Format = Format {
     name: NAME,
     extensions: &["ppm", "pnm"],
     depth: Depth::EightBit,
-    layers: false,
-    most_side: u32::MAX,
-    begins: |bytes| matches!(bytes, [b'P', b'1'..=b'7', b' ' | b'\t'..=b'\r' | b'#', ..]),
+    supports_layers: false,
+    max_side: u32::MAX,
+    has_signature: |bytes| matches!(bytes, [b'P', b'1'..=b'7', b' ' | b'\t'..=b'\r' | b'#', ..]),
     // The decoder scales samples from the file's maximum value to 255, or to 65535 if the maximum
     // exceeds 255.
     head: |bytes| Ok(codec::head(&codec::decoder(NAME, ImageFormat::Pnm, bytes)?)),
@@ -25,7 +25,7 @@ static ROWS: RowFormat = RowFormat {
     head: |strip| Ok(format!("P6\n{} {}\n255\n", strip.width, strip.height).into_bytes()),
     row: |strip, _, pixels, coverage, out| {
         // The format has no alpha.
-        Strip { alpha: false, ..*strip }.eight_bit(pixels, coverage, |[r, g, b, _]| out.extend([r, g, b]));
+        RowLayout { alpha: false, ..*strip }.eight_bit(pixels, coverage, |[r, g, b, _]| out.extend([r, g, b]));
     },
     png: false,
 };

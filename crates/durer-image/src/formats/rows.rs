@@ -14,9 +14,9 @@ pub struct RowFormat {
     /// True if the bottom row comes first.
     pub bottom_up: bool,
     /// Creates the header of the file.
-    pub(super) head: fn(&Strip) -> Result<Vec<u8>, ImageError>,
+    pub(super) head: fn(&RowLayout) -> Result<Vec<u8>, ImageError>,
     /// Appends the bytes of a row, given its number in the file.
-    pub(super) row: fn(&Strip, u32, &[Vec3], &[f32], &mut Vec<u8>),
+    pub(super) row: fn(&RowLayout, u32, &[Vec3], &[f32], &mut Vec<u8>),
     /// True if the rows form a PNG, whose encoder writes the header, too.
     #[cfg_attr(not(feature = "codecs"), allow(dead_code))]
     pub(super) png: bool,
@@ -24,7 +24,7 @@ pub struct RowFormat {
 
 /// Size, alpha, and display conversion of a picture that is written row by row.
 #[derive(Clone, Copy, Debug)]
-pub struct Strip {
+pub struct RowLayout {
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
@@ -35,12 +35,12 @@ pub struct Strip {
     pub display: Display,
 }
 
-impl Strip {
+impl RowLayout {
     /// Creates the properties for writing a layer with these options.
     pub(super) fn of(layer: &Layer, options: &WriteOptions) -> Self {
         let alpha = layer.coverage.is_some();
         let Image { width, height, .. } = *layer.image;
-        Strip { width, height, alpha, display: super::display(layer, options) }
+        RowLayout { width, height, alpha, display: super::display(layer, options) }
     }
 
     /// Calls `offer` with the 8-bit red, green, blue, and opacity of each pixel in a row. With
@@ -62,7 +62,7 @@ impl Strip {
 /// Writer to which [`Format::write_rows`] lets a closure pass the rows of a picture.
 pub struct RowWriter<'w> {
     format: &'static RowFormat,
-    strip: Strip,
+    strip: RowLayout,
     /// Number of the next row.
     next: u32,
     out: &'w mut dyn Write,
@@ -77,34 +77,34 @@ impl Format {
     /// row by row or cannot hold this size.
     pub fn write_rows<T, E: From<ImageError> + From<io::Error>>(
         &self,
-        strip: Strip,
+        strip: RowLayout,
         out: &mut dyn Write,
         rows: impl FnOnce(&mut RowWriter) -> Result<T, E>,
     ) -> Result<T, E> {
         let format =
             self.rows.ok_or_else(|| ImageError::unsupported(self.name, "writing row by row is not supported"))?;
         out.write_all(&(format.head)(&strip)?)?;
-        packed(format, strip, out, rows)
+        write_compressed(format, strip, out, rows)
     }
 }
 
 /// Writes rows, compressed if the format requires it.
-fn packed<T, E: From<io::Error>>(
+fn write_compressed<T, E: From<io::Error>>(
     format: &'static RowFormat,
-    strip: Strip,
+    strip: RowLayout,
     out: &mut dyn Write,
     rows: impl FnOnce(&mut RowWriter) -> Result<T, E>,
 ) -> Result<T, E> {
     #[cfg(feature = "codecs")]
     if format.png {
-        return super::png::packed(format, strip, out, rows);
+        return super::png::write_compressed(format, strip, out, rows);
     }
     rows(&mut RowWriter::new(format, strip, out))
 }
 
 impl<'w> RowWriter<'w> {
     /// Creates a writer that begins at the first row.
-    pub(super) fn new(format: &'static RowFormat, strip: Strip, out: &'w mut dyn Write) -> Self {
+    pub(super) fn new(format: &'static RowFormat, strip: RowLayout, out: &'w mut dyn Write) -> Self {
         RowWriter { format, strip, next: 0, out }
     }
 
@@ -143,10 +143,10 @@ pub(super) fn encode(
     out: &mut Vec<u8>,
 ) -> Result<(), ImageError> {
     for layer in layers {
-        let strip = Strip::of(layer, options);
+        let strip = RowLayout::of(layer, options);
         out.extend((format.head)(&strip)?);
         let coverage = layer.coverage.as_deref().unwrap_or_default();
-        let written = packed(format, strip, out, |rows| rows.rows(&layer.image.pixels, coverage));
+        let written = write_compressed(format, strip, out, |rows| rows.rows(&layer.image.pixels, coverage));
         // Writing to memory cannot fail.
         debug_assert!(written.is_ok());
     }

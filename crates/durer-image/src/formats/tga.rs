@@ -1,7 +1,7 @@
 //! Truevision Targa: uncompressed 24-bit true colour, bottom row first, as the programs of the
 //! course write it. Layers with coverage have 32 bits per pixel, including alpha.
 
-use super::{Depth, Format, Head, ImageError, RowFormat, codec, rows};
+use super::{Depth, Format, ImageError, ImageHeader, RowFormat, codec, rows};
 use ::image::ImageFormat;
 
 const NAME: &str = "TGA";
@@ -10,14 +10,14 @@ pub const FORMAT: Format = Format {
     name: NAME,
     extensions: &["tga"],
     depth: Depth::EightBit,
-    layers: false,
-    most_side: 65535,
+    supports_layers: false,
+    max_side: 65535,
     // The format has no signature and is recognised only by its extension.
-    begins: |_| false,
+    has_signature: |_| false,
     head: |bytes| {
         let head = codec::head(&codec::decoder(NAME, ImageFormat::Tga, bytes)?);
         // For palettes and 16-bit pixels, the decoder needs memory for a copy.
-        Ok(Head { bytes_per_pixel: head.bytes_per_pixel + 2, ..head })
+        Ok(ImageHeader { bytes_per_pixel: head.bytes_per_pixel + 2, ..head })
     },
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Tga, bytes)?),
     encode: |layers, options, out| rows::encode(&ROWS, layers, options, out),

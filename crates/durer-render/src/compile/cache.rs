@@ -3,7 +3,7 @@
 
 use super::decoded::Encoding;
 use crate::world::MeshTree;
-use durer_scene::dialect::Rules;
+use durer_scene::dialect::DialectRules;
 use durer_scene::source::{Digest, Stamp};
 use durer_scene::texture::Texture;
 use std::collections::HashMap;
@@ -28,7 +28,7 @@ pub struct AssetCache(Mutex<CacheEntries>);
 #[derive(Debug, Default)]
 struct CacheEntries {
     /// Dialect rules that the meshes were built with.
-    rules: Option<Rules>,
+    rules: Option<DialectRules>,
     meshes: Items<Origin, Arc<MeshTree>>,
     pictures: Items<(Origin, Encoding), Texture>,
 }
@@ -90,7 +90,7 @@ impl AssetCache {
     }
 
     /// Starts a compilation. Clears the cache if the rules differ, since meshes depend on them.
-    pub(super) fn begin(&self, rules: &Rules) {
+    pub(super) fn begin(&self, rules: &DialectRules) {
         let mut inside = self.inside();
         if inside.rules.as_ref() != Some(rules) {
             *inside = CacheEntries { rules: Some(rules.clone()), ..CacheEntries::default() };

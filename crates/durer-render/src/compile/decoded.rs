@@ -29,7 +29,7 @@ pub(super) fn decode(
     match used(name, path, raster, diagnostics)? {
         Raster::Eight(picture) => {
             let texture = Texture::new(picture.width, picture.height, picture.pixels)?.with_alpha(Some(picture.alpha));
-            Some(if srgb { texture.decoded(image::decode_srgb) } else { texture })
+            Some(if srgb { texture.with_decoding(image::decode_srgb) } else { texture })
         }
         Raster::Sixteen(mut picture, alpha) => {
             if srgb {
@@ -82,7 +82,7 @@ pub(super) fn used<T>(
         let message = format!("cannot use the image `{path}`: {error}");
         let diagnostic = Diagnostic::error(message).code("bad-file").at(name.span);
         diagnostics.push(match error {
-            ImageError::Memory { .. } => diagnostic.help("see `--memory`"),
+            ImageError::MemoryLimit { .. } => diagnostic.help("see `--memory`"),
             _ => diagnostic,
         });
     };

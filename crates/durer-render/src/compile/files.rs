@@ -5,11 +5,11 @@ use super::cache::Origin;
 use super::decoded::{Encoding, decode, mend, used};
 use crate::world::MeshTree;
 use durer_bvh::BuildQuality;
-use durer_diag::{Diagnostic, Diagnostics, Severity, at_least, at_most};
+use durer_diag::{Diagnostic, Diagnostics, Severity, format_bytes_down, format_bytes_up};
 use durer_image::{self as image, Encoded};
 use durer_scene::describe::FileName;
-use durer_scene::dialect::{MeshNormals, Quirk, Rules};
-use durer_scene::light::{Illuminate as _, Light, Profile};
+use durer_scene::dialect::{DialectRules, MeshNormals, Quirk};
+use durer_scene::light::{Illuminate as _, Light, PhotometricProfile};
 use durer_scene::math::Aabb;
 use durer_scene::medium::DensityGrid;
 use durer_scene::scene::{Assets, Background, PictureBytes};
@@ -37,7 +37,7 @@ pub(super) type PictureKey = (String, Encoding);
 /// Loads the meshes, pictures, profiles, spectra and densities of a scene, for its compilation.
 pub(super) struct Loader<'r> {
     pub(super) resources: Resources<'r>,
-    rules: Rules,
+    rules: DialectRules,
     pub(super) assets: &'r Assets,
     /// Meshes by path; `None` for unreadable files, which are reported once.
     meshes: HashMap<String, Option<Arc<MeshTree>>>,
@@ -55,7 +55,7 @@ pub(super) struct Loader<'r> {
 }
 
 impl<'r> Loader<'r> {
-    pub(super) fn new(resources: Resources<'r>, rules: &Rules, assets: &'r Assets) -> Self {
+    pub(super) fn new(resources: Resources<'r>, rules: &DialectRules, assets: &'r Assets) -> Self {
         Loader {
             resources,
             rules: rules.clone(),
@@ -104,9 +104,9 @@ impl<'r> Loader<'r> {
         });
         let tree = mesh.map(|mut data| {
             if self.rules.has(Quirk::LooseTriangles) {
-                Arc::make_mut(&mut data).loosen();
+                Arc::make_mut(&mut data).separate_and_enlarge();
             }
-            let by_vertex = self.rules.has(Quirk::NormalsByVertex) && Arc::make_mut(&mut data).give_normals_by_vertex();
+            let by_vertex = self.rules.has(Quirk::NormalsByVertex) && Arc::make_mut(&mut data).use_normals_by_vertex();
             let normals = match self.rules.mesh_normals {
                 MeshNormals::SmoothByFace if self.rules.has(Quirk::SpoiledNormals) => MeshNormals::SpoiledByFace,
                 rule => rule,
@@ -137,13 +137,13 @@ impl<'r> Loader<'r> {
     /// Records a file as read although its contents came from the cache.
     pub(super) fn remember(&self, path: &str, origin: Option<&Origin>, digest: Option<Digest>) {
         if let (Some(Origin::File(stamp)), Some(digest)) = (origin, digest) {
-            self.resources.source.skip_reading(path, stamp, digest);
+            self.resources.source.record_unchanged(path, stamp, digest);
         }
     }
 
     /// Reads a mesh file.
     fn mesh_file(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<MeshData> {
-        let (decoder, quirks) = (self.resources.decoder, self.rules.compat);
+        let (decoder, quirks) = (self.resources.decoder, self.rules.quirks);
         self.parsed(name, "mesh", diagnostics, |bytes, file, own| decoder.mesh(bytes, file, &name.path, quirks, own))
     }
 
@@ -159,7 +159,7 @@ impl<'r> Loader<'r> {
         let file = self.resources.files.add(name.path.clone(), bytes.clone());
         let mut own = Diagnostics::default();
         let data = read(&bytes, file, &mut own);
-        self.resources.files.cut(file, 0, &own);
+        self.resources.files.truncate(file, 0, &own);
         if own.has_errors() {
             let message = format!("cannot use the {what} `{}`", name.path);
             let error = Diagnostic::error(message).code("bad-file").at(name.span);
@@ -243,7 +243,7 @@ impl<'r> Loader<'r> {
     }
 
     /// Returns a light's intensity profile, if it has one.
-    pub(super) fn profile(&mut self, light: &Light, diagnostics: &mut Diagnostics) -> Option<Arc<Profile>> {
+    pub(super) fn profile(&mut self, light: &Light, diagnostics: &mut Diagnostics) -> Option<Arc<PhotometricProfile>> {
         let name = light.profile()?;
         match self.assets.profiles.get(&name.path) {
             Some(profile) => Some(Arc::clone(profile)),
@@ -321,28 +321,28 @@ impl<'r> Loader<'r> {
                 return None;
             }
             let picture = match written.cie_sky() {
-                Some(sky) => sky::picture(SKY_WIDTH, SKY_WIDTH / 2, |dir| sky.at(dir)),
+                Some(sky) => sky::environment_map(SKY_WIDTH, SKY_WIDTH / 2, |dir| sky.at(dir)),
                 None => {
                     let clear = Sky::new(written.sun()?, written.turbidity());
                     let clear = match written.ground_reflectance {
-                        Some(share) => clear.over(share),
+                        Some(share) => clear.with_ground(share),
                         None => clear,
                     };
-                    sky::picture(SKY_WIDTH, SKY_WIDTH / 2, |dir| clear.at(dir))
+                    sky::environment_map(SKY_WIDTH, SKY_WIDTH / 2, |dir| clear.at(dir))
                 }
             };
-            let (turn, scale) = written.environment_placing();
+            let (turn, scale) = written.environment_transform();
             return Environment::new(SKY_WIDTH, SKY_WIDTH / 2, picture, turn, scale);
         };
         let bytes = match self.assets.pictures.get(&name.path).map(|picture| &picture.bytes) {
-            Some(PictureBytes::Here(_, bytes)) => bytes.clone(),
+            Some(PictureBytes::Memory(_, bytes)) => bytes.clone(),
             _ => self.read(name, "environment", diagnostics)?,
         };
         let encoded = used(name, &name.path, Encoded::open(&bytes, &name.path), diagnostics)?;
-        let picture = encoded.read_for(Environment::MAKING, self.resources.memory, image::decode_srgb);
+        let picture = encoded.read_for(Environment::BUILD_BYTES_PER_TEXEL, self.resources.memory, image::decode_srgb);
         let mut picture = used(name, &name.path, picture, diagnostics)?;
         let (width, height) = (picture.width, picture.height);
-        let (turn, scale) = written.environment_placing();
+        let (turn, scale) = written.environment_transform();
         if let Some(message) = mend(&mut picture.pixels, width, &name.path) {
             diagnostics.push(Diagnostic::warning(message).code("bad-texels").at(name.span));
         }
@@ -351,7 +351,7 @@ impl<'r> Loader<'r> {
             let message = format!("the environment `{}` is black: it emits no light", name.path);
             let warning = Diagnostic::warning(message).code("bad-file");
             // A file name from a command-line option has no span in the scene.
-            diagnostics.push(if name.span.is_place() { warning.at(name.span) } else { warning });
+            diagnostics.push(if name.span.has_position() { warning.at(name.span) } else { warning });
         }
         environment.filter(|environment| self.charge(name, environment.bytes() as u64, diagnostics))
     }
@@ -372,7 +372,7 @@ impl<'r> Loader<'r> {
         let mut left = Vec::with_capacity(6);
         for (path, bytes) in &files {
             left.push(memory);
-            memory = memory.saturating_sub(Encoded::open(bytes, path).map_or(0, |face| face.needed_raster()));
+            memory = memory.saturating_sub(Encoded::open(bytes, path).map_or(0, |face| face.memory_needed_raster()));
         }
         // Decoding takes most of the time. Errors are reported in the order of the faces.
         let srgb = self.rules.srgb_textures;
@@ -398,7 +398,7 @@ impl<'r> Loader<'r> {
         let left = self.resources.memory;
         self.resources.memory = left.saturating_sub(needed);
         if needed > left {
-            let (needed, left) = (at_least(needed), at_most(left));
+            let (needed, left) = (format_bytes_up(needed), format_bytes_down(left));
             let message = format!("`{}` needs about {needed} of memory, but only {left} is left", name.path);
             diagnostics.push(Diagnostic::error(message).at(name.span).help("see `--memory`"));
         }
@@ -418,12 +418,12 @@ impl<'r> Loader<'r> {
         let message = format!("the {what} cannot be read: {error}");
         let diagnostic = Diagnostic::error(message).code("missing-file").at(name.span);
         diagnostics.push(match error {
-            SourceError::Missing { tried, near, .. } => {
+            SourceError::Missing { tried, similar, .. } => {
                 let (help, folder) =
-                    (missing_help(&tried, near.as_deref()), name.path.rfind('/').map_or(0, |at| at + 1));
+                    (missing_help(&tried, similar.as_deref()), name.path.rfind('/').map_or(0, |at| at + 1));
                 // For cube maps the scene names only the folder, so no fix is possible.
-                match near.filter(|_| matches!(what, "mesh" | "texture" | "height image")) {
-                    Some(near) => diagnostic.help(help).fix(name.span, format!("{}{near}", &name.path[..folder])),
+                match similar.filter(|_| matches!(what, "mesh" | "texture" | "height image")) {
+                    Some(similar) => diagnostic.help(help).fix(name.span, format!("{}{similar}", &name.path[..folder])),
                     None => diagnostic.help(help),
                 }
             }

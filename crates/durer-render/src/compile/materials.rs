@@ -7,9 +7,9 @@ use crate::world::{Emission, HighlightModel, Material, Phong, Principled};
 use durer_diag::Diagnostics;
 use durer_scene::bsdf::Tables;
 use durer_scene::bsdf::lobe::hair::Fibre;
-use durer_scene::dialect::{Highlight, Quirk, Rules, Secondary};
+use durer_scene::dialect::{DialectRules, Highlight, Quirk, SecondaryRays};
 use durer_scene::material::principled::{Switch, Walls};
-use durer_scene::material::{ColorNoise, Parameters, PhongMaterial, PrincipledMaterial, Solid};
+use durer_scene::material::{ColorNoise, Parameters, PatternMaterial, PhongMaterial, PrincipledMaterial};
 use durer_scene::math::Color;
 use durer_scene::scene::{self, MatrixOp, Scene};
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Compiles the materials of a scene and loads their textures and spectra.
 pub(super) fn compile(
     scene: &Scene,
-    rules: &Rules,
+    rules: &DialectRules,
     loader: &mut Loader,
     diagnostics: &mut Diagnostics,
 ) -> Vec<Material> {
@@ -31,7 +31,9 @@ pub(super) fn compile(
         scene::Material::Solid(solid, ops) => {
             let to_pattern = MatrixOp::product(ops, matrix_rules(rules));
             let picture = match solid {
-                Solid::Mix(mix) => mix.share_texture.as_ref().and_then(|name| loader.number_map(name, diagnostics)),
+                PatternMaterial::Mix(mix) => {
+                    mix.share_texture.as_ref().and_then(|name| loader.number_map(name, diagnostics))
+                }
                 _ => None,
             };
             Material::Solid(solid.clone(), to_pattern, picture)
@@ -81,7 +83,7 @@ pub(super) fn compile(
 }
 
 /// Compiles a Phong material, with the dialect's meaning of its fields.
-fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, rules: &Rules) -> Phong {
+fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, rules: &DialectRules) -> Phong {
     let (reflective, transparent, ior) = secondary(m, rules);
     let diffuse = m.diffuse_color.unwrap_or(Color::ONE);
     let ambient = match m.diffuse_color {
@@ -133,7 +135,7 @@ fn plain(m: &PrincipledMaterial) -> Phong {
 }
 
 /// Returns colour, exponent and formula of the highlight, if the dialect gives it one.
-fn highlight(m: &PhongMaterial, rules: &Rules) -> Option<(Color, f32, HighlightModel)> {
+fn highlight(m: &PhongMaterial, rules: &DialectRules) -> Option<(Color, f32, HighlightModel)> {
     let blinn = |exponent: f32| Some((m.specular_color, exponent, HighlightModel::Blinn));
     let phong = |shininess: f32| {
         let behind = rules.has(Quirk::HighlightBehind);
@@ -156,23 +158,23 @@ fn highlight(m: &PhongMaterial, rules: &Rules) -> Option<(Color, f32, HighlightM
 
 /// Returns the index of refraction if the dialect renders the material as glass with Fresnel
 /// reflection.
-fn glass(m: &PhongMaterial, rules: &Rules) -> Option<f32> {
-    let divides = matches!(rules.secondary, Secondary::SpecularFresnel | Secondary::ByKeyword);
+fn glass(m: &PhongMaterial, rules: &DialectRules) -> Option<f32> {
+    let divides = matches!(rules.secondary, SecondaryRays::SpecularFresnel | SecondaryRays::ByKeyword);
     m.refraction_index.filter(|index| divides && *index > 0.0)
 }
 
 /// Returns the weights of the reflected and the transmitted ray, and the index of refraction.
-fn secondary(m: &PhongMaterial, rules: &Rules) -> (Color, Color, Option<f32>) {
+fn secondary(m: &PhongMaterial, rules: &DialectRules) -> (Color, Color, Option<f32>) {
     let specular = m.specular_color;
     match (rules.secondary, glass(m, rules)) {
-        (Secondary::None, _) => (Color::ZERO, Color::ZERO, None),
-        (Secondary::Specular, _) | (Secondary::SpecularFresnel, None) => (specular, Color::ZERO, None),
-        (Secondary::SpecularFresnel, index) => (specular, specular, index),
-        (Secondary::ByKeyword, Some(index)) => {
+        (SecondaryRays::None, _) => (Color::ZERO, Color::ZERO, None),
+        (SecondaryRays::Specular, _) | (SecondaryRays::SpecularFresnel, None) => (specular, Color::ZERO, None),
+        (SecondaryRays::SpecularFresnel, index) => (specular, specular, index),
+        (SecondaryRays::ByKeyword, Some(index)) => {
             let tint = if m.transparent_color == Color::ZERO { specular } else { m.transparent_color };
             (specular, tint, Some(index))
         }
-        (Secondary::Colors | Secondary::ByKeyword, _) => {
+        (SecondaryRays::Colors | SecondaryRays::ByKeyword, _) => {
             (m.reflective_color, m.transparent_color, m.index_of_refraction)
         }
     }

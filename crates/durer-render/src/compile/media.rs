@@ -15,7 +15,7 @@ pub(super) fn inside(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &
     }
     if m.transmission_weight > 0.0 {
         let medium = transmission(m)?;
-        return Some(Medium { place: density(m, loader, diagnostics), ..medium });
+        return Some(Medium { region: density(m, loader, diagnostics), ..medium });
     }
     m.has_subsurface().then(|| subsurface(m))
 }
@@ -41,7 +41,7 @@ fn transmission(m: &PrincipledMaterial) -> Option<Medium> {
 fn density(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &mut Diagnostics) -> Option<MediumRegion> {
     let name = m.transmission_density.as_ref()?;
     let (bounds, grid) = loader.density(name, diagnostics)?;
-    let place = MediumRegion { bounds, placed: None, density: Some(grid) };
+    let place = MediumRegion { bounds, to_world: None, density: Some(grid) };
     let rows = m.transmission_density_box.len();
     if rows == 0 {
         return Some(place);
@@ -58,14 +58,14 @@ fn density(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &mut Diagno
     let Some(placed) = Affine::new(map) else {
         return refuse("the edges of `transmissionDensityBox` must span a volume");
     };
-    Some(MediumRegion { bounds: Aabb { min: Vec3::ZERO, max: Vec3::ONE }, placed: Some(placed), ..place })
+    Some(MediumRegion { bounds: Aabb { min: Vec3::ZERO, max: Vec3::ONE }, to_world: Some(placed), ..place })
 }
 
 /// Returns an unbounded medium with this extinction and scattering, in 1/length.
 fn medium(extinction: Color, scattering: Color, phase: HenyeyGreenstein) -> Medium {
     let share = |s: f32, all: f32| if all > 0.0 { s / all } else { 0.0 };
     let albedo = Color::from_array(std::array::from_fn(|i| share(scattering[i], extinction[i])));
-    Medium { extinction, albedo, phase, place: None }
+    Medium { extinction, albedo, phase, region: None }
 }
 
 /// Returns the medium that gives a half-space the subsurface colour as its albedo.
@@ -84,7 +84,7 @@ fn subsurface(m: &PrincipledMaterial) -> Medium {
         extinction: 1.0 / radius,
         albedo: m.subsurface_color.map(albedo),
         phase: HenyeyGreenstein { anisotropy: g },
-        place: None,
+        region: None,
     }
 }
 
@@ -108,14 +108,14 @@ pub(super) fn fog(written: &Fog, loader: &mut Loader, diagnostics: &mut Diagnost
         Some(name) => Some(loader.density(name, diagnostics)?),
         None => None,
     };
-    let place = match (corners, density) {
+    let region = match (corners, density) {
         (None, None) => None,
-        (Some(bounds), None) => Some(MediumRegion { bounds, placed: None, density: None }),
+        (Some(bounds), None) => Some(MediumRegion { bounds, to_world: None, density: None }),
         (corners, Some((bounds, density))) => {
-            Some(MediumRegion { bounds: corners.unwrap_or(bounds), placed: None, density: Some(density) })
+            Some(MediumRegion { bounds: corners.unwrap_or(bounds), to_world: None, density: Some(density) })
         }
     };
     let albedo = written.color.clamp(Vec3::ZERO, Vec3::ONE);
     let phase = HenyeyGreenstein { anisotropy: written.anisotropy };
-    Some(Medium { extinction: Color::splat(written.extinction), albedo, phase, place })
+    Some(Medium { extinction: Color::splat(written.extinction), albedo, phase, region })
 }

@@ -18,11 +18,11 @@ use durer_bvh::{Bvh, Grid, PrimitivePacks};
 use durer_diag::{Diagnostic, Diagnostics, Files, Span};
 use durer_scene::asset::AssetDecoder;
 use durer_scene::camera::{CameraBasis, Projection};
-use durer_scene::dialect::{Dialect, MeshNormals, Quirk, Rules};
+use durer_scene::dialect::{Dialect, DialectRules, MeshNormals, Quirk};
 use durer_scene::light::{DirectionalLight, Illuminate as _, Light};
 use durer_scene::math::{Aabb, Affine, Color, Vec3, fp};
-use durer_scene::scene::{self, Group, MatrixOp, Node, Scene};
-use durer_scene::shape::mesh::loosened;
+use durer_scene::scene::{self, Group, MatrixOp, ObjectKind, Scene};
+use durer_scene::shape::mesh::enlarged;
 use durer_scene::shape::{Mesh, Primitive, Shape, Triangle};
 use durer_scene::source::AssetSource;
 use durer_scene::texture::Sky;
@@ -73,7 +73,7 @@ impl<'a> Resources<'a> {
 /// Values are first checked with [`Scene::validate`], wherever the scene comes from.
 pub fn compile(
     scene: &Scene,
-    rules: &Rules,
+    rules: &DialectRules,
     accel: AccelKind,
     resources: Resources,
     diagnostics: &mut Diagnostics,
@@ -91,7 +91,7 @@ pub fn compile(
         }));
         return None;
     };
-    let invalid = scene.validate_as(rules.compat);
+    let invalid = scene.validate_as(rules.quirks);
     if invalid.has_errors() {
         diagnostics.extend(invalid);
         return None;
@@ -171,7 +171,7 @@ pub fn compile(
         dark: scene.up.is_none()
             && environment.is_none()
             && scene.background == scene::Background::default()
-            && !scene.background_span.is_place()
+            && !scene.background_span.has_position()
             && rules.name == Dialect::Durer.name(),
         ambient,
         lights,
@@ -180,7 +180,7 @@ pub fn compile(
         camera_rules: rules::camera_rules(rules),
         hits: rules::hit_rules(rules),
         shading: rules::shading_rules(rules),
-        display: rules::display_rules(rules, scene.lumens),
+        display: rules::display_rules(rules, scene.lumens_per_watt),
         rules: rules.clone(),
     };
     let assets = Assets { cube_map, environment, fog, profiles, illuminants, textures };
@@ -283,7 +283,7 @@ fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Res
     if bounds.is_empty() {
         return Ok(Accel::None);
     }
-    let counts = cells.unwrap_or_else(|| Grid::suitable(bounds, boxes.len()));
+    let counts = cells.unwrap_or_else(|| Grid::suggested_resolution(bounds, boxes.len()));
     let overlaps = |i: usize, cell: Aabb| world.objects()[parts[i].0 as usize].overlaps(&cell);
     let grid = Grid::build(bounds, counts, &boxes, overlaps).ok_or_else(|| {
         let [x, y, z] = counts;
@@ -337,7 +337,7 @@ fn check_sun(scene: &Scene, diagnostics: &mut Diagnostics) {
 /// Warns about sky fields that have no effect.
 fn check_sky(scene: &Scene, diagnostics: &mut Diagnostics) {
     let sky = &scene.background;
-    let (standard, sun) = (sky.cie_sky.is_some(), !matches!(sky.way_to_sun(), Ok(None)));
+    let (standard, sun) = (sky.cie_sky.is_some(), !matches!(sky.sun_direction(), Ok(None)));
     let (clear, picture) = (sun && !standard, sky.environment.is_some());
     let any = standard || sun || picture;
     for (word, given, has_use, wanted) in [
@@ -369,7 +369,7 @@ fn sun(background: &scene::Background) -> Option<Light> {
     // The CIE standard skies use the sun's position but have no direct sunlight.
     let way = background.sun().filter(|_| background.cie_sky.is_none() && !background.is_night())?;
     let sky = Sky::new(way, background.turbidity());
-    let (turn, scale) = background.environment_placing();
+    let (turn, scale) = background.environment_transform();
     let (sin, cos) = fp::sin_cos_degrees(f64::from(-turn));
     let [sin, cos] = [sin, cos].map(|x| x as f32);
     let way = Vec3::new(cos * way.x + sin * way.z, way.y.max(0.0), cos * way.z - sin * way.x);
@@ -379,14 +379,14 @@ fn sun(background: &scene::Background) -> Option<Light> {
 }
 
 /// Returns the lights as the dialect interprets them, and the ambient light.
-fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<Light>, Color) {
+fn lights(scene: &Scene, rules: &DialectRules, diagnostics: &mut Diagnostics) -> (Vec<Light>, Color) {
     let written = scene.lights.as_deref().unwrap_or_default();
     // The scene is lit by emissive surfaces or the environment.
     if written.is_empty() && scene.is_physical() {
         return (Vec::new(), scene.background.ambient_light);
     }
     if written.is_empty() {
-        let (message, ambient) = match rules.ambient_alone {
+        let (message, ambient) = match rules.ambient_without_lights {
             true => ("the scene has no lights: its ambient light is set to 1 1 1, so colours are flat", Color::ONE),
             false => (
                 "the scene has no lights: only its ambient light is visible, so colours are flat",
@@ -427,7 +427,7 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
 struct SceneFlattener<'a, 'r> {
     objects: Vec<Object>,
     loader: &'a mut files::Loader<'r>,
-    rules: &'a Rules,
+    rules: &'a DialectRules,
     diagnostics: &'a mut Diagnostics,
     material_count: u32,
     /// True if some object needs the default material, which is added after all others.
@@ -445,7 +445,7 @@ struct SceneFlattener<'a, 'r> {
 }
 
 /// Returns true if the dialect describes scenes as nodes. Help texts depend on it.
-fn is_nodes(rules: &Rules) -> bool {
+fn is_nodes(rules: &DialectRules) -> bool {
     rules.name == Dialect::F23.name()
 }
 
@@ -476,8 +476,8 @@ impl SceneFlattener<'_, '_> {
     /// Adds an object with everything in it, with an accumulated transform.
     fn object(&mut self, object: &scene::Object, to_world: DAffine3) {
         match &object.node {
-            Node::Group(group) => self.group(group, to_world),
-            Node::Transform(ops, inner) => {
+            ObjectKind::Group(group) => self.group(group, to_world),
+            ObjectKind::Transform(ops, inner) => {
                 self.transforms += 1;
                 let vectors = rules::hit_rules(self.rules).map_or(Vectors::Vecmath, |rules| rules.vectors);
                 let own = Matrix::of(ops, rules::matrix_rules(self.rules), vectors);
@@ -486,7 +486,7 @@ impl SceneFlattener<'_, '_> {
                 self.matrices.iter_mut().for_each(|matrices| _ = matrices.pop());
                 self.transforms -= 1;
             }
-            Node::Solid(operation, parts) => {
+            ObjectKind::Solid(operation, parts) => {
                 let around = self.matrices.take();
                 self.solid(object.span, *operation, parts, to_world);
                 self.matrices = around;
@@ -505,18 +505,18 @@ impl SceneFlattener<'_, '_> {
     /// Places a shape or mesh in the world. Returns `None` after an error.
     fn shape(&mut self, object: &scene::Object, to_world: DAffine3) -> Option<Object> {
         let geometry = match &object.node {
-            Node::Primitive(Primitive::Triangle(t)) if self.rules.has(Quirk::LooseTriangles) => {
-                let [vertex0, vertex1, vertex2] = loosened(t.corners());
+            ObjectKind::Primitive(Primitive::Triangle(t)) if self.rules.has(Quirk::LooseTriangles) => {
+                let [vertex0, vertex1, vertex2] = enlarged(t.corners());
                 Geometry::Primitive(Triangle { vertex0, vertex1, vertex2 }.into())
             }
-            Node::Primitive(shape) => Geometry::Primitive(shape.clone()),
-            Node::Mesh(mesh) => Geometry::Mesh(self.loader.mesh(&mesh.obj_file, self.diagnostics)?),
-            Node::HeightField(field) => Geometry::Mesh(self.loader.height_field(field, self.diagnostics)?),
-            Node::Voxels(grid, balls) => {
+            ObjectKind::Primitive(shape) => Geometry::Primitive(shape.clone()),
+            ObjectKind::Mesh(mesh) => Geometry::Mesh(self.loader.mesh(&mesh.obj_file, self.diagnostics)?),
+            ObjectKind::HeightField(field) => Geometry::Mesh(self.loader.height_field(field, self.diagnostics)?),
+            ObjectKind::Voxels(grid, balls) => {
                 let mesh = Mesh::new(grid.mesh(balls), MeshNormals::Flat, false);
                 Geometry::Mesh(Arc::new(self.loader.tree(mesh)))
             }
-            Node::Group(_) | Node::Transform(..) | Node::Solid(..) => return None,
+            ObjectKind::Group(_) | ObjectKind::Transform(..) | ObjectKind::Solid(..) => return None,
         };
         // Move distant shapes to the origin to keep full precision.
         let (geometry, center) = match geometry {
@@ -563,7 +563,9 @@ impl SceneFlattener<'_, '_> {
             }
         };
         let normal_length = match &object.node {
-            Node::Primitive(Primitive::Plane(plane)) if self.transforms == 0 && self.rules.has(Quirk::RawNormals) => {
+            ObjectKind::Primitive(Primitive::Plane(plane))
+                if self.transforms == 0 && self.rules.has(Quirk::RawNormals) =>
+            {
                 plane.normal.length()
             }
             _ if to_world.is_none() && !matrices.iter().all(Matrix::is_regular) => f32::NAN,

@@ -8,7 +8,7 @@ use durer_diag::Diagnostics;
 use durer_image::Encoded;
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
-use durer_scene::material::parameters::{Change, TEXTURED, Textured};
+use durer_scene::material::parameters::{TEXTURE_FIELDS, TextureEffect, TextureField};
 use durer_scene::scene::PictureBytes;
 use durer_scene::source::Digest;
 use durer_scene::texture::{Channel, Mapping, Texture};
@@ -29,7 +29,7 @@ impl Loader<'_> {
             false => self.picture(name, bytes, encoding, diagnostics),
         };
         let number = texture.map(|texture| {
-            self.textures.push(texture.mapped(mapping));
+            self.textures.push(texture.with_mapping(mapping));
             (self.textures.len() - 1) as u32
         });
         self.map_numbers.insert(key, number);
@@ -68,11 +68,11 @@ impl Loader<'_> {
                 continue;
             }
             let bytes = match bytes {
-                PictureBytes::Here(_, bytes) => Some(bytes),
+                PictureBytes::Memory(_, bytes) => Some(bytes),
                 PictureBytes::File(path) => self.resources.source.read(&path).ok(),
             };
             let Some(bytes) = bytes else { continue };
-            let needed = Encoded::open(&bytes, &key.0).map_or(0, |encoded| encoded.needed_raster());
+            let needed = Encoded::open(&bytes, &key.0).map_or(0, |encoded| encoded.memory_needed_raster());
             let Some(rest) = left.checked_sub(needed) else { break };
             left = rest;
             packed.push((key, bytes));
@@ -102,13 +102,13 @@ impl Loader<'_> {
             bump_height: layers.bump_height,
             parameters: Vec::new(),
         };
-        for (row, textured) in TEXTURED.iter().enumerate() {
-            if let Some(texture) = one((textured.picture)(layers), encoding_of(textured)) {
+        for (row, textured) in TEXTURE_FIELDS.iter().enumerate() {
+            if let Some(texture) = one((textured.texture_file)(layers), encoding_of(textured)) {
                 maps.parameters.push(Map { row, texture, channel: None });
             }
         }
         if let Some(texture) = one(layers.metallic_roughness_texture.as_ref(), Encoding::Linear) {
-            for (row, textured) in TEXTURED.iter().enumerate() {
+            for (row, textured) in TEXTURE_FIELDS.iter().enumerate() {
                 let channel = match textured.field {
                     "specular_roughness_texture" => Channel::Green,
                     "base_metalness_texture" => Channel::Blue,
@@ -144,7 +144,7 @@ impl Loader<'_> {
             Some(texture) => Some(texture),
             None => {
                 let bytes = match bytes {
-                    PictureBytes::Here(_, bytes) => Some(bytes),
+                    PictureBytes::Memory(_, bytes) => Some(bytes),
                     PictureBytes::File(path) => self.read(&FileName { path, span: name.span }, "texture", diagnostics),
                 };
                 let (srgb, memory) = (encoding == Encoding::Srgb, self.resources.memory);
@@ -183,7 +183,7 @@ impl Loader<'_> {
     fn picture_origin(&self, bytes: &PictureBytes) -> Option<Origin> {
         match bytes {
             PictureBytes::File(path) => self.origin(path, || None),
-            PictureBytes::Here(path, bytes) => self.origin(path, || Some(Digest::of(bytes))),
+            PictureBytes::Memory(path, bytes) => self.origin(path, || Some(Digest::of(bytes))),
         }
     }
 }
@@ -197,14 +197,14 @@ fn pictures(layers: &PrincipledMaterial) -> impl Iterator<Item = (&FileName, Enc
         (layers.bump_texture.as_ref(), Encoding::Linear),
         (layers.metallic_roughness_texture.as_ref(), Encoding::Linear),
     ];
-    let parameters = TEXTURED.iter().map(|textured| ((textured.picture)(layers), encoding_of(textured)));
+    let parameters = TEXTURE_FIELDS.iter().map(|textured| ((textured.texture_file)(layers), encoding_of(textured)));
     own.into_iter().chain(parameters).filter_map(|(name, encoding)| Some((name?, encoding)))
 }
 
 /// Returns the encoding of a parameter's texture: sRGB for colours, linear for numbers.
-fn encoding_of(textured: &Textured) -> Encoding {
+fn encoding_of(textured: &TextureField) -> Encoding {
     match textured.change {
-        Change::Number(_) => Encoding::Linear,
-        Change::Color(_) => Encoding::Srgb,
+        TextureEffect::Number(_) => Encoding::Linear,
+        TextureEffect::Color(_) => Encoding::Srgb,
     }
 }

@@ -2,14 +2,14 @@
 //! depends on dialects; later code uses these rules.
 
 use crate::world::{Contents, DisplayRules, Epsilon, HitRules, ShadingRules, Vectors};
-use durer_scene::camera::{Aim, CameraRules, UpRule};
-use durer_scene::dialect::{Arithmetic, Falloff, Quirk, Rules};
+use durer_scene::camera::{CameraRules, RayArithmetic, UpRule};
+use durer_scene::dialect::{Arithmetic, DialectRules, Falloff, Quirk};
 use durer_scene::light::{DirectionalLight, Illuminate as _, Light, PointLight};
 use durer_scene::math::Vec3;
 use durer_scene::scene::MatrixRules;
 
 /// Returns the rules for cameras and pixel positions.
-pub fn camera_rules(rules: &Rules) -> CameraRules {
+pub fn camera_rules(rules: &DialectRules) -> CameraRules {
     let up = match () {
         () if rules.has(Quirk::RawUp) => UpRule::Raw,
         () if rules.has(Quirk::SkewUp) => UpRule::Skew,
@@ -17,12 +17,12 @@ pub fn camera_rules(rules: &Rules) -> CameraRules {
     };
     CameraRules {
         up,
-        aim: match rules.arithmetic {
-            Arithmetic::Own if rules.has(Quirk::ScreenPoint) => Aim::ScreenPoint,
-            Arithmetic::Own => Aim::Own,
-            Arithmetic::Of2012 => Aim::Of2012,
-            Arithmetic::Of2016 => Aim::Of2016,
-            Arithmetic::Of2020 => Aim::Of2020,
+        ray_arithmetic: match rules.arithmetic {
+            Arithmetic::Own if rules.has(Quirk::ScreenPoint) => RayArithmetic::ScreenPoint,
+            Arithmetic::Own => RayArithmetic::Own,
+            Arithmetic::Of2012 => RayArithmetic::Of2012,
+            Arithmetic::Of2016 => RayArithmetic::Of2016,
+            Arithmetic::Of2020 => RayArithmetic::Of2020,
         },
         border_pixels: rules.has(Quirk::BorderPixels),
         stretch: rules.has(Quirk::Stretch),
@@ -30,16 +30,16 @@ pub fn camera_rules(rules: &Rules) -> CameraRules {
 }
 
 /// Returns the rules for products of transform matrices.
-pub fn matrix_rules(rules: &Rules) -> MatrixRules {
+pub fn matrix_rules(rules: &DialectRules) -> MatrixRules {
     MatrixRules {
         matrix_on_left: rules.has(Quirk::MatrixOnLeft),
-        dropped_shear: rules.has(Quirk::DroppedShear),
-        dropped_tiny: rules.has(Quirk::TinyTransforms),
+        drop_shear: rules.has(Quirk::DroppedShear),
+        ignore_tiny: rules.has(Quirk::TinyTransforms),
     }
 }
 
 /// Returns the ray intersection rules of an official program, or `None` for Dürer's own arithmetic.
-pub fn hit_rules(rules: &Rules) -> Option<HitRules> {
+pub fn hit_rules(rules: &DialectRules) -> Option<HitRules> {
     let vectors = match rules.arithmetic {
         Arithmetic::Own => return None,
         Arithmetic::Of2012 | Arithmetic::Of2016 => Vectors::Vecmath,
@@ -57,7 +57,7 @@ pub fn hit_rules(rules: &Rules) -> Option<HitRules> {
 }
 
 /// Returns the rules for shading and for the Whitted integrator.
-pub fn shading_rules(rules: &Rules) -> ShadingRules {
+pub fn shading_rules(rules: &DialectRules) -> ShadingRules {
     let official = rules.is_bit_compatible();
     ShadingRules {
         epsilon: rules.epsilon.map(match rules.has(Quirk::MovedStarts) {
@@ -85,7 +85,7 @@ pub fn shading_rules(rules: &Rules) -> ShadingRules {
 }
 
 /// Returns the rules for displaying AOVs as pictures. `lumens` are the scene's.
-pub fn display_rules(rules: &Rules, lumens: Option<Vec3>) -> DisplayRules {
+pub fn display_rules(rules: &DialectRules, lumens: Option<Vec3>) -> DisplayRules {
     DisplayRules {
         normals: rules.normals_picture,
         depth: rules.depth_picture,
@@ -100,7 +100,7 @@ pub fn display_rules(rules: &Rules, lumens: Option<Vec3>) -> DisplayRules {
 impl Contents {
     /// Applies other rules, except to the camera's axes, lights, materials and objects, which stay
     /// as they were compiled.
-    pub fn set_rules(&mut self, rules: Rules) {
+    pub fn set_rules(&mut self, rules: DialectRules) {
         self.camera_rules = camera_rules(&rules);
         self.hits = hit_rules(&rules);
         self.shading = shading_rules(&rules);
@@ -110,7 +110,7 @@ impl Contents {
 }
 
 /// Returns a light with its power folded into its colour, and with the dialect's attenuation.
-pub(super) fn light(light: &Light, rules: &Rules) -> Light {
+pub(super) fn light(light: &Light, rules: &DialectRules) -> Light {
     match light {
         Light::Point(emitter) if emitter.candela.or(emitter.lumens).is_none() => {
             PointLight { attenuation: attenuation(emitter, rules), falloff: None, ..emitter.clone() }.into()
@@ -119,21 +119,21 @@ pub(super) fn light(light: &Light, rules: &Rules) -> Light {
         Light::Directional(sun) if sun.direction == Vec3::ZERO => {
             DirectionalLight { color: Vec3::NAN, ..sun.clone() }.into()
         }
-        light => light.in_units(),
+        light => light.with_unit_color(),
     }
 }
 
 /// Returns the divisor of a point light at distance d, as coefficients of a0 + a1 d + a2 d^2.
-fn attenuation(light: &PointLight, rules: &Rules) -> Option<Vec3> {
+fn attenuation(light: &PointLight, rules: &DialectRules) -> Option<Vec3> {
     let divides_by_zero = rules.has(Quirk::MissingFalloff);
     match (rules.falloff, light.falloff) {
         (Falloff::None, _) => None,
-        (Falloff::OnePlus, Some(f)) => Some(Vec3::new(1.0, 0.0, f)),
-        (Falloff::OnePlus, None) => light.attenuation,
-        (Falloff::Bare(_), Some(f)) if f > 0.0 || divides_by_zero => Some(Vec3::new(0.0, 0.0, f)),
-        (Falloff::Bare(Some(default)), None) => Some(Vec3::new(0.0, 0.0, default)),
-        (Falloff::Bare(None), None) if divides_by_zero => Some(Vec3::ZERO),
-        (Falloff::Bare(_), _) => None,
+        (Falloff::Polynomial, Some(f)) => Some(Vec3::new(1.0, 0.0, f)),
+        (Falloff::Polynomial, None) => light.attenuation,
+        (Falloff::InverseSquare(_), Some(f)) if f > 0.0 || divides_by_zero => Some(Vec3::new(0.0, 0.0, f)),
+        (Falloff::InverseSquare(Some(default)), None) => Some(Vec3::new(0.0, 0.0, default)),
+        (Falloff::InverseSquare(None), None) if divides_by_zero => Some(Vec3::ZERO),
+        (Falloff::InverseSquare(_), _) => None,
     }
 }
 

@@ -6,17 +6,17 @@ use crate::world::solid::Solid;
 use crate::world::{Geometry, Object};
 use durer_diag::{Diagnostic, Span};
 use durer_scene::math::Vec3;
-use durer_scene::scene::{self, Group, Node, Operation};
+use durer_scene::scene::{self, CsgOperation, Group, ObjectKind};
 use durer_scene::shape::{Primitive, Shape};
 use glam::DAffine3;
 use std::sync::Arc;
 
 impl SceneFlattener<'_, '_> {
     /// Compiles a solid that is not part of another one, except of a union.
-    pub(super) fn solid(&mut self, span: Span, operation: Operation, parts: &[scene::Object], to_world: DAffine3) {
+    pub(super) fn solid(&mut self, span: Span, operation: CsgOperation, parts: &[scene::Object], to_world: DAffine3) {
         let (errors, before) = (self.diagnostics.error_count(), self.objects.len());
         self.check_count(span, operation, parts);
-        if operation == Operation::Union {
+        if operation == CsgOperation::Union {
             return parts.iter().for_each(|part| self.part_of_union(part, to_world));
         }
         let solid = joined(operation, self.solids(parts, to_world));
@@ -33,12 +33,12 @@ impl SceneFlattener<'_, '_> {
     /// Compiles a part of a union. It becomes a separate object but must be closed.
     fn part_of_union(&mut self, part: &scene::Object, to_world: DAffine3) {
         match &part.node {
-            Node::Group(group) => {
+            ObjectKind::Group(group) => {
                 self.check_group(group, part.span);
                 group.objects.iter().for_each(|inner| self.part_of_union(inner, to_world));
             }
-            Node::Transform(ops, inner) => self.part_of_union(inner, to_world * self.product(ops)),
-            Node::Solid(operation, parts) => self.solid(part.span, *operation, parts, to_world),
+            ObjectKind::Transform(ops, inner) => self.part_of_union(inner, to_world * self.product(ops)),
+            ObjectKind::Solid(operation, parts) => self.solid(part.span, *operation, parts, to_world),
             _ => {
                 let solid = self.closed(part, to_world);
                 solid.into_iter().for_each(|solid| self.piece(solid, part.span));
@@ -66,11 +66,11 @@ impl SceneFlattener<'_, '_> {
     }
 
     /// Reports a solid without parts, and a difference of only one part.
-    fn check_count(&mut self, span: Span, operation: Operation, parts: &[scene::Object]) {
+    fn check_count(&mut self, span: Span, operation: CsgOperation, parts: &[scene::Object]) {
         let name = operation.keyword();
         match parts.len() {
             0 => self.diagnostics.push(Diagnostic::error(format!("this `{name}` has no parts")).at(span)),
-            1 if operation == Operation::Difference => {
+            1 if operation == CsgOperation::Difference => {
                 let message = "this `Difference` removes nothing: it has only one part";
                 self.diagnostics.push(Diagnostic::warning(message).at(span));
             }
@@ -86,22 +86,22 @@ impl SceneFlattener<'_, '_> {
     /// Compiles a part of a solid. The part must be closed. Returns `None` after an error.
     fn closed(&mut self, part: &scene::Object, to_world: DAffine3) -> Option<Solid> {
         match &part.node {
-            Node::Group(group) => {
+            ObjectKind::Group(group) => {
                 self.check_group(group, part.span);
                 Some(Solid::any(self.solids(&group.objects, to_world)))
             }
-            Node::Transform(ops, inner) => self.closed(inner, to_world * self.product(ops)),
-            Node::Solid(operation, parts) => {
+            ObjectKind::Transform(ops, inner) => self.closed(inner, to_world * self.product(ops)),
+            ObjectKind::Solid(operation, parts) => {
                 self.check_count(part.span, *operation, parts);
                 joined(*operation, self.solids(parts, to_world))
             }
-            Node::Primitive(shape) => {
+            ObjectKind::Primitive(shape) => {
                 self.check_shape(shape, part.span);
                 self.shape(part, to_world).map(|object| Solid::Operand(Arc::new(object)))
             }
-            Node::Mesh(_) | Node::HeightField(_) | Node::Voxels(..) => {
+            ObjectKind::Mesh(_) | ObjectKind::HeightField(_) | ObjectKind::Voxels(..) => {
                 let object = self.shape(part, to_world)?;
-                if let Node::Mesh(mesh) = &part.node {
+                if let ObjectKind::Mesh(mesh) = &part.node {
                     self.check_mesh(&object, &mesh.obj_file.path, part.span);
                 }
                 Some(Solid::Operand(Arc::new(object)))
@@ -139,15 +139,15 @@ impl SceneFlattener<'_, '_> {
 }
 
 /// Combines solids with an operation; `None` if there are none.
-fn joined(operation: Operation, mut parts: Vec<Solid>) -> Option<Solid> {
+fn joined(operation: CsgOperation, mut parts: Vec<Solid>) -> Option<Solid> {
     if parts.is_empty() {
         return None;
     }
     Some(match operation {
-        Operation::Union | Operation::Merge => Solid::any(parts),
-        Operation::Intersection => Solid::all(parts, Vec::new()),
-        Operation::Xor => Solid::odd(parts),
-        Operation::Difference => {
+        CsgOperation::Union | CsgOperation::Merge => Solid::any(parts),
+        CsgOperation::Intersection => Solid::all(parts, Vec::new()),
+        CsgOperation::Xor => Solid::odd(parts),
+        CsgOperation::Difference => {
             let first = parts.remove(0);
             Solid::all(vec![first], parts)
         }

@@ -12,7 +12,7 @@ use std::cell::RefCell;
 use std::path::Path;
 
 /// Compiles a scene text; returns the world and its diagnostics.
-pub fn try_read(text: &str, rules: &Rules, accel: AccelKind, folder: &Path) -> (Option<World>, Diagnostics) {
+pub fn try_read(text: &str, rules: &DialectRules, accel: AccelKind, folder: &Path) -> (Option<World>, Diagnostics) {
     let mut files = Files::default();
     let file = files.add("scene.txt", text.as_bytes().into());
     let mut diagnostics = Diagnostics::default();
@@ -54,9 +54,9 @@ pub fn object(object: scene::Object, accel: AccelKind, folder: &Path) -> World {
 pub fn shapes(shapes: &[(Primitive, DAffine3)], accel: AccelKind) -> World {
     let object = |node| scene::Object { node, material: None, span: Default::default() };
     let moved = |(shape, affine): &(Primitive, DAffine3)| {
-        let shape = object(Node::Primitive(shape.clone()));
+        let shape = object(ObjectKind::Primitive(shape.clone()));
         let rows = glam::DMat4::from(*affine).transpose().to_cols_array().map(|x| x as f32);
-        object(Node::Transform(vec![MatrixOp::Matrix(rows)], Box::new(shape)))
+        object(ObjectKind::Transform(vec![MatrixOp::Matrix(rows)], Box::new(shape)))
     };
     let root = Group { objects: shapes.iter().map(moved).collect() };
     let camera = Some(durer_scene::camera::PerspectiveCamera::default().into());

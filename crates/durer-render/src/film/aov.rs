@@ -11,7 +11,7 @@ use durer_bvh::TraversalStats;
 use durer_scene::dialect::{DepthPicture, NormalsPicture};
 use durer_scene::math::{Aabb, Color, Vec3};
 use durer_scene::sampler::hash;
-use durer_scene::shape::Surface;
+use durer_scene::shape::SurfacePoint;
 
 /// Values at the first hit of the ray through a pixel's centre, from which AOVs are computed.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +35,7 @@ impl AovInput {
         covered: false,
         hit: None,
         albedo: Vec3::ZERO,
-        counts: TraversalStats { rays: 0, nodes: 0, tests: 0 },
+        counts: TraversalStats { rays: 0, nodes: 0, primitive_tests: 0 },
         illuminance: 0.0,
     };
 }
@@ -252,7 +252,7 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "cost",
         doc: "number of box and shape tests of the pixel, secondary rays included; as a picture, a heat map",
-        value: Value::Ray(|seen| Vec3::splat((seen.counts.nodes + seen.counts.tests) as f32)),
+        value: Value::Ray(|seen| Vec3::splat((seen.counts.nodes + seen.counts.primitive_tests) as f32)),
         picture: heat_picture,
         relative: true,
         unit: None,
@@ -278,7 +278,7 @@ fn heat_picture(value: Vec3, _: bool, display: &Display) -> Color {
 }
 
 /// Returns an attribute of the surface that was hit; zero for a miss.
-fn of_surface(seen: &AovInput, value: impl Fn(&Surface) -> Vec3) -> Vec3 {
+fn of_surface(seen: &AovInput, value: impl Fn(&SurfacePoint) -> Vec3) -> Vec3 {
     seen.hit.map_or(Vec3::ZERO, |at| value(&at.surface))
 }
 

@@ -11,7 +11,7 @@ pub mod whitted;
 use crate::world::World;
 pub use ao::{AmbientOcclusion, AoParameters};
 use durer_scene::camera::RayCone;
-use durer_scene::describe::{Describe, DescribedList, described_list};
+use durer_scene::describe::{Describe, DescribedKind, described_list};
 use durer_scene::math::{Color, Ray, Ray64};
 use durer_scene::sampler::SampleId;
 use durer_scene::spectrum::ColorMode;

@@ -9,8 +9,8 @@
 //! [`Shape::centered`]: durer_scene::shape::Shape::centered
 
 use crate::world::Epsilon;
-use durer_scene::math::{Ray, Ray64, Side, Vec3, gamma};
-use durer_scene::shape::Surface;
+use durer_scene::math::{Ray, Ray64, StartSide, Vec3, gamma};
+use durer_scene::shape::SurfacePoint;
 use glam::DVec3;
 
 /// Creates a secondary ray that starts at a surface.
@@ -19,7 +19,7 @@ use glam::DVec3;
 /// `epsilon`. Without one, the origin is offset from the surface by a bound on the point's rounding
 /// error, and all hits count.
 #[inline(always)]
-pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<Epsilon>) -> Ray64 {
+pub fn spawn_ray(surface: &SurfacePoint, dir: Vec3, t_max: f32, epsilon: Option<Epsilon>) -> Ray64 {
     match epsilon {
         Some(Epsilon::Least(t_min)) => return Ray64::new(surface.point(), dir, t_min, t_max),
         Some(Epsilon::Along(way)) => {
@@ -35,7 +35,7 @@ pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<Epsil
 /// facing the light. If the triangle itself faces away, it blocks the ray, so no light leaks in
 /// along the terminator.
 #[inline(always)]
-pub fn to_light(surface: &Surface, dir: Vec3, distance: f32, epsilon: Option<Epsilon>) -> Ray64 {
+pub fn to_light(surface: &SurfacePoint, dir: Vec3, distance: f32, epsilon: Option<Epsilon>) -> Ray64 {
     match epsilon {
         Some(_) => spawn_ray(surface, dir, distance, epsilon),
         None => from_bent_surface(surface, dir, distance, dir.dot(surface.n_shade) < 0.0),
@@ -45,7 +45,7 @@ pub fn to_light(surface: &Surface, dir: Vec3, distance: f32, epsilon: Option<Eps
 /// Creates a shadow ray to a point on an area light, on the light's geometric side. From a curved
 /// surface, the ray is aimed again at the point. A parallel ray would miss it and could end behind
 /// an inclined light.
-pub fn to_point(surface: &Surface, dir: Vec3, distance: f32) -> Ray64 {
+pub fn to_point(surface: &SurfacePoint, dir: Vec3, distance: f32) -> Ray64 {
     let ray = from_bent_surface(surface, dir, distance, dir.dot(surface.n_geo) < 0.0);
     if surface.shadow_offsets == [Vec3::ZERO; 2] || !distance.is_finite() {
         return ray;
@@ -58,7 +58,7 @@ pub fn to_point(surface: &Surface, dir: Vec3, distance: f32) -> Ray64 {
 /// Creates a ray from the curved surface, on the side of its normals or, if `behind`, the other
 /// side.
 #[inline(always)]
-fn from_bent_surface(surface: &Surface, dir: Vec3, distance: f32, behind: bool) -> Ray64 {
+fn from_bent_surface(surface: &SurfacePoint, dir: Vec3, distance: f32, behind: bool) -> Ray64 {
     let [front, back] = surface.shadow_offsets;
     let lift = if behind { back } else { front };
     from(surface, lift, dir, distance - lift.dot(dir), behind)
@@ -67,10 +67,10 @@ fn from_bent_surface(surface: &Surface, dir: Vec3, distance: f32, behind: bool) 
 /// Creates a ray from a point lifted off the surface, on the side of the geometric normal or, if
 /// `behind`, the other side.
 #[inline(always)]
-fn from(surface: &Surface, lift: Vec3, dir: Vec3, t_max: f32, behind: bool) -> Ray64 {
+fn from(surface: &SurfacePoint, lift: Vec3, dir: Vec3, t_max: f32, behind: bool) -> Ray64 {
     let side = if behind { -surface.n_geo } else { surface.n_geo };
     let ray = Ray64::new(offset_ray_origin(surface, lift, side), dir, 0.0, t_max);
-    surface.solid.map_or(ray, |solid| ray.on_side(Side::of(solid, behind)))
+    surface.solid.map_or(ray, |solid| ray.on_side(StartSide::of(solid, behind)))
 }
 
 /// Returns a surface point, lifted, and then offset along a unit normal by more than its rounding
@@ -78,14 +78,14 @@ fn from(surface: &Surface, lift: Vec3, dir: Vec3, t_max: f32, behind: bool) -> R
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 6.8.6.
 #[inline(always)]
-fn offset_ray_origin(surface: &Surface, lift: Vec3, side: Vec3) -> DVec3 {
+fn offset_ray_origin(surface: &SurfacePoint, lift: Vec3, side: Vec3) -> DVec3 {
     // Twice the error bound, because the next intersection also rounds.
     let offset = 2.0 * side.abs().dot(surface.error + gamma(1) * lift.abs()) * side;
     surface.point() + lift.as_dvec3() + offset.as_dvec3()
 }
 
 /// Returns an upper bound on the distance between a flat surface and the origin of a ray from it.
-pub fn offset_bound(surface: &Surface) -> f32 {
+pub fn offset_bound(surface: &SurfacePoint) -> f32 {
     2.0 * surface.error.element_sum()
 }
 

@@ -83,7 +83,7 @@ impl TermValue {
     pub fn of(lanes: &Lanes, light: Spectrum) -> Self {
         match lanes {
             Lanes::Rgb => TermValue::Color(light.truncate()),
-            Lanes::Waves(_) => TermValue::Waves(light),
+            Lanes::Wavelengths(_) => TermValue::Waves(light),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::{BLOCK, Control, Crop, Job, PartialRender, RenderError, RenderOutcome, Shard, Statistics};
 use crate::world::World;
-use durer_image::{Format, ImageError, Strip, WriteOptions};
+use durer_image::{Format, ImageError, RowLayout, WriteOptions};
 use durer_scene::source::Digest;
 use std::io::{self, Write};
 use std::sync::atomic::Ordering::Relaxed;
@@ -101,7 +101,7 @@ impl Bands {
         // Full coverage is known only at the end, so write an alpha channel unless the camera sees
         // something everywhere.
         let (width, height, display) = (window.width, window.height, options.display);
-        let strip = Strip { width, height, alpha: !sees_all(world, &self.job), display };
+        let strip = RowLayout { width, height, alpha: !sees_all(world, &self.job), display };
         let samples = u64::from(self.job.sampling.samples());
         control.all.store(window.pixels().saturating_mul(samples), Relaxed);
         let mut crops = self.crops();

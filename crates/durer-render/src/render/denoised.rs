@@ -4,7 +4,7 @@ use super::part::PartialRender;
 use super::{Control, Job, RenderError, render};
 use crate::film::aov::Aov;
 use crate::world::World;
-use durer_image::denoise::{Guides, denoise};
+use durer_image::denoise::{GuideImages, denoise};
 use durer_image::{Image, Layer};
 use durer_scene::math::Vec3;
 
@@ -56,7 +56,7 @@ impl NoisyPicture {
     /// for any number of threads.
     pub fn denoised(self) -> Layer {
         let NoisyPicture { picture, albedo, normal, position, variance, .. } = &self;
-        let clean = denoise(picture, &Guides { albedo, normal, position, variance });
+        let clean = denoise(picture, &GuideImages { albedo, normal, position, variance });
         let clean = clean.unwrap_or_else(|| picture.clone());
         self.layer(clean)
     }

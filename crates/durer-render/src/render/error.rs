@@ -1,6 +1,6 @@
 //! Errors from rendering.
 
-use durer_diag::{at_least, at_most};
+use durer_diag::{format_bytes_down, format_bytes_up};
 use durer_image::ImageError;
 use durer_scene::math::Vec2;
 
@@ -39,7 +39,7 @@ pub enum RenderError {
     #[error("cannot render a picture of this size in bands of rows: {0}")]
     Bands(String),
     /// The render needs too much memory.
-    #[error("rendering needs about {} of memory, but the limit is {}", at_least(*.needed), at_most(*.allowed))]
+    #[error("rendering needs about {} of memory, but the limit is {}", format_bytes_up(*.needed), format_bytes_down(*.allowed))]
     Memory {
         /// Bytes needed.
         needed: u64,
@@ -47,7 +47,7 @@ pub enum RenderError {
         allowed: u64,
     },
     /// The system has too little memory for the render.
-    #[error("rendering needs about {} of memory, but the system has less", at_least(*.0))]
+    #[error("rendering needs about {} of memory, but the system has less", format_bytes_up(*.0))]
     NoMemory(u64),
     /// The saved part belongs to another scene.
     #[error("this part belongs to a different scene")]

@@ -61,7 +61,7 @@ fn occupied(world: &World) -> Option<Grid> {
         own => own,
     };
     let boxes: Vec<Aabb> = (0..parts.len()).map(bounds).collect();
-    grid.for_picture(&boxes, |i, cell| {
+    grid.for_drawing(&boxes, |i, cell| {
         let own = Aabb { min: cell.center() - half, max: cell.center() + half };
         object(i).overlaps(if is_sphere(object(i)) { &own } else { &cell })
     })
@@ -70,7 +70,7 @@ fn occupied(world: &World) -> Option<Grid> {
 /// Returns the colour of the first occupied cell along a ray, or of the background.
 fn cell_color(world: &World, grid: &Grid, ray: &Ray) -> Color {
     let mut found = None;
-    grid.walk_cells(ray, |grid, cell, t_max| {
+    grid.traverse_cells(ray, |grid, cell, t_max| {
         let count = grid.occupancy(cell);
         if count == 0 {
             return t_max;

@@ -11,12 +11,12 @@ use durer_diag::{Diagnostics, Files};
 use durer_formats::Decoder;
 use durer_formats::folder::FolderSource;
 use durer_scene::camera::PerspectiveCamera;
-use durer_scene::describe::{DescribedList, Value};
+use durer_scene::describe::{DescribedKind, Value};
 use durer_scene::dialect::Dialect;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::Vec3;
 use durer_scene::sampler::Sampler;
-use durer_scene::scene::{Group, Material, Node, Object, Scene, Spanned};
+use durer_scene::scene::{Group, Material, Object, ObjectKind, Scene, Spanned};
 use durer_scene::shape::Sphere;
 
 /// Compiles a scene with a red sphere after a change to it, and returns the messages.
@@ -24,11 +24,11 @@ fn compiled(change: impl FnOnce(&mut Scene, &mut Sphere, &mut PrincipledMaterial
     let (mut ball, mut layers) = (Sphere::default(), PrincipledMaterial::default());
     let camera = PerspectiveCamera { center: Vec3::new(0.0, 0.0, 5.0), ..PerspectiveCamera::default() };
     let mut scene = Scene { camera: Some(camera.into()), ..Scene::default() };
-    let object = Object { node: Node::Group(Group::default()), material: Some(0), span: Default::default() };
+    let object = Object { node: ObjectKind::Group(Group::default()), material: Some(0), span: Default::default() };
     scene.root = Some(Group { objects: vec![object] });
     change(&mut scene, &mut ball, &mut layers);
     for object in scene.root.iter_mut().flat_map(|root| &mut root.objects) {
-        object.node = Node::Primitive(ball.clone().into());
+        object.node = ObjectKind::Primitive(ball.clone().into());
     }
     scene.materials.push(Spanned { value: Material::Principled(Box::new(layers)), span: Default::default() });
     let (mut files, source, mut found) = (Files::default(), FolderSource::new("."), Diagnostics::default());

@@ -11,7 +11,7 @@ use crate::film::false_color::LightScale;
 use crate::integrator::{Integrator, IntegratorContext, IntegratorKind, WhittedOptions};
 use crate::world::World;
 use durer_scene::camera::RayCone;
-use durer_scene::describe::DescribedList;
+use durer_scene::describe::DescribedKind;
 use durer_scene::sampler::Sampler;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::atomic::AtomicBool;
@@ -212,7 +212,7 @@ impl Job {
         }
         for (at, field) in self.method.fields().iter().enumerate() {
             let value = self.method.get(at);
-            if let Some(Err(violation)) = value.map(|value| field.rule.validate(&value)) {
+            if let Some(Err(violation)) = value.map(|value| field.constraint.validate(&value)) {
                 return refuse(format!("{} of {} {violation}", field.name, self.method.name()));
             }
         }

@@ -6,7 +6,7 @@ use super::{BandsError, Blocks, Crop};
 use crate::film::Film;
 use crate::film::aov::{Aov, Display, Sums, Value, fill_from_last_hit};
 use crate::film::false_color::LightScale;
-use durer_image::{Display as ImageDisplay, Format, Image, Layer, Strip};
+use durer_image::{Display as ImageDisplay, Format, Image, Layer, RowLayout};
 use durer_scene::math::{Aabb, Color, Vec3};
 use rayon::prelude::*;
 use std::io::Write;
@@ -101,7 +101,7 @@ impl PartialRender {
         mut visit: impl FnMut(&[Color]),
     ) -> Result<(), BandsError> {
         let (Crop { width, height, .. }, alpha) = (self.job.window(), !self.is_all_seen(&self.state()));
-        let strip = Strip { width, height, alpha, display };
+        let strip = RowLayout { width, height, alpha, display };
         let bottom_up = format.rows.is_some_and(|rows| rows.bottom_up);
         format.write_rows(strip, out, |rows| {
             self.try_strips(bottom_up, |pixels, coverage| {

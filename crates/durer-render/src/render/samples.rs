@@ -237,7 +237,7 @@ impl<'a> Samples<'a> {
             let (run, sample) = of[ray];
             let Run { x, y, id, .. } = runs[run as usize];
             at.set((x, y, Some(sample)));
-            id.of_sample(sample)
+            id.with_sample(sample)
         };
         self.integrator.radiances(&aims[..*seen], begin, rays, colors);
         let mut next = 0;
@@ -269,7 +269,7 @@ impl<'a> Samples<'a> {
     pub(super) fn sample(&self, x: u32, y: u32, sample: u32, rays: &mut RayCount) -> (Option<Color>, f32) {
         let pixel = self.aim.pixel(x, y);
         let PixelSample { ray, weight, .. } = self.aim.sample(&pixel, sample);
-        let color = ray.map(|ray| self.integrator.radiance(&ray, pixel.id.of_sample(sample), rays));
+        let color = ray.map(|ray| self.integrator.radiance(&ray, pixel.id.with_sample(sample), rays));
         (color.map(|color| self.with_stale((x, y), color)), weight)
     }
 

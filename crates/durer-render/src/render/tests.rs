@@ -432,7 +432,8 @@ fn files_have_attributes_of_job_and_scene() {
     let world = world();
     let part = all(&world, &small());
     let rendered = part.pictures().unwrap();
-    let exr = durer_image::FORMATS.iter().find(|format| format.layers && format.depth == Depth::Float).unwrap();
+    let exr =
+        durer_image::FORMATS.iter().find(|format| format.supports_layers && format.depth == Depth::Float).unwrap();
     let options = durer_image::WriteOptions { attributes: &rendered.attributes, ..Default::default() };
     let mut bytes = Vec::new();
     exr.write(&rendered.layers, &options, &mut bytes).unwrap();

@@ -60,7 +60,7 @@ impl World {
                 *best = Some(hit);
             }
         };
-        let sound = |i: usize| durer_bvh::internal::is_sound(&rays[i].rounded);
+        let sound = |i: usize| durer_bvh::internal::is_valid(&rays[i].rounded);
         small_world.intersect(rays, |i, met| hits[i] = met.map(|met| self.hit_of_pack(met, &rays[i])));
         for &number in &small_world.others {
             let object = &self.objects()[number as usize];
@@ -92,7 +92,7 @@ impl World {
             blocked.iter_mut().zip(rays).for_each(|(blocked, ray)| *blocked = self.occluded_along(ray, &mut ()));
             return;
         };
-        let sound = |i: usize| durer_bvh::internal::is_sound(&rays[i].rounded);
+        let sound = |i: usize| durer_bvh::internal::is_valid(&rays[i].rounded);
         small_world.intersect(rays, |i, met| blocked[i] = met.is_some());
         // Skip rays that are already occluded.
         let others = || small_world.others.iter().map(|&number| (number, &self.objects()[number as usize]));

@@ -2,8 +2,8 @@
 
 use super::{DisplayRules, Geometry, HitRules, Material, Object, ShadingRules, World};
 use durer_scene::camera::{Camera, CameraBasis, CameraRules};
-use durer_scene::dialect::Rules;
-use durer_scene::light::{Light, Profile};
+use durer_scene::dialect::DialectRules;
+use durer_scene::light::{Light, PhotometricProfile};
 use durer_scene::math::Color;
 use durer_scene::medium::Medium;
 use durer_scene::source::Digest;
@@ -42,7 +42,7 @@ pub struct Contents {
     pub display: DisplayRules,
     /// Dialect rules from which the other rules were derived. Not used for rendering, but for
     /// checks, lessons and the student's tracer.
-    pub(crate) rules: Rules,
+    pub(crate) rules: DialectRules,
 }
 
 /// Contents of a world that come from other files than the scene file, such as textures and
@@ -57,7 +57,7 @@ pub struct Assets {
     pub fog: Option<Medium>,
     /// Measured intensity profile of each light, if it has one, by index. Can be shorter than the
     /// list of lights.
-    pub profiles: Vec<Option<Arc<Profile>>>,
+    pub profiles: Vec<Option<Arc<PhotometricProfile>>>,
     /// Measured spectrum of each light, if it has one, by index. Can be shorter than the list of
     /// lights.
     pub illuminants: Vec<Option<Arc<Curve>>>,
@@ -166,7 +166,7 @@ impl World {
 
     /// Returns the dialect rules with which the scene was compiled, for checks, lessons and the
     /// student's tracer.
-    pub fn rules(&self) -> &Rules {
+    pub fn rules(&self) -> &DialectRules {
         &self.contents.rules
     }
 
@@ -187,7 +187,7 @@ impl World {
 
     /// Returns the measured intensity profile of each light, if it has one, by index. Can be
     /// shorter than the list of lights.
-    pub fn profiles(&self) -> &[Option<Arc<Profile>>] {
+    pub fn profiles(&self) -> &[Option<Arc<PhotometricProfile>>] {
         &self.assets.profiles
     }
 

@@ -23,7 +23,7 @@ use super::solid::{BoolOp, Solid};
 use super::{Geometry, Object, ShadingRules};
 use durer_bvh::{Bvh, TraversalCounter};
 use durer_scene::math::{Aabb, Ray, Ray64, Vec2, Vec3};
-use durer_scene::shape::{Axis, Shape, ShapeHit, Surface};
+use durer_scene::shape::{Axis, Shape, ShapeHit, SurfacePoint};
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -250,7 +250,7 @@ impl Csg {
     }
 
     /// Computes the surface at a hit in world space. Its normals point out of the solid.
-    pub fn surface(&self, ray: &Ray64, crossing: &ShapeHit, part: u32, rules: &ShadingRules) -> Surface {
+    pub fn surface(&self, ray: &Ray64, crossing: &ShapeHit, part: u32, rules: &ShadingRules) -> SurfacePoint {
         let (leaf, number) = (&self.leaves[self.leaf_of(part)], self.triangle(part));
         let point = leaf.object.local_line(ray).at(f64::from(crossing.t));
         let surface = leaf.object.surface(ray, point, crossing, number, rules);
@@ -263,7 +263,7 @@ impl Csg {
             return surface;
         }
         let [front, back] = surface.shadow_offsets;
-        Surface { n_geo: -surface.n_geo, n_shade: -surface.n_shade, shadow_offsets: [back, front], ..surface }
+        SurfacePoint { n_geo: -surface.n_geo, n_shade: -surface.n_shade, shadow_offsets: [back, front], ..surface }
     }
 
     /// Returns the first hit in the ray's interval and its part. For a ray that leaves the solid's
@@ -274,7 +274,7 @@ impl Csg {
         inside: Option<bool>,
         counter: &mut T,
     ) -> Option<(ShapeHit, u32)> {
-        if !durer_bvh::internal::is_sound(&ray.rounded) {
+        if !durer_bvh::internal::is_valid(&ray.rounded) {
             return None;
         }
         SCRATCH.with_borrow_mut(|scratch| {
@@ -546,7 +546,7 @@ fn order(a: &Event, b: &Event) -> std::cmp::Ordering {
 fn slack_of(object: &Object) -> f32 {
     let (Some(world), Some(local)) = (object.bounds(), object.local_bounds()) else { return 0.0 };
     let reach = |b: Aabb| b.min.abs().max(b.max.abs());
-    let moved = object.to_world.as_ref().map_or(Vec3::ZERO, |to_world| to_world.spread(reach(local)));
+    let moved = object.to_world.as_ref().map_or(Vec3::ZERO, |to_world| to_world.error_bound(reach(local)));
     2.0 * f32::EPSILON * (reach(world).max_element() + moved.max_element())
 }
 

@@ -2,14 +2,14 @@
 
 use super::{Geometry, Hit, World};
 use durer_bvh::TraversalCounter;
-use durer_scene::math::{Ray, Ray64, Side, Vec2, Vec3};
-use durer_scene::shape::{ShapeHit, Surface};
+use durer_scene::math::{Ray, Ray64, StartSide, Vec2, Vec3};
+use durer_scene::shape::{ShapeHit, SurfacePoint};
 
 /// Surface point hit by a ray, in world space, with everything that shading needs.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceInteraction {
     /// Surface at the hit, in world space.
-    pub surface: Surface,
+    pub surface: SurfacePoint,
     /// Ray that hit the surface.
     pub ray: Ray64,
     /// Distance, object and part that were hit.
@@ -23,11 +23,11 @@ pub struct SurfaceInteraction {
 impl SurfaceInteraction {
     /// Placeholder to be overwritten.
     pub(crate) const NOWHERE: SurfaceInteraction = SurfaceInteraction {
-        surface: Surface::NOWHERE,
+        surface: SurfacePoint::ZERO,
         ray: Ray64 {
             rounded: Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::ZERO) },
-            rest: Vec3::ZERO,
-            side: Side::ANY,
+            origin_error: Vec3::ZERO,
+            side: StartSide::UNKNOWN,
         },
         hit: Hit { t: 0.0, uv: Vec2::ZERO, object: 0, part: 0 },
         material: 0,

@@ -6,7 +6,7 @@ use crate::world::{Hit, World};
 use durer_scene::math::random::{Random, rounds};
 use durer_scene::math::{Affine, Ray, Ray64, Vec3};
 use durer_scene::shape::testing::{distance, near_edge, samples, surface_point, too_far};
-use durer_scene::shape::{Primitive, Shape, Surface, Triangle};
+use durer_scene::shape::{Primitive, Shape, SurfacePoint, Triangle};
 use glam::{DAffine3, DVec3};
 
 /// Shoots a ray from a random point around the only object of a world towards it.
@@ -21,7 +21,7 @@ fn hit(world: &World, shape: &Primitive, affine: &DAffine3, random: &mut Random)
 
 /// Returns true if a ray hits another side of the same closed shape: an exit if the ray starts
 /// inside, or an entry if it starts outside a shape that is not convex.
-fn is_other_side(shape: &Primitive, world: &World, start: &Surface, ray: &Ray64, hit: &Hit) -> bool {
+fn is_other_side(shape: &Primitive, world: &World, start: &SurfacePoint, ray: &Ray64, hit: &Hit) -> bool {
     let bent = matches!(shape, Primitive::Torus(_) | Primitive::Quadric(_));
     let (from_inside, goes_out) = (ray.dir().dot(start.n_geo) < 0.0, world.interaction(ray, *hit).inside());
     shape.inside(DVec3::ZERO).is_some() && (from_inside || bent) && from_inside == goes_out

@@ -3,7 +3,7 @@
 use super::material::{Maps, Principled};
 use super::{Geometry, SurfaceInteraction, World};
 use durer_scene::material::Parameters;
-use durer_scene::material::parameters::{Change, TEXTURED};
+use durer_scene::material::parameters::{TEXTURE_FIELDS, TextureEffect};
 use durer_scene::material::principled::Switch;
 use durer_scene::math::{Color, Ray, Vec2, Vec3};
 use durer_scene::shape::Shape;
@@ -28,15 +28,15 @@ impl World {
             last = Some((map.texture, texel));
             let mapping = self.textures()[map.texture as usize].mapping().copied().unwrap_or_default();
             let channel = map.channel.or(mapping.channel).unwrap_or(Channel::Red);
-            match TEXTURED[map.row].change {
-                Change::Number(change) => change(&mut here, mapping.ranged(channel.of(texel))),
-                Change::Color(change) => {
+            match TEXTURE_FIELDS[map.row].change {
+                TextureEffect::Number(change) => change(&mut here, mapping.map_to_range(channel.of(texel))),
+                TextureEffect::Color(change) => {
                     let [r, g, b, _] = texel;
-                    change(&mut here, Vec3::new(r, g, b).map(|x| mapping.ranged(x)));
+                    change(&mut here, Vec3::new(r, g, b).map(|x| mapping.map_to_range(x)));
                 }
             }
         }
-        Cow::Owned(if own.maps.parameters.is_empty() { here } else { here.within_bounds() })
+        Cow::Owned(if own.maps.parameters.is_empty() { here } else { here.clamped() })
     }
 
     /// Returns the value of a texture of numbers at a hit, from 0 to 1. 1 if there are no texture
@@ -44,7 +44,7 @@ impl World {
     pub(super) fn number_at(&self, map: u32, at: &SurfaceInteraction) -> f32 {
         let Some(texel) = self.texel(Some(map), at) else { return 1.0 };
         let mapping = self.textures()[map as usize].mapping().copied().unwrap_or_default();
-        mapping.ranged(mapping.channel.unwrap_or(Channel::Red).of(texel)).clamp(0.0, 1.0)
+        mapping.map_to_range(mapping.channel.unwrap_or(Channel::Red).of(texel)).clamp(0.0, 1.0)
     }
 
     /// Returns the factor by which texture and vertex colours multiply the emission.
@@ -126,7 +126,7 @@ impl World {
         let grow = match &object.geometry {
             Geometry::Mesh(tree) => {
                 // Tangents in the file are relative to the normal in object space.
-                let own = object.to_world.as_ref().map_or(normal, |to_world| to_world.local_normal(normal));
+                let own = object.to_world.as_ref().map_or(normal, |to_world| to_world.inverse_normal(normal));
                 let grow = tree.mesh.tangents(at.hit.part, at.surface.barycentric, own, mapping.second)?;
                 grow.map(|v| object.to_world.as_ref().map_or(v, |to_world| to_world.vector(v)))
             }
@@ -167,7 +167,7 @@ impl World {
             Geometry::Solid(_) => return None,
         };
         let point = to_world.map_or(surface.position, |to_world| to_world.inverse_point(surface.position));
-        let normal = to_world.map_or(surface.n_geo, |to_world| to_world.local_normal(surface.n_geo));
+        let normal = to_world.map_or(surface.n_geo, |to_world| to_world.inverse_normal(surface.n_geo));
         let size = shape.bounds().map_or(1.0_f32.max(point.length()), |bounds| bounds.size().max_element());
         let step = 1e-3 * size;
         let here = surface.uv.get()?;
@@ -198,7 +198,7 @@ impl World {
         let SurfaceInteraction { hit, surface, .. } = at;
         let object = &self.objects()[hit.object as usize];
         let to_world = object.to_world.as_ref();
-        let normal = to_world.map_or(surface.n_geo, |to_world| to_world.local_normal(surface.n_geo));
+        let normal = to_world.map_or(surface.n_geo, |to_world| to_world.inverse_normal(surface.n_geo));
         let point = to_world.map_or(surface.position, |to_world| to_world.inverse_point(surface.position));
         let own = match &object.geometry {
             Geometry::Mesh(tree) => tree.mesh.tangents(hit.part, surface.barycentric, normal, false).map(|[u, _]| u),

@@ -4,7 +4,7 @@ use durer_scene::bsdf::Tables;
 use durer_scene::bsdf::lobe::hair::Fibre;
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::material::principled::Walls;
-use durer_scene::material::{ColorNoise, Parameters, PrincipledMaterial, Solid};
+use durer_scene::material::{ColorNoise, Parameters, PatternMaterial, PrincipledMaterial};
 use durer_scene::math::Color;
 use durer_scene::medium::Medium;
 use durer_scene::spectrum::Curve;
@@ -19,7 +19,7 @@ pub enum Material {
     Phong(Phong),
     /// A mix of two other materials. The matrix transforms world space to pattern space. The
     /// optional texture, by its index, multiplies the share of the first material.
-    Solid(Solid, glam::DAffine3, Option<u32>),
+    Solid(PatternMaterial, glam::DAffine3, Option<u32>),
 }
 
 /// Formula of a Phong material's highlight: Blinn's or Phong's.
@@ -56,7 +56,8 @@ pub struct Maps {
 /// Texture of one parameter of a principled material, such as its roughness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Map {
-    /// Row in [`TEXTURED`](durer_scene::material::parameters::TEXTURED), which tells the parameter.
+    /// Row in [`TEXTURE_FIELDS`](durer_scene::material::parameters::TEXTURE_FIELDS), which tells
+    /// the parameter.
     pub row: usize,
     /// Index of the texture.
     pub texture: u32,

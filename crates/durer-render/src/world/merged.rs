@@ -22,7 +22,7 @@ impl World {
             all.flat |= data.flat;
             let before = all.triangles.len();
             // A reflection turns triangles inside out, so swap two of their corners.
-            let mirrors = object.to_world.as_ref().is_some_and(|to_world| to_world.mirrors());
+            let mirrors = object.to_world.as_ref().is_some_and(|to_world| to_world.flips_handedness());
             let turned = |list: &[[u32; 3]], base: u32| -> Vec<[u32; 3]> {
                 let moved = |i: u32| if i == NO_INDEX { i } else { i + base };
                 let turn = |[a, b, c]: [u32; 3]| if mirrors { [a, c, b] } else { [a, b, c] };

@@ -19,7 +19,7 @@ pub use contents::{Assets, Contents};
 pub use course::{CourseHits, HitRules, Matrix, Vectors};
 use durer_bvh::{Bvh, Grid, PrimitivePacks, TraversalCounter};
 use durer_scene::light::{Illuminate as _, Light, LightLiSample};
-use durer_scene::material::{Pattern, Solid};
+use durer_scene::material::{Pattern, PatternMaterial};
 use durer_scene::math::{Aabb, Color, Ray, Ray64, Vec2, Vec3};
 use durer_scene::shape::{Shape as _, ShapeHit, Sphere};
 use durer_scene::source::Digest;
@@ -198,7 +198,7 @@ impl World {
     /// spheres at distance 10000.
     #[inline]
     fn accepts(&self, ray: &Ray) -> bool {
-        durer_bvh::internal::is_sound(ray) || matches!(self.accel, Accel::Course(_))
+        durer_bvh::internal::is_valid(ray) || matches!(self.accel, Accel::Course(_))
     }
 
     fn nearest<T: TraversalCounter>(&self, ray: &mut Ray64, counter: &mut T) -> Option<Hit> {
@@ -269,7 +269,7 @@ impl World {
     ) -> (u32, Option<(ShapeHit, u32)>) {
         let number = bvh.primitive_indices()[item];
         if let Some(sphere) = self.spheres.get(item).filter(|sphere| sphere.radius > 0.0) {
-            counter.work(0, 1);
+            counter.count_work(0, 1);
             return (number, sphere.intersect(&ray.rounded).map(|crossing| (crossing, 0)));
         }
         (number, self.objects()[number as usize].closest(number, ray, any, counter))
@@ -394,7 +394,7 @@ impl World {
 
     /// Returns the first hit on one object, ignoring all others.
     pub fn hit_of(&self, object: u32, ray: &Ray64) -> Option<Hit> {
-        let sound = durer_bvh::internal::is_sound(&ray.rounded);
+        let sound = durer_bvh::internal::is_valid(&ray.rounded);
         let (crossing, part) =
             self.objects()[object as usize].closest(object, ray, false, &mut ()).filter(|_| sound)?;
         Some(Hit { t: crossing.t, uv: crossing.uv, object, part })
@@ -410,7 +410,7 @@ impl World {
         };
         let mut seen = LightLiSample { to_light, distance, color };
         if let Some(Some(profile)) = self.profiles().get(light) {
-            seen.color = profile.at(self.lights()[light].in_profile(-seen.to_light)) * seen.color;
+            seen.color = profile.at(self.lights()[light].to_profile(-seen.to_light)) * seen.color;
         }
         seen
     }
@@ -443,7 +443,7 @@ impl World {
                 let q = to_pattern.transform_point3(at.surface.position.as_dvec3()).as_vec3();
                 let pictured = picture.map_or(1.0, |picture| self.number_at(picture, at));
                 let weight = match solid {
-                    Solid::TwoSided(_) => f32::from(u8::from(!at.inside())),
+                    PatternMaterial::TwoSided(_) => f32::from(u8::from(!at.inside())),
                     _ => solid.share(q, self.shading_rules().conic_rings) * pictured,
                 };
                 let [first, second] = solid.materials();

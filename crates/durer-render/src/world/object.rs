@@ -5,7 +5,7 @@ use super::{Matrix, ShadingRules};
 use durer_bvh::{BuildQuality, PrimitivePacks, TraversalCounter, TriangleBvh};
 use durer_scene::dialect::MeshNormals;
 use durer_scene::math::{Aabb, Affine, Line, Ray, Ray64, Vec2, Vec3, gamma};
-use durer_scene::shape::{Axis, Mesh, Primitive, Shape, ShapeHit, Sphere, Surface, Uv};
+use durer_scene::shape::{Axis, Mesh, Primitive, Shape, ShapeHit, Sphere, SurfacePoint, Uv};
 use glam::{DAffine3, DVec3};
 use std::sync::{Arc, OnceLock};
 
@@ -61,7 +61,7 @@ impl MeshTree {
 
     /// Makes rays miss triangles that they hit edge-on; see `TriangleBvh::least_volume`.
     pub fn least_volume(self, least_volume: f64) -> Self {
-        MeshTree { bvh: self.bvh.least_volume(least_volume), ..self }
+        MeshTree { bvh: self.bvh.min_volume(least_volume), ..self }
     }
 
     /// Returns a copy of the mesh and BVH with other normals.
@@ -143,7 +143,7 @@ impl Object {
         let line = self.local_line(ray);
         match &self.geometry {
             Geometry::Primitive(shape) => {
-                counter.work(0, 1);
+                counter.count_work(0, 1);
                 shape.crossings_about(axis, &line, &mut |t, uv| offer(t, uv, 0));
             }
             Geometry::Mesh(tree) => tree.crossings(&line, counter, offer),
@@ -175,8 +175,8 @@ impl Object {
         crossing: &ShapeHit,
         part: u32,
         rules: &ShadingRules,
-    ) -> Surface {
-        let mut surface = Surface::NOWHERE;
+    ) -> SurfacePoint {
+        let mut surface = SurfacePoint::ZERO;
         self.own_surface(ray, point, crossing, part, rules, &mut surface);
         self.place(&mut surface, ray, crossing, rules);
         surface
@@ -190,7 +190,7 @@ impl Object {
         crossing: &ShapeHit,
         part: u32,
         rules: &ShadingRules,
-        surface: &mut Surface,
+        surface: &mut SurfacePoint,
     ) {
         // Each arm writes directly into the result, because a common temporary would be copied.
         match &self.geometry {
@@ -211,7 +211,7 @@ impl Object {
 
     /// Transforms a surface to world space in place, which avoids a slow copy.
     #[inline]
-    pub(super) fn place(&self, surface: &mut Surface, ray: &Ray64, crossing: &ShapeHit, rules: &ShadingRules) {
+    pub(super) fn place(&self, surface: &mut SurfacePoint, ray: &Ray64, crossing: &ShapeHit, rules: &ShadingRules) {
         if matches!(self.geometry, Geometry::Solid(_)) {
             return;
         }
@@ -225,7 +225,7 @@ impl Object {
                 surface.n_shade = shading(to_world, surface.n_shade);
             }
             surface.position = ray.rounded.at(crossing.t);
-            surface.rest = Vec3::ZERO;
+            surface.rounding_error = Vec3::ZERO;
             surface.n_shade *= self.normal_length;
             if rules.mesh_textures && matches!(self.geometry, Geometry::Primitive(_)) {
                 surface.uv = Uv::None;
@@ -234,9 +234,9 @@ impl Object {
             let error = to_world.point_error(surface.position, surface.error);
             let point = to_world.point64(surface.position);
             surface.position = point.as_vec3();
-            surface.rest = (point - surface.position.as_dvec3()).as_vec3();
+            surface.rounding_error = (point - surface.position.as_dvec3()).as_vec3();
             // A curved surface also deviates from its tangent plane, by the square of the error.
-            surface.error = error + to_world.spread(surface.bulge(to_world.inverse_spread(error)));
+            surface.error = error + to_world.error_bound(surface.bulge(to_world.inverse_error_bound(error)));
             surface.n_geo = to_world.normal(surface.n_geo);
             surface.n_shade = shading(to_world, surface.n_shade);
             surface.shadow_offsets = surface.shadow_offsets.map(|lift| to_world.vector(lift));
@@ -265,7 +265,7 @@ impl Object {
         };
         match &self.geometry {
             Geometry::Primitive(shape) => {
-                counter.work(0, 1);
+                counter.count_work(0, 1);
                 shape.intersect(local).map(|crossing| (crossing, 0))
             }
             Geometry::Mesh(tree) => tree.closest(local, any, counter),
@@ -280,12 +280,12 @@ impl Object {
         ray: &Ray64,
         counter: &mut T,
     ) -> Option<(ShapeHit, u32)> {
-        counter.work(0, 1);
+        counter.count_work(0, 1);
         let local = self.local_ray(ray);
         let crossing = match &self.geometry {
             Geometry::Primitive(shape) => shape.intersect(&local),
             // The BVH rejects such rays, which cannot hit anything.
-            Geometry::Mesh(_) if !durer_bvh::internal::is_sound(&local) => None,
+            Geometry::Mesh(_) if !durer_bvh::internal::is_valid(&local) => None,
             Geometry::Mesh(tree) => tree
                 .bvh
                 .watertight_ray(&local)

@@ -74,7 +74,7 @@ fn packs_return_the_hits_of_single_shapes() {
             let t_min = [0.0, f32::NEG_INFINITY, size][random.below(3)];
             let t_max = [f32::INFINITY, 1.5 * size][random.below(2)];
             let ray = Ray { t_min, t_max, ..Ray::new(origins[random.below(4)], dirs[random.below(5)]) };
-            if !durer_bvh::internal::is_sound(&ray) {
+            if !durer_bvh::internal::is_valid(&ray) {
                 continue;
             }
             let each =

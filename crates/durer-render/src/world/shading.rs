@@ -7,13 +7,13 @@ use crate::world::material::Emission;
 use durer_scene::bsdf::layers::{self, View};
 use durer_scene::bsdf::lobe::blinn::Blinn;
 use durer_scene::bsdf::lobe::diffuse::Diffuse;
-use durer_scene::bsdf::lobe::glass::{Mirror, Refraction, Through};
+use durer_scene::bsdf::lobe::glass::{Mirror, Refraction, StraightTransmission};
 use durer_scene::bsdf::{Bsdf, Frame, fresnel};
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::{Backs, Surroundings, Switch, Walls};
 use durer_scene::math::{Color, Vec3, fp};
 use durer_scene::medium::Medium;
-use durer_scene::shape::Surface;
+use durer_scene::shape::SurfacePoint;
 use durer_scene::spectrum::{Curve, Lanes, Spectrum};
 
 /// BSDF at a surface point with its shading frame and the direction it is seen from, for path
@@ -72,7 +72,7 @@ impl World {
     /// material's colour. For `tinted` materials, the product of colour, texture and vertex
     /// colours.
     #[inline]
-    pub fn diffuse_color(&self, phong: &Phong, surface: &Surface) -> Color {
+    pub fn diffuse_color(&self, phong: &Phong, surface: &SurfacePoint) -> Color {
         let texture = phong.texture.and_then(|i| Some(self.textures()[i as usize].at(surface.uv.get()?)));
         if phong.tinted {
             let [r, g, b, _] = surface.color;
@@ -109,14 +109,14 @@ impl World {
         let bsdf = &mut shading.bsdf;
         for part in &parts {
             if let Some(fibre) = &part.phong.fibre {
-                bsdf.push(fibre.seen(lanes), Spectrum::splat(part.share), part.share);
+                bsdf.push(fibre.lobe(lanes), Spectrum::splat(part.share), part.share);
                 continue;
             }
             match &part.phong.principled {
                 Some(own) if inside && own.written.backs == Backs::Black => {}
                 Some(own) => {
                     let here = self.parameters_at(own, at);
-                    layers::scattering(bsdf, part.share, &here, &own.tables, view);
+                    layers::push_lobes(bsdf, part.share, &here, &own.tables, view);
                 }
                 None => phong_lobes(bsdf, part, self.diffuse_color(part.phong, surface), view),
             }
@@ -362,7 +362,7 @@ fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, view: Vie
     bsdf.push(Mirror, scale * mirror, scale * mirror.max_element());
     let through = scale * through;
     match eta == 1.0 {
-        true => bsdf.push(Through, through, through.max_element()),
+        true => bsdf.push(StraightTransmission, through, through.max_element()),
         false => bsdf.push(Refraction { eta }, through, through.max_element()),
     }
 }

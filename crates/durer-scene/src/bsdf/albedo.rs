@@ -36,7 +36,7 @@ impl Table {
 
     /// Returns the value at a cosine and a roughness, interpolated linearly.
     fn at(&self, cosine: f32, roughness: f32) -> f32 {
-        let ((i, a), (j, b)) = (place(cosine.max(0.0).sqrt()), place(roughness));
+        let ((i, a), (j, b)) = (table_position(cosine.max(0.0).sqrt()), table_position(roughness));
         let row = |j: usize| self.0[j * SIZE + i] * (1.0 - a) + self.0[j * SIZE + i + 1] * a;
         row(j) * (1.0 - b) + row(j + 1) * b
     }
@@ -44,12 +44,12 @@ impl Table {
 
 /// Returns the index of the table entry below `x` in [0, 1], and the fraction towards the next
 /// entry.
-fn place(x: f32) -> (usize, f32) {
-    place_among(x, SIZE)
+fn table_position(x: f32) -> (usize, f32) {
+    table_position_in(x, SIZE)
 }
 
-/// Version of [`place`] for a table of `size` entries.
-fn place_among(x: f32, size: usize) -> (usize, f32) {
+/// Version of [`table_position`] for a table of `size` entries.
+fn table_position_in(x: f32, size: usize) -> (usize, f32) {
     let x = x.clamp(0.0, 1.0) * (size - 1) as f32;
     let i = (x as usize).min(size - 2);
     (i, x - i as f32)
@@ -69,8 +69,8 @@ fn mean_by_cosine(value: impl Fn(f32) -> f32) -> f32 {
 /// the same value, and deadlock. Concurrent callers all compute the same value.
 fn once<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
     cell.get().unwrap_or_else(|| {
-        let made = make();
-        cell.get_or_init(|| made)
+        let table = make();
+        cell.get_or_init(|| table)
     })
 }
 
@@ -101,14 +101,14 @@ pub fn ggx(cosine: f32, roughness: f32) -> f32 {
     let table = once(&TABLE, || {
         Table::new(|cosine, roughness| {
             let (ggx, wo) = (isotropic(roughness), direction(cosine));
-            mean(|u| mirrored(ggx, wo, u))
+            mean(|u| reflection_weight(ggx, wo, u))
         })
     });
     table.at(cosine, roughness)
 }
 
 /// Weight of the reflection off one sampled facet that reflects all light.
-fn mirrored(ggx: Ggx, wo: Vec3, u: Vec2) -> f32 {
+fn reflection_weight(ggx: Ggx, wo: Vec3, u: Vec2) -> f32 {
     let h = ggx.sample_visible(wo, u);
     let wi = 2.0 * wo.dot(h) * h - wo;
     if wi.z > 0.0 { ggx.masking_shadowing(wo, wi) / ggx.masking(wo) } else { 0.0 }
@@ -116,11 +116,11 @@ fn mirrored(ggx: Ggx, wo: Vec3, u: Vec2) -> f32 {
 
 /// Version of [`ggx`] that also accepts anisotropic surfaces. `roughness` is used only if the
 /// surface is isotropic.
-pub fn facets(surface: Ggx, wo: Vec3, roughness: f32) -> f32 {
+pub fn ggx_for(surface: Ggx, wo: Vec3, roughness: f32) -> f32 {
     static TABLE: OnceLock<anisotropic::Table> = OnceLock::new();
-    match surface.is_even() {
+    match surface.is_isotropic() {
         true => ggx(wo.z, roughness),
-        false => once(&TABLE, || anisotropic::Table::new(mirrored)).at(surface, wo),
+        false => once(&TABLE, || anisotropic::Table::new(reflection_weight)).at(surface, wo),
     }
 }
 
@@ -143,7 +143,7 @@ pub fn fuzz(cosine: f32, roughness: f32) -> f32 {
 /// Boundary between two dielectrics of a given relative index, with albedo tables that are computed
 /// on first use.
 #[derive(Clone, Debug)]
-pub struct Dielectric {
+pub struct DielectricAlbedo {
     /// Index of refraction inside, relative to the index outside.
     pub ior: f32,
     /// Cosine-weighted mean of the reflectance from outside, for a smooth boundary.
@@ -154,20 +154,26 @@ pub struct Dielectric {
     /// Cosine-weighted mean of the reflectance from outside, for each roughness in the tables.
     means: OnceLock<Vec<f32>>,
     /// Share that is not lost, from outside and from inside, for anisotropic surfaces.
-    uneven: OnceLock<[anisotropic::Table; 2]>,
+    anisotropic: OnceLock<[anisotropic::Table; 2]>,
 }
 
-impl PartialEq for Dielectric {
+impl PartialEq for DielectricAlbedo {
     fn eq(&self, other: &Self) -> bool {
         self.ior == other.ior
     }
 }
 
-impl Dielectric {
+impl DielectricAlbedo {
     /// Creates a boundary of relative index `ior`. Its tables are computed on first use.
     pub fn new(ior: f32) -> Self {
         let smooth_mean = mean_by_cosine(|cosine| fresnel::dielectric(cosine, ior));
-        Dielectric { ior, smooth_mean, tables: OnceLock::new(), means: OnceLock::new(), uneven: OnceLock::new() }
+        DielectricAlbedo {
+            ior,
+            smooth_mean,
+            tables: OnceLock::new(),
+            means: OnceLock::new(),
+            anisotropic: OnceLock::new(),
+        }
     }
 
     /// Returns the tables for one side: the reflected share, and the share that is not lost.
@@ -177,7 +183,7 @@ impl Dielectric {
                 [false, true].map(|all| {
                     Table::new(|cosine, roughness| {
                         let (ggx, wo) = (isotropic(roughness), direction(cosine));
-                        mean(|u| single(ggx, wo, eta, u, all))
+                        mean(|u| facet_weight(ggx, wo, eta, u, all))
                     })
                 })
             })
@@ -206,7 +212,7 @@ impl Dielectric {
         }
     }
 
-    /// Cosine-weighted mean of [`Dielectric::reflectance`] over the hemisphere.
+    /// Cosine-weighted mean of [`DielectricAlbedo::reflectance`] over the hemisphere.
     pub fn mean(&self, roughness: f32) -> f32 {
         if Ggx::new(roughness, 0.0).is_smooth() {
             return self.smooth_mean;
@@ -216,7 +222,7 @@ impl Dielectric {
             mean_by_cosine(|cosine| self.reflected(false, cosine, roughness))
         };
         let means = once(&self.means, || (0..SIZE).map(of).collect());
-        let (i, a) = place(roughness);
+        let (i, a) = table_position(roughness);
         means[i] * (1.0 - a) + means[i + 1] * a
     }
 
@@ -226,19 +232,20 @@ impl Dielectric {
         1.0 / self.tables(inside)[1].at(cosine, roughness)
     }
 
-    /// Version of [`Dielectric::gain`] that also accepts anisotropic surfaces. `eta` is the index
-    /// behind the boundary, relative to the index in front of it. It differs from the boundary's
-    /// own index if another medium surrounds the object.
-    pub fn gain_of(&self, inside: bool, eta: f32, surface: Ggx, wo: Vec3, roughness: f32) -> f32 {
-        let own = if inside { 1.0 / self.ior } else { self.ior };
-        if (eta / own - 1.0).abs() > NEAR {
-            return 1.0 / anisotropic::quick(|u| single(surface.clamped(), wo, eta, u, true));
+    /// Version of [`DielectricAlbedo::gain`] that also accepts anisotropic surfaces. `eta` is the
+    /// index behind the boundary, relative to the index in front of it. It differs from the
+    /// boundary's own index if another medium surrounds the object.
+    pub fn gain_for(&self, inside: bool, eta: f32, surface: Ggx, wo: Vec3, roughness: f32) -> f32 {
+        let own_eta = if inside { 1.0 / self.ior } else { self.ior };
+        if (eta / own_eta - 1.0).abs() > NEAR {
+            return 1.0 / anisotropic::quick(|u| facet_weight(surface.clamped(), wo, eta, u, true));
         }
-        if surface.is_even() {
+        if surface.is_isotropic() {
             return self.gain(inside, wo.z, roughness);
         }
-        let both = once(&self.uneven, || {
-            [self.ior, 1.0 / self.ior].map(|eta| anisotropic::Table::new(|ggx, wo, u| single(ggx, wo, eta, u, true)))
+        let both = once(&self.anisotropic, || {
+            [self.ior, 1.0 / self.ior]
+                .map(|eta| anisotropic::Table::new(|ggx, wo, u| facet_weight(ggx, wo, eta, u, true)))
         });
         1.0 / both[usize::from(inside)].at(surface, wo)
     }
@@ -254,7 +261,7 @@ const NEAR: f32 = 0.05;
 pub fn over_facets(surface: Ggx, wo: Vec3, value: impl Fn(f32) -> Spectrum) -> Spectrum {
     const FEW: usize = 16;
     let (ggx, cosine) = (surface.clamped(), wo.z);
-    let wo = if ggx.is_even() { direction(cosine) } else { wo };
+    let wo = if ggx.is_isotropic() { direction(cosine) } else { wo };
     let (mut sum, mut all) = (Spectrum::ZERO, 0.0);
     for u in points().take(FEW) {
         let h = ggx.sample_visible(wo, u);
@@ -274,13 +281,13 @@ pub fn single_means(eta: f32, roughness: f32) -> [f32; 2] {
     let ggx = isotropic(roughness);
     [false, true].map(|all| {
         let at = |i: usize| ((i as f32 + 0.5) / COSINES as f32).sqrt();
-        let one = |i: usize| points().take(FEW).map(|u| single(ggx, direction(at(i)), eta, u, all)).sum::<f32>();
+        let one = |i: usize| points().take(FEW).map(|u| facet_weight(ggx, direction(at(i)), eta, u, all)).sum::<f32>();
         (0..COSINES).map(one).sum::<f32>() / (COSINES * FEW) as f32
     })
 }
 
 /// Weight of one sampled facet: its reflection, or its reflection and refraction if `all` is set.
-fn single(ggx: Ggx, wo: Vec3, eta: f32, u: Vec2, all: bool) -> f32 {
+fn facet_weight(ggx: Ggx, wo: Vec3, eta: f32, u: Vec2, all: bool) -> f32 {
     let h = ggx.sample_visible(wo, u);
     let cosine = wo.dot(h).max(0.0);
     let reflected = fresnel::dielectric(cosine, eta);

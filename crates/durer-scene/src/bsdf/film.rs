@@ -56,7 +56,7 @@ impl Film {
     /// below 1), it equals the reflectance from outside along the same path.
     pub fn reflected(&self, cosine: f32) -> Spectrum {
         if self.metal {
-            return self.covered(cosine);
+            return self.film_reflectance(cosine);
         }
         let eta = self.below.x;
         let plain = fresnel::dielectric(cosine, eta);
@@ -66,14 +66,14 @@ impl Film {
         let covered = match eta < 1.0 {
             true => {
                 let outside = (1.0 - (1.0 - cosine * cosine) / (eta * eta)).max(0.0).sqrt();
-                Film { below: Spectrum::splat(1.0 / eta), ior: self.ior / eta, ..*self }.covered(outside)
+                Film { below: Spectrum::splat(1.0 / eta), ior: self.ior / eta, ..*self }.film_reflectance(outside)
             }
-            false => self.covered(cosine),
+            false => self.film_reflectance(cosine),
         };
         Spectrum::splat(plain).lerp(covered, self.weight)
     }
 
-    fn covered(&self, cosine: f32) -> Spectrum {
+    fn film_reflectance(&self, cosine: f32) -> Spectrum {
         let sine2 = (1.0 - cosine * cosine).max(0.0);
         let inside2 = 1.0 - sine2 / (self.ior * self.ior);
         if inside2 <= 0.0 {
@@ -88,7 +88,7 @@ impl Film {
         let mut sum = Spectrum::ZERO;
         for lane in 0..4 {
             // In RGB mode, the fourth lane repeats green.
-            let below = self.behind(lane, sine2, inside);
+            let below = self.lower_boundary(lane, sine2, inside);
             for (first, second) in boundaries.into_iter().zip(below) {
                 sum[lane] += match self.nm.x > 0.0 {
                     true => airy(first, second, TAU * shift / self.nm[lane]),
@@ -101,25 +101,25 @@ impl Film {
 
     /// Complex reflection coefficients of the lower boundary, for light polarised perpendicular and
     /// parallel to the plane of incidence.
-    fn behind(&self, lane: usize, sine2: f32, inside: f32) -> [Vec2; 2] {
+    fn lower_boundary(&self, lane: usize, sine2: f32, inside: f32) -> [Vec2; 2] {
         let index = match self.metal {
             true => metal_index(self.below[lane]),
             false => Vec2::new(self.below[lane], 0.0),
         };
         // The squared complex cosine behind the boundary is 1 - sin^2 / n^2.
-        let square = times(index, index);
-        let cosine = root(Vec2::X - over(Vec2::new(sine2, 0.0), square));
+        let square = multiply(index, index);
+        let cosine = complex_sqrt(Vec2::X - divide(Vec2::new(sine2, 0.0), square));
         let film = self.ior;
-        let (n_cos, own) = (times(index, cosine), Vec2::new(film * inside, 0.0));
+        let (n_cos, film_cosine) = (multiply(index, cosine), Vec2::new(film * inside, 0.0));
         let (cross, film_cos) = (inside * index, film * cosine);
-        [over(own - n_cos, own + n_cos), over(cross - film_cos, cross + film_cos)]
+        [divide(film_cosine - n_cos, film_cosine + n_cos), divide(cross - film_cos, cross + film_cos)]
     }
 }
 
 fn wavelengths(lanes: &Lanes) -> Spectrum {
     match lanes {
         Lanes::Rgb => Spectrum::ZERO,
-        Lanes::Waves(waves) => waves.nm,
+        Lanes::Wavelengths(waves) => waves.nm,
     }
 }
 
@@ -133,7 +133,7 @@ fn metal_index(r: f32) -> Vec2 {
 
 /// Airy reflectance |(a + b z) / (1 + a b z)|^2, where z is a unit phasor.
 fn airy(first: f32, second: Vec2, phase: f32) -> f32 {
-    let z = times(second, Vec2::new(fp::cos(phase), fp::sin(phase)));
+    let z = multiply(second, Vec2::new(fp::cos(phase), fp::sin(phase)));
     let above = Vec2::new(first, 0.0) + z;
     let below = Vec2::X + first * z;
     above.length_squared() / below.length_squared()
@@ -154,22 +154,22 @@ fn by_orders(first: f32, second: Vec2, shift: f32, channel: usize) -> f32 {
         if (strength * order).length_squared() < 1e-8 {
             break;
         }
-        sum += strength * times(order, interference(number as f32 * shift)[channel]).x;
-        order = times(order, step);
+        sum += strength * multiply(order, interference(number as f32 * shift)[channel]).x;
+        order = multiply(order, step);
     }
     sum
 }
 
-fn times(a: Vec2, b: Vec2) -> Vec2 {
+fn multiply(a: Vec2, b: Vec2) -> Vec2 {
     Vec2::new(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x)
 }
 
-fn over(a: Vec2, b: Vec2) -> Vec2 {
-    times(a, Vec2::new(b.x, -b.y)) / b.length_squared()
+fn divide(a: Vec2, b: Vec2) -> Vec2 {
+    multiply(a, Vec2::new(b.x, -b.y)) / b.length_squared()
 }
 
 /// Complex square root in the upper half-plane.
-fn root(a: Vec2) -> Vec2 {
+fn complex_sqrt(a: Vec2) -> Vec2 {
     let length = a.length();
     let real = (0.5 * (length + a.x)).max(0.0).sqrt();
     let imaginary = (0.5 * (length - a.x)).max(0.0).sqrt();
@@ -224,15 +224,15 @@ mod tests {
                     false => Film::on_dielectric(lanes, thickness, ior, 1.0, 1.0),
                 };
                 let lanes = (0..n).map(|i| waves((i as f32 + 0.5) / n as f32));
-                let seen = lanes.map(|lanes| {
+                let mean = lanes.map(|lanes| {
                     let white = lanes.light(crate::math::Color::ONE);
                     lanes.color(film(&lanes).reflected(cosine) * white).as_dvec3()
                 });
-                let seen = seen.sum::<glam::DVec3>().as_vec3() / n as f32;
+                let mean = mean.sum::<glam::DVec3>().as_vec3() / n as f32;
                 let colour = film(&Lanes::Rgb).reflected(cosine).truncate();
-                let seen = seen.clamp(crate::math::Color::ZERO, crate::math::Color::ONE);
-                let off = (seen - colour).abs().max_element();
-                assert!(off < 0.004, "{thickness} {ior} {metal} {cosine}: {seen} {colour}");
+                let mean = mean.clamp(crate::math::Color::ZERO, crate::math::Color::ONE);
+                let off = (mean - colour).abs().max_element();
+                assert!(off < 0.004, "{thickness} {ior} {metal} {cosine}: {mean} {colour}");
             }
         }
     }

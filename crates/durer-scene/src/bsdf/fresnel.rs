@@ -73,31 +73,31 @@ impl Sheet {
             let reflected = Spectrum::splat(2.0 * once / (1.0 + once));
             return (reflected, Spectrum::ONE - reflected);
         };
-        let left = left_of(inside, cosine, eta);
+        let left = transmittance_at(inside, cosine, eta);
         let [parallel, perpendicular] = polarised(cosine, eta).map(|face| {
             let face = Spectrum::splat(face);
-            to_and_fro(face, face, left)
+            sum_reflections(face, face, left)
         });
         (0.5 * (parallel.0 + perpendicular.0), 0.5 * (parallel.1 + perpendicular.1))
     }
 
     /// Reflectance and transmittance of a sheet whose front face has reflectance `face`, for
     /// unpolarised light.
-    pub fn faced(&self, face: Spectrum, cosine: f32) -> (Spectrum, Spectrum) {
-        let left = self.inside.map_or(Spectrum::ONE, |inside| left_of(inside, cosine, self.eta));
-        to_and_fro(face, Spectrum::splat(dielectric(cosine, self.eta)), left)
+    pub fn with_front_face(&self, face: Spectrum, cosine: f32) -> (Spectrum, Spectrum) {
+        let left = self.inside.map_or(Spectrum::ONE, |inside| transmittance_at(inside, cosine, self.eta));
+        sum_reflections(face, Spectrum::splat(dielectric(cosine, self.eta)), left)
     }
 }
 
 /// Transmittance of the interior at an oblique angle, where the path through it is longer.
-fn left_of(inside: Spectrum, cosine: f32, eta: f32) -> Spectrum {
+fn transmittance_at(inside: Spectrum, cosine: f32, eta: f32) -> Spectrum {
     let behind = (1.0 - (1.0 - cosine * cosine).max(0.0) / (eta * eta)).max(0.0).sqrt();
     inside.max(Spectrum::ZERO).map(|left| if left < 1.0 { fp::pow(left, 1.0 / behind.max(1e-3)) } else { 1.0 })
 }
 
 /// Reflectance and transmittance of two parallel faces, summed over all internal reflections. Each
 /// crossing keeps the share `left`.
-fn to_and_fro(front: Spectrum, back: Spectrum, left: Spectrum) -> (Spectrum, Spectrum) {
+fn sum_reflections(front: Spectrum, back: Spectrum, left: Spectrum) -> (Spectrum, Spectrum) {
     let entered = Spectrum::ONE - front;
     let again = (Spectrum::ONE - front * back * left * left).max(Spectrum::splat(1e-6));
     (front + entered * entered * back * left * left / again, entered * (Spectrum::ONE - back) * left / again)

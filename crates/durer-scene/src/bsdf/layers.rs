@@ -6,13 +6,13 @@
 //! the light too ([`Boundary`]), so plastic is reciprocal.
 
 use super::Bsdf;
-use super::albedo::{self, Dielectric};
+use super::albedo::{self, DielectricAlbedo};
 use super::film::Film;
 use super::fresnel::{self, Sheet};
 use super::lobe::diffuse::{Boundary, Diffuse, DiffuseTransmission};
 use super::lobe::fuzz::Fuzz;
-use super::lobe::glass::{Mirror, Refraction, Through};
-use super::lobe::rough::{Facet, Rough};
+use super::lobe::glass::{Mirror, Refraction, StraightTransmission};
+use super::lobe::rough::{Facet, RoughReflection};
 use super::lobe::rough_glass::RoughGlass;
 use super::microfacet::Ggx;
 use crate::describe::FileName;
@@ -26,24 +26,28 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tables {
     /// Boundary of an opaque base.
-    opaque: Arc<Dielectric>,
+    opaque: Arc<DielectricAlbedo>,
     /// Boundary of glass.
-    glass: Arc<Dielectric>,
+    glass: Arc<DielectricAlbedo>,
     /// Boundary of the coat.
-    coat: Arc<Dielectric>,
+    coat: Arc<DielectricAlbedo>,
     /// Measured spectrum of the base colour.
     measured: Option<Arc<Curve>>,
 }
 
 impl Tables {
     /// Creates the tables of a material. `measured` is the measured spectrum of its base, if any.
-    /// `known` caches boundaries by index of refraction.
-    pub fn new(material: &PrincipledMaterial, measured: Option<Arc<Curve>>, known: &mut Vec<Arc<Dielectric>>) -> Self {
+    /// `cache` caches boundaries by index of refraction.
+    pub fn new(
+        material: &PrincipledMaterial,
+        measured: Option<Arc<Curve>>,
+        cache: &mut Vec<Arc<DielectricAlbedo>>,
+    ) -> Self {
         let mut of = |ior: f32| {
-            let found = known.iter().find(|tables| tables.ior == ior).cloned();
+            let found = cache.iter().find(|tables| tables.ior == ior).cloned();
             found.unwrap_or_else(|| {
-                known.push(Arc::new(Dielectric::new(ior)));
-                known[known.len() - 1].clone()
+                cache.push(Arc::new(DielectricAlbedo::new(ior)));
+                cache[cache.len() - 1].clone()
             })
         };
         Tables {
@@ -84,10 +88,10 @@ impl Tables {
         if m.specular_anisotropy > 0.0 && m.specular_roughness > 0.0 && compensates {
             let uneven = Ggx::new(1.0, 0.5);
             if facets {
-                albedo::facets(uneven, Vec3::Z, 1.0);
+                albedo::ggx_for(uneven, Vec3::Z, 1.0);
             }
             if through && m.walls == Walls::Solid {
-                self.glass.gain_of(false, self.glass.ior, uneven, Vec3::Z, 1.0);
+                self.glass.gain_for(false, self.glass.ior, uneven, Vec3::Z, 1.0);
             }
         }
     }
@@ -118,7 +122,7 @@ fn mix(a: f32, b: f32, share: f32) -> f32 {
 }
 
 /// Quotient `shares / of`, lane by lane; 1 where `of` is 0.
-fn parts(shares: Spectrum, of: Spectrum) -> Spectrum {
+fn ratios(shares: Spectrum, of: Spectrum) -> Spectrum {
     Spectrum::select(of.cmpgt(Spectrum::splat(1e-6)), shares / of, Spectrum::ONE)
 }
 
@@ -138,33 +142,33 @@ pub struct View<'a> {
     pub eta: f32,
 }
 
-/// Adds the lobes of a material with the parameters `here` to `bsdf`, each scaled by `factor`.
-pub fn scattering<'a>(bsdf: &mut Bsdf<'a>, factor: f32, here: &Parameters, tables: &'a Tables, view: View) {
-    let stack = Stack {
-        here,
+/// Adds the lobes of a material with `parameters` to `bsdf`, each scaled by `factor`.
+pub fn push_lobes<'a>(bsdf: &mut Bsdf<'a>, factor: f32, parameters: &Parameters, tables: &'a Tables, view: View) {
+    let stack = LayerStack {
+        parameters,
         tables,
         view,
         base: match &tables.measured {
-            Some(curve) => view.lanes.measured(here.base_color, curve),
-            None => view.lanes.reflectance(here.base_color),
+            Some(curve) => view.lanes.measured(parameters.base_color, curve),
+            None => view.lanes.reflectance(parameters.base_color),
         },
-        specular: view.lanes.reflectance(here.specular_color),
+        specular: view.lanes.reflectance(parameters.specular_color),
     };
-    stack.scattering(bsdf, factor);
+    stack.push_lobes(bsdf, factor);
 }
 
 /// Layers of a principled material at one surface point, from which its lobes are built.
-struct Stack<'a, 't> {
-    here: &'a Parameters,
+struct LayerStack<'a, 't> {
+    parameters: &'a Parameters,
     tables: &'t Tables,
     view: View<'a>,
     base: Spectrum,
     specular: Spectrum,
 }
 
-impl<'t> Stack<'_, 't> {
-    fn scattering(&self, bsdf: &mut Bsdf<'t>, factor: f32) {
-        let (m, view) = (self.here, self.view);
+impl<'t> LayerStack<'_, 't> {
+    fn push_lobes(&self, bsdf: &mut Bsdf<'t>, factor: f32) {
+        let (m, view) = (self.parameters, self.view);
         let mu = view.wo.z;
         let mut below = Spectrum::splat(factor);
         if m.fuzz_weight > 0.0 && !view.inside {
@@ -180,7 +184,7 @@ impl<'t> Stack<'_, 't> {
             );
             below *= 1.0 - scale * reflectance;
         }
-        let mut roughness = self.here.specular_roughness;
+        let mut roughness = self.parameters.specular_roughness;
         if m.coat_weight > 0.0 && !view.inside {
             let weight = m.coat_weight;
             let reflectance = self.boundary(bsdf, &self.tables.coat, m.coat_roughness, weight * below, None);
@@ -190,8 +194,8 @@ impl<'t> Stack<'_, 't> {
             let both = (fourth(roughness) + 2.0 * fourth(m.coat_roughness)).min(1.0);
             roughness = mix(roughness, both.sqrt().sqrt(), weight);
         }
-        self.metal(bsdf, roughness, below * self.here.base_metalness);
-        let dielectric = below * (1.0 - self.here.base_metalness);
+        self.metal(bsdf, roughness, below * self.parameters.base_metalness);
+        let dielectric = below * (1.0 - self.parameters.base_metalness);
         let through = dielectric * m.transmission_weight;
         if through.max_element() > 0.0 {
             match m.walls {
@@ -225,10 +229,10 @@ impl<'t> Stack<'_, 't> {
         if weight.max_element() <= 0.0 {
             return;
         }
-        let m = self.here;
+        let m = self.parameters;
         if m.has_body {
             let entering =
-                if m.entering == Vec3::ONE { Spectrum::ONE } else { self.view.lanes.reflectance(m.entering) };
+                if m.entry_tint == Vec3::ONE { Spectrum::ONE } else { self.view.lanes.reflectance(m.entry_tint) };
             let share = (weight * entering).max_element();
             return bsdf.push(DiffuseTransmission { color: entering }, weight, share);
         }
@@ -242,7 +246,7 @@ impl<'t> Stack<'_, 't> {
 
     /// Film on a dielectric of relative index `eta`, if there is one.
     fn film(&self, eta: f32) -> Option<Film> {
-        let m = self.here;
+        let m = self.parameters;
         // The outside is air. Seen from inside, the body is in front of the film.
         let ior = m.thin_film_ior * eta.min(1.0);
         (m.thin_film_weight > 0.0)
@@ -253,7 +257,7 @@ impl<'t> Stack<'_, 't> {
     fn boundary(
         &self,
         bsdf: &mut Bsdf<'t>,
-        tables: &Dielectric,
+        tables: &DielectricAlbedo,
         roughness: f32,
         weight: Spectrum,
         film: Option<Film>,
@@ -273,7 +277,7 @@ impl<'t> Stack<'_, 't> {
             Some(film) => (Facet::Film(film), albedo::over_facets(ggx, self.view.wo, |cosine| film.reflected(cosine))),
             None => (Facet::Dielectric(tables.ior), Spectrum::splat(tables.reflected(false, mu, roughness))),
         };
-        let rough = Rough { ggx: ggx.clamped(), facet, behind: false };
+        let rough = RoughReflection { ggx: ggx.clamped(), facet, transmits: false };
         let gain = if self.compensates() { tables.gain(false, mu, roughness) } else { 1.0 };
         bsdf.push(rough, weight * gain, (weight * reflectance).max_element());
         reflectance
@@ -281,24 +285,24 @@ impl<'t> Stack<'_, 't> {
 
     /// True if energy lost to multiple scattering between facets is restored.
     fn compensates(&self) -> bool {
-        self.here.energy_compensation == Switch::On
+        self.parameters.energy_compensation == Switch::On
     }
 
     /// Albedo of single scattering off perfectly reflecting facets; 1 without energy compensation.
     fn facets(&self, ggx: Ggx, roughness: f32) -> f32 {
-        if self.compensates() { albedo::facets(ggx, self.view.wo, roughness) } else { 1.0 }
+        if self.compensates() { albedo::ggx_for(ggx, self.view.wo, roughness) } else { 1.0 }
     }
 
     /// Factor for the base below a coat: absorption on the way in and out, and internal reflection.
     fn coat(&self, mu: f32) -> Spectrum {
-        let m = self.here;
+        let m = self.parameters;
         let eta = m.coat_ior;
         let inside = (1.0 - (1.0 - mu * mu) / (eta * eta)).max(0.01).sqrt();
         // On average, light enters at normal incidence. It leaves along the view direction.
         let tint = power(self.view.lanes.reflectance(m.coat_color), 0.5 + 0.5 / inside);
-        let roughness = mix(1.0, self.here.specular_roughness, self.here.base_metalness);
+        let roughness = mix(1.0, self.parameters.specular_roughness, self.parameters.base_metalness);
         let thrown_back = mix(fresnel::dielectric(mu, eta), fresnel::diffuse(1.0 / eta), roughness);
-        let base = self.base.lerp(Spectrum::ONE, (1.0 - self.here.base_metalness) * m.transmission_weight);
+        let base = self.base.lerp(Spectrum::ONE, (1.0 - self.parameters.base_metalness) * m.transmission_weight);
         let base = base.clamp(Spectrum::ZERO, Spectrum::ONE);
         let darker = (1.0 - thrown_back) / (Spectrum::ONE - base * thrown_back);
         tint * Spectrum::ONE.lerp(darker, m.coat_darkening)
@@ -308,7 +312,7 @@ impl<'t> Stack<'_, 't> {
         if weight.max_element() <= 0.0 {
             return;
         }
-        let (m, wo, mu) = (self.here, self.view.wo, self.view.wo.z);
+        let (m, wo, mu) = (self.parameters, self.view.wo, self.view.wo.z);
         let f82 = fresnel::F82::new(self.base, self.specular);
         let ggx = Ggx::new(roughness, m.specular_anisotropy);
         let mut weight = weight * m.specular_weight.min(1.0) * m.reflection;
@@ -323,7 +327,7 @@ impl<'t> Stack<'_, 't> {
                 let reflectance = self.facets(ggx, roughness);
                 let color = albedo::over_facets(ggx, wo, |cosine| film.reflected(cosine));
                 let again = Spectrum::ONE + color * ((1.0 - reflectance) / reflectance);
-                let rough = Rough { ggx: ggx.clamped(), facet: Facet::Film(film), behind: false };
+                let rough = RoughReflection { ggx: ggx.clamped(), facet: Facet::Film(film), transmits: false };
                 bsdf.push(rough, covered * again, (covered * color).max_element());
             }
         }
@@ -334,12 +338,12 @@ impl<'t> Stack<'_, 't> {
         let reflectance = self.facets(ggx, roughness);
         // Each further reflection between facets is tinted by the metal's colour again.
         let again = Spectrum::ONE + self.base * ((1.0 - reflectance) / reflectance);
-        let rough = Rough { ggx: ggx.clamped(), facet: Facet::Metal(f82), behind: false };
+        let rough = RoughReflection { ggx: ggx.clamped(), facet: Facet::Metal(f82), transmits: false };
         bsdf.push(rough, weight * again, (weight * f82.at(mu)).max_element());
     }
 
     fn glass(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
-        let (m, View { wo, inside, eta, .. }) = (self.here, self.view);
+        let (m, View { wo, inside, eta, .. }) = (self.parameters, self.view);
         // With a depth, the colour applies to the interior instead of the surface.
         let tint = match m.transmission_depth > 0.0 {
             true => Spectrum::ONE,
@@ -347,7 +351,7 @@ impl<'t> Stack<'_, 't> {
         };
         let film = self.film(eta);
         if eta == 1.0 && film.is_none() {
-            return bsdf.push(Through, weight * tint, weight.max_element());
+            return bsdf.push(StraightTransmission, weight * tint, weight.max_element());
         }
         let ggx = Ggx::new(roughness, m.specular_anisotropy);
         let plain = fresnel::dielectric(wo.z, eta);
@@ -357,7 +361,7 @@ impl<'t> Stack<'_, 't> {
             let (up, down) = (weight * reflected, weight * (Spectrum::ONE - reflected));
             bsdf.push(Mirror, self.specular * up, up.max_element());
             return match eta == 1.0 {
-                true => bsdf.push(Through, tint * down, down.max_element()),
+                true => bsdf.push(StraightTransmission, tint * down, down.max_element()),
                 false => bsdf.push(Refraction { eta }, tint * down, down.max_element()),
             };
         }
@@ -367,11 +371,11 @@ impl<'t> Stack<'_, 't> {
             let mean = |value: &dyn Fn(f32) -> Spectrum| albedo::over_facets(ggx, wo, value);
             let with = mean(&|cosine| film.reflected(cosine));
             let without = mean(&|cosine| Spectrum::splat(fresnel::dielectric(cosine, eta)));
-            (up, down) = (up * with / without, down * parts(Spectrum::ONE - with, Spectrum::ONE - without));
+            (up, down) = (up * with / without, down * ratios(Spectrum::ONE - with, Spectrum::ONE - without));
         }
         let rough = RoughGlass { ggx: ggx.clamped(), eta, reflected: up, transmitted: down };
         let gain = match self.compensates() {
-            true => self.tables.glass.gain_of(inside, eta, ggx, wo, roughness),
+            true => self.tables.glass.gain_for(inside, eta, ggx, wo, roughness),
             false => 1.0,
         };
         bsdf.push(rough, weight * gain, weight.max_element());
@@ -379,7 +383,7 @@ impl<'t> Stack<'_, 't> {
 
     /// Adds a thin sheet with internal reflections. Transmitted light keeps its direction.
     fn sheet(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
-        let (m, wo, mu) = (self.here, self.view.wo, self.view.wo.z);
+        let (m, wo, mu) = (self.parameters, self.view.wo, self.view.wo.z);
         let (eta, ggx) = (m.specular_ior, Ggx::new(roughness, m.specular_anisotropy));
         let color = self.view.lanes.reflectance(m.transmission_color);
         // With a depth, the colour applies to the interior. Without one, it tints all transmitted
@@ -388,22 +392,22 @@ impl<'t> Stack<'_, 't> {
         let sheet = Sheet { eta, inside };
         // The film is on one of the two faces.
         let film = self.film(eta);
-        let faced = |film: Film, cosine: f32| sheet.faced(film.reflected(cosine), cosine);
+        let faced = |film: Film, cosine: f32| sheet.with_front_face(film.reflected(cosine), cosine);
         let (reflected, through) = film.map_or_else(|| sheet.at(mu), |film| faced(film, mu));
         let (mut up, mut down) = (weight * self.specular, weight * tint);
         let shares = ((weight * reflected).max_element(), (weight * through).max_element());
         if ggx.is_smooth() || film.is_some() && eta == 1.0 {
             bsdf.push(Mirror, up * reflected, shares.0);
-            return bsdf.push(Through, down * through, shares.1);
+            return bsdf.push(StraightTransmission, down * through, shares.1);
         }
         if let Some(film) = film {
             let mean = |value: &dyn Fn(f32) -> Spectrum| albedo::over_facets(ggx, wo, value);
-            up *= parts(mean(&|cosine| faced(film, cosine).0), mean(&|cosine| sheet.at(cosine).0));
-            down *= parts(mean(&|cosine| faced(film, cosine).1), mean(&|cosine| sheet.at(cosine).1));
+            up *= ratios(mean(&|cosine| faced(film, cosine).0), mean(&|cosine| sheet.at(cosine).0));
+            down *= ratios(mean(&|cosine| faced(film, cosine).1), mean(&|cosine| sheet.at(cosine).1));
         }
         let gain = 1.0 / self.facets(ggx, roughness);
-        let rough = |facet, behind| Rough { ggx: ggx.clamped(), facet, behind };
+        let rough = |facet, transmits| RoughReflection { ggx: ggx.clamped(), facet, transmits };
         bsdf.push(rough(Facet::Sheet(sheet), false), up * gain, shares.0);
-        bsdf.push(rough(Facet::BehindSheet(sheet), true), down * gain, shares.1);
+        bsdf.push(rough(Facet::SheetTransmission(sheet), true), down * gain, shares.1);
     }
 }

@@ -38,7 +38,7 @@ impl Ggx {
     }
 
     /// True if the surface is isotropic.
-    pub fn is_even(&self) -> bool {
+    pub fn is_isotropic(&self) -> bool {
         self.alpha.x == self.alpha.y
     }
 

@@ -10,9 +10,9 @@ pub mod fresnel;
 pub mod layers;
 pub mod lobe;
 pub mod microfacet;
-pub mod proof;
 #[cfg(test)]
 mod tests;
+pub mod validation;
 pub mod warp;
 
 use crate::math::{Vec2, Vec3};
@@ -65,23 +65,23 @@ impl<'a> Bsdf<'a> {
 
     /// Returns the lobes with normalised sampling probabilities.
     pub fn lobes(&self) -> impl Iterator<Item = WeightedLobe<'a>> {
-        self.lobes.iter().map(|part| WeightedLobe { probability: part.probability / self.total, ..*part })
+        self.lobes.iter().map(|entry| WeightedLobe { probability: entry.probability / self.total, ..*entry })
     }
 
     /// True if some lobe is not a delta lobe, so that sampling lights is useful.
-    pub fn is_broad(&self) -> bool {
-        self.lobes.iter().any(|part| !part.lobe.is_delta())
+    pub fn has_non_delta(&self) -> bool {
+        self.lobes.iter().any(|entry| !entry.lobe.is_delta())
     }
 
     /// True if glossy lobes have at least half of the sampling probability.
     pub fn is_glossy(&self) -> bool {
-        let glossy = self.lobes.iter().filter(|part| part.lobe.kind().spread == Spread::Glossy);
-        glossy.map(|part| part.probability).sum::<f32>() >= 0.5 * self.total
+        let glossy = self.lobes.iter().filter(|entry| entry.lobe.kind().spread == Spread::Glossy);
+        glossy.map(|entry| entry.probability).sum::<f32>() >= 0.5 * self.total
     }
 
     /// True if some lobe is a hair fibre, which scatters light in all directions.
     pub fn is_fibre(&self) -> bool {
-        self.lobes.iter().any(|part| part.lobe.kind().is_fibre)
+        self.lobes.iter().any(|entry| entry.lobe.kind().is_fibre)
     }
 
     /// True if no light is scattered.
@@ -91,23 +91,23 @@ impl<'a> Bsdf<'a> {
 
     /// True if light from behind the surface is scattered by a lobe that is not a delta lobe.
     pub fn passes_light(&self) -> bool {
-        self.lobes.iter().any(|part| part.lobe.kind().transmits && !part.lobe.is_delta())
+        self.lobes.iter().any(|entry| entry.lobe.kind().transmits && !entry.lobe.is_delta())
     }
 
     /// Share of light that passes straight through, as if there were no surface.
-    pub fn straight(&self) -> Spectrum {
-        let through = self.lobes.iter().filter(|part| part.lobe.kind().is_straight);
-        through.map(|part| part.weight).sum()
+    pub fn straight_transmittance(&self) -> Spectrum {
+        let through = self.lobes.iter().filter(|entry| entry.lobe.kind().is_straight);
+        through.map(|entry| entry.weight).sum()
     }
 
     /// Value times |cos| of `wi`, and the pdf per solid angle with which [`Bsdf::sample`] chooses
     /// `wi`. Delta lobes are excluded.
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         let (mut value, mut density) = (Spectrum::ZERO, 0.0);
-        for part in &self.lobes {
-            let (own, often) = part.lobe.eval(wo, wi);
-            value += part.weight * own;
-            density += part.probability * often;
+        for entry in &self.lobes {
+            let (lobe_value, lobe_pdf) = entry.lobe.eval(wo, wi);
+            value += entry.weight * lobe_value;
+            density += entry.probability * lobe_pdf;
         }
         if density > 0.0 { (value, density / self.total) } else { (value, 0.0) }
     }
@@ -117,19 +117,19 @@ impl<'a> Bsdf<'a> {
         let mut rest = choice * self.total;
         let last = self.lobes.len().checked_sub(1)?;
         let mut chosen = last;
-        for (i, part) in self.lobes.iter().enumerate() {
-            if rest < part.probability || i == last {
+        for (i, entry) in self.lobes.iter().enumerate() {
+            if rest < entry.probability || i == last {
                 chosen = i;
                 break;
             }
-            rest -= part.probability;
+            rest -= entry.probability;
         }
-        let part = &self.lobes[chosen];
+        let entry = &self.lobes[chosen];
         // Reuse the remainder of `choice`, which is uniform again.
-        let again = (rest / part.probability).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
-        let scattered = part.lobe.sample(wo, again, u)?;
-        if part.lobe.is_delta() {
-            let weight = part.weight * scattered.value * (self.total / part.probability);
+        let again = (rest / entry.probability).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
+        let scattered = entry.lobe.sample(wo, again, u)?;
+        if entry.lobe.is_delta() {
+            let weight = entry.weight * scattered.value * (self.total / entry.probability);
             return Some(BsdfSample { wi: scattered.wi, weight, pdf: 0.0, lobe: chosen });
         }
         let (value, pdf) = self.eval(wo, scattered.wi);

@@ -1,7 +1,9 @@
 //! Tests of lobes and layers: albedo, reciprocity, and agreement of samples with pdf.
 
 use super::lobe::blinn::Blinn;
-use super::proof::{Cells, Furnace, FurnaceView, broad, brushed, filmed, lossless, reflectance, seen};
+use super::validation::{
+    DirectionGrid, Furnace, FurnaceView, brushed, bsdf_from_outside, lossless, non_delta_lobes, reflectance, with_films,
+};
 use super::*;
 use crate::material::{Parameters, PrincipledMaterial};
 use crate::math::fp;
@@ -10,8 +12,8 @@ use crate::math::random::Random;
 #[test]
 fn lobe_samples_agree_with_pdf() {
     // `cargo xtask validate` runs this with a million samples each.
-    let cells = Cells { rows: 60, columns: 80, samples: 200_000, fine: 12 };
-    for (name, lobe) in broad() {
+    let cells = DirectionGrid { rows: 60, columns: 80, samples: 200_000, fine: 12 };
+    for (name, lobe) in non_delta_lobes() {
         for (cosine, turn) in [(0.95, 0.1), (0.6, 0.7), (0.25, 0.35)] {
             let verdict = cells.lobe(11, lobe, warp::polar(cosine, turn));
             // The 48 tests have a significance of 0.01 in total: 2.1e-4 each, by Šidák's
@@ -27,7 +29,7 @@ fn reflecting_lobes_are_reciprocal() {
     // Exclude the bent normal, which enters the cosine on one side only, and fibres, whose offset
     // depends on the view.
     let others = ["matte with bent normal", "hair", "fur"];
-    for (name, lobe) in broad().into_iter().filter(|(name, _)| !others.contains(name)) {
+    for (name, lobe) in non_delta_lobes().into_iter().filter(|(name, _)| !others.contains(name)) {
         for _ in 0..500 {
             let wo = warp::polar(random.between(0.05, 1.0), random.between(0.0, 1.0));
             let wi = warp::polar(random.between(0.05, 1.0), random.between(0.0, 1.0));
@@ -49,8 +51,8 @@ fn plastic_is_reciprocal() {
         for _ in 0..500 {
             let mut direction = || warp::polar(random.between(0.02, 1.0), random.between(0.0, 1.0));
             let (wo, wi) = (direction(), direction());
-            let there = seen(&here, &tables, wo).eval(wo, wi).0 / wi.z;
-            let back = seen(&here, &tables, wi).eval(wi, wo).0 / wo.z;
+            let there = bsdf_from_outside(&here, &tables, wo).eval(wo, wi).0 / wi.z;
+            let back = bsdf_from_outside(&here, &tables, wi).eval(wi, wo).0 / wo.z;
             assert!((there - back).abs().max_element() <= 1e-5, "{ior}, {reflection}: {there} {back}");
         }
     }
@@ -60,7 +62,7 @@ fn plastic_is_reciprocal() {
 fn lobes_are_finite_at_grazing_angles() {
     let heights = [0.0, -0.0, 1e-38, -1e-38, 1e-30, -1e-30, 1e-12, -1e-12, 1e-6, -1e-6];
     let nearly_flat = |z: f32, turn: f32| warp::polar(0.0, turn).with_z(z);
-    for (name, lobe) in broad() {
+    for (name, lobe) in non_delta_lobes() {
         for wo in [nearly_flat(1e-6, 0.0), warp::polar(0.3, 0.0), Vec3::Z] {
             for (z, turn) in heights.iter().flat_map(|&z| [0.0, 0.2, 0.5].map(|turn| (z, turn))) {
                 let wi = nearly_flat(z, turn);
@@ -77,7 +79,7 @@ fn assert_white(materials: Vec<(&str, PrincipledMaterial)>, roughnesses: &[f32],
     for (name, material) in materials {
         let furnace = Furnace::new(&material);
         for (roughness, cosine) in roughnesses.iter().flat_map(|&r| [0.999, 0.7, 0.4, 0.2].map(|cosine| (r, cosine))) {
-            let (mean, error) = furnace.gives(roughness, cosine, 1 << 14);
+            let (mean, error) = furnace.albedo(roughness, cosine, 1 << 14);
             assert!((mean - 1.0).abs() < most + 3.0 * error, "{name}, {roughness}, {cosine}: {mean} ± {error}");
         }
     }
@@ -87,7 +89,7 @@ fn assert_white(materials: Vec<(&str, PrincipledMaterial)>, roughnesses: &[f32],
 fn lossless_materials_are_white_in_a_furnace() {
     // `cargo xtask validate` runs this with more samples.
     assert_white(lossless(), &[0.0, 0.1, 0.3, 0.5, 0.8, 1.0], 0.002);
-    assert_white(filmed(), &[0.0], 0.002);
+    assert_white(with_films(), &[0.0], 0.002);
 }
 
 #[test]
@@ -99,7 +101,7 @@ fn lossless_anisotropic_materials_are_white_in_a_furnace() {
             for (anisotropy, cosine) in [0.3, 0.9, 1.0].into_iter().flat_map(|a| [0.999, 0.6, 0.2].map(|c| (a, c))) {
                 for turn in [0.0, 0.07, 0.2, 0.25] {
                     let from = FurnaceView { roughness, anisotropy, cosine, turn, inside, eta: None };
-                    let (mean, error) = furnace.gives_to(from, 1 << 12);
+                    let (mean, error) = furnace.albedo_for(from, 1 << 12);
                     assert!((mean - 1.0).abs() < 0.002 + 3.0 * error, "{name}, {from:?}: {mean} ± {error}");
                 }
             }
@@ -114,7 +116,7 @@ fn rough_glass_in_another_medium_is_nearly_white() {
     for (eta, inside) in [(1.5 / 1.33, false), (1.33 / 1.5, true), (1.0 / 1.8, false), (2.4, true)] {
         for (roughness, cosine) in [0.3, 0.6, 1.0].into_iter().flat_map(|r| [0.999, 0.6, 0.2].map(|c| (r, c))) {
             let from = FurnaceView { roughness, cosine, inside, eta: Some(eta), ..FurnaceView::default() };
-            let (mean, error) = furnace.gives_to(from, 1 << 13);
+            let (mean, error) = furnace.albedo_for(from, 1 << 13);
             assert!((mean - 1.0).abs() < 0.01 + 3.0 * error, "{from:?}: {mean} ± {error}");
         }
     }
@@ -122,7 +124,7 @@ fn rough_glass_in_another_medium_is_nearly_white() {
 
 #[test]
 fn rough_films_are_nearly_white() {
-    assert_white(filmed(), &[0.1, 0.3, 0.6], 0.02);
+    assert_white(with_films(), &[0.1, 0.3, 0.6], 0.02);
 }
 
 #[test]
@@ -144,7 +146,7 @@ fn materials_reflect_no_more_light_than_arrives() {
         };
         let tables = TABLES.get_or_init(|| Tables::new(&material, None, &mut Vec::new()));
         let wo = warp::polar(share().max(0.02), share());
-        let bsdf = seen(&Parameters::of(&material), tables, wo);
+        let bsdf = bsdf_from_outside(&Parameters::of(&material), tables, wo);
         let (mean, error) = reflectance(&bsdf, wo, 1 << 12);
         assert!(mean < 1.01 + 4.0 * error, "{round}: {mean} ± {error} from {material:?} at {wo}");
     }
@@ -178,7 +180,7 @@ fn sheet_agrees_with_sum_over_internal_reflections() {
     }
     // Without a depth the faces use unpolarised light. `faced` replaces one face's reflectance.
     let plain = fresnel::Sheet { eta: 1.5, inside: None };
-    for (up, down) in [plain.at(1.0), plain.faced(Spectrum::splat(0.04), 1.0)] {
+    for (up, down) in [plain.at(1.0), plain.with_front_face(Spectrum::splat(0.04), 1.0)] {
         assert!((up[0] - 0.08 / 1.04).abs() < 1e-6 && (down[0] - 0.96 / 1.04).abs() < 1e-6, "{up} {down}");
     }
 }

@@ -12,7 +12,7 @@
 //! Projection*, 2009.
 
 use super::pose::world_ray;
-use super::sheet::Sheet;
+use super::sheet::PictureSheet;
 use super::{CameraBasis, CameraRules, CameraSample, Eyes, Pose, Projection};
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
@@ -57,13 +57,13 @@ impl Wall {
     }
 
     /// Returns the world-space point of a position on the sheet.
-    fn point(&self, place: DVec2) -> DVec3 {
-        let share = (place - DVec2::new(self.left, 0.0)) / self.size();
+    fn point(&self, position: DVec2) -> DVec3 {
+        let share = (position - DVec2::new(self.left, 0.0)) / self.size();
         self.corner + share.x * self.across + share.y * self.upwards
     }
 
-    fn contains(&self, place: DVec2) -> bool {
-        Sheet(self.size()).contains(place - DVec2::new(self.left, 0.0))
+    fn contains(&self, position: DVec2) -> bool {
+        PictureSheet(self.size()).contains(position - DVec2::new(self.left, 0.0))
     }
 
     fn normal(&self) -> DVec3 {
@@ -83,7 +83,7 @@ impl CaveCamera {
     }
 
     /// Size of one eye's sheet: all walls in a row.
-    fn one(&self) -> DVec2 {
+    fn eye_size(&self) -> DVec2 {
         self.walls().fold(DVec2::ZERO, |one, wall| DVec2::new(one.x + wall.size().x, one.y.max(wall.size().y)))
     }
 
@@ -93,13 +93,13 @@ impl CaveCamera {
     }
 
     /// Returns the eye, the wall and the point of the wall for a sample.
-    fn seen(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<(DVec3, Wall, DVec3)> {
+    fn wall_point(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<(DVec3, Wall, DVec3)> {
         let (point, pixel) = (sample.point.as_dvec2(), sample.pixel.as_dvec2());
-        let (one, sheet) = (self.one(), self.eyes.sheet(self.one()));
-        let (view, place) = self.eyes.view(one, point, pixel)?;
-        let at = sheet.place(pixel) - view.corner;
+        let (one, sheet) = (self.eye_size(), self.eyes.sheet(self.eye_size()));
+        let (view, position) = self.eyes.view(one, point, pixel)?;
+        let at = sheet.position(pixel) - view.corner;
         let wall = self.walls().find(|wall| wall.contains(at))?;
-        Some((self.eye(frame, view.side), wall, wall.point(place)))
+        Some((self.eye(frame, view.side), wall, wall.point(position)))
     }
 }
 
@@ -109,7 +109,7 @@ impl Projection for CaveCamera {
     }
 
     fn proportions(&self) -> Option<Vec2> {
-        self.eyes.sheet(self.one()).proportions()
+        self.eyes.sheet(self.eye_size()).proportions()
     }
 
     fn validate(&self) -> Result<(), String> {
@@ -125,7 +125,7 @@ impl Projection for CaveCamera {
             if wall.across.dot(wall.upwards).abs() > 1e-3 * size.x * size.y {
                 return Err(format!("wall {} has no right angle at its first corner", i + 1));
             }
-            for view in self.eyes.views(self.one()) {
+            for view in self.eyes.views(self.eye_size()) {
                 if (self.eye(&frame, view.side) - wall.corner).dot(wall.normal()).abs() < 1e-6 * size.max_element() {
                     return Err(format!("an eye is in the plane of wall {}; move `center` or the wall", i + 1));
                 }
@@ -135,29 +135,29 @@ impl Projection for CaveCamera {
     }
 
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
-        let (eye, _, point) = self.seen(frame, sample)?;
+        let (eye, _, point) = self.wall_point(frame, sample)?;
         Some(world_ray(eye, point - eye))
     }
 
-    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
-        let one = self.one();
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, emit: &mut dyn FnMut(Vec2)) {
+        let one = self.eye_size();
         for view in self.eyes.views(one) {
             let eye = self.eye(frame, view.side);
             for wall in self.walls() {
                 // Solve corner + s across + t upwards - eye = k (world - eye) for s, t and k.
                 let to_world = world.as_dvec3() - eye;
                 let solved = DMat3::from_cols(wall.across, wall.upwards, -to_world).inverse() * (eye - wall.corner);
-                let place = DVec2::new(wall.left, 0.0) + solved.truncate() * wall.size();
-                if solved.z > 0.0 && solved.is_finite() && wall.contains(place) {
-                    found(self.eyes.point(one, view, place).as_vec2());
+                let position = DVec2::new(wall.left, 0.0) + solved.truncate() * wall.size();
+                if solved.z > 0.0 && solved.is_finite() && wall.contains(position) {
+                    emit(self.eyes.point(one, view, position).as_vec2());
                 }
             }
         }
     }
 
     fn footprint(&self, frame: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
-        let Some((eye, wall, point)) = self.seen(frame, sample) else { return 0.0 };
-        let (to_wall, unit) = (point - eye, self.eyes.sheet(self.one()).unit());
+        let Some((eye, wall, point)) = self.wall_point(frame, sample) else { return 0.0 };
+        let (to_wall, unit) = (point - eye, self.eyes.sheet(self.eye_size()).unit());
         let solid_angle = wall.normal().dot(to_wall).abs() / (to_wall.length_squared() * to_wall.length());
         (f64::from(t * t) * solid_angle * unit * unit) as f32
     }

@@ -6,12 +6,12 @@ use glam::{DVec2, DVec3};
 
 /// Camera whose rays all pass through one eye, so that it only maps picture points to directions.
 /// Directions are in the camera's space: x to the right, y upwards, z forwards.
-pub trait Central {
+pub trait SingleViewpoint {
     /// See [`Projection::pose`].
-    fn stand(&self) -> Pose;
+    fn camera_pose(&self) -> Pose;
 
     /// See [`Projection::proportions`].
-    fn shape(&self) -> Option<Vec2> {
+    fn picture_proportions(&self) -> Option<Vec2> {
         None
     }
 
@@ -24,24 +24,24 @@ pub trait Central {
     /// centre of the sample's pixel.
     fn direction(&self, point: DVec2, pixel: DVec2) -> Option<DVec3>;
 
-    /// Calls `found` with every point of the picture at which a unit direction is seen.
-    fn image(&self, direction: DVec3, found: &mut dyn FnMut(DVec2));
+    /// Calls `emit` with every point of the picture at which a unit direction is seen.
+    fn project_direction(&self, direction: DVec3, emit: &mut dyn FnMut(DVec2));
 
     /// Solid angle per unit area of the picture, in steradians.
     fn solid_angle(&self, point: DVec2, pixel: DVec2) -> f64;
 }
 
-impl<T: Central> Projection for T {
+impl<T: SingleViewpoint> Projection for T {
     fn pose(&self) -> Pose {
-        self.stand()
+        self.camera_pose()
     }
 
     fn proportions(&self) -> Option<Vec2> {
-        self.shape()
+        self.picture_proportions()
     }
 
     fn validate(&self) -> Result<(), String> {
-        Central::validate(self)
+        SingleViewpoint::validate(self)
     }
 
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
@@ -49,9 +49,9 @@ impl<T: Central> Projection for T {
         Some(frame.ray(DVec3::ZERO, direction))
     }
 
-    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, emit: &mut dyn FnMut(Vec2)) {
         if let Some(direction) = frame.camera_from_world(world).try_normalize() {
-            self.image(direction, &mut |point| found(point.as_vec2()));
+            self.project_direction(direction, &mut |point| emit(point.as_vec2()));
         }
     }
 

@@ -2,7 +2,7 @@
 //! random ones generated from its description.
 
 use super::*;
-use crate::describe::{Constraint, DescribedList, Field, Kind, Value};
+use crate::describe::{Constraint, DescribedKind, Field, FieldKind, Value};
 use crate::math::random::Random;
 
 /// Number of random cameras per kind; with `POINTS` samples each, 10^5 samples per kind.
@@ -14,13 +14,15 @@ fn value(field: &Field, random: &mut Random) -> Value {
     let mut rows = |count: usize, width: usize| {
         Value::Rows((0..count).map(|_| (0..width).map(|_| random.between(-2.0, 2.0)).collect()).collect())
     };
-    match (field.kind, field.rule) {
-        (Kind::Rows(9), _) => Value::Rows((0..1 + random.below(4)).map(|_| wall(random)).collect()),
-        (Kind::Rows(width), Constraint::Rows(least, most)) => rows(if most > least { least + 3 } else { least }, width),
-        (Kind::Word(words), _) => Value::Word(words[random.below(words.len())].into()),
-        (Kind::Int, _) => Value::Int([0, 3, 5, 8][random.below(4)]),
-        (Kind::Vec3, Constraint::NonZero) => Value::Vec3(random.direction() * random.between(0.5, 2.0)),
-        (Kind::Vec3, _) => Value::Vec3(random.point() * 0.5),
+    match (field.kind, field.constraint) {
+        (FieldKind::Rows(9), _) => Value::Rows((0..1 + random.below(4)).map(|_| wall(random)).collect()),
+        (FieldKind::Rows(width), Constraint::Rows(least, most)) => {
+            rows(if most > least { least + 3 } else { least }, width)
+        }
+        (FieldKind::Word(words), _) => Value::Word(words[random.below(words.len())].into()),
+        (FieldKind::Int, _) => Value::Int([0, 3, 5, 8][random.below(4)]),
+        (FieldKind::Vec3, Constraint::NonZero) => Value::Vec3(random.direction() * random.between(0.5, 2.0)),
+        (FieldKind::Vec3, _) => Value::Vec3(random.point() * 0.5),
         (_, Constraint::Between(low, high)) => Value::Float(low + (high - low) * random.between(0.1, 0.9)),
         (_, Constraint::UpTo(high)) => Value::Float(high * random.between(0.1, 1.0)),
         (_, Constraint::Positive) => Value::Float(random.between(0.3, 3.0)),
@@ -28,7 +30,7 @@ fn value(field: &Field, random: &mut Random) -> Value {
         // Up to twice the distortion of bad lenses.
         _ if ["p1", "p2"].contains(&field.name) => Value::Float(random.between(-0.01, 0.01)),
         (kind, rule) => {
-            assert_eq!((kind, rule), (Kind::Float, Constraint::Any), "{}", field.name);
+            assert_eq!((kind, rule), (FieldKind::Float, Constraint::Any), "{}", field.name);
             Value::Float(random.between(-0.2, 0.2))
         }
     }
@@ -47,12 +49,12 @@ fn random_camera(kind: &Camera, random: &mut Random) -> Camera {
         let mut camera = kind.clone();
         for (i, field) in kind.fields().iter().enumerate() {
             let value = value(field, random);
-            assert_eq!(field.rule.validate(&value), Ok(()), "{}", field.name);
+            assert_eq!(field.constraint.validate(&value), Ok(()), "{}", field.name);
             camera.set(i, value);
         }
         // Reject cameras that see almost nothing, since they would pass every test.
-        let seen = (0..200).filter(|_| looked(&camera, random).1.is_some()).count();
-        if camera.validate().is_ok() && seen > 40 {
+        let ray_count = (0..200).filter(|_| random_ray(&camera, random).1.is_some()).count();
+        if camera.validate().is_ok() && ray_count > 40 {
             return camera;
         }
     }
@@ -63,7 +65,7 @@ fn frame(camera: &Camera) -> CameraBasis {
 }
 
 /// Random sample in the natural picture, and its ray.
-fn looked(camera: &Camera, random: &mut Random) -> (CameraSample, Option<Ray>) {
+fn random_ray(camera: &Camera, random: &mut Random) -> (CameraSample, Option<Ray>) {
     let half = camera.proportions().map_or(Vec2::ONE, |sides| sides / sides.max_element());
     // Stay off the edge, so that rounding does not leave the picture.
     let point = 0.98 * half * Vec2::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0));
@@ -129,7 +131,7 @@ fn projection_inverts_rays() {
                 hopeless += 1;
                 return;
             }
-            let (sample, Some(ray)) = looked(camera, random) else { continue };
+            let (sample, Some(ray)) = random_ray(camera, random) else { continue };
             assert!((ray.dir.length() - 1.0).abs() < 1e-6, "{camera:?}");
             let t = random.between(0.5, 20.0);
             // Error of the world-space point, projected to the picture. If it is large, the
@@ -189,7 +191,7 @@ fn footprints_match_areas_by_differences() {
     let (mut checked, mut skipped) = (0, 0);
     all(3, |camera, random| {
         for _ in 0..POINTS / 10 {
-            let (sample, Some(ray)) = looked(camera, random) else { continue };
+            let (sample, Some(ray)) = random_ray(camera, random) else { continue };
             let t = random.between(0.5, 20.0);
             let rounded = rounding(&ray, t);
             // Area, and its rounding error.
@@ -221,11 +223,17 @@ fn footprints_match_areas_by_differences() {
 #[test]
 fn batched_rays_match_single_rays() {
     all(8, |camera, random| {
-        for rules in [Aim::Own, Aim::ScreenPoint, Aim::Of2012, Aim::Of2016, Aim::Of2020]
-            .map(|aim| CameraRules { aim, ..CameraRules::default() })
+        for rules in [
+            RayArithmetic::Own,
+            RayArithmetic::ScreenPoint,
+            RayArithmetic::Of2012,
+            RayArithmetic::Of2016,
+            RayArithmetic::Of2020,
+        ]
+        .map(|ray_arithmetic| CameraRules { ray_arithmetic, ..CameraRules::default() })
         {
             let frame = CameraBasis::of(camera, rules);
-            let samples: [CameraSample; 8] = std::array::from_fn(|_| looked(camera, random).0);
+            let samples: [CameraSample; 8] = std::array::from_fn(|_| random_ray(camera, random).0);
             let alone = samples.each_ref().map(|sample| camera.ray(&frame, sample));
             let side_by_side = CameraSamples {
                 points: [0, 1].map(|axis| samples.map(|sample| sample.point[axis])),

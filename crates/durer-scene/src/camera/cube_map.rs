@@ -10,8 +10,8 @@
 //! 1986.
 
 use super::Pose;
-use super::central::Central;
-use super::sheet::Sheet;
+use super::central::SingleViewpoint;
+use super::sheet::PictureSheet;
 use crate::describe::{Constraint, described, described_words};
 use crate::dialect::set;
 use crate::math::{Vec2, Vec3};
@@ -55,8 +55,8 @@ const FACES: [Face; 6] = [
 
 impl CubeMapCamera {
     /// Returns the sheet of the picture, measured in faces.
-    fn sheet(&self) -> Sheet {
-        Sheet(match self.layout {
+    fn sheet(&self) -> PictureSheet {
+        PictureSheet(match self.layout {
             Layout::Cross => DVec2::new(4.0, 3.0),
             Layout::Strip => DVec2::new(6.0, 1.0),
         })
@@ -70,24 +70,24 @@ impl CubeMapCamera {
     }
 }
 
-impl Central for CubeMapCamera {
-    fn stand(&self) -> Pose {
+impl SingleViewpoint for CubeMapCamera {
+    fn camera_pose(&self) -> Pose {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
 
-    fn shape(&self) -> Option<Vec2> {
+    fn picture_proportions(&self) -> Option<Vec2> {
         self.sheet().proportions()
     }
 
     fn direction(&self, point: DVec2, pixel: DVec2) -> Option<DVec3> {
-        let (at, place) = (self.sheet().place(pixel), self.sheet().place(point));
-        let face = FACES.iter().find(|face| Sheet(DVec2::ONE).contains(at - self.corner(face)))?;
-        let on_face = 2.0 * (place - self.corner(face)) - 1.0;
+        let (at, position) = (self.sheet().position(pixel), self.sheet().position(point));
+        let face = FACES.iter().find(|face| PictureSheet(DVec2::ONE).contains(at - self.corner(face)))?;
+        let on_face = 2.0 * (position - self.corner(face)) - 1.0;
         let [middle, right, up] = face.axes;
         Some(middle + on_face.x * right + on_face.y * up)
     }
 
-    fn image(&self, direction: DVec3, found: &mut dyn FnMut(DVec2)) {
+    fn project_direction(&self, direction: DVec3, emit: &mut dyn FnMut(DVec2)) {
         // Find the face whose centre is nearest to the direction.
         let nearest = |best: &'static Face, face: &'static Face| match direction.dot(face.axes[0])
             > direction.dot(best.axes[0])
@@ -97,7 +97,7 @@ impl Central for CubeMapCamera {
         };
         let face = FACES.iter().fold(&FACES[0], nearest);
         let [depth, x, y] = face.axes.map(|axis| direction.dot(axis));
-        found(self.sheet().point(self.corner(face) + 0.5 * (DVec2::new(x, y) / depth + 1.0)));
+        emit(self.sheet().point(self.corner(face) + 0.5 * (DVec2::new(x, y) / depth + 1.0)));
     }
 
     fn solid_angle(&self, point: DVec2, pixel: DVec2) -> f64 {

@@ -10,7 +10,7 @@
 
 use super::eyes::EyeCircle;
 use super::perspective::half_width;
-use super::sheet::Sheet;
+use super::sheet::PictureSheet;
 use super::{CameraBasis, CameraSample, Eyes, Pose, Projection};
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
@@ -39,7 +39,7 @@ described! {
 
 impl CylindricalCamera {
     /// Size of one eye's sheet: the unrolled cylinder of radius 1.
-    fn one(&self) -> DVec2 {
+    fn eye_size(&self) -> DVec2 {
         DVec2::new(f64::from(self.angle).to_radians(), 2.0 * half_width(self.vertical_angle))
     }
 
@@ -54,32 +54,32 @@ impl Projection for CylindricalCamera {
     }
 
     fn proportions(&self) -> Option<Vec2> {
-        self.eyes.sheet(self.one()).proportions()
+        self.eyes.sheet(self.eye_size()).proportions()
     }
 
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
-        let (view, place) = self.eyes.view(self.one(), sample.point.as_dvec2(), sample.pixel.as_dvec2())?;
-        let place = place - 0.5 * self.one();
-        let (eye, level) = self.circle(view.side).tangent(place.x);
-        Some(frame.ray(eye, level + place.y * DVec3::Y))
+        let (view, position) = self.eyes.view(self.eye_size(), sample.point.as_dvec2(), sample.pixel.as_dvec2())?;
+        let position = position - 0.5 * self.eye_size();
+        let (eye, level) = self.circle(view.side).tangent(position.x);
+        Some(frame.ray(eye, level + position.y * DVec3::Y))
     }
 
-    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
-        let (one, p) = (self.one(), frame.camera_from_world(world));
-        for view in self.eyes.views(one) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, emit: &mut dyn FnMut(Vec2)) {
+        let (eye_size, p) = (self.eye_size(), frame.camera_from_world(world));
+        for view in self.eyes.views(eye_size) {
             let Some((heading, distance)) = self.circle(view.side).heading(p) else { continue };
-            let place = DVec2::new(heading, p.y / distance) + 0.5 * one;
-            if Sheet(one).contains(place) {
-                found(self.eyes.point(one, view, place).as_vec2());
+            let position = DVec2::new(heading, p.y / distance) + 0.5 * eye_size;
+            if PictureSheet(eye_size).contains(position) {
+                emit(self.eyes.point(eye_size, view, position).as_vec2());
             }
         }
     }
 
     fn footprint(&self, _: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
-        let (one, pixel) = (self.one(), sample.pixel.as_dvec2());
-        let Some((_, place)) = self.eyes.view(one, sample.point.as_dvec2(), pixel) else { return 0.0 };
-        let height = place.y - 0.5 * one.y;
-        let (square, unit) = (1.0 + height * height, self.eyes.sheet(one).unit());
+        let (eye_size, pixel) = (self.eye_size(), sample.pixel.as_dvec2());
+        let Some((_, position)) = self.eyes.view(eye_size, sample.point.as_dvec2(), pixel) else { return 0.0 };
+        let height = position.y - 0.5 * eye_size.y;
+        let (square, unit) = (1.0 + height * height, self.eyes.sheet(eye_size).unit());
         (f64::from(t * t) * unit * unit / (square * square.sqrt())) as f32
     }
 }

@@ -8,7 +8,7 @@
 //! 12.
 
 use super::eyes::EyeCircle;
-use super::sheet::Sheet;
+use super::sheet::PictureSheet;
 use super::{CameraBasis, CameraSample, Eyes, Handedness, Pose, Projection};
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
@@ -40,7 +40,7 @@ described! {
 
 impl EquirectangularCamera {
     /// Size of one eye's sheet, in radians of longitude and latitude.
-    fn one(&self) -> DVec2 {
+    fn eye_size(&self) -> DVec2 {
         DVec2::new(f64::from(self.angle), f64::from(self.vertical_angle)) * 1f64.to_radians()
     }
 
@@ -60,30 +60,30 @@ impl Projection for EquirectangularCamera {
     }
 
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
-        let (view, place) = self.eyes.view(self.one(), sample.point.as_dvec2(), sample.pixel.as_dvec2())?;
-        let angles = place - 0.5 * self.one();
+        let (view, position) = self.eyes.view(self.eye_size(), sample.point.as_dvec2(), sample.pixel.as_dvec2())?;
+        let angles = position - 0.5 * self.eye_size();
         let (eye, level) = self.circle(view.side).tangent(angles.x);
         let (sin, cos) = fp::sin_cos_f64(angles.y);
-        let turned = |v: DVec3| self.handedness.turned(v);
+        let turned = |v: DVec3| self.handedness.convert(v);
         Some(frame.ray(turned(eye), turned(cos * level + sin * DVec3::Y)))
     }
 
-    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
-        let (one, p) = (self.one(), self.handedness.turned(frame.camera_from_world(world)));
-        for view in self.eyes.views(one) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, emit: &mut dyn FnMut(Vec2)) {
+        let (eye_size, p) = (self.eye_size(), self.handedness.convert(frame.camera_from_world(world)));
+        for view in self.eyes.views(eye_size) {
             let Some((heading, distance)) = self.circle(view.side).heading(p) else { continue };
-            let place = DVec2::new(heading, fp::atan2_f64(p.y, distance)) + 0.5 * one;
-            if Sheet(one).contains(place) {
-                found(self.eyes.point(one, view, place).as_vec2());
+            let position = DVec2::new(heading, fp::atan2_f64(p.y, distance)) + 0.5 * eye_size;
+            if PictureSheet(eye_size).contains(position) {
+                emit(self.eyes.point(eye_size, view, position).as_vec2());
             }
         }
     }
 
     fn footprint(&self, _: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
-        let (one, pixel) = (self.one(), sample.pixel.as_dvec2());
-        let Some((_, place)) = self.eyes.view(one, sample.point.as_dvec2(), pixel) else { return 0.0 };
-        let cos = fp::sin_cos_f64(place.y - 0.5 * one.y).1.abs();
-        let unit = self.eyes.sheet(one).unit();
+        let (eye_size, pixel) = (self.eye_size(), sample.pixel.as_dvec2());
+        let Some((_, position)) = self.eyes.view(eye_size, sample.point.as_dvec2(), pixel) else { return 0.0 };
+        let cos = fp::sin_cos_f64(position.y - 0.5 * eye_size.y).1.abs();
+        let unit = self.eyes.sheet(eye_size).unit();
         (f64::from(t * t) * cos * unit * unit) as f32
     }
 }

@@ -4,7 +4,7 @@
 //! head turns. Sources: Ishiguro, Yamamoto, Tsuji, *Omni-Directional Stereo*, PAMI 14(2), 1992;
 //! Peleg, Ben-Ezra, Pritch, *Omnistereo: Panoramic Stereo Imaging*, PAMI 23(3), 2001.
 
-use super::sheet::Sheet;
+use super::sheet::PictureSheet;
 use crate::describe::described_words;
 use crate::math::fp;
 use glam::{DVec2, DVec3};
@@ -16,7 +16,7 @@ described_words! {
 
 /// Part of a stereo picture that shows the view of one eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
+pub struct EyeView {
     /// -1 for the left eye, 1 for the right, 0 for the middle between them.
     pub side: f64,
     /// Position of the lower left corner of its sheet on the full sheet.
@@ -24,19 +24,19 @@ pub struct View {
 }
 
 impl Eyes {
-    /// Returns the sheet that holds the views of all eyes, each of size `one`.
-    pub fn sheet(self, one: DVec2) -> Sheet {
-        Sheet(match self {
-            Eyes::SideBySide => DVec2::new(2.0 * one.x, one.y),
-            Eyes::TopBottom => DVec2::new(one.x, 2.0 * one.y),
-            _ => one,
+    /// Returns the sheet that holds the views of all eyes, each of size `eye_size`.
+    pub fn sheet(self, eye_size: DVec2) -> PictureSheet {
+        PictureSheet(match self {
+            Eyes::SideBySide => DVec2::new(2.0 * eye_size.x, eye_size.y),
+            Eyes::TopBottom => DVec2::new(eye_size.x, 2.0 * eye_size.y),
+            _ => eye_size,
         })
     }
 
-    /// Returns the views of all eyes, each of size `one`. The left eye's view is on the left or on
-    /// top.
-    pub fn views(self, one: DVec2) -> impl Iterator<Item = View> {
-        let view = |side, x, y| View { side, corner: one * DVec2::new(x, y) };
+    /// Returns the views of all eyes, each of size `eye_size`. The left eye's view is on the left
+    /// or on top.
+    pub fn views(self, eye_size: DVec2) -> impl Iterator<Item = EyeView> {
+        let view = |side, x, y| EyeView { side, corner: eye_size * DVec2::new(x, y) };
         let (first, second) = match self {
             Eyes::Middle => (view(0.0, 0.0, 0.0), None),
             Eyes::Left => (view(-1.0, 0.0, 0.0), None),
@@ -49,16 +49,16 @@ impl Eyes {
 
     /// Returns the view that contains a pixel, and the position of a point on that view's sheet;
     /// `None` outside all views.
-    pub fn view(self, one: DVec2, point: DVec2, pixel: DVec2) -> Option<(View, DVec2)> {
-        let sheet = self.sheet(one);
-        let at = sheet.place(pixel);
-        let view = self.views(one).find(|view| Sheet(one).contains(at - view.corner))?;
-        Some((view, sheet.place(point) - view.corner))
+    pub fn view(self, eye_size: DVec2, point: DVec2, pixel: DVec2) -> Option<(EyeView, DVec2)> {
+        let sheet = self.sheet(eye_size);
+        let at = sheet.position(pixel);
+        let view = self.views(eye_size).find(|view| PictureSheet(eye_size).contains(at - view.corner))?;
+        Some((view, sheet.position(point) - view.corner))
     }
 
     /// Returns the point of the full picture for a position on a view's sheet.
-    pub fn point(self, one: DVec2, view: View, place: DVec2) -> DVec2 {
-        self.sheet(one).point(place + view.corner)
+    pub fn point(self, eye_size: DVec2, view: EyeView, position: DVec2) -> DVec2 {
+        self.sheet(eye_size).point(position + view.corner)
     }
 }
 
@@ -90,12 +90,12 @@ impl EyeCircle {
         // Seen from the circle's centre, the point is this much farther to the right than seen from
         // the eye.
         let heading = fp::atan2_f64(point.x, point.z) - fp::atan2_f64(self.radius, distance);
-        Some((wrapped(heading), distance))
+        Some((wrap_angle(heading), distance))
     }
 }
 
 /// Wraps an angle in radians to the range from -pi to pi.
-fn wrapped(angle: f64) -> f64 {
+fn wrap_angle(angle: f64) -> f64 {
     use std::f64::consts::{PI, TAU};
     match angle {
         a if a < -PI => a + TAU,

@@ -16,7 +16,7 @@
 //! to 5.
 
 use super::Pose;
-use super::central::Central;
+use super::central::SingleViewpoint;
 use crate::describe::{Constraint, described, described_words};
 use crate::dialect::set;
 use crate::math::{Vec2, Vec3, fp};
@@ -108,12 +108,12 @@ impl FisheyeCamera {
     }
 }
 
-impl Central for FisheyeCamera {
-    fn stand(&self) -> Pose {
+impl SingleViewpoint for FisheyeCamera {
+    fn camera_pose(&self) -> Pose {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
 
-    fn shape(&self) -> Option<Vec2> {
+    fn picture_proportions(&self) -> Option<Vec2> {
         Some(Vec2::ONE)
     }
 
@@ -133,8 +133,8 @@ impl Central for FisheyeCamera {
         self.projection.direction(point, self.limit())
     }
 
-    fn image(&self, direction: DVec3, found: &mut dyn FnMut(DVec2)) {
-        self.projection.point(direction, self.limit()).into_iter().for_each(found);
+    fn project_direction(&self, direction: DVec3, emit: &mut dyn FnMut(DVec2)) {
+        self.projection.point(direction, self.limit()).into_iter().for_each(emit);
     }
 
     fn solid_angle(&self, point: DVec2, _: DVec2) -> f64 {

@@ -17,7 +17,7 @@ impl Handedness {
     }
 
     /// Converts a vector between camera space and right-handed space. The map is its own inverse.
-    pub(super) fn turned(self, v: DVec3) -> DVec3 {
+    pub(super) fn convert(self, v: DVec3) -> DVec3 {
         DVec3 { x: self.sign() * v.x, ..v }
     }
 }

@@ -34,7 +34,7 @@ pub use eyes::Eyes;
 pub use handedness::Handedness;
 pub use orthographic::OrthographicCamera;
 pub use perspective::PerspectiveCamera;
-pub use pose::{Aim, CameraBasis, CameraRules, Pose, UpRule};
+pub use pose::{CameraBasis, CameraRules, Pose, RayArithmetic, UpRule};
 pub use raster::Raster;
 pub use ray_cone::RayCone;
 pub use thin_lens::ThinLensCamera;
@@ -70,8 +70,8 @@ macro_rules! delegate {
             ) {
                 match self { $(Camera::$variant(c) => c.rays(frame, samples, take),)+ }
             }
-            fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
-                match self { $(Camera::$variant(c) => c.project(frame, world, lens, found),)+ }
+            fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, emit: &mut dyn FnMut(Vec2)) {
+                match self { $(Camera::$variant(c) => c.project(frame, world, lens, emit),)+ }
             }
             fn footprint(&self, frame: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
                 match self { $(Camera::$variant(c) => c.footprint(frame, sample, t),)+ }
@@ -196,10 +196,10 @@ pub trait Projection {
         (0..N).for_each(|i| take(i, self.ray(frame, &samples.sample(i))));
     }
 
-    /// Calls `found` with every point of the picture at which a world-space point is seen through a
+    /// Calls `emit` with every point of the picture at which a world-space point is seen through a
     /// point of the lens: none, one, or several, as for a pair of eyes. Ignores occlusion. If the
     /// picture can have any aspect ratio, points may lie outside the square.
-    fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2));
+    fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, emit: &mut dyn FnMut(Vec2));
 
     /// Area across the ray at distance `t` per unit area of the picture, for a fixed point of the
     /// lens.

@@ -20,7 +20,7 @@ mod roots;
 
 use super::perspective::half_width;
 use super::pose::world_ray;
-use super::sheet::Sheet;
+use super::sheet::PictureSheet;
 use super::{CameraBasis, CameraSample, Pose, Projection};
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
@@ -75,8 +75,8 @@ struct Column {
 }
 
 impl MultipleCenterCamera {
-    fn sheet(&self) -> Sheet {
-        Sheet(DVec2::new(f64::from(self.aspect), 1.0))
+    fn sheet(&self) -> PictureSheet {
+        PictureSheet(DVec2::new(f64::from(self.aspect), 1.0))
     }
 
     fn pieces(&self) -> usize {
@@ -86,16 +86,16 @@ impl MultipleCenterCamera {
     /// Returns a piece of the path of the eyes (`column` 0) or of the targets (`column` 3).
     fn piece(&self, index: usize, column: usize) -> Piece {
         let last = self.pieces();
-        let place = |i: usize| Vec3::from_slice(&self.path[i][column..column + 3]).as_dvec3();
+        let position = |i: usize| Vec3::from_slice(&self.path[i][column..column + 3]).as_dvec3();
         let closed = self.path[0] == self.path[last] && last > 2;
         let tangent = |i: usize| match (i, closed) {
-            (0, true) => 0.5 * (place(1) - place(last - 1)),
-            (i, true) if i == last => 0.5 * (place(1) - place(last - 1)),
-            (0, false) => place(1) - place(0),
-            (i, false) if i == last => place(last) - place(last - 1),
-            (i, _) => 0.5 * (place(i + 1) - place(i - 1)),
+            (0, true) => 0.5 * (position(1) - position(last - 1)),
+            (i, true) if i == last => 0.5 * (position(1) - position(last - 1)),
+            (0, false) => position(1) - position(0),
+            (i, false) if i == last => position(last) - position(last - 1),
+            (i, _) => 0.5 * (position(i + 1) - position(i - 1)),
         };
-        let (a, d) = (place(index), place(index + 1));
+        let (a, d) = (position(index), position(index + 1));
         [a, a + tangent(index) / 3.0, d - tangent(index + 1) / 3.0, d]
     }
 
@@ -122,11 +122,11 @@ impl MultipleCenterCamera {
     }
 
     /// Returns the column of a sample and the height in its fan.
-    fn seen(&self, sample: &CameraSample) -> Option<(Column, f64)> {
+    fn column_of(&self, sample: &CameraSample) -> Option<(Column, f64)> {
         let sheet = self.sheet();
-        let place = sheet.place(sample.point.as_dvec2());
-        let within = sheet.contains(sheet.place(sample.pixel.as_dvec2()));
-        within.then(|| (self.column(place.x / sheet.0.x), (2.0 * place.y - 1.0) * half_width(self.angle)))
+        let position = sheet.position(sample.point.as_dvec2());
+        let within = sheet.contains(sheet.position(sample.pixel.as_dvec2()));
+        within.then(|| (self.column(position.x / sheet.0.x), (2.0 * position.y - 1.0) * half_width(self.angle)))
     }
 }
 
@@ -160,31 +160,31 @@ impl Projection for MultipleCenterCamera {
     }
 
     fn ray(&self, _: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
-        let (column, height) = self.seen(sample)?;
+        let (column, height) = self.column_of(sample)?;
         Some(world_ray(column.eye, column.forward + height * column.up))
     }
 
-    fn project(&self, _: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, _: &CameraBasis, world: Vec3, _: Vec2, emit: &mut dyn FnMut(Vec2)) {
         let (sheet, up, world) = (self.sheet(), self.up.as_dvec3(), world.as_dvec3());
         for index in 0..self.pieces() {
             let [eyes, targets] = [0, 3].map(|column| self.piece(index, column));
             let normals: [DVec3; 4] = std::array::from_fn(|i| (targets[i] - eyes[i]).cross(up));
             let from_eyes: [DVec3; 4] = std::array::from_fn(|i| world - eyes[i]);
-            roots::each(roots::dot(&normals, &from_eyes), &mut |s| {
+            roots::for_each_root(roots::dot(&normals, &from_eyes), &mut |s| {
                 let u = (index as f64 + s) / self.pieces() as f64;
                 let column = self.column(u);
-                let seen = world - column.eye;
-                let height = seen.dot(column.up) / seen.dot(column.forward) / half_width(self.angle);
-                let place = DVec2::new(u * sheet.0.x, 0.5 * (height + 1.0));
-                if seen.dot(column.forward) > 0.0 && sheet.contains(place) {
-                    found(sheet.point(place).as_vec2());
+                let to_point = world - column.eye;
+                let height = to_point.dot(column.up) / to_point.dot(column.forward) / half_width(self.angle);
+                let position = DVec2::new(u * sheet.0.x, 0.5 * (height + 1.0));
+                if to_point.dot(column.forward) > 0.0 && sheet.contains(position) {
+                    emit(sheet.point(position).as_vec2());
                 }
             });
         }
     }
 
     fn footprint(&self, _: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
-        let Some((column, height)) = self.seen(sample) else { return 0.0 };
+        let Some((column, height)) = self.column_of(sample) else { return 0.0 };
         let (t, square, unit) = (f64::from(t), 1.0 + height * height, self.sheet().unit());
         let turns = (column.forward_turns + height * column.up_turns) / square.sqrt();
         let per_place = 2.0 * half_width(self.angle) / self.sheet().0.x;

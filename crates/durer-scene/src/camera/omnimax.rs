@@ -15,7 +15,7 @@
 //! Elliptical Weighted Average Filter*, CG&A 6(6), 1986.
 
 use super::Pose;
-use super::central::Central;
+use super::central::SingleViewpoint;
 use super::fisheye::FisheyeProjection;
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
@@ -72,25 +72,25 @@ impl OmnimaxCamera {
 
     /// Returns the direction in which the projector shows a point of the picture, and the point
     /// where that ray meets the dome.
-    fn thrown(&self, point: DVec2) -> Option<(DVec3, DVec3)> {
+    fn project_to_dome(&self, point: DVec2) -> Option<(DVec3, DVec3)> {
         let direction = self.axes() * FisheyeProjection::Equidistant.direction(point, self.limit())?;
         let projector = self.projector.as_dvec3();
-        let place = projector + to_sphere(projector, direction) * direction;
-        self.on_dome(place).then_some((direction, place))
+        let position = projector + to_sphere(projector, direction) * direction;
+        self.on_dome(position).then_some((direction, position))
     }
 }
 
-impl Central for OmnimaxCamera {
-    fn stand(&self) -> Pose {
+impl SingleViewpoint for OmnimaxCamera {
+    fn camera_pose(&self) -> Pose {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
 
-    fn shape(&self) -> Option<Vec2> {
+    fn picture_proportions(&self) -> Option<Vec2> {
         Some(Vec2::ONE)
     }
 
     fn validate(&self) -> Result<(), String> {
-        let outside = |place: Vec3| place.length() >= 0.99;
+        let outside = |position: Vec3| position.length() >= 0.99;
         match (outside(self.projector), outside(self.viewer)) {
             (false, false) => Ok(()),
             (true, _) => Err("the projector must be inside the dome: less than 0.99 from its centre".into()),
@@ -99,24 +99,24 @@ impl Central for OmnimaxCamera {
     }
 
     fn direction(&self, point: DVec2, _: DVec2) -> Option<DVec3> {
-        Some(self.thrown(point)?.1 - self.viewer.as_dvec3())
+        Some(self.project_to_dome(point)?.1 - self.viewer.as_dvec3())
     }
 
-    fn image(&self, direction: DVec3, found: &mut dyn FnMut(DVec2)) {
+    fn project_direction(&self, direction: DVec3, emit: &mut dyn FnMut(DVec2)) {
         let (viewer, projector) = (self.viewer.as_dvec3(), self.projector.as_dvec3());
-        let place = viewer + to_sphere(viewer, direction) * direction;
-        if !self.on_dome(place) {
+        let position = viewer + to_sphere(viewer, direction) * direction;
+        if !self.on_dome(position) {
             return;
         }
-        let thrown = self.axes().transpose() * (place - projector).normalize();
-        FisheyeProjection::Equidistant.point(thrown, self.limit()).into_iter().for_each(found);
+        let dome_direction = self.axes().transpose() * (position - projector).normalize();
+        FisheyeProjection::Equidistant.point(dome_direction, self.limit()).into_iter().for_each(emit);
     }
 
     fn solid_angle(&self, point: DVec2, _: DVec2) -> f64 {
-        let Some((thrown, place)) = self.thrown(point) else { return 0.0 };
-        let seen = place - self.viewer.as_dvec3();
-        let of_projector = (place - self.projector.as_dvec3()).length_squared() / place.dot(thrown);
-        let of_viewer = place.dot(seen) / (seen.length_squared() * seen.length());
+        let Some((dome_direction, position)) = self.project_to_dome(point) else { return 0.0 };
+        let from_viewer = position - self.viewer.as_dvec3();
+        let of_projector = (position - self.projector.as_dvec3()).length_squared() / position.dot(dome_direction);
+        let of_viewer = position.dot(from_viewer) / (from_viewer.length_squared() * from_viewer.length());
         FisheyeProjection::Equidistant.solid_angle(point, self.limit()) * of_projector * of_viewer
     }
 }

@@ -41,12 +41,12 @@ impl Projection for OrthographicCamera {
         Some(Ray { t_min, ..Ray::new(origin, frame.forward) })
     }
 
-    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, emit: &mut dyn FnMut(Vec2)) {
         if self.near.is_some_and(|near| (world - frame.eye).dot(frame.forward) < near) {
             return;
         }
-        let p = self.handedness.turned(frame.camera_from_world(world));
-        found((DVec2::new(p.x, p.y) / (0.5 * f64::from(self.size))).as_vec2());
+        let p = self.handedness.convert(frame.camera_from_world(world));
+        emit((DVec2::new(p.x, p.y) / (0.5 * f64::from(self.size))).as_vec2());
     }
 
     /// Constant for all distances.

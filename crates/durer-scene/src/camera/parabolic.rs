@@ -11,7 +11,7 @@
 //! Single-Viewpoint Catadioptric Image Formation*, IJCV 35(2), 1999.
 
 use super::Pose;
-use super::central::Central;
+use super::central::SingleViewpoint;
 use super::fisheye::FisheyeProjection;
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
@@ -44,12 +44,12 @@ impl ParabolicCamera {
     }
 }
 
-impl Central for ParabolicCamera {
-    fn stand(&self) -> Pose {
+impl SingleViewpoint for ParabolicCamera {
+    fn camera_pose(&self) -> Pose {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
 
-    fn shape(&self) -> Option<Vec2> {
+    fn picture_proportions(&self) -> Option<Vec2> {
         Some(Vec2::ONE)
     }
 
@@ -57,8 +57,8 @@ impl Central for ParabolicCamera {
         Some(MIRROR * PROJECTION.direction(point, self.limit())?)
     }
 
-    fn image(&self, direction: DVec3, found: &mut dyn FnMut(DVec2)) {
-        PROJECTION.point(MIRROR * direction, self.limit()).into_iter().for_each(found);
+    fn project_direction(&self, direction: DVec3, emit: &mut dyn FnMut(DVec2)) {
+        PROJECTION.point(MIRROR * direction, self.limit()).into_iter().for_each(emit);
     }
 
     fn solid_angle(&self, point: DVec2, _: DVec2) -> f64 {

@@ -6,7 +6,7 @@
 //!
 //! The solid angle of an area dx dy in the plane at distance D is D |u v w| dx dy / |direction|³.
 
-use super::pose::{Aim, unit_or, units_or};
+use super::pose::{RayArithmetic, normalize_all_or, normalize_or};
 use super::{CameraBasis, CameraSample, CameraSamples, Pose, Projection};
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
@@ -52,16 +52,16 @@ impl Projection for PerspectiveCamera {
     }
 
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
-        if frame.aim != Aim::ScreenPoint {
-            let mut found = None;
-            self.rays::<1>(frame, &(*sample).into(), |_, ray| found = ray);
-            return found;
+        if frame.ray_arithmetic != RayArithmetic::ScreenPoint {
+            let mut emit = None;
+            self.rays::<1>(frame, &(*sample).into(), |_, ray| emit = ray);
+            return emit;
         }
         let (along, half) = (0.5 * (sample.point + 1.0), frame.half_width as f32);
         let corner = frame.eye + frame.forward - half * frame.right - half * frame.up;
         let (across, upwards) = (2.0 * half * frame.right, 2.0 * half * frame.up);
         let dir = (corner + along.x * across + along.y * upwards) - frame.eye;
-        Some(Ray::new(frame.eye, unit_or(dir, frame.forward)))
+        Some(Ray::new(frame.eye, normalize_or(dir, frame.forward)))
     }
 
     #[inline(always)]
@@ -71,15 +71,15 @@ impl Projection for PerspectiveCamera {
         samples: &CameraSamples<N>,
         mut take: impl FnMut(usize, Option<Ray>),
     ) {
-        if frame.aim == Aim::ScreenPoint {
+        if frame.ray_arithmetic == RayArithmetic::ScreenPoint {
             return (0..N).for_each(|i| take(i, self.ray(frame, &samples.sample(i))));
         }
-        if frame.aim.is_sum() {
-            let distance = frame.aim.distance(self.angle);
+        if frame.ray_arithmetic.is_sum() {
+            let distance = frame.ray_arithmetic.distance(self.angle);
             let [x, y] = &samples.points;
             return (0..N).for_each(|i| {
                 let dir = distance * frame.forward + x[i] * frame.right + y[i] * frame.up;
-                take(i, Some(Ray::new(frame.eye, frame.aim.unit_or(dir, frame.forward))));
+                take(i, Some(Ray::new(frame.eye, frame.ray_arithmetic.normalize_or(dir, frame.forward))));
             });
         }
         let forward = frame.forward / frame.half_width as f32;
@@ -90,14 +90,14 @@ impl Projection for PerspectiveCamera {
                 dirs[axis][i] = forward[axis] + x[i] * frame.right[axis] + y[i] * frame.up[axis];
             }
         }
-        let [x, y, z] = units_or(&dirs, frame.forward);
+        let [x, y, z] = normalize_all_or(&dirs, frame.forward);
         (0..N).for_each(|i| take(i, Some(Ray::new(frame.eye, Vec3::new(x[i], y[i], z[i])))));
     }
 
-    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, emit: &mut dyn FnMut(Vec2)) {
         let p = frame.camera_from_world(world);
         if p.z > 0.0 {
-            found((DVec2::new(p.x, p.y) / (p.z * frame.half_width)).as_vec2());
+            emit((DVec2::new(p.x, p.y) / (p.z * frame.half_width)).as_vec2());
         }
     }
 

@@ -60,11 +60,11 @@ impl Projection for PinholeCamera {
         Some(frame.ray(hole.extend(0.0), (hole + width * sample.point.as_dvec2()).extend(film)))
     }
 
-    fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, emit: &mut dyn FnMut(Vec2)) {
         let (hole, film, width) = self.parts(frame, lens);
         let p = frame.camera_from_world(world);
         if p.z > 0.0 {
-            found((((p.truncate() - hole) * (film / p.z) - hole) / width).as_vec2());
+            emit((((p.truncate() - hole) * (film / p.z) - hole) / width).as_vec2());
         }
     }
 

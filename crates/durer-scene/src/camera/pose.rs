@@ -32,7 +32,7 @@ pub enum UpRule {
 
 /// Arithmetic by which a dialect computes perspective rays, down to the rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Aim {
+pub enum RayArithmetic {
     /// Dürer's own arithmetic.
     #[default]
     Own,
@@ -42,35 +42,35 @@ pub enum Aim {
     /// Direction d w + x u + y v in single precision, from `direction` and `up` of any length; from
     /// the program of 2012.
     Of2012,
-    /// [`Aim::Of2012`] with the axes of 2016: `up` as written.
+    /// [`RayArithmetic::Of2012`] with the axes of 2016: `up` as written.
     Of2016,
-    /// [`Aim::Of2012`] with the axes of 2020: all scaled to unit length by a reciprocal.
+    /// [`RayArithmetic::Of2012`] with the axes of 2020: all scaled to unit length by a reciprocal.
     Of2020,
 }
 
-impl Aim {
+impl RayArithmetic {
     /// True if a direction is computed as a sum in single precision.
     pub(super) fn is_sum(self) -> bool {
-        matches!(self, Aim::Of2012 | Aim::Of2016 | Aim::Of2020)
+        matches!(self, RayArithmetic::Of2012 | RayArithmetic::Of2016 | RayArithmetic::Of2020)
     }
 
     /// Distance at which a screen from -1 to 1 spans an angle in degrees.
     pub(super) fn distance(self, angle: f32) -> f32 {
         let radians = (PI_F64 * f64::from(angle) / 180.0) as f32;
         match self {
-            Aim::Of2020 => 1.0 / tangent(angle / 180.0 * PI / 2.0),
-            Aim::Of2016 => 1.0 / tangent(radians / 2.0),
+            RayArithmetic::Of2020 => 1.0 / tangent(angle / 180.0 * PI / 2.0),
+            RayArithmetic::Of2016 => 1.0 / tangent(radians / 2.0),
             _ => (1.0 / fp::tan_f64(f64::from(radians) / 2.0)) as f32,
         }
     }
 
     /// Normalizes a vector; returns `fallback` if it has no direction.
-    pub(super) fn unit_or(self, v: Vec3, fallback: Vec3) -> Vec3 {
-        if self != Aim::Of2020 {
-            return unit_or(v, fallback);
+    pub(super) fn normalize_or(self, v: Vec3, fallback: Vec3) -> Vec3 {
+        if self != RayArithmetic::Of2020 {
+            return normalize_or(v, fallback);
         }
         let unit = v * (1.0 / v.dot(v).sqrt());
-        if unit.is_finite() && unit != Vec3::ZERO { unit } else { unit_or(v, fallback) }
+        if unit.is_finite() && unit != Vec3::ZERO { unit } else { normalize_or(v, fallback) }
     }
 }
 
@@ -81,7 +81,7 @@ pub struct CameraRules {
     /// Rule for the up direction of the picture.
     pub up: UpRule,
     /// Arithmetic of perspective rays.
-    pub aim: Aim,
+    pub ray_arithmetic: RayArithmetic,
     /// True if the centres of the first and last column and row are on the picture's border.
     pub border_pixels: bool,
     /// True if the camera's square is stretched over a picture that is not square.
@@ -102,22 +102,22 @@ pub struct CameraBasis {
     pub right: Vec3,
     /// Up direction of the picture.
     pub up: Vec3,
-    /// See [`CameraRules::aim`].
-    pub aim: Aim,
+    /// See [`CameraRules::ray_arithmetic`].
+    pub ray_arithmetic: RayArithmetic,
     /// [`Projection::half_width`] of the camera, computed once.
     pub half_width: f64,
 }
 
 /// Normalizes a vector by dividing each component by the length (glam multiplies by the reciprocal,
 /// which rounds once more). Returns `fallback` if the vector is zero or not finite.
-pub(super) fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
-    let [[x], [y], [z]] = units_or(&[[v.x], [v.y], [v.z]], fallback);
+pub(super) fn normalize_or(v: Vec3, fallback: Vec3) -> Vec3 {
+    let [[x], [y], [z]] = normalize_all_or(&[[v.x], [v.y], [v.z]], fallback);
     Vec3::new(x, y, z)
 }
 
-/// Normalizes several vectors, given as arrays of x, y and z. See [`unit_or`].
+/// Normalizes several vectors, given as arrays of x, y and z. See [`normalize_or`].
 #[inline(always)]
-pub(super) fn units_or<const N: usize>([x, y, z]: &[[f32; N]; 3], fallback: Vec3) -> [[f32; N]; 3] {
+pub(super) fn normalize_all_or<const N: usize>([x, y, z]: &[[f32; N]; 3], fallback: Vec3) -> [[f32; N]; 3] {
     let (mut units, mut all_sound) = ([[0.0; N]; 3], true);
     for i in 0..N {
         let length = (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt();
@@ -142,10 +142,10 @@ fn is_sound([x, y, z]: [f32; 3]) -> bool {
     (x.is_finite() & y.is_finite() & z.is_finite()) & ((x != 0.0) | (y != 0.0) | (z != 0.0))
 }
 
-/// Version of [`unit_or`] for the program of 2004: multiplies by the reciprocal of the length.
-fn scaled_or(v: Vec3, fallback: Vec3) -> Vec3 {
+/// Version of [`normalize_or`] for the program of 2004: multiplies by the reciprocal of the length.
+fn normalize_by_reciprocal_or(v: Vec3, fallback: Vec3) -> Vec3 {
     let unit = v * (1.0 / (v.as_dvec3().length() as f32));
-    if unit.is_finite() && unit != Vec3::ZERO { unit } else { unit_or(v, fallback) }
+    if unit.is_finite() && unit != Vec3::ZERO { unit } else { normalize_or(v, fallback) }
 }
 
 impl CameraBasis {
@@ -155,27 +155,33 @@ impl CameraBasis {
     }
 
     /// Computes the axes of a pose: right = norm(direction x up), up = right x direction.
-    pub(super) fn new(pose: Pose, CameraRules { up, aim, .. }: CameraRules) -> Self {
-        let screen_point = aim == Aim::ScreenPoint;
-        let unit = |v, fallback| if screen_point { scaled_or(v, fallback) } else { aim.unit_or(v, fallback) };
+    pub(super) fn new(pose: Pose, CameraRules { up, ray_arithmetic, .. }: CameraRules) -> Self {
+        let screen_point = ray_arithmetic == RayArithmetic::ScreenPoint;
+        let unit = |v, fallback| {
+            if screen_point {
+                normalize_by_reciprocal_or(v, fallback)
+            } else {
+                ray_arithmetic.normalize_or(v, fallback)
+            }
+        };
         let forward = unit(pose.direction, Vec3::NEG_Z);
         // Operands of the cross product: some years use the direction without normalising it.
-        let (along, over) = match aim {
-            Aim::Of2012 | Aim::Of2016 => (pose.direction, pose.up),
-            Aim::Of2020 => (forward, aim.unit_or(pose.up, Vec3::Y)),
-            Aim::Own | Aim::ScreenPoint => (forward, pose.up),
+        let (along, over) = match ray_arithmetic {
+            RayArithmetic::Of2012 | RayArithmetic::Of2016 => (pose.direction, pose.up),
+            RayArithmetic::Of2020 => (forward, ray_arithmetic.normalize_or(pose.up, Vec3::Y)),
+            RayArithmetic::Own | RayArithmetic::ScreenPoint => (forward, pose.up),
         };
         let right = unit(along.cross(over), forward.any_orthonormal_vector());
         let up = match up {
             UpRule::Raw => pose.up,
-            UpRule::Skew if aim == Aim::Of2020 => over,
+            UpRule::Skew if ray_arithmetic == RayArithmetic::Of2020 => over,
             UpRule::Skew => pose.up.normalize_or(Vec3::Y),
-            UpRule::Perpendicular => match (right.cross(along), aim) {
-                (up, Aim::Own) => up,
+            UpRule::Perpendicular => match (right.cross(along), ray_arithmetic) {
+                (up, RayArithmetic::Own) => up,
                 (up, _) => unit(up, right.cross(forward)),
             },
         };
-        CameraBasis { eye: pose.center, forward, right, up, aim, half_width: 1.0 }
+        CameraBasis { eye: pose.center, forward, right, up, ray_arithmetic, half_width: 1.0 }
     }
 
     /// Axes as columns, in double precision: the matrix from camera space to world space.
@@ -185,11 +191,11 @@ impl CameraBasis {
 
     /// Transforms a point from world space to camera space.
     pub(super) fn camera_from_world(&self, point: Vec3) -> DVec3 {
-        self.turned(point.as_dvec3() - self.eye.as_dvec3())
+        self.vector_from_world(point.as_dvec3() - self.eye.as_dvec3())
     }
 
     /// Transforms a vector from world space to camera space.
-    pub(super) fn turned(&self, vector: DVec3) -> DVec3 {
+    pub(super) fn vector_from_world(&self, vector: DVec3) -> DVec3 {
         self.axes().inverse() * vector
     }
 

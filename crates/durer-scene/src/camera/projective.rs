@@ -20,7 +20,7 @@
 //! Engineering 32(3), 1966.
 
 use super::pose::world_ray;
-use super::sheet::Sheet;
+use super::sheet::PictureSheet;
 use super::{CameraBasis, CameraSample, Pose, Projection};
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
@@ -56,7 +56,7 @@ fn plain_matrix() -> Vec<[f32; 4]> {
 }
 
 /// Projection matrix of the camera, decomposed into eye, rotation and intrinsic matrix.
-struct Parts {
+struct Decomposition {
     eye: DVec3,
     /// Rows: the camera's right, down and forward, in world space.
     rotation: DMat3,
@@ -65,8 +65,8 @@ struct Parts {
 }
 
 impl ProjectiveCamera {
-    fn sheet(&self) -> Sheet {
-        Sheet(DVec2::new(f64::from(self.width), f64::from(self.height)))
+    fn sheet(&self) -> PictureSheet {
+        PictureSheet(DVec2::new(f64::from(self.width), f64::from(self.height)))
     }
 
     /// Returns the left three columns of the matrix, by rows, and the fourth column.
@@ -77,7 +77,7 @@ impl ProjectiveCamera {
     }
 
     /// Computes K, R and the eye by Gram-Schmidt on the rows of M, from the last to the first.
-    fn parts(&self) -> Parts {
+    fn parts(&self) -> Decomposition {
         let ([a, b, c], last) = self.rows();
         // Depth is positive in front of the camera if M preserves handedness.
         let sign = if a.dot(b.cross(c)) < 0.0 { -1.0 } else { 1.0 };
@@ -92,7 +92,7 @@ impl ProjectiveCamera {
             DVec3::new(a.dot(forward), b.dot(forward), scale) / scale,
         );
         let eye = DMat3::from_cols(a, b, c).transpose().inverse() * (-sign * last);
-        Parts { eye, rotation: DMat3::from_cols(right, down, forward).transpose(), intrinsic }
+        Decomposition { eye, rotation: DMat3::from_cols(right, down, forward).transpose(), intrinsic }
     }
 
     /// Returns the factor 1 + k1 s + k2 s² + k3 s³ and its derivative with respect to s.
@@ -103,7 +103,7 @@ impl ProjectiveCamera {
 
     /// True if the distorted radius increases with the radius everywhere between the centre and a
     /// point.
-    fn unfolded(&self, point: DVec2) -> bool {
+    fn is_before_fold(&self, point: DVec2) -> bool {
         let end = point.length_squared();
         // d/dr of r (1 + k1 r² + ...), as a function of s = r²; its extrema are at the roots of its
         // derivative.
@@ -118,7 +118,7 @@ impl ProjectiveCamera {
     }
 
     /// Returns the distorted point and its Jacobian.
-    fn distorted(&self, point: DVec2) -> (DVec2, DMat2) {
+    fn distort(&self, point: DVec2) -> (DVec2, DMat2) {
         let (s, [p1, p2]) = (point.length_squared(), [self.p1, self.p2].map(f64::from));
         let ((factor, slope), DVec2 { x, y }) = (self.radial(s), point);
         let tangential =
@@ -131,43 +131,43 @@ impl ProjectiveCamera {
         (factor * point + tangential, jacobian)
     }
 
-    /// Returns the point that the lens distorts to `wanted`, if there is one before the fold.
-    fn undistorted(&self, wanted: DVec2) -> Option<DVec2> {
+    /// Returns the point that the lens distorts to `target`, if there is one before the fold.
+    fn undistort(&self, target: DVec2) -> Option<DVec2> {
         // The first guess usually converges; otherwise follow the point outwards from the centre.
-        let followed = || (1..=16).try_fold(DVec2::ZERO, |point, i| self.solved(point, wanted * (f64::from(i) / 16.0)));
-        self.solved(wanted, wanted).or_else(followed)
+        let followed = || (1..=16).try_fold(DVec2::ZERO, |point, i| self.solve(point, target * (f64::from(i) / 16.0)));
+        self.solve(target, target).or_else(followed)
     }
 
     /// Solves by Newton's method from a guess.
-    fn solved(&self, mut point: DVec2, wanted: DVec2) -> Option<DVec2> {
+    fn solve(&self, mut point: DVec2, target: DVec2) -> Option<DVec2> {
         for _ in 0..20 {
-            let (there, jacobian) = self.distorted(point);
-            let step = jacobian.inverse() * (wanted - there);
+            let (there, jacobian) = self.distort(point);
+            let step = jacobian.inverse() * (target - there);
             point += step;
             if step.length() <= 1e-15 * (1.0 + point.length()) {
                 break;
             }
         }
-        let (there, jacobian) = self.distorted(point);
-        let solved = (there - wanted).length() <= 1e-9 * (1.0 + wanted.length());
-        (solved && jacobian.determinant() > 0.0 && self.unfolded(point)).then_some(point)
+        let (there, jacobian) = self.distort(point);
+        let solved = (there - target).length() <= 1e-9 * (1.0 + target.length());
+        (solved && jacobian.determinant() > 0.0 && self.is_before_fold(point)).then_some(point)
     }
 
     /// Returns the point at depth 1 that is seen at a sample.
-    fn seen(&self, parts: &Parts, sample: &CameraSample) -> Option<DVec2> {
+    fn point_of(&self, parts: &Decomposition, sample: &CameraSample) -> Option<DVec2> {
         let sheet = self.sheet();
-        if !sheet.contains(sheet.place(sample.pixel.as_dvec2())) {
+        if !sheet.contains(sheet.position(sample.pixel.as_dvec2())) {
             return None;
         }
-        let place = sheet.place(sample.point.as_dvec2());
-        let pixel = DVec3::new(place.x - 0.5, sheet.0.y - place.y - 0.5, 1.0);
-        self.undistorted((parts.intrinsic.inverse() * pixel).truncate())
+        let position = sheet.position(sample.point.as_dvec2());
+        let pixel = DVec3::new(position.x - 0.5, sheet.0.y - position.y - 0.5, 1.0);
+        self.undistort((parts.intrinsic.inverse() * pixel).truncate())
     }
 }
 
 impl Projection for ProjectiveCamera {
     fn pose(&self) -> Pose {
-        let Parts { eye, rotation, .. } = self.parts();
+        let Decomposition { eye, rotation, .. } = self.parts();
         let rows = rotation.transpose();
         Pose { center: eye.as_vec3(), direction: rows.z_axis.as_vec3(), up: -rows.y_axis.as_vec3() }
     }
@@ -192,29 +192,29 @@ impl Projection for ProjectiveCamera {
 
     fn ray(&self, _: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let parts = self.parts();
-        let point = self.seen(&parts, sample)?;
+        let point = self.point_of(&parts, sample)?;
         Some(world_ray(parts.eye, parts.rotation.transpose() * point.extend(1.0)))
     }
 
-    fn project(&self, _: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, _: &CameraBasis, world: Vec3, _: Vec2, emit: &mut dyn FnMut(Vec2)) {
         let (parts, sheet) = (self.parts(), self.sheet());
         let p = parts.rotation * (world.as_dvec3() - parts.eye);
         let point = p.truncate() / p.z;
-        let (there, jacobian) = self.distorted(point);
-        if p.z <= 0.0 || jacobian.determinant() <= 0.0 || !self.unfolded(point) {
+        let (there, jacobian) = self.distort(point);
+        if p.z <= 0.0 || jacobian.determinant() <= 0.0 || !self.is_before_fold(point) {
             return;
         }
         let pixel = parts.intrinsic * there.extend(1.0);
-        let place = DVec2::new(pixel.x + 0.5, sheet.0.y - pixel.y - 0.5);
-        if sheet.contains(place) {
-            found(sheet.point(place).as_vec2());
+        let position = DVec2::new(pixel.x + 0.5, sheet.0.y - pixel.y - 0.5);
+        if sheet.contains(position) {
+            emit(sheet.point(position).as_vec2());
         }
     }
 
     fn footprint(&self, _: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
         let parts = self.parts();
-        let Some(point) = self.seen(&parts, sample) else { return 0.0 };
-        let pixels = parts.intrinsic.determinant() * self.distorted(point).1.determinant();
+        let Some(point) = self.point_of(&parts, sample) else { return 0.0 };
+        let pixels = parts.intrinsic.determinant() * self.distort(point).1.determinant();
         let (dir, unit) = (point.extend(1.0), self.sheet().unit());
         (f64::from(t * t) * unit * unit / (pixels * dir.length_squared() * dir.length())) as f32
     }

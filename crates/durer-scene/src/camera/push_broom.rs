@@ -9,7 +9,7 @@
 //! Source: Gupta, Hartley, *Linear Pushbroom Cameras*, PAMI 19(9), 1997.
 
 use super::perspective::half_width;
-use super::sheet::Sheet;
+use super::sheet::PictureSheet;
 use super::{CameraBasis, CameraRules, CameraSample, Pose, Projection};
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
@@ -35,27 +35,27 @@ described! {
 }
 
 impl PushBroomCamera {
-    fn sheet(&self) -> Sheet {
-        Sheet(DVec2::new(f64::from(self.aspect), 1.0))
+    fn sheet(&self) -> PictureSheet {
+        PictureSheet(DVec2::new(f64::from(self.aspect), 1.0))
     }
 
-    fn way(&self) -> DVec3 {
+    fn path_vector(&self) -> DVec3 {
         self.end.as_dvec3() - self.start.as_dvec3()
     }
 
     /// Returns the fraction of the path and the height in the fan for a sample.
     fn column(&self, sample: &CameraSample) -> Option<(f64, f64)> {
         let sheet = self.sheet();
-        let place = sheet.place(sample.point.as_dvec2());
-        let within = sheet.contains(sheet.place(sample.pixel.as_dvec2()));
-        within.then(|| (place.x / sheet.0.x, (2.0 * place.y - 1.0) * half_width(self.angle)))
+        let position = sheet.position(sample.point.as_dvec2());
+        let within = sheet.contains(sheet.position(sample.pixel.as_dvec2()));
+        within.then(|| (position.x / sheet.0.x, (2.0 * position.y - 1.0) * half_width(self.angle)))
     }
 }
 
 impl Projection for PushBroomCamera {
     /// Pose halfway along the path.
     fn pose(&self) -> Pose {
-        let center = self.start.as_dvec3() + 0.5 * self.way();
+        let center = self.start.as_dvec3() + 0.5 * self.path_vector();
         Pose { center: center.as_vec3(), direction: self.direction, up: self.up }
     }
 
@@ -65,9 +65,9 @@ impl Projection for PushBroomCamera {
 
     fn validate(&self) -> Result<(), String> {
         let frame = CameraBasis::new(self.pose(), CameraRules::default());
-        let sideways = self.way().dot(frame.right.as_dvec3()).abs();
+        let sideways = self.path_vector().dot(frame.right.as_dvec3()).abs();
         // Also false for a path of length 0.
-        let moves = sideways > 1e-6 * self.way().length();
+        let moves = sideways > 1e-6 * self.path_vector().length();
         match moves {
             true => Ok(()),
             false => {
@@ -79,19 +79,22 @@ impl Projection for PushBroomCamera {
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (u, height) = self.column(sample)?;
         let ray = frame.ray(DVec3::ZERO, DVec3::new(0.0, height, 1.0));
-        Some(Ray { origin: (self.start.as_dvec3() + u * self.way()).as_vec3(), ..ray })
+        Some(Ray { origin: (self.start.as_dvec3() + u * self.path_vector()).as_vec3(), ..ray })
     }
 
-    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
-        let (from_start, way) = (frame.turned(world.as_dvec3() - self.start.as_dvec3()), frame.turned(self.way()));
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, emit: &mut dyn FnMut(Vec2)) {
+        let (from_start, path) = (
+            frame.vector_from_world(world.as_dvec3() - self.start.as_dvec3()),
+            frame.vector_from_world(self.path_vector()),
+        );
         // Find the column whose plane contains the point.
-        let u = from_start.x / way.x;
-        let seen = from_start - u * way;
-        let height = seen.y / seen.z / half_width(self.angle);
+        let u = from_start.x / path.x;
+        let to_point = from_start - u * path;
+        let height = to_point.y / to_point.z / half_width(self.angle);
         let sheet = self.sheet();
-        let place = DVec2::new(u * sheet.0.x, 0.5 * (height + 1.0));
-        if seen.z > 0.0 && sheet.contains(place) {
-            found(sheet.point(place).as_vec2());
+        let position = DVec2::new(u * sheet.0.x, 0.5 * (height + 1.0));
+        if to_point.z > 0.0 && sheet.contains(position) {
+            emit(sheet.point(position).as_vec2());
         }
     }
 
@@ -100,7 +103,7 @@ impl Projection for PushBroomCamera {
         let sheet = self.sheet();
         let unit = sheet.unit();
         let per_place = 2.0 * half_width(self.angle) / sheet.0.x;
-        let sideways = self.way().dot(frame.right.as_dvec3()).abs();
+        let sideways = self.path_vector().dot(frame.right.as_dvec3()).abs();
         (f64::from(t) * sideways / (1.0 + height * height) * per_place * unit * unit) as f32
     }
 }

@@ -64,8 +64,8 @@ impl Raster {
     /// corner.
     ///
     /// Pixel (i, j) has its centre at (i + 0.5, j + 0.5), j counted downwards.
-    pub fn point(&self, place: Vec2) -> Vec2 {
-        let [[x], [y]] = self.points([[place.x], [place.y]]);
+    pub fn point(&self, position: Vec2) -> Vec2 {
+        let [[x], [y]] = self.points([[position.x], [position.y]]);
         Vec2::new(x, y)
     }
 
@@ -90,8 +90,8 @@ impl Raster {
         }
         for axis in 0..2 {
             for i in 0..N {
-                let place = upwards[axis][i] - 0.5 * inset + 0.5 * (span - size)[axis];
-                points[axis][i] = 2.0 * (place / span[axis]) - 1.0;
+                let position = upwards[axis][i] - 0.5 * inset + 0.5 * (span - size)[axis];
+                points[axis][i] = 2.0 * (position / span[axis]) - 1.0;
             }
         }
         points

@@ -6,27 +6,27 @@ use glam::DVec2;
 /// Natural width and height of a camera's picture, in the camera's own unit. Positions are relative
 /// to the lower left corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sheet(pub DVec2);
+pub struct PictureSheet(pub DVec2);
 
-impl Sheet {
+impl PictureSheet {
     /// Number of sheet units per unit of the square.
     pub fn unit(self) -> f64 {
         0.5 * self.0.max_element()
     }
 
     /// Returns the position on the sheet of a point of the square.
-    pub fn place(self, point: DVec2) -> DVec2 {
+    pub fn position(self, point: DVec2) -> DVec2 {
         0.5 * self.0 + self.unit() * point
     }
 
     /// Returns the point of the square for a position on the sheet.
-    pub fn point(self, place: DVec2) -> DVec2 {
-        (place - 0.5 * self.0) / self.unit()
+    pub fn point(self, position: DVec2) -> DVec2 {
+        (position - 0.5 * self.0) / self.unit()
     }
 
     /// True if a position lies on the sheet, edges included.
-    pub fn contains(self, place: DVec2) -> bool {
-        place.cmpge(DVec2::ZERO).all() && place.cmple(self.0).all()
+    pub fn contains(self, position: DVec2) -> bool {
+        position.cmpge(DVec2::ZERO).all() && position.cmple(self.0).all()
     }
 
     /// Sides of the sheet. See [`super::Projection::proportions`].

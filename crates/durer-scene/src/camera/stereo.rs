@@ -10,7 +10,7 @@
 //! Computer-Generated Images*, IEEE CG&A 5(9), 1985; Bourke, *Calculating Stereo Pairs*, 1999.
 
 use super::perspective::half_width;
-use super::sheet::Sheet;
+use super::sheet::PictureSheet;
 use super::{CameraBasis, CameraSample, Eyes, Pose, Projection};
 use crate::describe::{Constraint, described, described_words};
 use crate::dialect::set;
@@ -56,7 +56,7 @@ struct Eye {
 }
 
 impl StereoCamera {
-    fn one(&self) -> DVec2 {
+    fn eye_size(&self) -> DVec2 {
         DVec2::new(f64::from(self.aspect), 1.0)
     }
 
@@ -77,14 +77,14 @@ impl StereoCamera {
 
     /// Window units at distance 1 per unit of one eye's sheet.
     fn scale(&self, frame: &CameraBasis) -> f64 {
-        frame.half_width / (0.5 * self.one().max_element())
+        frame.half_width / (0.5 * self.eye_size().max_element())
     }
 
     /// Returns the eye of a sample, and the direction from it in the eye's axes.
-    fn line(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<(Eye, DVec3)> {
-        let (view, place) = self.eyes.view(self.one(), sample.point.as_dvec2(), sample.pixel.as_dvec2())?;
+    fn eye_ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<(Eye, DVec3)> {
+        let (view, position) = self.eyes.view(self.eye_size(), sample.point.as_dvec2(), sample.pixel.as_dvec2())?;
         let eye = self.eye(view.side);
-        let dir = ((place - 0.5 * self.one()) * self.scale(frame) + eye.shear).extend(1.0);
+        let dir = ((position - 0.5 * self.eye_size()) * self.scale(frame) + eye.shear).extend(1.0);
         Some((eye, dir))
     }
 }
@@ -99,29 +99,29 @@ impl Projection for StereoCamera {
     }
 
     fn proportions(&self) -> Option<Vec2> {
-        self.eyes.sheet(self.one()).proportions()
+        self.eyes.sheet(self.eye_size()).proportions()
     }
 
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
-        let (eye, dir) = self.line(frame, sample)?;
+        let (eye, dir) = self.eye_ray(frame, sample)?;
         Some(frame.ray(eye.at, eye.axes * dir))
     }
 
-    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
-        let (one, p) = (self.one(), frame.camera_from_world(world));
-        for view in self.eyes.views(one) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, emit: &mut dyn FnMut(Vec2)) {
+        let (eye_size, p) = (self.eye_size(), frame.camera_from_world(world));
+        for view in self.eyes.views(eye_size) {
             let eye = self.eye(view.side);
             let p = eye.axes.transpose() * (p - eye.at);
-            let place = (p.truncate() / p.z - eye.shear) / self.scale(frame) + 0.5 * one;
-            if p.z > 0.0 && Sheet(one).contains(place) {
-                found(self.eyes.point(one, view, place).as_vec2());
+            let position = (p.truncate() / p.z - eye.shear) / self.scale(frame) + 0.5 * eye_size;
+            if p.z > 0.0 && PictureSheet(eye_size).contains(position) {
+                emit(self.eyes.point(eye_size, view, position).as_vec2());
             }
         }
     }
 
     fn footprint(&self, frame: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
-        let Some((_, dir)) = self.line(frame, sample) else { return 0.0 };
-        let unit = self.scale(frame) * self.eyes.sheet(self.one()).unit();
+        let Some((_, dir)) = self.eye_ray(frame, sample) else { return 0.0 };
+        let unit = self.scale(frame) * self.eyes.sheet(self.eye_size()).unit();
         (f64::from(t * t) * unit * unit / (dir.length_squared() * dir.length())) as f32
     }
 }

@@ -6,7 +6,7 @@ mod family;
 mod lenses;
 
 const OURS: CameraRules =
-    CameraRules { up: UpRule::Perpendicular, aim: Aim::Own, border_pixels: false, stretch: false };
+    CameraRules { up: UpRule::Perpendicular, ray_arithmetic: RayArithmetic::Own, border_pixels: false, stretch: false };
 
 fn close(a: Vec3, b: Vec3) {
     assert!((a - b).length() < 1e-6, "{a} {b}");

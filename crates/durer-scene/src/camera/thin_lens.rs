@@ -92,19 +92,19 @@ impl Projection for ThinLensCamera {
 
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (origin, dir) = self.line(frame, sample);
-        let ray = frame.ray(self.handedness.turned(origin), self.handedness.turned(dir));
+        let ray = frame.ray(self.handedness.convert(origin), self.handedness.convert(dir));
         // Convert distances along the axis to distances along the ray.
         let along = ray.dir.dot(frame.forward);
         let t_max = self.far.map_or(ray.t_max, |far| far / along);
         Some(Ray { t_min: ray.t_min.max(self.near / along), t_max, ..ray })
     }
 
-    fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, emit: &mut dyn FnMut(Vec2)) {
         let (lens, focus, width) = self.parts(frame, lens);
-        let p = self.handedness.turned(frame.camera_from_world(world));
+        let p = self.handedness.convert(frame.camera_from_world(world));
         if p.z > 0.0 {
             let target = lens + (p.truncate() - lens) * (focus / p.z);
-            found((target / width - self.shift()).as_vec2());
+            emit((target / width - self.shift()).as_vec2());
         }
     }
 

@@ -138,7 +138,7 @@ impl Quirk {
     }
 }
 
-pub(super) const fn bits(list: &[Quirk]) -> QuirkSet {
+pub(super) const fn quirk_set(list: &[Quirk]) -> QuirkSet {
     let mut set = 0;
     let mut i = 0;
     while i < list.len() {

@@ -29,7 +29,7 @@ fn compatibilities_have_unique_names_and_bits() {
 fn sane_rules_have_no_old_bugs() {
     for dialect in Dialect::ALL {
         let sane = dialect.rules().without_quirks();
-        assert_eq!(sane.compat, 0);
+        assert_eq!(sane.quirks, 0);
         assert_eq!((sane.epsilon, sane.paths), (None, PathBase::SceneFile));
         assert_eq!(sane.without_quirks(), sane, "{}", sane.name);
         assert_eq!(sane.name, dialect.name());

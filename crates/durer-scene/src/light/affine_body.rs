@@ -11,7 +11,7 @@ use std::f32::consts::{PI, TAU};
 
 /// Closed body of fixed size, whose image under an affine map is an area light.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Body {
+pub enum ClosedBody {
     /// Cube from -1 to 1.
     Cube,
     /// Ball of radius 1.
@@ -22,12 +22,12 @@ pub enum Body {
     Ring(f32),
 }
 
-/// Area light that is the image of a closed [`Body`] under an affine map.
+/// Area light that is the image of a closed [`ClosedBody`] under an affine map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AffineBody {
     center: DVec3,
     axes: [Vec3; 3],
-    body: Body,
+    body: ClosedBody,
 }
 
 /// Number of points used for a mean over a surface.
@@ -41,15 +41,15 @@ fn spread(i: u16) -> Vec2 {
 impl AffineBody {
     /// Creates the image of a body. `axes` are the images of x, y and z; `None` if the image has no
     /// volume.
-    pub fn new(body: Body, center: DVec3, axes: [Vec3; 3]) -> Option<AffineBody> {
-        let closed = AffineBody { center, axes, body };
+    pub fn new(body: ClosedBody, center: DVec3, axes: [Vec3; 3]) -> Option<AffineBody> {
+        let body_image = AffineBody { center, axes, body };
         let most: f32 = axes.iter().map(|axis| axis.length()).product();
-        (most.is_finite() && closed.volume().abs() > 1e-6 * most && most > 0.0).then_some(closed)
+        (most.is_finite() && body_image.volume().abs() > 1e-6 * most && most > 0.0).then_some(body_image)
     }
 
     /// True for an ellipsoid.
     pub fn is_ball(&self) -> bool {
-        self.body == Body::Ball
+        self.body == ClosedBody::Ball
     }
 
     fn volume(&self) -> f32 {
@@ -85,13 +85,13 @@ impl AffineBody {
     pub fn area(&self) -> f32 {
         let mean = |value: &dyn Fn(Vec2) -> f32| (0..POINTS).map(|i| value(spread(i))).sum::<f32>() / f32::from(POINTS);
         match self.body {
-            Body::Cube => 2.0 * self.faces().iter().sum::<f32>(),
-            Body::Ball => 4.0 * PI * mean(&|u| self.area_vector(warp::sphere(u)).length()),
-            Body::Frustum(top) => {
+            ClosedBody::Cube => 2.0 * self.faces().iter().sum::<f32>(),
+            ClosedBody::Ball => 4.0 * PI * mean(&|u| self.area_vector(warp::sphere(u)).length()),
+            ClosedBody::Frustum(top) => {
                 let [base, top, side] = self.parts(top);
                 base + top + side
             }
-            Body::Ring(minor) => {
+            ClosedBody::Ring(minor) => {
                 let area = |u: Vec2| {
                     let (n, stretch) = ring_normal(u, minor);
                     stretch * self.area_vector(n).length()
@@ -124,26 +124,26 @@ impl AffineBody {
         let center = self.center.as_vec3();
         let disc = (x * x + y * y).map(f32::sqrt);
         match self.body {
-            Body::Cube => around(center, x.abs() + y.abs() + z.abs()),
-            Body::Ball => around(center, (x * x + y * y + z * z).map(f32::sqrt)),
-            Body::Frustum(top) => around(center, disc).union(around(center + z, top * disc)),
-            Body::Ring(minor) => around(center, (1.0 + minor) * disc + minor * z.abs()),
+            ClosedBody::Cube => around(center, x.abs() + y.abs() + z.abs()),
+            ClosedBody::Ball => around(center, (x * x + y * y + z * z).map(f32::sqrt)),
+            ClosedBody::Frustum(top) => around(center, disc).union(around(center + z, top * disc)),
+            ClosedBody::Ring(minor) => around(center, (1.0 + minor) * disc + minor * z.abs()),
         }
     }
 
     /// Samples a point as seen from `from`.
     pub fn sample(&self, from: DVec3, u: Vec2) -> Option<EmitterPoint> {
         let origin = self.origin(from);
-        if self.body == Body::Ball && !is_within_ball(origin) {
+        if self.body == ClosedBody::Ball && !is_within_ball(origin) {
             return self.cone(origin, u);
         }
-        let (point, n, density) = self.place(u, Some(origin))?;
+        let (point, n, density) = self.sample_body(u, Some(origin))?;
         let to = self.vector(point - origin);
         let distance = to.length();
         let wi = to / distance;
         let cosine = -wi.dot(self.area_vector(n).normalize_or_zero());
         // From outside, only the outside of a convex body is visible; from inside, only its inside.
-        let hidden = match self.has_inside(origin) {
+        let hidden = match self.contains(origin) {
             Some(true) => cosine > 0.0,
             Some(false) => cosine < 0.0,
             None => false,
@@ -156,19 +156,19 @@ impl AffineBody {
     /// `distance`.
     pub fn pdf(&self, from: DVec3, wi: Vec3, distance: f32) -> f32 {
         let origin = self.origin(from);
-        let way = self.inverse(wi);
-        if self.body == Body::Ball && !is_within_ball(origin) {
+        let direction = self.inverse(wi);
+        if self.body == ClosedBody::Ball && !is_within_ball(origin) {
             let all = one_minus_cosine(1.0 / origin.length_squared());
-            let length = way.length();
+            let length = direction.length();
             return 1.0 / (TAU * all * length * length * length * self.volume().abs());
         }
-        let (n, density) = self.density(origin + distance * way, origin);
+        let (n, density) = self.density(origin + distance * direction, origin);
         density * distance * distance / wi.dot(self.area_vector(n).normalize_or_zero()).abs()
     }
 
     /// Samples a point of the full surface. Returns the point, its normal and the pdf per area.
     pub fn point(&self, u: Vec2) -> Option<(DVec3, Vec3, f32)> {
-        let (point, n, density) = self.place(u, None)?;
+        let (point, n, density) = self.sample_body(u, None)?;
         let normal = self.area_vector(n).try_normalize()?;
         (density.is_finite() && density > 0.0).then(|| (self.center + self.vector(point).as_dvec3(), normal, density))
     }
@@ -182,13 +182,13 @@ impl AffineBody {
         let (cosine, sine2) = (1.0 - below, (below * (2.0 - below)).max(0.0));
         let (sin, cos) = fp::sin_cos_turn(u.y);
         let local = Vec3::new(sine2.sqrt() * cos, sine2.sqrt() * sin, cosine);
-        let way = Frame::around(-origin / d).to_world(local).normalize();
+        let direction = Frame::around(-origin / d).to_world(local).normalize();
         let half = (1.0 - d2 * sine2).max(0.0).sqrt();
         let reach = d * cosine - half;
-        let to = self.vector(way);
+        let to = self.vector(direction);
         let length = to.length();
         let wi = to / length;
-        let normal = self.area_vector(origin + reach * way).normalize_or_zero();
+        let normal = self.area_vector(origin + reach * direction).normalize_or_zero();
         let pdf = length * length * length / (TAU * all * self.volume().abs());
         (pdf.is_finite() && pdf > 0.0).then(|| EmitterPoint {
             wi,
@@ -200,16 +200,16 @@ impl AffineBody {
 
     /// True if a point of body space lies in the body or on its surface, from where only the inside
     /// is visible. `None` for a ring, where that does not decide which side is visible.
-    fn has_inside(&self, p: Vec3) -> Option<bool> {
+    fn contains(&self, p: Vec3) -> Option<bool> {
         match self.body {
-            Body::Cube => Some(is_within_cube(p)),
-            Body::Ball => Some(is_within_ball(p)),
-            Body::Frustum(top) => {
+            ClosedBody::Cube => Some(is_within_cube(p)),
+            ClosedBody::Ball => Some(is_within_ball(p)),
+            ClosedBody::Frustum(top) => {
                 let radius = 1.0 + (top - 1.0) * p.z;
                 let (low, high) = (-ON_SURFACE, 1.0 + ON_SURFACE);
                 Some(p.z >= low && p.z <= high && Vec2::new(p.x, p.y).length() <= radius + ON_SURFACE)
             }
-            Body::Ring(_) => None,
+            ClosedBody::Ring(_) => None,
         }
     }
 
@@ -227,9 +227,9 @@ impl AffineBody {
 
     /// Samples a point of the body. Returns it with its normal and the pdf per area in world space.
     /// A box samples only the faces visible `from` a point.
-    fn place(&self, u: Vec2, from: Option<Vec3>) -> Option<(Vec3, Vec3, f32)> {
+    fn sample_body(&self, u: Vec2, from: Option<Vec3>) -> Option<(Vec3, Vec3, f32)> {
         match self.body {
-            Body::Cube => {
+            ClosedBody::Cube => {
                 let visible = self.visible(from);
                 let all: f32 = visible.iter().flatten().sum();
                 let mut rest = u.x * all;
@@ -247,11 +247,11 @@ impl AffineBody {
                 point[(axis + 2) % 3] = across[1];
                 Some((point, sign * Vec3::AXES[axis], 1.0 / all))
             }
-            Body::Ball => {
+            ClosedBody::Ball => {
                 let n = warp::sphere(u);
                 Some((n, n, 1.0 / (4.0 * PI * self.area_vector(n).length())))
             }
-            Body::Frustum(top) => {
+            ClosedBody::Frustum(top) => {
                 let [base, lid, side] = self.parts(top);
                 let all = base + lid + side;
                 let rest = u.x * all;
@@ -272,7 +272,7 @@ impl AffineBody {
                 let density = side / all / (TAU * mean * self.side_stretch((sin, cos), top));
                 Some((Vec3::new(radius * cos, radius * sin, height), Vec3::new(cos, sin, -growth), density))
             }
-            Body::Ring(minor) => {
+            ClosedBody::Ring(minor) => {
                 let (n, stretch) = ring_normal(u, minor);
                 let (sin, cos) = fp::sin_cos_turn(u.x);
                 let point = Vec3::new(cos, sin, 0.0) + minor * n;
@@ -283,19 +283,19 @@ impl AffineBody {
     }
 
     /// Normal and pdf per area in world space for a point near the surface, as in
-    /// [`AffineBody::place`].
+    /// [`AffineBody::sample_body`].
     fn density(&self, p: Vec3, from: Vec3) -> (Vec3, f32) {
         match self.body {
-            Body::Cube => {
+            ClosedBody::Cube => {
                 let axis = p.abs().max_position();
                 let visible = self.visible(Some(from));
                 (p[axis].signum() * Vec3::AXES[axis], 1.0 / visible.iter().flatten().sum::<f32>())
             }
-            Body::Ball => {
+            ClosedBody::Ball => {
                 let n = p.normalize_or(Vec3::Z);
                 (n, 1.0 / (4.0 * PI * self.area_vector(n).length()))
             }
-            Body::Frustum(top) => {
+            ClosedBody::Frustum(top) => {
                 let [base, lid, side] = self.parts(top);
                 let all = base + lid + side;
                 let across = Vec2::new(p.x, p.y);
@@ -308,7 +308,7 @@ impl AffineBody {
                 let density = side / all / (TAU * mean * self.side_stretch((d.y, d.x), top));
                 (Vec3::new(d.x, d.y, 1.0 - top), density)
             }
-            Body::Ring(minor) => {
+            ClosedBody::Ring(minor) => {
                 let across = Vec2::new(p.x, p.y);
                 let (radius, d) = (across.length(), across.normalize_or(Vec2::X));
                 // In a ring without a hole, the far side may be the nearer one.
@@ -352,23 +352,29 @@ mod tests {
             [Vec3::X, Vec3::Y, Vec3::Z],
             [Vec3::new(0.5, 0.1, 0.0), Vec3::new(-0.3, 2.0, 0.2), Vec3::new(0.4, 0.0, -0.7)],
         ];
-        let kinds =
-            [Body::Cube, Body::Ball, Body::Frustum(0.0), Body::Frustum(0.6), Body::Frustum(1.0), Body::Ring(0.3)];
+        let kinds = [
+            ClosedBody::Cube,
+            ClosedBody::Ball,
+            ClosedBody::Frustum(0.0),
+            ClosedBody::Frustum(0.6),
+            ClosedBody::Frustum(1.0),
+            ClosedBody::Ring(0.3),
+        ];
         let all =
             kinds.iter().flat_map(|&body| maps.map(|axes| AffineBody::new(body, DVec3::new(0.3, -0.2, 0.1), axes)));
-        all.map(|closed| closed.expect("the body has a volume")).collect()
+        all.map(|body_image| body_image.expect("the body has a volume")).collect()
     }
 
     #[test]
     fn sample_and_pdf_agree() {
-        for closed in bodies() {
+        for body_image in bodies() {
             for from in [DVec3::new(2.5, 3.0, -1.5), DVec3::new(0.35, -0.15, 0.1), DVec3::new(-4.0, 0.0, 0.0)] {
                 for i in 0..200 {
-                    let Some(seen) = closed.sample(from, sampler::sample_2d(5, 0, 0, i, 0)) else { continue };
-                    let again = closed.pdf(from, seen.wi, seen.distance);
+                    let Some(seen) = body_image.sample(from, sampler::sample_2d(5, 0, 0, i, 0)) else { continue };
+                    let again = body_image.pdf(from, seen.wi, seen.distance);
                     // Edge on, the pdf is unbounded and rounding dominates.
                     let near = (again / seen.pdf - 1.0).abs() < 2e-3 / seen.cosine.abs().max(1e-3);
-                    assert!(near, "{closed:?} from {from}: {seen:?}, {again}");
+                    assert!(near, "{body_image:?} from {from}: {seen:?}, {again}");
                 }
             }
         }
@@ -377,18 +383,22 @@ mod tests {
     #[test]
     fn uniform_points_integrate_to_the_area() {
         const COUNT: u32 = 1 << 14;
-        for closed in bodies() {
+        for body_image in bodies() {
             // Integrals over the surface: of 1, and of the normal; the latter is 0 for a closed
             // surface.
             let (mut area, mut normals) = (0.0_f64, DVec3::ZERO);
             for i in 0..COUNT {
-                let Some((_, n, density)) = closed.point(sampler::sample_2d(6, 0, 0, i, 0)) else { continue };
+                let Some((_, n, density)) = body_image.point(sampler::sample_2d(6, 0, 0, i, 0)) else { continue };
                 area += 1.0 / f64::from(density);
                 normals += n.as_dvec3() / f64::from(density);
             }
             let (area, normals) = (area / f64::from(COUNT), normals / f64::from(COUNT));
-            assert!((area / f64::from(closed.area()) - 1.0).abs() < 0.02, "{closed:?}: {area} {}", closed.area());
-            assert!(normals.length() < 0.01 * area, "{closed:?}: {normals} of {area}");
+            assert!(
+                (area / f64::from(body_image.area()) - 1.0).abs() < 0.02,
+                "{body_image:?}: {area} {}",
+                body_image.area()
+            );
+            assert!(normals.length() < 0.01 * area, "{body_image:?}: {normals} of {area}");
         }
     }
 }

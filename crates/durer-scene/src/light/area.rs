@@ -1,7 +1,7 @@
 //! Area lights: emitting surfaces in world space, and the sampling of points on them.
 
-use super::affine_body::{AffineBody, Body};
-use super::emitter_point::{EmitterPoint, ON_SURFACE, Placement, one_minus_cosine};
+use super::affine_body::{AffineBody, ClosedBody};
+use super::emitter_point::{EmitterPoint, EmitterTransform, ON_SURFACE, one_minus_cosine};
 use crate::bsdf::{Frame, warp};
 use crate::math::{Aabb, Vec2, Vec3, fp};
 use glam::{DVec2, DVec3};
@@ -26,22 +26,27 @@ pub enum EmitterShape {
 impl EmitterShape {
     /// Creates a triangle from corners in object space. Returns it with its unit normal in world
     /// space.
-    pub fn triangle([a, b, c]: [Vec3; 3], place: &Placement) -> (EmitterShape, Vec3) {
+    pub fn triangle([a, b, c]: [Vec3; 3], transform: &EmitterTransform) -> (EmitterShape, Vec3) {
         let n = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
-        let edges = [place.vector(b - a), place.vector(c - a)];
-        (EmitterShape::Triangle(place.point(a), edges), place.normal(n))
+        let edges = [transform.vector(b - a), transform.vector(c - a)];
+        (EmitterShape::Triangle(transform.point(a), edges), transform.normal(n))
     }
 
     /// Places a body in the world. `axes` are the images of x, y and z, in object space. The
     /// returned normal is 0, since a body has normals in all directions. `None` if the image has no
     /// volume.
-    pub fn body(place: &Placement, body: Body, center: Vec3, axes: [Vec3; 3]) -> Option<(EmitterShape, Vec3)> {
-        let closed = AffineBody::new(body, place.point(center), axes.map(|axis| place.vector(axis)))?;
+    pub fn body(
+        transform: &EmitterTransform,
+        body: ClosedBody,
+        center: Vec3,
+        axes: [Vec3; 3],
+    ) -> Option<(EmitterShape, Vec3)> {
+        let closed = AffineBody::new(body, transform.point(center), axes.map(|axis| transform.vector(axis)))?;
         Some((EmitterShape::Closed(closed), Vec3::ZERO))
     }
 
     /// Creates a cone or cylinder between two points, with a radius at each.
-    pub fn frustum(place: &Placement, ends: [Vec3; 2], radii: [f32; 2]) -> Option<(EmitterShape, Vec3)> {
+    pub fn frustum(transform: &EmitterTransform, ends: [Vec3; 2], radii: [f32; 2]) -> Option<(EmitterShape, Vec3)> {
         // The larger disc is the body's base.
         let ([base, top], [large, small]) = match radii[0] >= radii[1] {
             true => (ends, radii),
@@ -49,7 +54,7 @@ impl EmitterShape {
         };
         let frame = Frame::around((top - base).normalize_or(Vec3::Y));
         let axes = [large * frame.tangent, large * frame.bitangent, top - base];
-        EmitterShape::body(place, Body::Frustum(small / large), base, axes)
+        EmitterShape::body(transform, ClosedBody::Frustum(small / large), base, axes)
     }
 
     /// Area in world space.
@@ -99,7 +104,7 @@ impl EmitterShape {
             }
             EmitterShape::Parallelogram(p, [e, f]) => {
                 let corner = offset(p, from);
-                if let Some(window) = Window::new(corner, e, f) {
+                if let Some(window) = SphericalRectangle::new(corner, e, f) {
                     let wi = window.sample(u);
                     let distance = wi.length();
                     let wi = wi / distance;
@@ -113,10 +118,10 @@ impl EmitterShape {
                 corner + u.x * e + u.y * f
             }
             EmitterShape::Ellipse(p, [x, y], inner) => {
-                let d = in_ring(u, inner);
+                let d = sample_ring(u, inner);
                 offset(p, from) + d.x * x + d.y * y
             }
-            EmitterShape::Sphere(center, radius) => return cone(offset(center, from), radius, u),
+            EmitterShape::Sphere(center, radius) => return sample_sphere(offset(center, from), radius, u),
             EmitterShape::Closed(closed) => return closed.sample(from, u),
         };
         let distance = to.length();
@@ -133,13 +138,13 @@ impl EmitterShape {
             EmitterShape::Sphere(center, radius) => {
                 let to = offset(center, from);
                 let (d2, r2) = (to.length_squared(), radius * radius);
-                if is_within(d2, r2) {
+                if is_in_sphere(d2, r2) {
                     return distance * distance / (self.area() * sphere_cosine(to, wi, distance, radius));
                 }
                 1.0 / (2.0 * PI * one_minus_cosine(r2 / d2))
             }
             EmitterShape::Closed(closed) => closed.pdf(from, wi, distance),
-            EmitterShape::Parallelogram(p, [e, f]) => match Window::new(offset(p, from), e, f) {
+            EmitterShape::Parallelogram(p, [e, f]) => match SphericalRectangle::new(offset(p, from), e, f) {
                 Some(window) => 1.0 / window.solid_angle as f32,
                 None => distance * distance / (wi.dot(normal).abs() * self.area()),
             },
@@ -156,7 +161,7 @@ impl EmitterShape {
             }
             EmitterShape::Parallelogram(p, [e, f]) => (p + (u.x * e + u.y * f).as_dvec3(), normal),
             EmitterShape::Ellipse(p, [x, y], inner) => {
-                let d = in_ring(u, inner);
+                let d = sample_ring(u, inner);
                 (p + (d.x * x + d.y * y).as_dvec3(), normal)
             }
             EmitterShape::Sphere(center, radius) => {
@@ -171,7 +176,7 @@ impl EmitterShape {
 }
 
 /// Maps `u` uniformly by area to the ring between the radii `inner` and 1.
-fn in_ring(u: Vec2, inner: f32) -> Vec2 {
+fn sample_ring(u: Vec2, inner: f32) -> Vec2 {
     let d = warp::disc(u);
     // The area of a ring grows with the square of its radius.
     let square = inner * inner + (1.0 - inner * inner) * d.length_squared();
@@ -186,7 +191,7 @@ fn offset(to: DVec3, from: DVec3) -> Vec3 {
 /// True if a point lies in or on a sphere, given its squared distance from the centre and the
 /// squared radius. For a point on the surface, rounding decides the side; from both sides, only the
 /// inside is visible.
-fn is_within(d2: f32, r2: f32) -> bool {
+fn is_in_sphere(d2: f32, r2: f32) -> bool {
     d2 <= r2 * (1.0 + ON_SURFACE)
 }
 
@@ -199,10 +204,10 @@ fn sphere_cosine(to: Vec3, wi: Vec3, distance: f32, radius: f32) -> f32 {
 /// Samples a point of a sphere uniformly by the solid angle in which it is visible.
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 6.2.4.
-fn cone(to: Vec3, radius: f32, u: Vec2) -> Option<EmitterPoint> {
+fn sample_sphere(to: Vec3, radius: f32, u: Vec2) -> Option<EmitterPoint> {
     let (d2, r2) = (to.length_squared(), radius * radius);
     let d = d2.sqrt();
-    if is_within(d2, r2) {
+    if is_in_sphere(d2, r2) {
         // From inside, sample uniformly by area.
         let at = to + radius * warp::sphere(u);
         let distance = at.length();
@@ -227,13 +232,13 @@ fn cone(to: Vec3, radius: f32, u: Vec2) -> Option<EmitterPoint> {
 
 /// Rectangles whose largest edge is smaller than this share of their distance are sampled uniformly
 /// by area. The pdf then deviates by less than a tenth, and sampling is much faster.
-const SMALL: f32 = 0.1;
+const AREA_SAMPLING_LIMIT: f32 = 0.1;
 
 /// Rectangular light as seen from a shading point, for uniform sampling by solid angle.
 ///
 /// Source: Ureña, Fajardo and King, *An Area-Preserving Parametrization for Spherical Rectangles*,
 /// EGSR 2013.
-struct Window {
+struct SphericalRectangle {
     axes: [DVec3; 3],
     near: DVec3,
     far: DVec3,
@@ -243,12 +248,14 @@ struct Window {
     k: DVec2,
 }
 
-impl Window {
+impl SphericalRectangle {
     /// Returns `None` for a parallelogram without right angles, or one that is seen so small or so
     /// flat that sampling by area suffices.
-    fn new(corner: Vec3, e: Vec3, f: Vec3) -> Option<Window> {
+    fn new(corner: Vec3, e: Vec3, f: Vec3) -> Option<SphericalRectangle> {
         let middle = corner + 0.5 * (e + f);
-        if e.length_squared().max(f.length_squared()) < SMALL * SMALL * middle.length_squared() {
+        if e.length_squared().max(f.length_squared())
+            < AREA_SAMPLING_LIMIT * AREA_SAMPLING_LIMIT * middle.length_squared()
+        {
             return None;
         }
         let (e, f, corner) = (e.as_dvec3(), f.as_dvec3(), corner.as_dvec3());
@@ -278,7 +285,7 @@ impl Window {
         // `turns` has an error of 2e-9, which is too much for a small angle. A slightly negative
         // result would also wrap to a full turn.
         let known = turns.abs() > 1e-4;
-        known.then_some(Window { axes: [x, y, z], near, far, solid_angle, b: [n0, n2], k })
+        known.then_some(SphericalRectangle { axes: [x, y, z], near, far, solid_angle, b: [n0, n2], k })
     }
 
     /// Samples a point, relative to the viewpoint.

@@ -1,6 +1,6 @@
 //! Directional light, at infinity.
 
-use super::{Illuminate, LightLiSample, as_bright};
+use super::{Illuminate, LightLiSample, with_luminance};
 use crate::describe::{Constraint, FileName, described};
 use crate::dialect::set;
 use crate::math::{Color, Vec3};
@@ -32,9 +32,9 @@ impl Illuminate for DirectionalLight {
         LightLiSample { to_light, distance: f32::INFINITY, color: self.color }
     }
 
-    fn in_units(&self) -> Self {
+    fn with_unit_color(&self) -> Self {
         let Some(lux) = self.lux else { return self.clone() };
-        DirectionalLight { color: as_bright(self.color, lux / PI), lux: None, ..self.clone() }
+        DirectionalLight { color: with_luminance(self.color, lux / PI), lux: None, ..self.clone() }
     }
 
     fn color(&self) -> Color {
@@ -49,7 +49,7 @@ impl Illuminate for DirectionalLight {
         self.spectrum.as_ref()
     }
 
-    fn spread(&self) -> f32 {
+    fn angular_radius(&self) -> f32 {
         self.spread.unwrap_or(0.0)
     }
 
@@ -69,7 +69,7 @@ impl Illuminate for DirectionalLight {
         None
     }
 
-    fn place(&self) -> Option<(Vec3, Color)> {
+    fn inverse_square(&self) -> Option<(Vec3, Color)> {
         None
     }
 
@@ -77,7 +77,7 @@ impl Illuminate for DirectionalLight {
         None
     }
 
-    fn in_profile(&self, dir: Vec3) -> Vec3 {
+    fn to_profile(&self, dir: Vec3) -> Vec3 {
         dir
     }
 }

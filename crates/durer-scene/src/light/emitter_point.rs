@@ -5,9 +5,9 @@ use glam::DVec3;
 
 /// Transform of an emitter from object space to world space; `None` is the identity.
 #[derive(Clone, Copy, Debug)]
-pub struct Placement<'a>(pub Option<&'a Affine>);
+pub struct EmitterTransform<'a>(pub Option<&'a Affine>);
 
-impl Placement<'_> {
+impl EmitterTransform<'_> {
     /// Converts a point to world space.
     pub fn point(&self, p: Vec3) -> DVec3 {
         self.0.map_or(p.as_dvec3(), |to_world| to_world.point64(p))

@@ -10,12 +10,12 @@ pub mod spot;
 
 use crate::describe::{FileName, described_list};
 use crate::math::{Color, LUMINANCE, Vec3};
-pub use affine_body::{AffineBody, Body};
+pub use affine_body::{AffineBody, ClosedBody};
 pub use area::EmitterShape;
 pub use directional::DirectionalLight;
-pub use emitter_point::{EmitterPoint, Placement};
+pub use emitter_point::{EmitterPoint, EmitterTransform};
 use glam::DVec3;
-pub use photometric::{PhotometricLight, Profile};
+pub use photometric::{PhotometricLight, PhotometricProfile};
 pub use point::PointLight;
 pub use spot::{Fade, SpotLight};
 
@@ -35,8 +35,8 @@ macro_rules! delegate {
             fn spectrum(&self) -> Option<&FileName> {
                 match self { $(Light::$variant(l) => Illuminate::spectrum(l),)+ }
             }
-            fn in_units(&self) -> Self {
-                match self { $(Light::$variant(l) => l.in_units().into(),)+ }
+            fn with_unit_color(&self) -> Self {
+                match self { $(Light::$variant(l) => l.with_unit_color().into(),)+ }
             }
             fn validate(&self) -> Result<(), String> {
                 match self { $(Light::$variant(l) => l.validate(),)+ }
@@ -50,17 +50,17 @@ macro_rules! delegate {
             fn cone(&self) -> Option<f32> {
                 match self { $(Light::$variant(l) => l.cone(),)+ }
             }
-            fn place(&self) -> Option<(Vec3, Color)> {
-                match self { $(Light::$variant(l) => l.place(),)+ }
+            fn inverse_square(&self) -> Option<(Vec3, Color)> {
+                match self { $(Light::$variant(l) => l.inverse_square(),)+ }
             }
-            fn spread(&self) -> f32 {
-                match self { $(Light::$variant(l) => l.spread(),)+ }
+            fn angular_radius(&self) -> f32 {
+                match self { $(Light::$variant(l) => l.angular_radius(),)+ }
             }
             fn profile(&self) -> Option<&FileName> {
                 match self { $(Light::$variant(l) => l.profile(),)+ }
             }
-            fn in_profile(&self, dir: Vec3) -> Vec3 {
-                match self { $(Light::$variant(l) => l.in_profile(dir),)+ }
+            fn to_profile(&self, dir: Vec3) -> Vec3 {
+                match self { $(Light::$variant(l) => l.to_profile(dir),)+ }
             }
         }
     };
@@ -89,7 +89,7 @@ impl Light {
 }
 
 /// Scales a colour to the luminance of white times `white`. Black stays black.
-fn as_bright(color: Color, white: f32) -> Color {
+fn with_luminance(color: Color, white: f32) -> Color {
     let luminance = color.dot(LUMINANCE);
     if luminance > 0.0 { color * (white / luminance) } else { Color::ZERO }
 }
@@ -124,7 +124,7 @@ pub trait Illuminate {
 
     /// Light with its strength in its colour, converted from candela, lumens or lux if it has such
     /// a unit.
-    fn in_units(&self) -> Self;
+    fn with_unit_color(&self) -> Self;
 
     /// Checks combinations of fields. The constraints in the description check each field
     /// separately.
@@ -147,17 +147,17 @@ pub trait Illuminate {
 
     /// Position, and the light that arrives at distance 1 in the strongest direction; `None` for a
     /// light at infinity, or with a falloff other than the inverse square.
-    fn place(&self) -> Option<(Vec3, Color)>;
+    fn inverse_square(&self) -> Option<(Vec3, Color)>;
 
     /// Angular radius in degrees, equal from every point; 0 for a light without extent.
-    fn spread(&self) -> f32;
+    fn angular_radius(&self) -> f32;
 
     /// File with the intensity in each direction.
     fn profile(&self) -> Option<&FileName>;
 
     /// Converts a direction from the light to the coordinates of the profile: x points to
     /// horizontal angle 0, z out of the lower side. Only useful for a light with a profile.
-    fn in_profile(&self, dir: Vec3) -> Vec3;
+    fn to_profile(&self, dir: Vec3) -> Vec3;
 }
 
 #[cfg(test)]

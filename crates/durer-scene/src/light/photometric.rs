@@ -1,6 +1,6 @@
 //! Photometric light: a point light with a measured intensity in each direction.
 
-use super::{Illuminate, LightLiSample, as_bright};
+use super::{Illuminate, LightLiSample, with_luminance};
 use crate::describe::{Constraint, FileName, described};
 use crate::dialect::set;
 use crate::math::{Color, Vec3, fp};
@@ -36,10 +36,10 @@ described! {
 
 impl PhotometricLight {
     /// Returns the light with its `lumens`, if set, converted to its colour.
-    pub fn with_flux(&self, profile: &Profile) -> Self {
+    pub fn with_flux(&self, profile: &PhotometricProfile) -> Self {
         let Some(lumens) = self.lumens else { return self.clone() };
         let flux = profile.flux() as f32;
-        let color = if flux > 0.0 { as_bright(self.color, lumens / flux) } else { Color::ZERO };
+        let color = if flux > 0.0 { with_luminance(self.color, lumens / flux) } else { Color::ZERO };
         PhotometricLight { color, lumens: None, ..self.clone() }
     }
 }
@@ -68,11 +68,11 @@ impl Illuminate for PhotometricLight {
     }
 
     /// Converting `lumens` needs the file; see [`PhotometricLight::with_flux`].
-    fn in_units(&self) -> Self {
+    fn with_unit_color(&self) -> Self {
         self.clone()
     }
 
-    fn place(&self) -> Option<(Vec3, Color)> {
+    fn inverse_square(&self) -> Option<(Vec3, Color)> {
         Some((self.position, self.color / PI))
     }
 
@@ -80,7 +80,7 @@ impl Illuminate for PhotometricLight {
         Some(&self.file)
     }
 
-    fn in_profile(&self, dir: Vec3) -> Vec3 {
+    fn to_profile(&self, dir: Vec3) -> Vec3 {
         let down = self.direction.normalize_or(Vec3::NEG_Y);
         let front = self.front - down * self.front.dot(down);
         let front = front.try_normalize().unwrap_or_else(|| down.any_orthonormal_vector());
@@ -104,14 +104,14 @@ impl Illuminate for PhotometricLight {
         Some(90.0)
     }
 
-    fn spread(&self) -> f32 {
+    fn angular_radius(&self) -> f32 {
         0.0
     }
 }
 
 /// Measured intensity of a luminaire in each direction, from an IES or EULUMDAT file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Profile {
+pub struct PhotometricProfile {
     /// Meaning of the angles.
     pub kind: ProfileKind,
     /// Vertical angles in degrees, ascending.
@@ -134,20 +134,20 @@ pub enum ProfileKind {
     A,
 }
 
-impl Profile {
+impl PhotometricProfile {
     /// Hash of the whole profile.
     pub fn digest(&self) -> Digest {
         let mut hasher = Digest::hasher();
-        hasher.count(self.kind as u64);
+        hasher.add_u64(self.kind as u64);
         for values in [&self.vertical, &self.horizontal, &self.candela] {
-            hasher.count(values.len() as u64);
-            values.iter().for_each(|value| hasher.word(value.to_bits()));
+            hasher.add_u64(values.len() as u64);
+            values.iter().for_each(|value| hasher.add_u32(value.to_bits()));
         }
         hasher.finish()
     }
 
     /// Maximum intensity, in candela.
-    pub fn most(&self) -> f32 {
+    pub fn max_candela(&self) -> f32 {
         self.candela.iter().copied().fold(0.0, f32::max)
     }
 
@@ -162,7 +162,7 @@ impl Profile {
             ProfileKind::B => (degrees(dir.x, across(dir.y, dir.z)), degrees(dir.y, dir.z)),
             ProfileKind::A => (degrees(dir.y, across(dir.x, dir.z)), degrees(dir.x, dir.z)),
         };
-        let horizontal = self.folded(horizontal);
+        let horizontal = self.apply_symmetry(horizontal);
         // If the file has only one half, mirror it.
         let vertical = if self.vertical[0] >= 0.0 { vertical.abs() } else { vertical };
         let (Some((i, a)), Some((j, b))) = (place(&self.vertical, vertical), place(&self.horizontal, horizontal))
@@ -179,7 +179,7 @@ impl Profile {
 
     /// Maps a horizontal angle into the range of angles in the file, using the symmetry that this
     /// range implies.
-    fn folded(&self, angle: f32) -> f32 {
+    fn apply_symmetry(&self, angle: f32) -> f32 {
         let (first, last) = (self.horizontal[0], self.horizontal[self.horizontal.len() - 1]);
         if self.horizontal.len() == 1 {
             return first;

@@ -1,6 +1,6 @@
 //! Point light. The light that arrives at distance d is color / (a0 + a1 d + a2 d^2).
 
-use super::{Illuminate, LightLiSample, TWO_UNITS, as_bright};
+use super::{Illuminate, LightLiSample, TWO_UNITS, with_luminance};
 use crate::describe::{Constraint, FileName, described};
 use crate::dialect::set;
 use crate::math::{Color, Vec3};
@@ -59,10 +59,10 @@ impl Illuminate for PointLight {
         self.spectrum.as_ref()
     }
 
-    fn in_units(&self) -> Self {
+    fn with_unit_color(&self) -> Self {
         let Some(candela) = self.candela.or(self.lumens.map(|lumens| lumens / (4.0 * PI))) else { return self.clone() };
         // The colour of a light is the radiance of a white diffuse surface: illuminance over pi.
-        let color = as_bright(self.color, candela / PI);
+        let color = with_luminance(self.color, candela / PI);
         PointLight { color, attenuation: Some(Vec3::Z), falloff: None, candela: None, lumens: None, ..self.clone() }
     }
 
@@ -79,7 +79,7 @@ impl Illuminate for PointLight {
         }
     }
 
-    fn place(&self) -> Option<(Vec3, Color)> {
+    fn inverse_square(&self) -> Option<(Vec3, Color)> {
         let squared = |a: &Vec3| a.y == 0.0 && a.z > 0.0;
         self.attenuation.filter(squared).map(|a| (self.position, self.color / a.z))
     }
@@ -96,7 +96,7 @@ impl Illuminate for PointLight {
         None
     }
 
-    fn spread(&self) -> f32 {
+    fn angular_radius(&self) -> f32 {
         0.0
     }
 
@@ -104,7 +104,7 @@ impl Illuminate for PointLight {
         None
     }
 
-    fn in_profile(&self, dir: Vec3) -> Vec3 {
+    fn to_profile(&self, dir: Vec3) -> Vec3 {
         dir
     }
 }

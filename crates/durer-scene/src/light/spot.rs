@@ -1,6 +1,6 @@
 //! Spot light: a point light with a cone.
 
-use super::{Illuminate, LightLiSample, TWO_UNITS, as_bright};
+use super::{Illuminate, LightLiSample, TWO_UNITS, with_luminance};
 use crate::describe::{Constraint, FileName, described, described_words};
 use crate::dialect::set;
 use crate::math::{Color, Vec3, fp};
@@ -47,7 +47,7 @@ impl SpotLight {
     }
 
     /// Solid angle of a uniform cone that has the same flux and the same intensity on the axis.
-    fn fills(&self) -> f32 {
+    fn effective_solid_angle(&self) -> f32 {
         let [outer, inner] = self.cosines();
         // Means of s^2, s^2 (3 - 2 s) and s^4 over the fade.
         let fading = match self.fade {
@@ -65,11 +65,11 @@ impl Illuminate for SpotLight {
         let distance = offset.length();
         let to_light = offset.normalize_or(Vec3::Y);
         let [outer, inner] = self.cosines();
-        let seen = -to_light.dot(self.direction.normalize_or(Vec3::NEG_Y));
+        let cosine = -to_light.dot(self.direction.normalize_or(Vec3::NEG_Y));
         // A cone without a soft edge ends abruptly.
         let share = match inner > outer {
-            true => ((seen - outer) / (inner - outer)).clamp(0.0, 1.0),
-            false => f32::from(seen >= outer),
+            true => ((cosine - outer) / (inner - outer)).clamp(0.0, 1.0),
+            false => f32::from(cosine >= outer),
         };
         // Sources: KHR_lights_punctual; *Physically Based Rendering*, 4th edition, section 12.2.1,
         // and 3rd edition, section 12.3.1.
@@ -95,12 +95,12 @@ impl Illuminate for SpotLight {
         self.spectrum.as_ref()
     }
 
-    fn in_units(&self) -> Self {
-        let Some(candela) = self.candela.or(self.lumens.map(|lumens| lumens / self.fills())) else {
+    fn with_unit_color(&self) -> Self {
+        let Some(candela) = self.candela.or(self.lumens.map(|lumens| lumens / self.effective_solid_angle())) else {
             return self.clone();
         };
         // The colour of a light is the radiance of a white diffuse surface: illuminance over pi.
-        SpotLight { color: as_bright(self.color, candela / PI), candela: None, lumens: None, ..self.clone() }
+        SpotLight { color: with_luminance(self.color, candela / PI), candela: None, lumens: None, ..self.clone() }
     }
 
     fn validate(&self) -> Result<(), String> {
@@ -110,7 +110,7 @@ impl Illuminate for SpotLight {
         }
     }
 
-    fn place(&self) -> Option<(Vec3, Color)> {
+    fn inverse_square(&self) -> Option<(Vec3, Color)> {
         Some((self.position, self.color))
     }
 
@@ -126,7 +126,7 @@ impl Illuminate for SpotLight {
         Some(self.angle)
     }
 
-    fn spread(&self) -> f32 {
+    fn angular_radius(&self) -> f32 {
         0.0
     }
 
@@ -134,7 +134,7 @@ impl Illuminate for SpotLight {
         None
     }
 
-    fn in_profile(&self, dir: Vec3) -> Vec3 {
+    fn to_profile(&self, dir: Vec3) -> Vec3 {
         dir
     }
 }

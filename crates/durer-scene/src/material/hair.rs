@@ -18,12 +18,12 @@ described! {
         /// Absorption coefficient inside a fibre, per fibre radius, for red, green and blue.
         absorption: Option<Vec3> = None, optional, Constraint::Any, ["absorption" in set::DURER];
         /// Roughness along a fibre, from 0 to 1.
-        longitudinal_roughness: f32 = 0.3, optional, Constraint::Share, ["longitudinalRoughness" in set::DURER];
+        longitudinal_roughness: f32 = 0.3, optional, Constraint::UnitInterval, ["longitudinalRoughness" in set::DURER];
         /// Roughness around a fibre, from 0 to 1.
-        azimuthal_roughness: f32 = 0.3, optional, Constraint::Share, ["azimuthalRoughness" in set::DURER];
+        azimuthal_roughness: f32 = 0.3, optional, Constraint::UnitInterval, ["azimuthalRoughness" in set::DURER];
         /// Tilt in degrees of the cuticle scales of a fibre towards its tip.
-        scale_tilt: f32 = 2.0, optional, Constraint::From(-45.0, 45.0), ["scaleTilt" in set::DURER];
+        scale_tilt: f32 = 2.0, optional, Constraint::Within(-45.0, 45.0), ["scaleTilt" in set::DURER];
         /// Index of refraction.
-        ior: f32 = 1.55, optional, Constraint::From(1.0, 4.0), ["ior" in set::DURER];
+        ior: f32 = 1.55, optional, Constraint::Within(1.0, 4.0), ["ior" in set::DURER];
     }
 }

@@ -13,7 +13,7 @@ described! {
         /// Second material.
         material2: u32 = 0, required, Constraint::Any, ["materialIndex" in set::ALL];
         /// Share of the first material, from 0 to 1.
-        share: f32 = 0.5, optional, Constraint::Share, ["share" in set::DURER];
+        share: f32 = 0.5, optional, Constraint::UnitInterval, ["share" in set::DURER];
         /// Texture that multiplies `share`.
         share_texture: Option<FileName> = None, optional, Constraint::Any, ["shareTexture" in set::DURER];
     }

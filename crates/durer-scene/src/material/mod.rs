@@ -1,5 +1,5 @@
 //! Materials, which describe how surfaces scatter light. Each has its own file: [`PhongMaterial`],
-//! [`PrincipledMaterial`], [`HairMaterial`], and the patterns that [`Solid`] lists.
+//! [`PrincipledMaterial`], [`HairMaterial`], and the patterns that [`PatternMaterial`] lists.
 
 pub mod checkerboard;
 pub mod hair;
@@ -22,12 +22,12 @@ pub use principled::PrincipledMaterial;
 
 macro_rules! delegate {
     ($($variant:ident),+) => {
-        impl Pattern for Solid {
+        impl Pattern for PatternMaterial {
             fn weight(&self, q: Vec3) -> f32 {
-                match self { $(Solid::$variant(s) => s.weight(q),)+ }
+                match self { $(PatternMaterial::$variant(s) => s.weight(q),)+ }
             }
             fn materials(&self) -> [u32; 2] {
-                match self { $(Solid::$variant(s) => s.materials(),)+ }
+                match self { $(PatternMaterial::$variant(s) => s.materials(),)+ }
             }
         }
     };
@@ -35,7 +35,7 @@ macro_rules! delegate {
 
 described_list! {
     /// Material that mixes two earlier materials by a pattern in space.
-    Solid: Pattern => delegate {
+    PatternMaterial: Pattern => delegate {
         Checkerboard(checkerboard::Checkerboard),
         Noise(solid_noise::SolidNoise),
         Marble(marble::Marble),
@@ -45,18 +45,18 @@ described_list! {
     }
 }
 
-impl Solid {
+impl PatternMaterial {
     /// Share of the first material at a point of pattern space, from 0 to 1. With `conic_rings`,
     /// wood has the rings of the program of 2004: cones with a grain stretched along the axis.
     pub fn share(&self, q: Vec3, conic_rings: bool) -> f32 {
         match self {
-            Solid::Wood(wood) if conic_rings => wood.conic(q),
+            PatternMaterial::Wood(wood) if conic_rings => wood.conic(q),
             _ => self.weight(q),
         }
     }
 }
 
-/// Pattern in space that decides the shares of the two materials of a [`Solid`].
+/// Pattern in space that decides the shares of the two materials of a [`PatternMaterial`].
 pub trait Pattern {
     /// Share of the first material at a point of pattern space, from 0 to 1. For a two-sided
     /// material, it is the share on the front.

@@ -14,7 +14,7 @@ macro_rules! parameters {
             /// Factor that scales the reflection of an opaque base or a metal, at all angles.
             pub reflection: f32,
             /// Factor that scales the light entering a scattering interior.
-            pub entering: Vec3,
+            pub entry_tint: Vec3,
             /// True if the material has a scattering interior, even if its share is 0 at this
             /// point.
             pub has_body: bool,
@@ -25,7 +25,7 @@ macro_rules! parameters {
             /// `base_weight`.
             pub fn of(m: &PrincipledMaterial) -> Self {
                 let has_body = m.has_subsurface();
-                let written = Parameters { $($field: m.$field,)+ reflection: 1.0, entering: Vec3::ONE, has_body };
+                let written = Parameters { $($field: m.$field,)+ reflection: 1.0, entry_tint: Vec3::ONE, has_body };
                 Parameters { base_color: m.base_weight * m.base_color, ..written }
             }
         }
@@ -66,7 +66,7 @@ parameters! {
 impl Parameters {
     /// Returns the parameters with shares clamped to [0, 1] and colours to at least 0. Textures can
     /// exceed these bounds.
-    pub fn within_bounds(mut self) -> Self {
+    pub fn clamped(mut self) -> Self {
         let shares = [
             &mut self.base_diffuse_roughness,
             &mut self.base_metalness,
@@ -90,7 +90,7 @@ impl Parameters {
             &mut self.subsurface_color,
             &mut self.coat_color,
             &mut self.fuzz_color,
-            &mut self.entering,
+            &mut self.entry_tint,
         ];
         colors.into_iter().for_each(|color| *color = color.max(Vec3::ZERO));
         self
@@ -99,9 +99,9 @@ impl Parameters {
 
 impl PrincipledMaterial {
     /// True if the material has a texture.
-    pub fn has_pictures(&self) -> bool {
+    pub fn has_textures(&self) -> bool {
         let others = [&self.emission_texture, &self.normal_texture, &self.bump_texture, &self.opacity_texture];
-        TEXTURED.iter().any(|row| (row.picture)(self).is_some())
+        TEXTURE_FIELDS.iter().any(|row| (row.texture_file)(self).is_some())
             || others.iter().any(|picture| picture.is_some())
             || self.metallic_roughness_texture.is_some()
     }
@@ -109,7 +109,7 @@ impl PrincipledMaterial {
 
 /// Function by which a texture changes the parameters of a principled material.
 #[derive(Clone, Copy, Debug)]
-pub enum Change {
+pub enum TextureEffect {
     /// Change by one channel of the texture.
     Number(fn(&mut Parameters, f32)),
     /// Change by the colour of the texture.
@@ -118,24 +118,24 @@ pub enum Change {
 
 /// Texture field of a principled material, and its effect on the parameters.
 #[derive(Clone, Copy, Debug)]
-pub struct Textured {
+pub struct TextureField {
     /// Name of the field.
     pub field: &'static str,
     /// Returns the texture file of a material.
-    pub picture: fn(&PrincipledMaterial) -> Option<&FileName>,
+    pub texture_file: fn(&PrincipledMaterial) -> Option<&FileName>,
     /// Effect of the texture.
-    pub change: Change,
+    pub change: TextureEffect,
 }
 
 macro_rules! textured {
     ($($field:ident $kind:ident $change:expr;)+) => {
         /// Every texture that changes a parameter. Textures of emission, opacity and normals are
         /// handled elsewhere.
-        pub const TEXTURED: &[Textured] =
-            &[$(Textured {
+        pub const TEXTURE_FIELDS: &[TextureField] =
+            &[$(TextureField {
                 field: stringify!($field),
-                picture: |m| m.$field.as_ref(),
-                change: Change::$kind($change),
+                texture_file: |m| m.$field.as_ref(),
+                change: TextureEffect::$kind($change),
             },)+];
     };
 }
@@ -153,7 +153,7 @@ textured! {
     transmission_weight_texture Number |p, by| p.transmission_weight *= by;
     transmission_color_texture Color |p, by| p.transmission_color *= by;
     subsurface_weight_texture Number |p, by| p.subsurface_weight *= by;
-    subsurface_color_texture Color |p, by| (p.subsurface_color, p.entering) = (p.subsurface_color * by, p.entering * by);
+    subsurface_color_texture Color |p, by| (p.subsurface_color, p.entry_tint) = (p.subsurface_color * by, p.entry_tint * by);
     coat_weight_texture Number |p, by| p.coat_weight *= by;
     coat_color_texture Color |p, by| p.coat_color *= by;
     coat_roughness_texture Number |p, by| p.coat_roughness *= by;

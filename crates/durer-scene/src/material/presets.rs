@@ -9,7 +9,7 @@ use crate::describe::{Describe, Value};
 use crate::math::Vec3;
 
 /// Returns the preset with a name; `None` if it is unknown.
-pub fn named(name: &str) -> Option<PrincipledMaterial> {
+pub fn preset(name: &str) -> Option<PrincipledMaterial> {
     let (_, values) = PRESETS.iter().find(|row| row.0 == name)?;
     let mut material = PrincipledMaterial::default();
     for (word, numbers) in *values {
@@ -257,15 +257,15 @@ mod tests {
     fn presets_satisfy_the_rules_of_their_fields() {
         assert!(PRESETS.len() > 60);
         for (name, values) in PRESETS {
-            let material = named(name).unwrap();
+            let material = preset(name).unwrap();
             for (word, _) in *values {
                 let field: &Field = PrincipledMaterial::FIELDS.iter().find(|field| field.name == *word).unwrap();
                 let index = PrincipledMaterial::FIELDS.iter().position(|field| field.name == *word).unwrap();
                 let value = material.get(index).unwrap();
-                assert_eq!(field.rule.validate(&value), Ok(()), "{name}: {word}");
+                assert_eq!(field.constraint.validate(&value), Ok(()), "{name}: {word}");
             }
         }
-        assert_eq!(named("gold").unwrap().base_metalness, 1.0);
-        assert!(named("unobtainium").is_none());
+        assert_eq!(preset("gold").unwrap().base_metalness, 1.0);
+        assert!(preset("unobtainium").is_none());
     }
 }

@@ -32,7 +32,7 @@ described! {
     /// or a diffuse base.
     PrincipledMaterial ["PrincipledMaterial" in set::DURER] {
         /// Strength of the base, from 0 to 1; scales the colours of the diffuse base and the metal.
-        base_weight: f32 = 1.0, optional, Constraint::Share, ["baseWeight" in set::DURER];
+        base_weight: f32 = 1.0, optional, Constraint::UnitInterval, ["baseWeight" in set::DURER];
         /// Texture that multiplies `baseWeight`. Textures of scalars use the red channel, or the
         /// channel after a colon, for example `file.png:g`.
         base_weight_texture: Option<FileName> = None, optional, Constraint::Any, ["baseWeightTexture" in set::DURER];
@@ -47,12 +47,12 @@ described! {
         /// Texture that multiplies `baseColor`, read as sRGB; its alpha multiplies `opacity`.
         base_color_texture: Option<FileName> = None, optional, Constraint::Any, ["baseColorTexture" in set::DURER];
         /// Roughness of the diffuse base, from 0 (Lambert) to 1.
-        base_diffuse_roughness: f32 = 0.0, optional, Constraint::Share, ["baseDiffuseRoughness" in set::DURER];
+        base_diffuse_roughness: f32 = 0.0, optional, Constraint::UnitInterval, ["baseDiffuseRoughness" in set::DURER];
         /// Texture that multiplies `baseDiffuseRoughness`.
         base_diffuse_roughness_texture: Option<FileName> = None, optional, Constraint::Any,
             ["baseDiffuseRoughnessTexture" in set::DURER];
         /// Metalness, from 0 (glass or diffuse) to 1 (metal).
-        base_metalness: f32 = 0.0, optional, Constraint::Share, ["baseMetalness" in set::DURER];
+        base_metalness: f32 = 0.0, optional, Constraint::UnitInterval, ["baseMetalness" in set::DURER];
         /// Texture that multiplies `baseMetalness`.
         base_metalness_texture: Option<FileName> = None, optional, Constraint::Any, ["baseMetalnessTexture" in set::DURER];
         /// Factor on the reflectance at normal incidence, usually from 0 to 1.
@@ -64,7 +64,7 @@ described! {
         /// Texture that multiplies `specularColor`, read as sRGB.
         specular_color_texture: Option<FileName> = None, optional, Constraint::Any, ["specularColorTexture" in set::DURER];
         /// Roughness of the surface, from 0 (a mirror) to 1; its square is GGX's alpha.
-        specular_roughness: f32 = 0.3, optional, Constraint::Share, ["specularRoughness" in set::DURER];
+        specular_roughness: f32 = 0.3, optional, Constraint::UnitInterval, ["specularRoughness" in set::DURER];
         /// Texture that multiplies `specularRoughness`.
         specular_roughness_texture: Option<FileName> = None, optional, Constraint::Any,
             ["specularRoughnessTexture" in set::DURER];
@@ -73,7 +73,7 @@ described! {
         metallic_roughness_texture: Option<FileName> = None, optional, Constraint::Any,
             ["metallicRoughnessTexture" in set::DURER];
         /// Elongation of the highlight, from 0 (round) to 1.
-        specular_anisotropy: f32 = 0.0, optional, Constraint::Share, ["specularAnisotropy" in set::DURER];
+        specular_anisotropy: f32 = 0.0, optional, Constraint::UnitInterval, ["specularAnisotropy" in set::DURER];
         /// Texture that multiplies `specularAnisotropy`.
         specular_anisotropy_texture: Option<FileName> = None, optional, Constraint::Any,
             ["specularAnisotropyTexture" in set::DURER];
@@ -96,7 +96,7 @@ described! {
         energy_compensation: Switch = Switch::On, optional, Constraint::Any,
             ["energyCompensation" in set::DURER];
         /// Blend between a diffuse base at 0 and glass at 1.
-        transmission_weight: f32 = 0.0, optional, Constraint::Share, ["transmissionWeight" in set::DURER];
+        transmission_weight: f32 = 0.0, optional, Constraint::UnitInterval, ["transmissionWeight" in set::DURER];
         /// Texture that multiplies `transmissionWeight`.
         transmission_weight_texture: Option<FileName> = None, optional, Constraint::Any,
             ["transmissionWeightTexture" in set::DURER];
@@ -127,14 +127,14 @@ described! {
             ["transmissionDensityBox" in set::DURER];
         /// Strength of the dispersion set by `transmissionDispersionAbbeNumber`, from 0 (none) to
         /// 1; only visible with `--color spectral`.
-        transmission_dispersion_scale: f32 = 0.0, optional, Constraint::Share, ["transmissionDispersionScale" in set::DURER];
+        transmission_dispersion_scale: f32 = 0.0, optional, Constraint::UnitInterval, ["transmissionDispersionScale" in set::DURER];
         /// Abbe number of the glass, lower for stronger dispersion: 64 for crown glass, 30 for
         /// flint.
         transmission_dispersion_abbe_number: f32 = 20.0, optional, Constraint::Positive,
             ["transmissionDispersionAbbeNumber" in set::DURER];
         /// Blend between a diffuse base at 0 and subsurface scattering at 1, where light enters the
         /// object, scatters and leaves elsewhere, as in marble, milk and skin.
-        subsurface_weight: f32 = 0.0, optional, Constraint::Share, ["subsurfaceWeight" in set::DURER];
+        subsurface_weight: f32 = 0.0, optional, Constraint::UnitInterval, ["subsurfaceWeight" in set::DURER];
         /// Texture that multiplies `subsurfaceWeight`.
         subsurface_weight_texture: Option<FileName> = None, optional, Constraint::Any,
             ["subsurfaceWeightTexture" in set::DURER];
@@ -151,7 +151,7 @@ described! {
         subsurface_scatter_anisotropy: f32 = 0.0, optional, Constraint::Between(-1.0, 1.0),
             ["subsurfaceScatterAnisotropy" in set::DURER];
         /// Strength of the clear coat, from 0 to 1.
-        coat_weight: f32 = 0.0, optional, Constraint::Share, ["coatWeight" in set::DURER];
+        coat_weight: f32 = 0.0, optional, Constraint::UnitInterval, ["coatWeight" in set::DURER];
         /// Texture that multiplies `coatWeight`.
         coat_weight_texture: Option<FileName> = None, optional, Constraint::Any, ["coatWeightTexture" in set::DURER];
         /// Transmittance of the coat for light that passes down and up again at normal incidence.
@@ -159,18 +159,18 @@ described! {
         /// Texture that multiplies `coatColor`, read as sRGB.
         coat_color_texture: Option<FileName> = None, optional, Constraint::Any, ["coatColorTexture" in set::DURER];
         /// Roughness of the coat, from 0 to 1.
-        coat_roughness: f32 = 0.0, optional, Constraint::Share, ["coatRoughness" in set::DURER];
+        coat_roughness: f32 = 0.0, optional, Constraint::UnitInterval, ["coatRoughness" in set::DURER];
         /// Texture that multiplies `coatRoughness`.
         coat_roughness_texture: Option<FileName> = None, optional, Constraint::Any, ["coatRoughnessTexture" in set::DURER];
         /// Index of refraction of the coat.
         coat_ior: f32 = 1.6, optional, Constraint::Positive, ["coatIor" in set::DURER];
         /// Darkening of the base by internal reflection in the coat, from 0 (none) to 1 (physically
         /// correct).
-        coat_darkening: f32 = 1.0, optional, Constraint::Share, ["coatDarkening" in set::DURER];
+        coat_darkening: f32 = 1.0, optional, Constraint::UnitInterval, ["coatDarkening" in set::DURER];
         /// Texture that multiplies `coatDarkening`.
         coat_darkening_texture: Option<FileName> = None, optional, Constraint::Any, ["coatDarkeningTexture" in set::DURER];
         /// Strength of the fuzz layer on top, for example velvet or dust, from 0 to 1.
-        fuzz_weight: f32 = 0.0, optional, Constraint::Share, ["fuzzWeight" in set::DURER];
+        fuzz_weight: f32 = 0.0, optional, Constraint::UnitInterval, ["fuzzWeight" in set::DURER];
         /// Texture that multiplies `fuzzWeight`.
         fuzz_weight_texture: Option<FileName> = None, optional, Constraint::Any, ["fuzzWeightTexture" in set::DURER];
         /// Colour of the fuzz.
@@ -178,12 +178,12 @@ described! {
         /// Texture that multiplies `fuzzColor`, read as sRGB.
         fuzz_color_texture: Option<FileName> = None, optional, Constraint::Any, ["fuzzColorTexture" in set::DURER];
         /// Roughness of the fuzz, from 0 to 1.
-        fuzz_roughness: f32 = 0.5, optional, Constraint::Share, ["fuzzRoughness" in set::DURER];
+        fuzz_roughness: f32 = 0.5, optional, Constraint::UnitInterval, ["fuzzRoughness" in set::DURER];
         /// Texture that multiplies `fuzzRoughness`.
         fuzz_roughness_texture: Option<FileName> = None, optional, Constraint::Any, ["fuzzRoughnessTexture" in set::DURER];
         /// Fraction of the surface below the coat that is covered by a thin film, from 0 to 1, for
         /// example soap, oil, tempered steel or mother-of-pearl.
-        thin_film_weight: f32 = 0.0, optional, Constraint::Share, ["thinFilmWeight" in set::DURER];
+        thin_film_weight: f32 = 0.0, optional, Constraint::UnitInterval, ["thinFilmWeight" in set::DURER];
         /// Texture that multiplies `thinFilmWeight`.
         thin_film_weight_texture: Option<FileName> = None, optional, Constraint::Any, ["thinFilmWeightTexture" in set::DURER];
         /// Thickness of the film in micrometres.
@@ -218,7 +218,7 @@ described! {
         normal_bending: Switch = Switch::On, optional, Constraint::Any, ["normalBending" in set::DURER];
         /// Fraction of the surface that is present, from 0 to 1; the remaining light passes through
         /// unchanged.
-        opacity: f32 = 1.0, optional, Constraint::Share, ["opacity" in set::DURER];
+        opacity: f32 = 1.0, optional, Constraint::UnitInterval, ["opacity" in set::DURER];
         /// Texture that multiplies `opacity` by its alpha channel if there is one, otherwise by its
         /// red channel.
         opacity_texture: Option<FileName> = None, optional, Constraint::Any, ["opacityTexture" in set::DURER];

@@ -6,7 +6,7 @@ use crate::math::random::Random;
 
 #[test]
 fn checkerboard_cubes_alternate_across_every_face() {
-    let board = Solid::from(checkerboard::Checkerboard { material1: 3, material2: 5 });
+    let board = PatternMaterial::from(checkerboard::Checkerboard { material1: 3, material2: 5 });
     assert_eq!(board.materials(), [3, 5]);
     for x in -3i32..3 {
         for y in -3..3 {
@@ -56,7 +56,7 @@ fn conic_rings_agree_with_the_program_of_2004() {
         let n = f64::from(turbulence(Vec3::new(q.x, 0.2 * q.y, q.z), 3));
         let radius = libm::hypot(f64::from(q.x), f64::from(q.z));
         let share = (libm::sin(6.0 * radius + 0.3 * f64::from(q.y) + 2.0 * n) + 0.5).clamp(0.0, 1.0);
-        let solid = Solid::from(wood.clone());
+        let solid = PatternMaterial::from(wood.clone());
         assert!((f64::from(solid.share(q, true)) - share * share).abs() < 1e-4);
         assert_eq!(solid.share(q, false), wood.weight(q));
     }

@@ -6,7 +6,7 @@ pub mod roots;
 
 #[doc(hidden)]
 pub use durer_bvh::internal::random;
-pub use durer_bvh::math::{Aabb, Affine, Line, Ray, Ray64, Side, UNIT_ROUNDOFF, Vec2, Vec3, fp, gamma};
+pub use durer_bvh::math::{Aabb, Affine, Line, Ray, Ray64, StartSide, UNIT_ROUNDOFF, Vec2, Vec3, fp, gamma};
 pub use durer_image::{Color, LUMINANCE, LUMINANCE_F64};
 
 /// Reflects `direction` about the unit vector `normal`.

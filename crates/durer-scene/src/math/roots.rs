@@ -34,12 +34,12 @@ pub fn quartic(c: [f64; 5], low: f64, high: f64) -> ([f64; 4], usize) {
             count += 1;
         }
     }
-    let (turns, count) = between(&first, &bends[..count], low, high);
-    between(&c, &turns[..count], low, high)
+    let (turns, count) = roots_between(&first, &bends[..count], low, high);
+    roots_between(&c, &turns[..count], low, high)
 }
 
 /// Finds the roots at which a polynomial changes its sign. It must be monotonic between the `cuts`.
-fn between(c: &[f64], cuts: &[f64], low: f64, high: f64) -> ([f64; 4], usize) {
+fn roots_between(c: &[f64], cuts: &[f64], low: f64, high: f64) -> ([f64; 4], usize) {
     let mut roots = [0.0; 4];
     let mut count = 0;
     let mut from = (low, value(c, low).0);
@@ -91,12 +91,12 @@ mod tests {
     fn quartic_finds_the_roots_of_products() {
         let mut random = Random(1);
         for _ in 0..100_000 {
-            let mut made: [f64; 4] = std::array::from_fn(|_| f64::from(random.between(-1.0, 1.0)));
-            made.sort_by(f64::total_cmp);
+            let mut expected: [f64; 4] = std::array::from_fn(|_| f64::from(random.between(-1.0, 1.0)));
+            expected.sort_by(f64::total_cmp);
             let scale = f64::from(random.between(0.1, 10.0));
             // (t - a)(t - b)(t - c)(t - d), multiplied factor by factor.
             let mut c = [scale, 0.0, 0.0, 0.0, 0.0];
-            for root in made {
+            for root in expected {
                 for i in (0..5).rev() {
                     c[i] = if i > 0 { c[i - 1] } else { 0.0 } - root * c[i];
                 }
@@ -104,12 +104,12 @@ mod tests {
             let (roots, count) = quartic(c, -1.5, 1.5);
             assert_eq!(count % 2, 0);
             // Roots closer than 1e-3 are less accurate, or merge.
-            if made.windows(2).any(|w| w[1] - w[0] < 1e-3) {
+            if expected.windows(2).any(|w| w[1] - w[0] < 1e-3) {
                 continue;
             }
-            assert_eq!(count, 4, "{made:?} {roots:?}");
-            for (found, made) in roots.iter().zip(made) {
-                assert!((found - made).abs() < 1e-9, "{made} {found}");
+            assert_eq!(count, 4, "{expected:?} {roots:?}");
+            for (found, expected) in roots.iter().zip(expected) {
+                assert!((found - expected).abs() < 1e-9, "{expected} {found}");
             }
         }
     }

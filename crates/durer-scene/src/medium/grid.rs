@@ -10,7 +10,7 @@ pub struct DensityGrid {
     counts: [u32; 3],
     /// Density values, with x varying fastest.
     values: Vec<f32>,
-    most: f32,
+    max_density: f32,
 }
 
 impl DensityGrid {
@@ -21,8 +21,8 @@ impl DensityGrid {
         if wanted == 0 || wanted != values.len() || values.iter().any(|x| !x.is_finite() || *x < 0.0) {
             return None;
         }
-        let most = values.iter().copied().fold(0.0, f32::max);
-        Some(DensityGrid { counts, values, most })
+        let max_density = values.iter().copied().fold(0.0, f32::max);
+        Some(DensityGrid { counts, values, max_density })
     }
 
     /// Number of points along x, y and z.
@@ -38,14 +38,14 @@ impl DensityGrid {
     /// Hash of the whole grid.
     pub fn digest(&self) -> Digest {
         let mut hasher = Digest::hasher();
-        self.counts.iter().for_each(|count| hasher.word(*count));
-        self.values.iter().for_each(|value| hasher.word(value.to_bits()));
+        self.counts.iter().for_each(|count| hasher.add_u32(*count));
+        self.values.iter().for_each(|value| hasher.add_u32(value.to_bits()));
         hasher.finish()
     }
 
     /// Maximum density.
-    pub fn most(&self) -> f32 {
-        self.most
+    pub fn max_density(&self) -> f32 {
+        self.max_density
     }
 
     /// Size in memory in bytes.

@@ -24,7 +24,7 @@ pub struct Medium {
     /// Phase function.
     pub phase: HenyeyGreenstein,
     /// Region and density; `None` for an infinite homogeneous medium.
-    pub place: Option<MediumRegion>,
+    pub region: Option<MediumRegion>,
 }
 
 /// Region that a bounded medium fills, with its density.
@@ -33,7 +33,7 @@ pub struct MediumRegion {
     /// Bounds of the medium.
     pub bounds: Aabb,
     /// Transform from the space of the bounds to world space; `None` for the identity.
-    pub placed: Option<Affine>,
+    pub to_world: Option<Affine>,
     /// Density grid; `None` for density 1 everywhere.
     pub density: Option<Arc<DensityGrid>>,
 }
@@ -41,7 +41,7 @@ pub struct MediumRegion {
 impl MediumRegion {
     /// Density at a point in world space.
     fn density(&self, grid: &DensityGrid, point: Vec3) -> f32 {
-        let own = self.placed.as_ref().map_or(point, |placed| placed.inverse_point(point));
+        let own = self.to_world.as_ref().map_or(point, |placed| placed.inverse_point(point));
         grid.at(&self.bounds, own)
     }
 }
@@ -84,22 +84,22 @@ impl Medium {
     }
 
     /// Part of a segment inside the medium.
-    fn clipped(&self, way: &Segment) -> Option<(f32, f32)> {
-        let Some(place) = &self.place else { return Some((way.from, way.to)) };
-        let (origin, dir) = match &place.placed {
+    fn clip(&self, segment: &Segment) -> Option<(f32, f32)> {
+        let Some(place) = &self.region else { return Some((segment.from, segment.to)) };
+        let (origin, dir) = match &place.to_world {
             Some(placed) => {
-                let ray = placed.inverse_ray(Ray64::new(way.origin, way.dir, 0.0, f32::INFINITY));
+                let ray = placed.inverse_ray(Ray64::new(segment.origin, segment.dir, 0.0, f32::INFINITY));
                 (ray.origin, ray.dir)
             }
-            None => (way.origin.as_vec3(), way.dir),
+            None => (segment.origin.as_vec3(), segment.dir),
         };
         let (enter, leave) = place.bounds.clip(origin, dir)?;
-        let (from, to) = (way.from.max(enter), way.to.min(leave));
+        let (from, to) = (segment.from.max(enter), segment.to.min(leave));
         (from < to).then_some((from, to))
     }
 
     fn grid(&self) -> Option<(&DensityGrid, &MediumRegion)> {
-        let place = self.place.as_ref()?;
+        let place = self.region.as_ref()?;
         Some((place.density.as_deref()?, place))
     }
 
@@ -112,40 +112,40 @@ impl Medium {
     /// Transmittance of a segment.
     ///
     /// Source of ratio tracking: Novák, Selle and Jarosz, *Residual Ratio Tracking*, 2014.
-    pub fn transmittance(&self, way: &Segment, lanes: &Lanes, numbers: &mut dyn FnMut() -> f32) -> Spectrum {
-        let Some((from, to)) = self.clipped(way) else { return Spectrum::ONE };
+    pub fn transmittance(&self, segment: &Segment, lanes: &Lanes, random: &mut dyn FnMut() -> f32) -> Spectrum {
+        let Some((from, to)) = self.clip(segment) else { return Spectrum::ONE };
         let extinction = lanes.coefficient(self.extinction);
-        let Some((grid, place)) = self.grid() else { return absorbed(extinction, to - from) };
-        let most = extinction.max_element() * grid.most();
-        let (mut at, mut left) = (from, Spectrum::ONE);
+        let Some((grid, place)) = self.grid() else { return beer_transmittance(extinction, to - from) };
+        let majorant = extinction.max_element() * grid.max_density();
+        let (mut at, mut throughput) = (from, Spectrum::ONE);
         for _ in 0..MAX_STEPS {
-            let Some(next) = collision(at, to, most, numbers) else { break };
+            let Some(next) = collision(at, to, majorant, random) else { break };
             at = next;
-            left *= Spectrum::ONE - extinction * (place.density(grid, way.point(at)) / most);
+            throughput *= Spectrum::ONE - extinction * (place.density(grid, segment.point(at)) / majorant);
             // Russian roulette for small weights.
-            if left.max_element() < 0.1 {
-                if numbers() < 0.5 {
+            if throughput.max_element() < 0.1 {
+                if random() < 0.5 {
                     return Spectrum::ZERO;
                 }
-                left *= 2.0;
+                throughput *= 2.0;
             }
         }
-        left
+        throughput
     }
 
     /// Samples the distance at which light with these weights is scattered, if it does not pass
     /// through the segment. The returned weight is divided by the probability of the event.
-    pub fn flight(
+    pub fn sample_distance(
         &self,
-        way: &Segment,
+        segment: &Segment,
         weights: Spectrum,
         lanes: &Lanes,
-        numbers: &mut dyn FnMut() -> f32,
+        random: &mut dyn FnMut() -> f32,
     ) -> DistanceSample {
-        let Some((from, to)) = self.clipped(way) else { return DistanceSample::Passed(Spectrum::ONE) };
+        let Some((from, to)) = self.clip(segment) else { return DistanceSample::Passed(Spectrum::ONE) };
         let extinction = lanes.coefficient(self.extinction);
         if !self.scatters() && self.grid().is_none() {
-            return DistanceSample::Passed(absorbed(extinction, to - from));
+            return DistanceSample::Passed(beer_transmittance(extinction, to - from));
         }
         let albedo = lanes.reflectance(self.albedo);
         match self.grid() {
@@ -153,58 +153,58 @@ impl Medium {
                 // Null collisions fill the grid up to its majorant. Lanes are weighted by their
                 // current contribution. Sources: Woodcock and others, 1965; Kutz and others,
                 // *Spectral and Decomposition Tracking*, 2017.
-                let most = extinction.max_element() * grid.most();
-                let (mut at, mut left) = (from, Spectrum::ONE);
+                let majorant = extinction.max_element() * grid.max_density();
+                let (mut at, mut throughput) = (from, Spectrum::ONE);
                 for _ in 0..MAX_STEPS {
-                    let Some(next) = collision(at, to, most, numbers) else { break };
+                    let Some(next) = collision(at, to, majorant, random) else { break };
                     at = next;
-                    let here = extinction * (place.density(grid, way.point(at)) / most);
-                    let real = (shares(weights * left) * here).element_sum();
-                    if numbers() < real {
-                        return DistanceSample::Scattered(at, left * albedo * here / real);
+                    let here = extinction * (place.density(grid, segment.point(at)) / majorant);
+                    let real = (normalized(weights * throughput) * here).element_sum();
+                    if random() < real {
+                        return DistanceSample::Scattered(at, throughput * albedo * here / real);
                     }
-                    left *= (Spectrum::ONE - here) / (1.0 - real);
+                    throughput *= (Spectrum::ONE - here) / (1.0 - real);
                 }
-                DistanceSample::Passed(left)
+                DistanceSample::Passed(throughput)
             }
             None => {
                 // One lane samples the distance; the weight combines the densities of all lanes
                 // (one-sample MIS).
-                let weights = shares(weights);
-                let mut choice = numbers();
+                let weights = normalized(weights);
+                let mut choice = random();
                 let lane = (0..3).find(|&lane| {
                     choice -= weights[lane];
                     choice < 0.0
                 });
                 let chosen = extinction[lane.unwrap_or(3)];
-                let distance = if chosen > 0.0 { -fp::ln(1.0 - numbers()) / chosen } else { f32::INFINITY };
+                let distance = if chosen > 0.0 { -fp::ln(1.0 - random()) / chosen } else { f32::INFINITY };
                 if distance < to - from {
-                    let left = absorbed(extinction, distance);
-                    let density = (weights * extinction * left).element_sum();
-                    return DistanceSample::Scattered(from + distance, albedo * extinction * left / density);
+                    let throughput = beer_transmittance(extinction, distance);
+                    let density = (weights * extinction * throughput).element_sum();
+                    return DistanceSample::Scattered(from + distance, albedo * extinction * throughput / density);
                 }
-                let left = absorbed(extinction, to - from);
-                DistanceSample::Passed(left / (weights * left).element_sum().max(f32::MIN_POSITIVE))
+                let throughput = beer_transmittance(extinction, to - from);
+                DistanceSample::Passed(throughput / (weights * throughput).element_sum().max(f32::MIN_POSITIVE))
             }
         }
     }
 }
 
-/// Distance of the next tentative collision in a medium of constant extinction `most`; `None`
+/// Distance of the next tentative collision in a medium of constant extinction `majorant`; `None`
 /// beyond `to`.
-fn collision(at: f32, to: f32, most: f32, numbers: &mut dyn FnMut() -> f32) -> Option<f32> {
-    let next = at - fp::ln(1.0 - numbers()) / most;
+fn collision(at: f32, to: f32, majorant: f32, random: &mut dyn FnMut() -> f32) -> Option<f32> {
+    let next = at - fp::ln(1.0 - random()) / majorant;
     (next < to).then_some(next)
 }
 
 /// Normalizes the weights of the lanes to a sum of 1.
-fn shares(weights: Spectrum) -> Spectrum {
+fn normalized(weights: Spectrum) -> Spectrum {
     let weights = weights.max(Spectrum::ZERO);
     let sum = weights.element_sum();
     if sum > 0.0 { weights / sum } else { Spectrum::splat(0.25) }
 }
 
 /// Transmittance over a distance, by Beer's law.
-fn absorbed(extinction: Spectrum, distance: f32) -> Spectrum {
+fn beer_transmittance(extinction: Spectrum, distance: f32) -> Spectrum {
     (-extinction * distance.min(f32::MAX)).map(fp::exp)
 }

@@ -5,7 +5,7 @@ use glam::{DAffine3, DMat3};
 use std::f32::consts::TAU;
 
 fn medium(albedo: Color, extinction: Color) -> Medium {
-    Medium { extinction, albedo, phase: HenyeyGreenstein::default(), place: None }
+    Medium { extinction, albedo, phase: HenyeyGreenstein::default(), region: None }
 }
 
 fn way(to: f32) -> Segment {
@@ -21,7 +21,7 @@ fn flight_agrees_with_beers_law_and_albedo() {
     let n = 200_000;
     for _ in 0..n {
         let mut numbers = || random.between(0.0, 1.0).min(0.999_999_9);
-        match fog.flight(&way(1.5), Spectrum::ONE, &Lanes::Rgb, &mut numbers) {
+        match fog.sample_distance(&way(1.5), Spectrum::ONE, &Lanes::Rgb, &mut numbers) {
             DistanceSample::Passed(left) => passed += left.truncate().as_dvec3(),
             DistanceSample::Scattered(distance, left) => {
                 assert!((0.0..1.5).contains(&distance));
@@ -41,13 +41,13 @@ fn grid_transmittance_agrees_with_the_integral() {
     // Two cells, 1 and 3. Linear between their centres, the mean along x is 2.
     let grid = DensityGrid::new([2, 1, 1], vec![1.0, 3.0]).unwrap();
     let bounds = Aabb { min: Vec3::new(1.0, -1.0, -1.0), max: Vec3::new(3.0, 1.0, 1.0) };
-    let place = MediumRegion { bounds, placed: None, density: Some(Arc::new(grid)) };
+    let place = MediumRegion { bounds, to_world: None, density: Some(Arc::new(grid)) };
     // The same box from its opposite corner, with the unit cube's axes along -x, z and y.
     let edges = DMat3::from_cols(-2.0 * DVec3::X, 2.0 * DVec3::Z, 2.0 * DVec3::Y);
-    let placed = Affine::new(DAffine3::from_mat3_translation(edges, DVec3::new(3.0, -1.0, -1.0)));
+    let to_world = Affine::new(DAffine3::from_mat3_translation(edges, DVec3::new(3.0, -1.0, -1.0)));
     let unit = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
-    for place in [place.clone(), MediumRegion { bounds: unit, placed, ..place }] {
-        lets_through(&Medium { place: Some(place), ..medium(Color::splat(0.5), Color::new(0.2, 0.4, 0.1)) });
+    for place in [place.clone(), MediumRegion { bounds: unit, to_world, ..place }] {
+        lets_through(&Medium { region: Some(place), ..medium(Color::splat(0.5), Color::new(0.2, 0.4, 0.1)) });
     }
     assert!(DensityGrid::new([2, 2, 1], vec![0.0; 3]).is_none() && DensityGrid::new([1, 1, 1], vec![-1.0]).is_none());
 }
@@ -60,7 +60,9 @@ fn lets_through(smoke: &Medium) {
     for _ in 0..n {
         let mut numbers = || random.between(0.0, 1.0).min(0.999_999_9);
         ratio += smoke.transmittance(&way(10.0), &Lanes::Rgb, &mut numbers) / n as f32;
-        if let DistanceSample::Passed(left) = smoke.flight(&way(10.0), Spectrum::ONE, &Lanes::Rgb, &mut numbers) {
+        if let DistanceSample::Passed(left) =
+            smoke.sample_distance(&way(10.0), Spectrum::ONE, &Lanes::Rgb, &mut numbers)
+        {
             passed += left / n as f32;
         }
     }

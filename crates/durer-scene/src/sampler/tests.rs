@@ -80,11 +80,11 @@ fn power_of_two_prefixes_are_stratified_in_elementary_intervals() {
             for start in [0, 2 * n] {
                 for columns_log in 0..=k {
                     let (columns, rows) = (1_u32 << columns_log, 1_u32 << (k - columns_log));
-                    let mut seen = vec![false; n as usize];
+                    let mut is_taken = vec![false; n as usize];
                     for s in start..start + n {
                         let p = sample_2d(11, x, 1, s, dimension);
                         let cell = (p.y * rows as f32) as u32 * columns + (p.x * columns as f32) as u32;
-                        assert!(!std::mem::replace(&mut seen[cell as usize], true), "{x} {n} {columns}");
+                        assert!(!std::mem::replace(&mut is_taken[cell as usize], true), "{x} {n} {columns}");
                     }
                 }
             }
@@ -184,7 +184,7 @@ fn batched_points_match_single_points() {
 #[test]
 fn batched_pairs_match_single_pairs() {
     for sample in [0, 7, 1000, u32::MAX] {
-        let id = SampleId::new(11, (3, sample), sample).at(12);
+        let id = SampleId::new(11, (3, sample), sample).with_first_dimension(12);
         assert_eq!(id.pairs(), [0, 1, 2, 3].map(|dimension| id.pair(dimension)), "{sample}");
     }
 }

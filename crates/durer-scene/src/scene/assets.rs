@@ -2,7 +2,7 @@
 
 use crate::describe::{Constraint, FileName};
 use crate::dialect::set;
-use crate::light::Profile;
+use crate::light::PhotometricProfile;
 use crate::math::Aabb;
 use crate::medium::DensityGrid;
 use crate::shape::MeshData;
@@ -21,16 +21,16 @@ pub struct Assets {
     /// Meshes.
     pub meshes: BTreeMap<String, Arc<MeshData>>,
     /// Pictures and their mappings.
-    pub pictures: BTreeMap<String, Picture>,
+    pub pictures: BTreeMap<String, TextureImage>,
     /// Light profiles.
-    pub profiles: BTreeMap<String, Arc<Profile>>,
+    pub profiles: BTreeMap<String, Arc<PhotometricProfile>>,
     /// Densities and their bounds.
     pub densities: BTreeMap<String, (Aabb, Arc<DensityGrid>)>,
 }
 
 /// Image of a texture that materials refer to by name, with its mapping onto surfaces.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Picture {
+pub struct TextureImage {
     /// Location of its bytes.
     pub bytes: PictureBytes,
     /// Mapping onto surfaces.
@@ -39,14 +39,14 @@ pub struct Picture {
 
 described_words! {
     /// Magnification filter of a texture.
-    Texels { Linear = "linear", Nearest = "nearest" }
+    MagnificationFilter { Linear = "linear", Nearest = "nearest" }
 }
 
 described_words! {
     /// Minification filter of a texture: `texels` takes point samples, which average correctly over
     /// a pixel's samples; `mipmaps` takes a smaller version of the picture, with less noise and
     /// slight blur.
-    Minified { Texels = "texels", Mipmaps = "mipmaps" }
+    MinificationFilter { Texels = "texels", Mipmaps = "mipmaps" }
 }
 
 described! {
@@ -62,10 +62,10 @@ described! {
         /// Wrap mode beyond the upper and lower borders: `repeat`, `mirror` or `clamp`.
         wrap_v: Wrap = Wrap::Repeat, optional, Constraint::Any, ["wrapV" in set::DURER];
         /// Magnification filter: `linear` interpolates the four nearest texels, `nearest` uses one.
-        texels: Texels = Texels::Linear, optional, Constraint::Any, ["texels" in set::DURER];
+        texels: MagnificationFilter = MagnificationFilter::Linear, optional, Constraint::Any, ["texels" in set::DURER];
         /// Minification filter of the path tracer: `texels` samples the full-size image, `mipmaps`
         /// a smaller version of it.
-        minified: Minified = Minified::Texels, optional, Constraint::Any, ["minified" in set::DURER];
+        minified: MinificationFilter = MinificationFilter::Texels, optional, Constraint::Any, ["minified" in set::DURER];
         /// Texture coordinate set of the mesh: 0 for the first, 1 for the second.
         uv_set: u32 = 0, optional, Constraint::AtMost(1), ["uvSet" in set::DURER];
         /// Transform from surface to image coordinates, both with v downwards from the upper
@@ -86,7 +86,7 @@ described! {
 
 impl NamedTexture {
     /// Describes a picture as a named texture; `None` if its bytes are not in a file.
-    pub fn of(name: &str, picture: &Picture) -> Option<Self> {
+    pub fn of(name: &str, picture: &TextureImage) -> Option<Self> {
         let PictureBytes::File(file) = &picture.bytes else { return None };
         Some(NamedTexture::with_mapping(name, file, picture.mapping))
     }
@@ -101,8 +101,8 @@ impl NamedTexture {
             picture: named(file),
             wrap_u,
             wrap_v,
-            texels: if nearest { Texels::Nearest } else { Texels::Linear },
-            minified: if mipmaps { Minified::Mipmaps } else { Minified::Texels },
+            texels: if nearest { MagnificationFilter::Nearest } else { MagnificationFilter::Linear },
+            minified: if mipmaps { MinificationFilter::Mipmaps } else { MinificationFilter::Texels },
             uv_set: second.into(),
             uv_transform: transform.to_vec(),
             alpha_cutoff: cutoff,
@@ -113,12 +113,12 @@ impl NamedTexture {
     }
 
     /// Returns the picture that the texture describes.
-    pub fn picture(&self) -> Picture {
+    pub fn picture(&self) -> TextureImage {
         let usual = Mapping::default();
         let mapping = Mapping {
             wrap: [self.wrap_u, self.wrap_v],
-            nearest: self.texels == Texels::Nearest,
-            mipmaps: self.minified == Minified::Mipmaps,
+            nearest: self.texels == MagnificationFilter::Nearest,
+            mipmaps: self.minified == MinificationFilter::Mipmaps,
             second: self.uv_set > 0,
             transform: self.uv_transform.as_slice().try_into().unwrap_or(usual.transform),
             cutoff: self.alpha_cutoff,
@@ -126,7 +126,7 @@ impl NamedTexture {
             channel: self.channel,
             range: self.texel_range.first().copied().unwrap_or(usual.range),
         };
-        Picture { bytes: PictureBytes::File(self.picture.path.clone()), mapping }
+        TextureImage { bytes: PictureBytes::File(self.picture.path.clone()), mapping }
     }
 }
 
@@ -136,13 +136,13 @@ pub enum PictureBytes {
     /// File name relative to the scene.
     File(String),
     /// Name for messages, and the bytes of a picture file in memory.
-    Here(String, Arc<[u8]>),
+    Memory(String, Arc<[u8]>),
 }
 
 impl PictureBytes {
     /// Name of the file, or the name for messages.
     pub fn path(&self) -> &str {
-        let (PictureBytes::File(path) | PictureBytes::Here(path, _)) = self;
+        let (PictureBytes::File(path) | PictureBytes::Memory(path, _)) = self;
         path
     }
 }
@@ -155,8 +155,8 @@ impl Assets {
     }
 
     /// True if some assets are not in files, so that a scene file cannot refer to them.
-    pub fn has_loose(&self) -> bool {
-        let loose = |picture: &Picture| matches!(picture.bytes, PictureBytes::Here(..));
+    pub fn has_in_memory(&self) -> bool {
+        let loose = |picture: &TextureImage| matches!(picture.bytes, PictureBytes::Memory(..));
         let Assets { meshes, pictures, profiles, densities } = self;
         !(meshes.is_empty() && profiles.is_empty() && densities.is_empty()) || pictures.values().any(loose)
     }
@@ -178,7 +178,7 @@ impl Serialize for Assets {
         for (name, picture) in &self.pictures {
             let file = match &picture.bytes {
                 PictureBytes::File(name) => name.clone(),
-                PictureBytes::Here(_, bytes) => Digest::of(bytes).to_string(),
+                PictureBytes::Memory(_, bytes) => Digest::of(bytes).to_string(),
             };
             map.serialize_entry(name, &(file, &picture.mapping))?;
         }

@@ -1,6 +1,6 @@
 //! Builder for scenes in code, which refers to materials and meshes by handles instead of names.
 
-use super::{Background, Group, Material, MatrixOp, Node, Object, Scene, Spanned};
+use super::{Background, Group, Material, MatrixOp, Object, ObjectKind, Scene, Spanned};
 use crate::camera::Camera;
 use crate::describe::FileName;
 use crate::light::Light;
@@ -90,7 +90,7 @@ pub struct SceneBuilder {
 /// Object in a [`SceneBuilder`], whose material and transforms can be set.
 #[derive(Clone, Debug)]
 pub struct ObjectBuilder {
-    node: Node,
+    node: ObjectKind,
     material: Option<MaterialId>,
     ops: Vec<MatrixOp>,
 }
@@ -182,9 +182,9 @@ impl SceneBuilder {
     /// Adds a primitive or a mesh to the scene. Set its material and transforms on the result.
     pub fn add(&mut self, shape: impl Into<Shape>) -> &mut ObjectBuilder {
         let node = match shape.into() {
-            Shape::Primitive(primitive) => Node::Primitive(primitive),
+            Shape::Primitive(primitive) => ObjectKind::Primitive(primitive),
             Shape::Mesh(mesh) => {
-                Node::Mesh(TriangleMesh { obj_file: FileName { path: mesh.name(), span: Span::default() } })
+                ObjectKind::Mesh(TriangleMesh { obj_file: FileName { path: mesh.name(), span: Span::default() } })
             }
         };
         let at = self.objects.len();
@@ -205,7 +205,7 @@ impl SceneBuilder {
             match placed.ops.is_empty() {
                 true => object,
                 false => {
-                    let node = Node::Transform(placed.ops.clone(), Box::new(object));
+                    let node = ObjectKind::Transform(placed.ops.clone(), Box::new(object));
                     Object { node, material, span: Span::default() }
                 }
             }
@@ -217,7 +217,7 @@ impl SceneBuilder {
         }
         // A handle from another builder may refer to a mesh that this builder does not have.
         let meshes = self.objects.iter().filter_map(|placed| match &placed.node {
-            Node::Mesh(mesh) => Some(&mesh.obj_file.path),
+            ObjectKind::Mesh(mesh) => Some(&mesh.obj_file.path),
             _ => None,
         });
         if meshes.into_iter().any(|name| !scene.assets.meshes.contains_key(name)) {
@@ -247,7 +247,7 @@ mod tests {
         scene.camera(PerspectiveCamera::default());
         scene.add(Sphere::default()).scale(2.0).translate(Vec3::X).rotate(Vec3::Y, 90.0);
         let built = scene.build().unwrap();
-        let Some(Object { node: Node::Transform(ops, _), .. }) = built.root.as_ref().map(|root| &root.objects[0])
+        let Some(Object { node: ObjectKind::Transform(ops, _), .. }) = built.root.as_ref().map(|root| &root.objects[0])
         else {
             panic!("{built:?}");
         };

@@ -1,7 +1,7 @@
 //! Defaults for models: a camera that shows the full model, lights, a ground and a material.
 
 use super::extent::points;
-use super::{Background, Group, Material, Node, Object, Scene, Spanned};
+use super::{Background, Group, Material, Object, ObjectKind, Scene, Spanned};
 use crate::camera::{Camera, OrthographicCamera, PerspectiveCamera, Projection};
 use crate::light::{DirectionalLight, Light};
 use crate::material::PrincipledMaterial;
@@ -24,7 +24,7 @@ pub enum Axis {
 
 /// Preset view of a model, for models without a camera or to replace their camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum View {
+pub enum PresetView {
     /// Perspective, from the front, slightly from the right and from above.
     #[default]
     ThreeQuarter,
@@ -56,16 +56,16 @@ pub struct SceneDefaults {
     /// Up axis; `None` for the usual axis of the format.
     pub up: Option<Axis>,
     /// View; `None` for the model's own camera, or a three-quarter view if it has none.
-    pub view: Option<View>,
+    pub view: Option<PresetView>,
     /// Lighting; `None` for the model's own lights, or [`DefaultLighting::Soft`] if it has none.
-    pub studio: Option<DefaultLighting>,
+    pub lighting: Option<DefaultLighting>,
     /// Name of the camera to use; `None` for the first.
     pub camera: Option<String>,
     /// Name of the glTF material variant to use (KHR_materials_variants); `None` for the default
     /// materials.
     pub variant: Option<String>,
     /// Time of the animation in seconds; `None` for no animation.
-    pub at: Option<f32>,
+    pub animation_time: Option<f32>,
     /// File of Radiance views; the last of them becomes the camera.
     pub view_file: Option<PathBuf>,
     /// Environment map that lights the model instead of the default lights.
@@ -74,9 +74,9 @@ pub struct SceneDefaults {
     pub fit: bool,
     /// Degrees by which the camera orbits the model, counter-clockwise as seen from above, at a
     /// distance that shows the full model at all angles; `None` for a single picture.
-    pub turned: Option<f32>,
+    pub orbit_degrees: Option<f32>,
     /// True to neither add nor replace anything, because the scene is converted to another format.
-    pub bare: bool,
+    pub convert_only: bool,
     /// True to use only the model's own light, even if it has none.
     pub own_light: bool,
     /// Width over height of the picture that the camera should fill; `None` for 1.
@@ -84,7 +84,7 @@ pub struct SceneDefaults {
 }
 
 /// Right, up and front directions of a model, as seen by a viewer in front of it.
-pub struct Sides {
+pub struct ModelAxes {
     /// Direction to the viewer's right.
     pub right: DVec3,
     /// Direction upwards.
@@ -93,7 +93,7 @@ pub struct Sides {
     pub front: DVec3,
 }
 
-impl Sides {
+impl ModelAxes {
     /// Creates the directions for a model with this up axis.
     pub fn new(up: Axis) -> Self {
         let (right, up) = match up {
@@ -101,35 +101,35 @@ impl Sides {
             Axis::Y => (DVec3::X, DVec3::Y),
             Axis::Z => (DVec3::X, DVec3::Z),
         };
-        Sides { right, up, front: right.cross(up) }
+        ModelAxes { right, up, front: right.cross(up) }
     }
 }
 
 /// Field of view across the larger side of the picture, in degrees.
 const ANGLE: f32 = 30.0;
 /// Number of angles of an orbiting camera at which the model must be visible.
-const PLACES: u32 = 48;
+const ORBIT_STEPS: u32 = 48;
 /// Fraction of the picture's width or height that a model fills.
-const FILLED: f64 = 0.86;
+const FILL: f64 = 0.86;
 
 impl SceneDefaults {
     /// Adds the parts that a scene lacks. `up` is the usual up axis of its format. With `dark`, a
     /// scene without lights is complete if it has a camera or emitters.
     pub fn complete(&self, scene: &mut Scene, up: Axis, dark: bool) {
-        let sides = Sides::new(self.up.unwrap_or(up));
-        let framed = scene.camera.is_none() || self.view.is_some() || self.turned.is_some();
+        let sides = ModelAxes::new(self.up.unwrap_or(up));
+        let framed = scene.camera.is_none() || self.view.is_some() || self.orbit_degrees.is_some();
         let lit = (dark && (scene.camera.is_some() || scene.emits_light()))
             || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
         if framed {
             scene.camera = Some(self.camera(scene, &sides, self.view.unwrap_or_default()));
         } else if let (Some(pose), true) = (scene.camera.as_ref().map(Projection::pose), self.fit) {
             let [forward, up] = [pose.direction, pose.up].map(|v| v.as_dvec3().normalize_or(sides.up));
-            scene.camera = Some(self.framed(scene, &sides, (-forward, up), true));
+            scene.camera = Some(self.framing_camera(scene, &sides, (-forward, up), true));
         }
-        give_material(scene);
-        let surrounded = self.environment.is_some() && self.studio.is_none();
+        assign_default_material(scene);
+        let surrounded = self.environment.is_some() && self.lighting.is_none();
         let missing = !lit && !surrounded && !self.own_light;
-        let studio = self.studio.or(missing.then(DefaultLighting::default));
+        let studio = self.lighting.or(missing.then(DefaultLighting::default));
         if let Some(studio) = studio {
             self.light(scene, &sides, studio, framed);
         }
@@ -141,55 +141,62 @@ impl SceneDefaults {
     }
 
     /// Creates a centred camera that shows the full scene.
-    fn camera(&self, scene: &Scene, sides: &Sides, view: View) -> Camera {
-        let &Sides { right, up, front } = sides;
+    fn camera(&self, scene: &Scene, sides: &ModelAxes, view: PresetView) -> Camera {
+        let &ModelAxes { right, up, front } = sides;
         let (back, above) = match view {
             // 35 degrees to the right and 22 degrees up.
-            View::ThreeQuarter => (0.927 * (0.819 * front + 0.574 * right) + 0.375 * up, up),
-            View::Front => (front, up),
-            View::Side => (right, up),
-            View::Top => (up, -front),
-            View::Iso => (front + right + up, up),
+            PresetView::ThreeQuarter => (0.927 * (0.819 * front + 0.574 * right) + 0.375 * up, up),
+            PresetView::Front => (front, up),
+            PresetView::Side => (right, up),
+            PresetView::Top => (up, -front),
+            PresetView::Iso => (front + right + up, up),
         };
-        self.framed(scene, sides, (back, above), view == View::ThreeQuarter)
+        self.framing_camera(scene, sides, (back, above), view == PresetView::ThreeQuarter)
     }
 
     /// Creates a camera that shows the full scene from a direction.
-    fn framed(&self, scene: &Scene, sides: &Sides, (back, above): (DVec3, DVec3), perspective: bool) -> Camera {
+    fn framing_camera(
+        &self,
+        scene: &Scene,
+        sides: &ModelAxes,
+        (back, above): (DVec3, DVec3),
+        perspective: bool,
+    ) -> Camera {
         let forward = -back.normalize();
         let across = forward.cross(above).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
         let upwards = across.cross(forward);
         let aspect = f64::from(self.aspect.unwrap_or(1.0)).clamp(1e-3, 1e3);
         // Half the width and height of the picture, whose larger side is from -1 to 1.
         let (wide, high) = (aspect.min(1.0), (1.0 / aspect).min(1.0));
-        let mut seen = VisibleExtent::new(half_angle() * FILLED * wide, half_angle() * FILLED * high);
-        let mut add = |p: DVec3| seen.add(p.dot(across), p.dot(upwards), p.dot(forward));
-        let axis = self.turned.map(|_| axis(scene, sides));
+        let mut extent = VisibleExtent::new(tan_half_angle() * FILL * wide, tan_half_angle() * FILL * high);
+        let mut add = |p: DVec3| extent.add(p.dot(across), p.dot(upwards), p.dot(forward));
+        let axis = self.orbit_degrees.map(|_| axis(scene, sides));
         match axis {
             None => points(scene, &mut add),
             // Add the points at all angles of the orbit.
             Some(axis) => points(scene, &mut |p| {
-                (0..PLACES)
-                    .for_each(|i| add(axis + turn(sides.up, 360.0 * f64::from(i) / f64::from(PLACES)) * (p - axis)));
+                (0..ORBIT_STEPS).for_each(|i| {
+                    add(axis + rotation(sides.up, 360.0 * f64::from(i) / f64::from(ORBIT_STEPS)) * (p - axis))
+                });
             }),
         }
-        let turned = turn(sides.up, f64::from(self.turned.unwrap_or(0.0)));
+        let turned = rotation(sides.up, f64::from(self.orbit_degrees.unwrap_or(0.0)));
         let (direction, up) = ((turned * forward).as_vec3(), (turned * above).as_vec3());
         let middle = axis.unwrap_or_default();
         let place =
             |[x, y, z]: [f64; 3]| (middle + turned * (x * across + y * upwards + z * forward - middle)).as_vec3();
         if perspective {
-            return PerspectiveCamera { center: place(seen.eye()), direction, up, angle: ANGLE }.into();
+            return PerspectiveCamera { center: place(extent.perspective_eye()), direction, up, angle: ANGLE }.into();
         }
-        let [half_x, half_y] = seen.half_sizes();
-        let size = (2.0 * (half_x / wide).max(half_y / high) / FILLED) as f32;
+        let [half_x, half_y] = extent.half_sizes();
+        let size = (2.0 * (half_x / wide).max(half_y / high) / FILL) as f32;
         let size = if size > 0.0 { size } else { 2.0 };
-        let center = place(seen.before(f64::from(size)));
+        let center = place(extent.orthographic_eye(f64::from(size)));
         OrthographicCamera { center, direction, up, size, ..Default::default() }.into()
     }
 
     /// Adds light and, with a default camera, a ground.
-    fn light(&self, scene: &mut Scene, sides: &Sides, studio: DefaultLighting, framed: bool) {
+    fn light(&self, scene: &mut Scene, sides: &ModelAxes, studio: DefaultLighting, framed: bool) {
         if studio == DefaultLighting::None {
             scene.lights.get_or_insert_default();
             return;
@@ -238,7 +245,7 @@ impl SceneDefaults {
             let plane = Plane { normal: sides.up.as_vec3(), offset: lowest as f32 };
             if lowest.is_finite() {
                 let material = Some(scene.add_material(Material::Principled(Box::new(material))));
-                let node = Node::Primitive(plane.into());
+                let node = ObjectKind::Primitive(plane.into());
                 let objects = &mut scene.root.get_or_insert_default().objects;
                 objects.push(Object { node, material, span: Span::default() });
             }
@@ -255,7 +262,7 @@ impl Scene {
 }
 
 /// Point on the axis about which the camera orbits: the centre of the bounds.
-fn axis(scene: &Scene, sides: &Sides) -> DVec3 {
+fn axis(scene: &Scene, sides: &ModelAxes) -> DVec3 {
     let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     points(scene, &mut |p| (least, most) = (least.min(p), most.max(p)));
     let middle = 0.5 * (least + most);
@@ -263,7 +270,7 @@ fn axis(scene: &Scene, sides: &Sides) -> DVec3 {
 }
 
 /// Rotation about an axis by degrees.
-fn turn(axis: DVec3, degrees: f64) -> DMat3 {
+fn rotation(axis: DVec3, degrees: f64) -> DMat3 {
     let (sin, cos) = fp::sin_cos_degrees(degrees);
     let (x, y, z) = (axis.x, axis.y, axis.z);
     let cross = DMat3::from_cols(DVec3::new(0.0, z, -y), DVec3::new(-z, 0.0, x), DVec3::new(y, -x, 0.0));
@@ -271,17 +278,17 @@ fn turn(axis: DVec3, degrees: f64) -> DMat3 {
 }
 
 /// Tangent of half the field of view.
-fn half_angle() -> f64 {
+fn tan_half_angle() -> f64 {
     crate::math::fp::tan_f64(f64::from(ANGLE).to_radians() / 2.0)
 }
 
 /// Assigns a neutral material to objects without one.
-fn give_material(scene: &mut Scene) {
+fn assign_default_material(scene: &mut Scene) {
     fn visit(object: &mut Object, material: u32, used: &mut bool) {
         match &mut object.node {
-            Node::Group(group) => group.objects.iter_mut().for_each(|object| visit(object, material, used)),
-            Node::Transform(_, inner) => visit(inner, material, used),
-            Node::Solid(_, parts) => parts.iter_mut().for_each(|part| visit(part, material, used)),
+            ObjectKind::Group(group) => group.objects.iter_mut().for_each(|object| visit(object, material, used)),
+            ObjectKind::Transform(_, inner) => visit(inner, material, used),
+            ObjectKind::Solid(_, parts) => parts.iter_mut().for_each(|part| visit(part, material, used)),
             _ if object.material.is_none() => {
                 object.material = Some(material);
                 *used = true;
@@ -342,7 +349,7 @@ impl VisibleExtent {
 
     /// Position of a perspective camera. Each side plane of the frustum touches a point: x = A + s
     /// z and x = B - s z meet in the eye.
-    fn eye(&self) -> [f64; 3] {
+    fn perspective_eye(&self) -> [f64; 3] {
         if self.is_empty() {
             return [0.0, 0.0, -4.0];
         }
@@ -360,7 +367,7 @@ impl VisibleExtent {
     }
 
     /// Position of a parallel camera at a distance in front of all points.
-    fn before(&self, distance: f64) -> [f64; 3] {
+    fn orthographic_eye(&self, distance: f64) -> [f64; 3] {
         if self.is_empty() {
             return [0.0; 3];
         }

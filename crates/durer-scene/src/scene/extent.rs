@@ -1,6 +1,6 @@
 //! Extent of a scene, computed from its description.
 
-use super::{MatrixOp, MatrixRules, Node, Object, Scene};
+use super::{MatrixOp, MatrixRules, Object, ObjectKind, Scene};
 use crate::math::Vec3;
 use crate::shape::Shape;
 use glam::{DAffine3, DVec3};
@@ -14,33 +14,33 @@ pub fn points(scene: &Scene, found: &mut dyn FnMut(DVec3)) {
 }
 
 /// Calls `found` with points whose convex hull contains one object, in its own space.
-pub fn of(scene: &Scene, object: &Object, found: &mut dyn FnMut(DVec3)) {
+pub fn object_points(scene: &Scene, object: &Object, found: &mut dyn FnMut(DVec3)) {
     visit(scene, object, DAffine3::IDENTITY, found);
 }
 
 fn visit(scene: &Scene, object: &Object, to_world: DAffine3, found: &mut dyn FnMut(DVec3)) {
     let mut offer = |p: Vec3| found(to_world.transform_point3(p.as_dvec3()));
     match &object.node {
-        Node::Group(group) => group.objects.iter().for_each(|object| visit(scene, object, to_world, found)),
-        Node::Transform(ops, inner) => {
+        ObjectKind::Group(group) => group.objects.iter().for_each(|object| visit(scene, object, to_world, found)),
+        ObjectKind::Transform(ops, inner) => {
             visit(scene, inner, to_world * MatrixOp::product(ops, MatrixRules::default()), found)
         }
-        Node::Solid(_, parts) => parts.iter().for_each(|part| visit(scene, part, to_world, found)),
-        Node::Mesh(mesh) => {
+        ObjectKind::Solid(_, parts) => parts.iter().for_each(|part| visit(scene, part, to_world, found)),
+        ObjectKind::Mesh(mesh) => {
             let Some(data) = scene.assets.meshes.get(&mesh.obj_file.path) else { return };
             // Unused vertices do not count.
             let mut used = vec![false; data.positions.len()];
             data.triangles.iter().flatten().for_each(|&index| used[index as usize] = true);
             data.positions.iter().zip(used).filter(|(_, used)| *used).for_each(|(p, _)| offer(*p));
         }
-        Node::Primitive(shape) => {
+        ObjectKind::Primitive(shape) => {
             let Some(bounds) = shape.bounds().filter(|bounds| !bounds.is_empty()) else { return };
             for corner in 0..8 {
                 let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
                 offer(Vec3::new(pick(0), pick(1), pick(2)));
             }
         }
-        Node::Voxels(grid, _) => [grid.min, grid.max].into_iter().for_each(offer),
-        Node::HeightField(field) => [field.min, field.max].into_iter().for_each(offer),
+        ObjectKind::Voxels(grid, _) => [grid.min, grid.max].into_iter().for_each(offer),
+        ObjectKind::HeightField(field) => [field.min, field.max].into_iter().for_each(offer),
     }
 }

@@ -33,9 +33,9 @@ pub struct MatrixRules {
     pub matrix_on_left: bool,
     /// True if the product of the matrices of one transform loses its shear: it is decomposed into
     /// translation, rotation and scale.
-    pub dropped_shear: bool,
+    pub drop_shear: bool,
     /// True if a transform whose determinant is almost 0 is ignored.
-    pub dropped_tiny: bool,
+    pub ignore_tiny: bool,
 }
 
 impl MatrixOp {
@@ -77,8 +77,8 @@ impl MatrixOp {
             _ => product * op.matrix(),
         });
         match () {
-            () if rules.dropped_tiny && is_tiny(product) => DAffine3::IDENTITY,
-            () if rules.dropped_shear => without_shear(product),
+            () if rules.ignore_tiny && is_tiny(product) => DAffine3::IDENTITY,
+            () if rules.drop_shear => without_shear(product),
             () => product,
         }
     }
@@ -86,7 +86,7 @@ impl MatrixOp {
     /// True if the product of the matrices of one transform counts as singular: its determinant is
     /// at most the rounding error of 1 in single precision.
     pub fn is_tiny(ops: &[MatrixOp], rules: MatrixRules) -> bool {
-        is_tiny(MatrixOp::product(ops, MatrixRules { dropped_shear: false, dropped_tiny: false, ..rules }))
+        is_tiny(MatrixOp::product(ops, MatrixRules { drop_shear: false, ignore_tiny: false, ..rules }))
     }
 }
 

@@ -13,14 +13,14 @@ use crate::camera::Camera;
 use crate::describe::{Constraint, FileName, described};
 use crate::dialect::set;
 use crate::light::Light;
-use crate::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid};
+use crate::material::{ColorNoise, HairMaterial, PatternMaterial, PhongMaterial, PrincipledMaterial};
 use crate::math::Vec3;
 use crate::medium::Fog;
 use crate::shape::{HeightField, MeshData, Primitive, Sphere, TriangleMesh, VoxelGrid};
 use crate::texture::CieSky;
 use crate::texture::almanac::{self, Moment};
 use crate::texture::cie_sky::OVERCAST;
-pub use assets::{Assets, NamedTexture, Picture, PictureBytes};
+pub use assets::{Assets, NamedTexture, PictureBytes, TextureImage};
 pub use builder::{MaterialId, MeshId, SceneBuilder};
 use durer_diag::Span;
 use glam::{DAffine3, DMat4};
@@ -30,7 +30,7 @@ use std::sync::Arc;
 
 pub use validate::MAX_NESTING;
 
-pub use defaults::{Axis, DefaultLighting, SceneDefaults, View};
+pub use defaults::{Axis, DefaultLighting, PresetView, SceneDefaults};
 
 described! {
     /// Background seen by rays that hit nothing, and ambient light.
@@ -52,32 +52,32 @@ described! {
         /// in cd/m^2; set `--exposure`, for example to -13.
         sun: Option<Vec3> = None, optional, Constraint::NonZero, ["sun" in set::DURER];
         /// Altitude of the sun, in degrees above the horizon; an alternative to `sun`.
-        sun_altitude: Option<f32> = None, optional, Constraint::From(-90.0, 90.0), ["sunAltitude" in set::DURER];
+        sun_altitude: Option<f32> = None, optional, Constraint::Within(-90.0, 90.0), ["sunAltitude" in set::DURER];
         /// Azimuth of the sun, in degrees from north (-z) towards east (x): 180 is south.
         sun_azimuth: Option<f32> = None, optional, Constraint::Any, ["sunAzimuth" in set::DURER];
         /// Latitude, in degrees north of the equator; together with date and time, an alternative
         /// to `sun`.
-        latitude: Option<f32> = None, optional, Constraint::From(-90.0, 90.0), ["latitude" in set::DURER];
+        latitude: Option<f32> = None, optional, Constraint::Within(-90.0, 90.0), ["latitude" in set::DURER];
         /// Longitude, in degrees east of Greenwich.
-        longitude: Option<f32> = None, optional, Constraint::From(-360.0, 360.0), ["longitude" in set::DURER];
+        longitude: Option<f32> = None, optional, Constraint::Within(-360.0, 360.0), ["longitude" in set::DURER];
         /// Year, month and day.
         date: Option<Vec3> = None, optional, Constraint::Counts(9999), ["date" in set::DURER];
         /// Hours, minutes and seconds of the local clock.
         time: Option<Vec3> = None, optional, Constraint::Any, ["time" in set::DURER];
         /// Offset of the local clock from UTC in hours, including daylight saving time; default 0.
-        time_zone: Option<f32> = None, optional, Constraint::From(-14.0, 14.0), ["timeZone" in set::DURER];
+        time_zone: Option<f32> = None, optional, Constraint::Within(-14.0, 14.0), ["timeZone" in set::DURER];
         /// Turbidity of the air: 2 is clear, 3 average, 10 hazy; default 3.
         turbidity: Option<f32> = None, optional, Constraint::Positive, ["turbidity" in set::DURER];
         /// Number of a CIE standard sky, from 1 to 16 (1 overcast, 5 uniform, 12 clear, 16
         /// traditional overcast), which lights the scene in cd/m^2, without direct sunlight. All
         /// except 1, 3, 5 and 16 need the position of the sun, set by `sun`.
-        cie_sky: Option<u32> = None, optional, Constraint::Numbered(OVERCAST), ["cieSky" in set::DURER];
+        cie_sky: Option<u32> = None, optional, Constraint::OneTo(OVERCAST), ["cieSky" in set::DURER];
         /// Luminance of the CIE sky at the zenith, in cd/m^2; default 10000.
         zenith_luminance: Option<f32> = None, optional, Constraint::Positive, ["zenithLuminance" in set::DURER];
         /// Fraction of the light from sun and sky that the ground below the horizon reflects. The
         /// default is 0.2 with a CIE sky; with a clear sky, the ground has a fifth of the zenith's
         /// light by default.
-        ground_reflectance: Option<f32> = None, optional, Constraint::Share, ["groundReflectance" in set::DURER];
+        ground_reflectance: Option<f32> = None, optional, Constraint::UnitInterval, ["groundReflectance" in set::DURER];
         /// Rotation of the environment about y, in degrees.
         environment_rotation: Option<f32> = None, optional, Constraint::Any, ["environmentRotation" in set::DURER];
         /// Factor on the environment.
@@ -96,7 +96,7 @@ impl Background {
     /// # Errors
     ///
     /// A message if the sun's position is given twice, incompletely, or by an invalid date or time.
-    pub fn way_to_sun(&self) -> Result<Option<Vec3>, String> {
+    pub fn sun_direction(&self) -> Result<Option<Vec3>, String> {
         let angles = [("sunAltitude", self.sun_altitude.is_some()), ("sunAzimuth", self.sun_azimuth.is_some())];
         let clock = [
             ("latitude", self.latitude.is_some()),
@@ -106,16 +106,19 @@ impl Background {
             ("timeZone", self.time_zone.is_some()),
         ];
         let direct = [("sun", self.sun.is_some())];
-        let given = |words: &[(&'static str, bool)]| words.iter().find(|(_, given)| *given).map(|(word, _)| *word);
+        let first_set =
+            |words: &[(&'static str, bool)]| words.iter().find(|(_, first_set)| *first_set).map(|(word, _)| *word);
         if let [first, second, ..] =
-            [given(&direct), given(&angles), given(&clock)].into_iter().flatten().collect::<Vec<_>>()[..]
+            [first_set(&direct), first_set(&angles), first_set(&clock)].into_iter().flatten().collect::<Vec<_>>()[..]
         {
             return Err(format!("the sun's position is given twice, by `{first}` and by `{second}`"));
         }
         // A clock without a time zone is in UTC.
-        let missing = |words: &[(&'static str, bool)]| match given(words) {
-            Some(word) => match words.iter().find(|(word, given)| !given && *word != "timeZone") {
-                Some((lacking, _)) => Err(format!("the sun's position is incomplete: `{word}` needs `{lacking}`")),
+        let missing = |words: &[(&'static str, bool)]| match first_set(words) {
+            Some(word) => match words.iter().find(|(word, first_set)| !first_set && *word != "timeZone") {
+                Some((missing_field, _)) => {
+                    Err(format!("the sun's position is incomplete: `{word}` needs `{missing_field}`"))
+                }
                 None => Ok(()),
             },
             None => Ok(()),
@@ -123,7 +126,7 @@ impl Background {
         missing(&angles)?;
         missing(&clock)?;
         if let (Some(altitude), Some(azimuth)) = (self.sun_altitude, self.sun_azimuth) {
-            return Ok(Some(almanac::way([altitude, azimuth].map(f64::from))));
+            return Ok(Some(almanac::direction([altitude, azimuth].map(f64::from))));
         }
         let (Some(latitude), Some(longitude), Some(date), Some(time)) =
             (self.latitude, self.longitude, self.date, self.time)
@@ -141,12 +144,12 @@ impl Background {
         if !moment.exists() {
             return Err("this `date` does not exist: write year, month and day, for example 2026 6 21".into());
         }
-        Ok(Some(almanac::way(almanac::sun([latitude, longitude].map(f64::from), &moment))))
+        Ok(Some(almanac::direction(almanac::sun([latitude, longitude].map(f64::from), &moment))))
     }
 
     /// Direction to the sun, of any length; `None` if the background has no sun, or an invalid one.
     pub fn sun(&self) -> Option<Vec3> {
-        self.way_to_sun().ok().flatten()
+        self.sun_direction().ok().flatten()
     }
 
     /// True if the sun is below the horizon, so that neither the sun nor its sky emits light.
@@ -161,7 +164,7 @@ impl Background {
     }
 
     /// Rotation of the environment about y in degrees, and its scale.
-    pub fn environment_placing(&self) -> (f32, Vec3) {
+    pub fn environment_transform(&self) -> (f32, Vec3) {
         (self.environment_rotation.unwrap_or(0.0), self.environment_scale.unwrap_or(Vec3::ONE))
     }
 }
@@ -213,7 +216,7 @@ pub struct Scene {
     pub up: Option<Axis>,
     /// Lumens per watt of red, green and blue, if its light is in watts.
     #[serde(skip)]
-    pub lumens: Option<Vec3>,
+    pub lumens_per_watt: Option<Vec3>,
     /// Span of the camera.
     #[serde(skip)]
     pub camera_span: Span,
@@ -224,9 +227,9 @@ pub struct Scene {
 
 impl Scene {
     /// Adds a mesh in memory under a unique `name`, and returns a node that uses it.
-    pub fn add_mesh(&mut self, name: &str, data: Arc<MeshData>, span: Span) -> Node {
+    pub fn add_mesh(&mut self, name: &str, data: Arc<MeshData>, span: Span) -> ObjectKind {
         self.assets.meshes.insert(name.to_string(), data);
-        Node::Mesh(TriangleMesh { obj_file: FileName { path: name.to_string(), span } })
+        ObjectKind::Mesh(TriangleMesh { obj_file: FileName { path: name.to_string(), span } })
     }
 
     /// True if the scene has lights or materials that only a path tracer can render: principled or
@@ -273,7 +276,7 @@ pub enum Material {
     /// Fibres of hair or fur.
     Hair(HairMaterial),
     /// Two earlier materials mixed by a pattern, and the transform from world to pattern space.
-    Solid(Solid, Vec<MatrixOp>),
+    Solid(PatternMaterial, Vec<MatrixOp>),
 }
 
 /// Group of objects in a scene; the root of the scene is such a group.
@@ -287,7 +290,7 @@ pub struct Group {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Object {
     /// Kind of object.
-    pub node: Node,
+    pub node: ObjectKind,
     /// Number of the current material; `None` before the first one.
     pub material: Option<u32>,
     /// Span of its keyword in the file.
@@ -297,19 +300,19 @@ pub struct Object {
 
 impl Object {
     /// Wraps the object in a transform; returns it unchanged for the identity.
-    pub fn placed(self, map: DAffine3) -> Object {
+    pub fn transformed(self, map: DAffine3) -> Object {
         if map == DAffine3::IDENTITY {
             return self;
         }
         let matrix = DMat4::from(map).transpose().to_cols_array().map(|x| x as f32);
         let (material, span) = (self.material, self.span);
-        Object { node: Node::Transform(vec![MatrixOp::Matrix(matrix)], Box::new(self)), material, span }
+        Object { node: ObjectKind::Transform(vec![MatrixOp::Matrix(matrix)], Box::new(self)), material, span }
     }
 }
 
 /// Kind of an object in a scene: a group, a transform, a shape, a mesh or a solid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Node {
+pub enum ObjectKind {
     /// Group of objects.
     Group(Group),
     /// An object transformed by M = M1 M2 ...
@@ -323,13 +326,13 @@ pub enum Node {
     /// A terrain from a picture.
     HeightField(HeightField),
     /// Closed objects combined into one solid.
-    Solid(Operation, Vec<Object>),
+    Solid(CsgOperation, Vec<Object>),
 }
 
 /// Boolean operation that combines closed objects into a solid. A group counts as the union of its
 /// objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Operation {
+pub enum CsgOperation {
     /// Union of the parts. Unless it is nested in another operation, the surfaces inside other
     /// parts are kept.
     Union,
@@ -343,37 +346,37 @@ pub enum Operation {
     Xor,
 }
 
-impl Operation {
+impl CsgOperation {
     /// Operations with their keywords.
-    pub const ALL: [(&str, Operation); 5] = [
-        ("Union", Operation::Union),
-        ("Merge", Operation::Merge),
-        ("Intersection", Operation::Intersection),
-        ("Difference", Operation::Difference),
-        ("Xor", Operation::Xor),
+    pub const ALL: [(&str, CsgOperation); 5] = [
+        ("Union", CsgOperation::Union),
+        ("Merge", CsgOperation::Merge),
+        ("Intersection", CsgOperation::Intersection),
+        ("Difference", CsgOperation::Difference),
+        ("Xor", CsgOperation::Xor),
     ];
 
     /// Description of the points inside the result.
     pub fn doc(self) -> &'static str {
         match self {
-            Operation::Union => {
+            CsgOperation::Union => {
                 "Union of the parts. Unless it is nested in another operation, the surfaces inside other parts are \
                  kept."
             }
-            Operation::Merge => "Union of the parts as one solid, without the surfaces inside other parts.",
-            Operation::Intersection => "Intersection of all parts.",
-            Operation::Difference => "The first part minus all others.",
-            Operation::Xor => "Points inside an odd number of parts.",
+            CsgOperation::Merge => "Union of the parts as one solid, without the surfaces inside other parts.",
+            CsgOperation::Intersection => "Intersection of all parts.",
+            CsgOperation::Difference => "The first part minus all others.",
+            CsgOperation::Xor => "Points inside an odd number of parts.",
         }
     }
 
     /// Returns the operation with a keyword.
-    pub fn from_keyword(word: &str) -> Option<Operation> {
-        Operation::ALL.iter().find(|row| row.0 == word).map(|row| row.1)
+    pub fn from_keyword(word: &str) -> Option<CsgOperation> {
+        CsgOperation::ALL.iter().find(|row| row.0 == word).map(|row| row.1)
     }
 
     /// Keyword of the operation.
     pub fn keyword(self) -> &'static str {
-        Operation::ALL[self as usize].0
+        CsgOperation::ALL[self as usize].0
     }
 }

@@ -3,9 +3,9 @@
 //! Readers check their input and report errors with spans. This check is for scenes built in code,
 //! and for formats whose readers do not check values.
 
-use super::{Background, Group, Material, MatrixOp, NamedTexture, Node, Object, Scene, Spanned};
+use super::{Background, Group, Material, MatrixOp, NamedTexture, Object, ObjectKind, Scene, Spanned};
 use crate::camera::Projection;
-use crate::describe::{DescribedList, Value};
+use crate::describe::{DescribedKind, Value};
 use crate::dialect::{Dialect, Quirk, QuirkSet};
 use crate::light::Illuminate;
 use crate::material::Pattern;
@@ -37,28 +37,29 @@ impl Scene {
     /// Version of [`Scene::validate`] that accepts values that official programs render, if
     /// [`Quirk::AnyValues`] is set.
     pub fn validate_as(&self, compat: QuirkSet) -> Diagnostics {
-        let any = compat & Quirk::AnyValues.bit() != 0;
-        let mut found = Validator { diagnostics: Diagnostics::default(), materials: self.materials.len(), any };
+        let accept_any = compat & Quirk::AnyValues.bit() != 0;
+        let mut validator =
+            Validator { diagnostics: Diagnostics::default(), materials: self.materials.len(), accept_any };
         if let Some(camera) = &self.camera {
-            found.item(camera, self.camera_span, Projection::validate);
+            validator.check_fields(camera, self.camera_span, Projection::validate);
         }
-        found.item(&self.background, self.background_span, Background::validate);
+        validator.check_fields(&self.background, self.background_span, Background::validate);
         if let Some(Spanned { value, span }) = &self.fog {
-            found.item(value, *span, Fog::validate);
+            validator.check_fields(value, *span, Fog::validate);
         }
         for Spanned { value, span } in self.lights.iter().flatten() {
-            found.item(value, *span, Illuminate::validate);
+            validator.check_fields(value, *span, Illuminate::validate);
         }
-        self.materials.iter().for_each(|material| found.material(material));
-        found.nested_materials(self);
+        self.materials.iter().for_each(|material| validator.material(material));
+        validator.nested_materials(self);
         if let Some(root) = &self.root {
-            found.group(root, 1);
+            validator.group(root, 1);
         }
-        found.assets(self);
-        if self.lumens.is_some_and(|lumens| !lumens.is_finite()) {
-            found.error("Scene: lumens must be finite", Span::default());
+        validator.assets(self);
+        if self.lumens_per_watt.is_some_and(|lumens| !lumens.is_finite()) {
+            validator.error("Scene: lumens must be finite", Span::default());
         }
-        found.diagnostics
+        validator.diagnostics
     }
 }
 
@@ -70,8 +71,8 @@ impl Background {
     /// A message if the sun's position is given twice, incompletely or by an invalid time, or if a
     /// standard sky that depends on the sun has none.
     pub fn validate(&self) -> Result<(), String> {
-        let sun = self.way_to_sun()?;
-        let lacks_sun = self.environment.is_none() && self.cie_sky.is_some_and(CieSky::wants_sun) && sun.is_none();
+        let sun = self.sun_direction()?;
+        let lacks_sun = self.environment.is_none() && self.cie_sky.is_some_and(CieSky::depends_on_sun) && sun.is_none();
         match lacks_sun {
             true => Err("this `cieSky` needs the position of the sun, but the background has no `sun`".into()),
             false => Ok(()),
@@ -102,7 +103,7 @@ struct Validator {
     /// Number of materials of the scene.
     materials: usize,
     /// True to accept values that official programs render.
-    any: bool,
+    accept_any: bool,
 }
 
 impl Validator {
@@ -113,21 +114,26 @@ impl Validator {
     /// Reports an error, with its span if it has one: scenes built in code have none.
     fn report(&mut self, error: Diagnostic, span: Span) {
         let error = error.code("bad-value");
-        self.diagnostics.push(if span.is_place() { error.at(span) } else { error });
+        self.diagnostics.push(if span.has_position() { error.at(span) } else { error });
     }
 
     /// Checks the fields of an object one by one and, if all are valid, in combination.
-    fn item<T: DescribedList>(&mut self, entry: &T, span: Span, together: impl FnOnce(&T) -> Result<(), String>) {
+    fn check_fields<T: DescribedKind>(
+        &mut self,
+        entry: &T,
+        span: Span,
+        together: impl FnOnce(&T) -> Result<(), String>,
+    ) {
         let name = entry.keyword(Dialect::Durer);
         let mut is_valid = true;
         for (at, field) in entry.fields().iter().enumerate() {
             let Some(value) = entry.get(at) else { continue };
-            if let Err(violation) = field.rule.validate(&value) {
-                if self.any && field.drawn_anyway(name, &value).as_ref() == Some(&value) {
+            if let Err(violation) = field.constraint.validate(&value) {
+                if self.accept_any && field.quirk_value(name, &value).as_ref() == Some(&value) {
                     continue;
                 }
                 is_valid = false;
-                self.error(format!("{name}: {}{} {violation}", field.name, shown(&value)), span);
+                self.error(format!("{name}: {}{} {violation}", field.name, format_value(&value)), span);
             }
         }
         if is_valid && let Err(message) = together(entry) {
@@ -142,15 +148,15 @@ impl Validator {
         let span = material.span;
         match &material.value {
             Material::Phong(phong, noise) => {
-                self.item(&**phong, span, |_| Ok(()));
+                self.check_fields(&**phong, span, |_| Ok(()));
                 if let Some(noise) = noise {
-                    self.item(noise, span, |_| Ok(()));
+                    self.check_fields(noise, span, |_| Ok(()));
                 }
             }
-            Material::Principled(layers) => self.item(&**layers, span, |_| Ok(())),
-            Material::Hair(hair) => self.item(hair, span, |_| Ok(())),
+            Material::Principled(layers) => self.check_fields(&**layers, span, |_| Ok(())),
+            Material::Hair(hair) => self.check_fields(hair, span, |_| Ok(())),
             Material::Solid(solid, ops) => {
-                self.item(solid, span, |_| Ok(()));
+                self.check_fields(solid, span, |_| Ok(()));
                 self.matrices(ops, span);
             }
         }
@@ -191,24 +197,24 @@ impl Validator {
         }
         if let Some(index) = object.material
             && index as usize >= self.materials
-            && !span.is_place()
+            && !span.has_position()
         {
             let count = self.materials;
             self.error(format!("an object has material {index}, but the scene has {count}, counted from 0"), span);
         }
         match &object.node {
-            Node::Group(group) => self.group(group, level + 1),
-            Node::Transform(ops, inner) => {
+            ObjectKind::Group(group) => self.group(group, level + 1),
+            ObjectKind::Transform(ops, inner) => {
                 self.matrices(ops, span);
                 self.object(inner, level + 1);
             }
-            Node::Solid(_, parts) => parts.iter().for_each(|part| self.object(part, level + 1)),
-            Node::Primitive(shape) => self.item(shape, span, Shape::validate),
-            Node::Mesh(mesh) => self.item(mesh, span, |_| Ok(())),
-            Node::HeightField(field) => self.item(field, span, |field| field.validate()),
-            Node::Voxels(grid, balls) => {
-                self.item(grid, span, |grid| grid.validate());
-                balls.iter().for_each(|ball| self.item(ball, span, Shape::validate));
+            ObjectKind::Solid(_, parts) => parts.iter().for_each(|part| self.object(part, level + 1)),
+            ObjectKind::Primitive(shape) => self.check_fields(shape, span, Shape::validate),
+            ObjectKind::Mesh(mesh) => self.check_fields(mesh, span, |_| Ok(())),
+            ObjectKind::HeightField(field) => self.check_fields(field, span, |field| field.validate()),
+            ObjectKind::Voxels(grid, balls) => {
+                self.check_fields(grid, span, |grid| grid.validate());
+                balls.iter().for_each(|ball| self.check_fields(ball, span, Shape::validate));
             }
         }
     }
@@ -233,13 +239,13 @@ impl Validator {
         }
         for (name, picture) in &scene.assets.pictures {
             let texture = NamedTexture::with_mapping(name, picture.bytes.path(), picture.mapping);
-            self.item(&texture, Span::default(), |_| Ok(()));
+            self.check_fields(&texture, Span::default(), |_| Ok(()));
         }
     }
 }
 
 /// Formats a short value for a message, with a leading space; empty for rows.
-fn shown(value: &Value) -> String {
+fn format_value(value: &Value) -> String {
     match value {
         Value::Float(x) => format!(" {x}"),
         Value::Int(i) => format!(" {i}"),

@@ -16,7 +16,7 @@ impl Chord {
 
     /// Clips to an interval whose ends have these faces.
     #[inline(always)]
-    pub(super) fn between(mut self, enter: f64, leave: f64, faces: [u32; 2]) -> Chord {
+    pub(super) fn clip(mut self, enter: f64, leave: f64, faces: [u32; 2]) -> Chord {
         if enter > self.enter.0 {
             self.enter = (enter, faces[0] as f32);
         }
@@ -36,7 +36,7 @@ impl Chord {
             return self;
         }
         let (a, b) = ((low - o) / d, (high - o) / d);
-        if d > 0.0 { self.between(a, b, faces) } else { self.between(b, a, [faces[1], faces[0]]) }
+        if d > 0.0 { self.clip(a, b, faces) } else { self.clip(b, a, [faces[1], faces[0]]) }
     }
 
     /// Clips to the interval where a t^2 + 2 b t + c is not positive, for a > 0 or a = b = 0.
@@ -45,7 +45,7 @@ impl Chord {
         if a > 0.0
             && let Some((enter, leave)) = crate::math::roots::quadratic(a, b, c)
         {
-            return self.between(enter, leave, [face; 2]);
+            return self.clip(enter, leave, [face; 2]);
         }
         self.leave.0 = if a > 0.0 || c > 0.0 || c.is_nan() { f64::NEG_INFINITY } else { self.leave.0 };
         self
@@ -59,10 +59,10 @@ impl Chord {
 
     /// Offers both ends as crossings.
     #[inline(always)]
-    pub(super) fn offer(self, offer: &mut impl FnMut(f64, Vec2)) {
+    pub(super) fn emit_ends(self, emit: &mut impl FnMut(f64, Vec2)) {
         if self.ends().is_some() {
             for (t, face) in [self.enter, self.leave] {
-                offer(t, Vec2::new(face, 0.0));
+                emit(t, Vec2::new(face, 0.0));
             }
         }
     }

@@ -2,10 +2,10 @@
 
 use super::chord::Chord;
 use super::cylinder::{Axis, BASE, SIDE, TOP};
-use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, exactly, inset, tessellate};
+use super::{Flip, MeshData, Plane, Shape, ShapeHit, SurfacePoint, exact_offsets, inset, tessellate};
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
-use crate::light::{EmitterShape, Placement};
+use crate::light::{EmitterShape, EmitterTransform};
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
 use glam::DVec3;
 
@@ -48,23 +48,23 @@ impl Cone {
     /// linear in the height.
     ///
     /// Steep lines are inside both nappes of the double cone; only the nappe where r > 0 is kept.
-    fn cut(&self, axis: &Axis, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+    fn cut(&self, axis: &Axis, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         let (shift, near) = axis.near(line);
         let ((y, o), (slope, d)) = (axis.split(near.origin), axis.split(near.dir));
         let (r, dr) = (self.radius_at(axis, y), self.growth(axis) * slope);
         let (a, b, c) = (d.length_squared() - dr * dr, o.dot(d) - r * dr, o.length_squared() - r * r);
         let slabbed = Chord::LINE.slab(y, slope, [0.0, axis.height], [BASE, TOP]);
         let chord = match roots::quadratic(a, b, c).filter(|_| a != 0.0) {
-            Some((first, second)) if a > 0.0 => slabbed.between(first, second, [SIDE; 2]),
-            Some((_, second)) if dr > 0.0 => slabbed.between(second, f64::INFINITY, [SIDE; 2]),
-            Some((first, _)) => slabbed.between(f64::NEG_INFINITY, first, [SIDE; 2]),
+            Some((first, second)) if a > 0.0 => slabbed.clip(first, second, [SIDE; 2]),
+            Some((_, second)) if dr > 0.0 => slabbed.clip(second, f64::INFINITY, [SIDE; 2]),
+            Some((first, _)) => slabbed.clip(f64::NEG_INFINITY, first, [SIDE; 2]),
             // Parallel to the side: a single crossing.
-            None if a == 0.0 && b > 0.0 => slabbed.between(f64::NEG_INFINITY, -0.5 * c / b, [SIDE; 2]),
-            None if a == 0.0 && b < 0.0 => slabbed.between(-0.5 * c / b, f64::INFINITY, [SIDE; 2]),
+            None if a == 0.0 && b > 0.0 => slabbed.clip(f64::NEG_INFINITY, -0.5 * c / b, [SIDE; 2]),
+            None if a == 0.0 && b < 0.0 => slabbed.clip(-0.5 * c / b, f64::INFINITY, [SIDE; 2]),
             None if a < 0.0 || a == 0.0 && c < 0.0 => slabbed,
             None => return,
         };
-        chord.offer(&mut |t, uv| offer(t + shift, uv));
+        chord.emit_ends(&mut |t, uv| emit(t + shift, uv));
     }
 }
 
@@ -73,8 +73,8 @@ impl Shape for Cone {
         Some(self.own_axis().bounds(self.radii()))
     }
 
-    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
-        self.cut(&self.own_axis(), line, offer);
+    fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
+        self.cut(&self.own_axis(), line, emit);
     }
 
     fn axis(&self) -> Option<Axis> {
@@ -82,19 +82,19 @@ impl Shape for Cone {
     }
 
     #[inline(always)]
-    fn crossings_about(&self, axis: Option<&Axis>, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+    fn crossings_about(&self, axis: Option<&Axis>, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         match axis {
-            Some(axis) => self.cut(axis, line, offer),
-            None => self.crossings(line, offer),
+            Some(axis) => self.cut(axis, line, emit),
+            None => self.crossings(line, emit),
         }
     }
 
     fn centered(&self) -> Option<(Self, Vec3)> {
-        let [base, top] = exactly([self.base, self.top], self.base)?;
+        let [base, top] = exact_offsets([self.base, self.top], self.base)?;
         Some((Cone { base, top, ..self.clone() }, self.base))
     }
 
-    fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface {
+    fn surface(&self, point: DVec3, crossing: &ShapeHit) -> SurfacePoint {
         let (axis, [base, top]) = (self.own_axis(), self.radii());
         if crossing.uv.x != SIDE as f32 {
             let face = crossing.uv.x as u32;
@@ -110,7 +110,7 @@ impl Shape for Cone {
         let curvature = 1.0 / r.max(1e-6 * largest);
         let position = axis.base + y * axis.dir + r * around;
         let floor = gamma(2) * (largest + axis.height) as f32;
-        Surface::new(position, normal, floor, axis.uv(around, y / axis.height)).curved(curvature)
+        SurfacePoint::new(position, normal, floor, axis.uv(around, y / axis.height)).curved(curvature)
     }
 
     fn inside(&self, point: DVec3) -> Option<bool> {
@@ -145,8 +145,8 @@ impl Shape for Cone {
         Vec::new()
     }
 
-    fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
-        EmitterShape::frustum(place, [self.base, self.top], [self.base_radius, self.top_radius])
+    fn emitter(&self, transform: &EmitterTransform) -> Option<(EmitterShape, Vec3)> {
+        EmitterShape::frustum(transform, [self.base, self.top], [self.base_radius, self.top_radius])
     }
 
     fn tangent(&self, point: Vec3) -> Option<Vec3> {
@@ -154,7 +154,7 @@ impl Shape for Cone {
     }
 
     fn to_mesh(&self) -> Option<MeshData> {
-        Some(tessellate::round([(self.base, self.base_radius), (self.top, self.top_radius)]))
+        Some(tessellate::frustum([(self.base, self.base_radius), (self.top, self.top_radius)]))
     }
 
     fn outline(&self, _: &Aabb) -> Option<Vec<Vec<Vec3>>> {

@@ -1,10 +1,10 @@
 //! The axis-aligned box.
 
 use super::chord::Chord;
-use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, exactly, inset, padded, tessellate};
+use super::{Flip, MeshData, Plane, Shape, ShapeHit, SurfacePoint, exact_offsets, inset, padded_box, tessellate};
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
-use crate::light::{Body, EmitterShape, Placement};
+use crate::light::{ClosedBody, EmitterShape, EmitterTransform};
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
 use glam::DVec3;
 
@@ -20,26 +20,26 @@ described! {
 
 impl Shape for Cuboid {
     fn bounds(&self) -> Option<Aabb> {
-        Some(padded(self.min.as_dvec3(), self.max.as_dvec3()))
+        Some(padded_box(self.min.as_dvec3(), self.max.as_dvec3()))
     }
 
     /// Clips the line by three slabs. Source: Kay and Kajiya, *Ray Tracing Complex Scenes*,
     /// SIGGRAPH 1986.
-    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+    fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         let (min, max) = (self.min.as_dvec3(), self.max.as_dvec3());
         let cut = |chord: Chord, axis: usize| {
             let faces = [2 * axis as u32, 2 * axis as u32 + 1];
             chord.slab(line.origin[axis], line.dir[axis], [min[axis], max[axis]], faces)
         };
-        (0..3).fold(Chord::LINE, cut).offer(offer);
+        (0..3).fold(Chord::LINE, cut).emit_ends(emit);
     }
 
     fn centered(&self) -> Option<(Self, Vec3)> {
-        let [min, max] = exactly([self.min, self.max], self.min)?;
+        let [min, max] = exact_offsets([self.min, self.max], self.min)?;
         Some((Cuboid { min, max }, self.min))
     }
 
-    fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface {
+    fn surface(&self, point: DVec3, crossing: &ShapeHit) -> SurfacePoint {
         let face = crossing.uv.x as usize;
         let (axis, high) = (face / 2 % 3, face % 2 == 1);
         let (min, max) = (self.min.as_dvec3(), self.max.as_dvec3());
@@ -50,7 +50,7 @@ impl Shape for Cuboid {
         let normal = if high { DVec3::AXES[axis] } else { -DVec3::AXES[axis] };
         let share = (p - min) / size;
         let uv = [(2, 1), (0, 2), (0, 1)].map(|(u, v)| Vec2::new(share[u] as f32, share[v] as f32))[axis];
-        Surface::new(p, normal, 0.0, uv)
+        SurfacePoint::new(p, normal, 0.0, uv)
     }
 
     fn inside(&self, point: DVec3) -> Option<bool> {
@@ -86,10 +86,10 @@ impl Shape for Cuboid {
         sides.map(|side| side.map(corner).to_vec()).to_vec()
     }
 
-    fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
+    fn emitter(&self, transform: &EmitterTransform) -> Option<(EmitterShape, Vec3)> {
         let half = 0.5 * (self.max - self.min);
         let axes = [half.x * Vec3::X, half.y * Vec3::Y, half.z * Vec3::Z];
-        EmitterShape::body(place, Body::Cube, 0.5 * (self.min + self.max), axes)
+        EmitterShape::body(transform, ClosedBody::Cube, 0.5 * (self.min + self.max), axes)
     }
 
     fn tangent(&self, _: Vec3) -> Option<Vec3> {
@@ -97,7 +97,7 @@ impl Shape for Cuboid {
     }
 
     fn to_mesh(&self) -> Option<MeshData> {
-        Some(tessellate::block(self.min, self.max))
+        Some(tessellate::cuboid(self.min, self.max))
     }
 
     fn outline(&self, _: &Aabb) -> Option<Vec<Vec<Vec3>>> {

@@ -2,11 +2,12 @@
 
 use super::chord::Chord;
 use super::{
-    Flip, INSET, MeshData, Plane, Shape, ShapeHit, Surface, Uv, disc_reach, exactly, inset, padded, tessellate,
+    Flip, INSET, MeshData, Plane, Shape, ShapeHit, SurfacePoint, Uv, disc_reach, exact_offsets, inset, padded_box,
+    tessellate,
 };
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
-use crate::light::{EmitterShape, Placement};
+use crate::light::{EmitterShape, EmitterTransform};
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
 use glam::{DVec2, DVec3};
 
@@ -67,24 +68,24 @@ impl Axis {
         let reach = disc_reach(self.dir);
         let top = self.base + self.height * self.dir;
         let (a, b) = (base_radius * reach, top_radius * reach);
-        padded((self.base - a).min(top - b), (self.base + a).max(top + b))
+        padded_box((self.base - a).min(top - b), (self.base + a).max(top + b))
     }
 
     /// Texture coordinates: the angle about the axis, and `v`.
     pub(super) fn uv(&self, around: DVec3, v: f64) -> Uv {
         let (x, z) = self.dir.any_orthonormal_pair();
-        Uv::Turned(DVec2::new(around.dot(x), around.dot(z)).as_vec2(), v.clamp(0.0, 1.0) as f32)
+        Uv::Angle(DVec2::new(around.dot(x), around.dot(z)).as_vec2(), v.clamp(0.0, 1.0) as f32)
     }
 
     /// Surface of a cap, a plane perpendicular to the axis.
-    pub(super) fn cap(&self, point: DVec3, face: u32, radius: f64) -> Surface {
+    pub(super) fn cap(&self, point: DVec3, face: u32, radius: f64) -> SurfacePoint {
         let (height, normal) = if face == TOP { (self.height, self.dir) } else { (0.0, -self.dir) };
         let (_, around) = self.split(point - self.base);
         let within = radius - f64::from(INSET * self.error(radius)).min(0.25 * radius);
         let position = self.base + height * self.dir + around.clamp_length_max(within);
         // Points on planes perpendicular to a tilted axis are accurate to double precision.
         let floor = 1e-14 * (self.base.abs().max_element() + self.height + radius);
-        Surface::new(position, normal, floor as f32, self.uv(around, around.length() / radius))
+        SurfacePoint::new(position, normal, floor as f32, self.uv(around, around.length() / radius))
     }
 }
 
@@ -95,7 +96,7 @@ impl Cylinder {
 
     /// Solves |q - (q·a) a|^2 = radius^2 for q relative to the base, a the axis, between two planes
     /// perpendicular to it.
-    fn cut(&self, axis: &Axis, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+    fn cut(&self, axis: &Axis, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         let (shift, near) = axis.near(line);
         let ((y, o), (slope, d)) = (axis.split(near.origin), axis.split(near.dir));
         let r = f64::from(self.radius);
@@ -108,7 +109,7 @@ impl Cylinder {
             return;
         }
         let chord = chord.slab(y, slope, [0.0, axis.height], [BASE, TOP]);
-        chord.offer(&mut |t, uv| offer(t + shift, uv));
+        chord.emit_ends(&mut |t, uv| emit(t + shift, uv));
     }
 }
 
@@ -117,8 +118,8 @@ impl Shape for Cylinder {
         Some(self.own_axis().bounds([f64::from(self.radius); 2]))
     }
 
-    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
-        self.cut(&self.own_axis(), line, offer);
+    fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
+        self.cut(&self.own_axis(), line, emit);
     }
 
     fn axis(&self) -> Option<Axis> {
@@ -126,19 +127,19 @@ impl Shape for Cylinder {
     }
 
     #[inline(always)]
-    fn crossings_about(&self, axis: Option<&Axis>, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+    fn crossings_about(&self, axis: Option<&Axis>, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         match axis {
-            Some(axis) => self.cut(axis, line, offer),
-            None => self.crossings(line, offer),
+            Some(axis) => self.cut(axis, line, emit),
+            None => self.crossings(line, emit),
         }
     }
 
     fn centered(&self) -> Option<(Self, Vec3)> {
-        let [base, top] = exactly([self.base, self.top], self.base)?;
+        let [base, top] = exact_offsets([self.base, self.top], self.base)?;
         Some((Cylinder { base, top, ..self.clone() }, self.base))
     }
 
-    fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface {
+    fn surface(&self, point: DVec3, crossing: &ShapeHit) -> SurfacePoint {
         let (axis, r) = (self.own_axis(), f64::from(self.radius));
         if crossing.uv.x != SIDE as f32 {
             return axis.cap(point, crossing.uv.x as u32, r);
@@ -148,7 +149,7 @@ impl Shape for Cylinder {
             (inset(y, axis.height, axis.error(r)), around.normalize_or(axis.dir.any_orthonormal_vector()));
         let position = axis.base + y * axis.dir + r * normal;
         let uv = axis.uv(normal, y / axis.height);
-        Surface::new(position, normal, gamma(2) * self.radius, uv).curved(1.0 / r)
+        SurfacePoint::new(position, normal, gamma(2) * self.radius, uv).curved(1.0 / r)
     }
 
     fn inside(&self, point: DVec3) -> Option<bool> {
@@ -180,8 +181,8 @@ impl Shape for Cylinder {
         Vec::new()
     }
 
-    fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
-        EmitterShape::frustum(place, [self.base, self.top], [self.radius; 2])
+    fn emitter(&self, transform: &EmitterTransform) -> Option<(EmitterShape, Vec3)> {
+        EmitterShape::frustum(transform, [self.base, self.top], [self.radius; 2])
     }
 
     fn tangent(&self, point: Vec3) -> Option<Vec3> {
@@ -189,7 +190,7 @@ impl Shape for Cylinder {
     }
 
     fn to_mesh(&self) -> Option<MeshData> {
-        Some(tessellate::round([(self.base, self.radius), (self.top, self.radius)]))
+        Some(tessellate::frustum([(self.base, self.radius), (self.top, self.radius)]))
     }
 
     fn outline(&self, _: &Aabb) -> Option<Vec<Vec<Vec3>>> {

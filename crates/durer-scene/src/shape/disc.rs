@@ -1,10 +1,10 @@
 //! The disc, optionally with a hole.
 
-use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, Uv, disc_reach, padded, tessellate};
+use super::{Flip, MeshData, Plane, Shape, ShapeHit, SurfacePoint, Uv, disc_reach, padded_box, tessellate};
 use crate::bsdf::Frame;
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
-use crate::light::{EmitterShape, Placement};
+use crate::light::{EmitterShape, EmitterTransform};
 use crate::math::{Aabb, Line, Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
@@ -32,16 +32,16 @@ impl Disc {
 impl Shape for Disc {
     fn bounds(&self) -> Option<Aabb> {
         let (center, reach) = (self.center.as_dvec3(), f64::from(self.radius) * disc_reach(self.unit_normal()));
-        Some(padded(center - reach, center + reach))
+        Some(padded_box(center - reach, center + reach))
     }
 
-    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+    fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         let (n, center) = (self.unit_normal(), self.center.as_dvec3());
         let t = n.dot(center - line.origin) / n.dot(line.dir);
         let distance = (line.at(t) - center).length();
         // For a parallel line t is infinite or NaN, and the comparison fails.
         if distance <= f64::from(self.radius) && distance >= f64::from(self.inner_radius) {
-            offer(t, Vec2::ZERO);
+            emit(t, Vec2::ZERO);
         }
     }
 
@@ -49,14 +49,14 @@ impl Shape for Disc {
         Some((Disc { center: Vec3::ZERO, ..self.clone() }, self.center))
     }
 
-    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
+    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> SurfacePoint {
         let (n, center, radius) = (self.unit_normal(), self.center.as_dvec3(), f64::from(self.radius));
         let q = point - center;
         let q = (q - n.dot(q) * n).clamp_length_max(radius);
         let (x, z) = n.any_orthonormal_pair();
         let floor = 1e-14 * (center.abs().max_element() + radius);
-        let uv = Uv::Turned(DVec2::new(q.dot(x), q.dot(z)).as_vec2(), (q.length() / radius) as f32);
-        Surface::new(center + q, n, floor as f32, uv)
+        let uv = Uv::Angle(DVec2::new(q.dot(x), q.dot(z)).as_vec2(), (q.length() / radius) as f32);
+        SurfacePoint::new(center + q, n, floor as f32, uv)
     }
 
     fn validate(&self) -> Result<(), String> {
@@ -87,12 +87,12 @@ impl Shape for Disc {
         Vec::new()
     }
 
-    fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
+    fn emitter(&self, transform: &EmitterTransform) -> Option<(EmitterShape, Vec3)> {
         let n = self.normal.normalize_or(Vec3::Y);
         let frame = Frame::around(n);
-        let axes = [frame.tangent, frame.bitangent].map(|axis| place.vector(self.radius * axis));
-        let ellipse = EmitterShape::Ellipse(place.point(self.center), axes, self.inner_radius / self.radius);
-        Some((ellipse, place.normal(n)))
+        let axes = [frame.tangent, frame.bitangent].map(|axis| transform.vector(self.radius * axis));
+        let ellipse = EmitterShape::Ellipse(transform.point(self.center), axes, self.inner_radius / self.radius);
+        Some((ellipse, transform.normal(n)))
     }
 
     fn tangent(&self, point: Vec3) -> Option<Vec3> {

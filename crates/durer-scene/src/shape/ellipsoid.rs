@@ -1,9 +1,9 @@
 //! The ellipsoid whose axes are parallel to the coordinate axes.
 
-use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, padded, tessellate, turn};
+use super::{Flip, MeshData, Plane, Shape, ShapeHit, SurfacePoint, angle_fraction, padded_box, tessellate};
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
-use crate::light::{Body, EmitterShape, Placement};
+use crate::light::{ClosedBody, EmitterShape, EmitterTransform};
 use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
 use glam::DVec3;
 
@@ -20,19 +20,19 @@ described! {
 impl Shape for Ellipsoid {
     fn bounds(&self) -> Option<Aabb> {
         let (center, radii) = (self.center.as_dvec3(), self.radii.as_dvec3());
-        Some(padded(center - radii, center + radii))
+        Some(padded_box(center - radii, center + radii))
     }
 
     /// Solves |(p - center) / radii|^2 = 1, measured from the point of the line nearest to the
     /// centre of the unit sphere.
-    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+    fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         let radii = self.radii.as_dvec3();
         let unit = Line { origin: (line.origin - self.center.as_dvec3()) / radii, dir: line.dir / radii };
         let shift = unit.nearest(DVec3::ZERO);
         let (o, d) = (unit.at(shift), unit.dir);
         if let Some((first, second)) = roots::quadratic(d.length_squared(), o.dot(d), o.length_squared() - 1.0) {
-            offer(first + shift, Vec2::ZERO);
-            offer(second + shift, Vec2::ZERO);
+            emit(first + shift, Vec2::ZERO);
+            emit(second + shift, Vec2::ZERO);
         }
     }
 
@@ -40,15 +40,15 @@ impl Shape for Ellipsoid {
         Some((Ellipsoid { center: Vec3::ZERO, ..self.clone() }, self.center))
     }
 
-    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
+    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> SurfacePoint {
         let (center, radii) = (self.center.as_dvec3(), self.radii.as_dvec3());
         let unit = ((point - center) / radii).normalize_or(DVec3::Z);
         // Longitude and latitude, as on a sphere.
         let v = fp::asin((unit.y as f32).clamp(-1.0, 1.0)) / std::f32::consts::PI + 0.5;
-        let uv = Vec2::new(turn(-unit.z, unit.x), v);
+        let uv = Vec2::new(angle_fraction(-unit.z, unit.x), v);
         let (least, largest) = (radii.min_element(), radii.max_element());
         let floor = gamma(2) * largest as f32;
-        Surface::new(center + radii * unit, unit / radii, floor, uv).curved(largest / (least * least))
+        SurfacePoint::new(center + radii * unit, unit / radii, floor, uv).curved(largest / (least * least))
     }
 
     fn inside(&self, point: DVec3) -> Option<bool> {
@@ -79,9 +79,9 @@ impl Shape for Ellipsoid {
         Vec::new()
     }
 
-    fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
+    fn emitter(&self, transform: &EmitterTransform) -> Option<(EmitterShape, Vec3)> {
         let axes = [self.radii.x * Vec3::X, self.radii.y * Vec3::Y, self.radii.z * Vec3::Z];
-        EmitterShape::body(place, Body::Ball, self.center, axes)
+        EmitterShape::body(transform, ClosedBody::Ball, self.center, axes)
     }
 
     fn tangent(&self, point: Vec3) -> Option<Vec3> {

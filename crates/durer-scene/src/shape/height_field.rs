@@ -53,9 +53,9 @@ impl HeightField {
         let line =
             |axis: usize, count: usize| (0..count).map(|i| self.min[axis] + size[axis] * share(i, count)).collect();
         heights.iter_mut().for_each(|height| *height = self.min.y + size.y * *height);
-        let middle = (self.min + 0.5 * size).with_y(self.min.y - self.depth);
+        let floor_center = (self.min + 0.5 * size).with_y(self.min.y - self.depth);
         let grid = HeightGrid::new(line(0, columns), line(2, rows), heights).ok()?;
-        middle.is_finite().then(|| Terrain { grid: Arc::new(grid), middle })
+        floor_center.is_finite().then(|| Terrain { grid: Arc::new(grid), floor_center })
     }
 }
 
@@ -75,7 +75,7 @@ pub struct Terrain {
     /// The terrain.
     grid: Arc<HeightGrid>,
     /// Centre of the floor.
-    middle: Vec3,
+    floor_center: Vec3,
 }
 
 impl Terrain {
@@ -97,18 +97,18 @@ impl Terrain {
     /// Bounds of terrain, walls and floor.
     pub fn bounds(&self) -> Aabb {
         let bounds = self.grid.bounds();
-        Aabb { min: bounds.min.min(self.middle), ..bounds }
+        Aabb { min: bounds.min.min(self.floor_center), ..bounds }
     }
 
     /// For each axis, true if `holds` is true for all coordinates along it.
     pub fn all_along(&self, holds: impl Fn(usize, f32) -> bool) -> [bool; 3] {
         let lists = [self.grid.xs(), self.grid.heights(), self.grid.zs()];
-        [0, 1, 2].map(|axis| holds(axis, self.middle[axis]) && lists[axis].iter().all(|x| holds(axis, *x)))
+        [0, 1, 2].map(|axis| holds(axis, self.floor_center[axis]) && lists[axis].iter().all(|x| holds(axis, *x)))
     }
 
     /// Returns the terrain translated by `-by`.
-    pub fn moved(&self, by: Vec3) -> Self {
-        Terrain { grid: Arc::new(self.grid.map(|axis, x| x - by[axis])), middle: self.middle - by }
+    pub fn translated(&self, by: Vec3) -> Self {
+        Terrain { grid: Arc::new(self.grid.map(|axis, x| x - by[axis])), floor_center: self.floor_center - by }
     }
 
     fn sides(&self) -> [usize; 2] {
@@ -116,7 +116,7 @@ impl Terrain {
     }
 
     /// Number of vertices of the border.
-    fn around(&self) -> usize {
+    fn border_len(&self) -> usize {
         let [columns, rows] = self.sides();
         2 * (columns + rows) - 4
     }
@@ -135,10 +135,10 @@ impl Terrain {
     }
 
     /// Index of the grid point at or above a vertex; `None` for the centre of the floor.
-    fn crossing_at(&self, vertex: u32) -> Option<usize> {
+    fn grid_point(&self, vertex: u32) -> Option<usize> {
         match (vertex as usize).checked_sub(self.grid.heights().len()) {
             None => Some(vertex as usize),
-            Some(below) => (below < self.around()).then(|| self.border(below) as usize),
+            Some(below) => (below < self.border_len()).then(|| self.border(below) as usize),
         }
     }
 
@@ -146,7 +146,7 @@ impl Terrain {
     /// border above them.
     pub fn uv(&self, vertex: u32) -> Vec2 {
         let [columns, rows] = self.sides();
-        let Some(vertex) = self.crossing_at(vertex) else { return Vec2::splat(0.5) };
+        let Some(vertex) = self.grid_point(vertex) else { return Vec2::splat(0.5) };
         Vec2::new(share(vertex % columns, columns), 1.0 - share(vertex / columns, rows))
     }
 
@@ -166,9 +166,9 @@ impl Terrain {
     /// Hash of the whole terrain.
     pub fn digest(&self) -> Digest {
         let mut hasher = Digest::hasher();
-        for list in [self.grid.xs(), self.grid.zs(), self.grid.heights(), &self.middle.to_array()] {
-            hasher.count(list.len() as u64);
-            list.iter().for_each(|x| hasher.word(x.to_bits()));
+        for list in [self.grid.xs(), self.grid.zs(), self.grid.heights(), &self.floor_center.to_array()] {
+            hasher.add_u64(list.len() as u64);
+            list.iter().for_each(|x| hasher.add_u32(x.to_bits()));
         }
         hasher.finish()
     }
@@ -176,16 +176,16 @@ impl Terrain {
 
 impl Triangles for Terrain {
     fn len(&self) -> usize {
-        self.grid.triangle_count() + 3 * self.around()
+        self.grid.triangle_count() + 3 * self.border_len()
     }
 
     fn vertices(&self) -> usize {
-        self.grid.heights().len() + self.around() + 1
+        self.grid.heights().len() + self.border_len() + 1
     }
 
     #[inline]
     fn triangle(&self, number: usize) -> [u32; 3] {
-        let (crossings, around) = (self.grid.heights().len(), self.around());
+        let (crossings, around) = (self.grid.heights().len(), self.border_len());
         let Some(other) = number.checked_sub(self.grid.triangle_count()) else { return self.grid.triangle(number) };
         // Find the step along the border, and the vertices below its ends.
         let step = if other < 2 * around { other / 2 } else { other - 2 * around };
@@ -200,10 +200,10 @@ impl Triangles for Terrain {
 
     #[inline]
     fn position(&self, vertex: u32) -> Vec3 {
-        match self.crossing_at(vertex) {
+        match self.grid_point(vertex) {
             Some(crossing) if crossing == vertex as usize => self.grid.point(crossing),
-            Some(crossing) => self.grid.point(crossing).with_y(self.middle.y),
-            None => self.middle,
+            Some(crossing) => self.grid.point(crossing).with_y(self.floor_center.y),
+            None => self.floor_center,
         }
     }
 
@@ -215,11 +215,11 @@ impl Triangles for Terrain {
         }
     }
 
-    fn ordered(&self) -> usize {
+    fn ordered_count(&self) -> usize {
         self.grid.triangle_count()
     }
 
-    fn ordered_around(&self, vertex: u32, mut offer: impl FnMut(u32)) {
+    fn ordered_around(&self, vertex: u32, mut emit: impl FnMut(u32)) {
         let ([columns, rows], vertex) = (self.sides(), vertex as usize);
         let (column, row) = (vertex % columns, vertex / columns);
         // For each cell at the vertex: its offset from the vertex, and the corner that the vertex
@@ -233,7 +233,7 @@ impl Triangles for Terrain {
             {
                 let cell = y * (columns - 1) + x;
                 let both = corners.into_iter().enumerate();
-                both.for_each(|(half, corner)| _ = corner.map(|k| offer((3 * (2 * cell + half) + k) as u32)));
+                both.for_each(|(half, corner)| _ = corner.map(|k| emit((3 * (2 * cell + half) + k) as u32)));
             }
         }
     }

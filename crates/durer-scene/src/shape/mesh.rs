@@ -1,10 +1,10 @@
 //! Triangle meshes: indexed triangles with optional normals and texture coordinates.
 
 use super::height_field::Terrain;
-pub use super::mesh_data::{MeshData, NO_INDEX, Triangles, loosened, place_key};
-use super::normals::{Normals, made, of_terrain};
+pub use super::mesh_data::{MeshData, NO_INDEX, Triangles, enlarged, position_key};
+use super::normals::{Normals, computed, of_terrain};
 use super::triangle::triangle_surface;
-use super::{ShapeHit, Surface};
+use super::{ShapeHit, SurfacePoint};
 use crate::describe::{Constraint, FileName, described};
 use crate::dialect::{MeshNormals, set};
 use crate::math::{Aabb, Vec2, Vec3};
@@ -25,23 +25,23 @@ described! {
 /// normals.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    form: Form,
-    /// Computed normals, which replace those of `form`.
-    made: Option<Normals>,
+    storage: TriangleStorage,
+    /// Computed normals, which replace those of `storage`.
+    computed_normals: Option<Normals>,
     center: Vec3,
 }
 
 /// Storage of the triangles of a mesh: lists, or a terrain that computes them.
 #[derive(Clone, Debug)]
-enum Form {
+enum TriangleStorage {
     /// Lists, shared with the scene description unless they were changed.
     Lists(Arc<MeshData>),
     Terrain(Terrain),
 }
 
-impl Default for Form {
+impl Default for TriangleStorage {
     fn default() -> Self {
-        Form::Lists(Arc::default())
+        TriangleStorage::Lists(Arc::default())
     }
 }
 
@@ -50,35 +50,39 @@ impl Mesh {
     /// normals, or for all triangles unless `file_normals` is set.
     pub fn new(data: impl Into<Arc<MeshData>>, rule: MeshNormals, file_normals: bool) -> Self {
         let data = data.into();
-        let made = made(&data, rule, file_normals);
-        Mesh { form: Form::Lists(data), made, center: Vec3::ZERO }
+        let computed_normals = computed(&data, rule, file_normals);
+        Mesh { storage: TriangleStorage::Lists(data), computed_normals, center: Vec3::ZERO }
     }
 
     /// Creates a mesh from a height field, with normals computed by `rule`.
     pub fn of_terrain(terrain: Terrain, rule: MeshNormals) -> Self {
-        let made = of_terrain(&terrain, rule);
-        Mesh { form: Form::Terrain(terrain), made, center: Vec3::ZERO }
+        let computed_normals = of_terrain(&terrain, rule);
+        Mesh { storage: TriangleStorage::Terrain(terrain), computed_normals, center: Vec3::ZERO }
     }
 
     /// Moves a mesh that is [far](Aabb::is_far) from the origin to the origin, along those axes
     /// where `f32` represents the result exactly.
     pub fn centered(mut self) -> Self {
-        let bounds = match &self.form {
-            Form::Lists(data) => Aabb::around(data.positions.iter().copied()),
-            Form::Terrain(terrain) => terrain.bounds(),
+        let bounds = match &self.storage {
+            TriangleStorage::Lists(data) => Aabb::around(data.positions.iter().copied()),
+            TriangleStorage::Terrain(terrain) => terrain.bounds(),
         };
         if bounds.is_far() {
             let middle = bounds.center();
             let stays = |axis: usize, x: f32| f64::from(x - middle[axis]) == f64::from(x) - f64::from(middle[axis]);
-            let by = match &self.form {
-                Form::Lists(data) => [0, 1, 2].map(|axis| data.positions.iter().all(|p| stays(axis, p[axis]))),
-                Form::Terrain(terrain) => terrain.all_along(stays),
+            let by = match &self.storage {
+                TriangleStorage::Lists(data) => {
+                    [0, 1, 2].map(|axis| data.positions.iter().all(|p| stays(axis, p[axis])))
+                }
+                TriangleStorage::Terrain(terrain) => terrain.all_along(stays),
             };
             self.center = Vec3::from_array([0, 1, 2].map(|axis| if by[axis] { middle[axis] } else { 0.0 }));
             if self.center != Vec3::ZERO {
-                match &mut self.form {
-                    Form::Lists(data) => Arc::make_mut(data).positions.iter_mut().for_each(|p| *p -= self.center),
-                    Form::Terrain(terrain) => *terrain = terrain.moved(self.center),
+                match &mut self.storage {
+                    TriangleStorage::Lists(data) => {
+                        Arc::make_mut(data).positions.iter_mut().for_each(|p| *p -= self.center)
+                    }
+                    TriangleStorage::Terrain(terrain) => *terrain = terrain.translated(self.center),
                 }
             }
         }
@@ -87,31 +91,31 @@ impl Mesh {
 
     /// True if no triangle has vertex normals.
     pub fn is_flat(&self) -> bool {
-        (0..self.len() as u32).all(|part| self.corner_normals(part).is_none())
+        (0..self.len() as u32).all(|triangle| self.corner_normals(triangle).is_none())
     }
 
     /// Returns the vertex normals, and three indices for each triangle; both may be empty.
     pub fn normals(&self) -> (&[Vec3], Cow<'_, [[u32; 3]]>) {
-        match (&self.made, &self.form) {
-            (Some(made), Form::Lists(data)) => (&made.values, made.listed(&**data)),
-            (Some(made), Form::Terrain(terrain)) => (&made.values, made.listed(terrain)),
-            (None, Form::Lists(data)) => (&data.normals, Cow::Borrowed(&data.triangle_normals)),
-            (None, Form::Terrain(_)) => (&[], Cow::Borrowed(&[])),
+        match (&self.computed_normals, &self.storage) {
+            (Some(made), TriangleStorage::Lists(data)) => (&made.values, made.listed(&**data)),
+            (Some(made), TriangleStorage::Terrain(terrain)) => (&made.values, made.listed(terrain)),
+            (None, TriangleStorage::Lists(data)) => (&data.normals, Cow::Borrowed(&data.triangle_normals)),
+            (None, TriangleStorage::Terrain(_)) => (&[], Cow::Borrowed(&[])),
         }
     }
 
     /// Returns the mesh with normals computed by `rule`, replacing its normals.
     pub fn with_normals(&self, rule: MeshNormals) -> Mesh {
-        let mesh = match &self.form {
-            Form::Lists(data) => Mesh::new(data.clone(), rule, false),
-            Form::Terrain(terrain) => Mesh::of_terrain(terrain.clone(), rule),
+        let mesh = match &self.storage {
+            TriangleStorage::Lists(data) => Mesh::new(data.clone(), rule, false),
+            TriangleStorage::Terrain(terrain) => Mesh::of_terrain(terrain.clone(), rule),
         };
         Mesh { center: self.center, ..mesh }
     }
 
     /// Returns the mesh with every triangle extended to a parallelogram by a second triangle; the
     /// normals are extrapolated.
-    pub fn parallelograms(&self) -> Mesh {
+    pub fn with_parallelograms(&self) -> Mesh {
         let mut data = self.to_data().into_owned();
         let (normals, triangle_normals) = self.normals();
         (data.normals, data.triangle_normals) = (normals.to_vec(), triangle_normals.into_owned());
@@ -128,12 +132,12 @@ impl Mesh {
         halves(&mut data.triangle_normals, &mut data.normals);
         (data.triangle_uvs, data.vertices) = Default::default();
         (data.colors, data.second_uvs, data.tangents) = Default::default();
-        Mesh { form: Form::Lists(data.into()), made: None, center: self.center }
+        Mesh { storage: TriangleStorage::Lists(data.into()), computed_normals: None, center: self.center }
     }
 
     /// Returns the mesh with every triangle scaled by `times` about one of its corners; the normals
     /// are extrapolated.
-    pub fn grown(&self, corner: usize, times: f32) -> Mesh {
+    pub fn with_scaled_triangles(&self, corner: usize, times: f32) -> Mesh {
         let mut data = self.to_data().into_owned();
         let (normals, triangle_normals) = self.normals();
         (data.normals, data.triangle_normals) = (normals.to_vec(), triangle_normals.into_owned());
@@ -151,7 +155,7 @@ impl Mesh {
         }
         (data.triangle_uvs, data.vertices) = Default::default();
         (data.colors, data.second_uvs, data.tangents) = Default::default();
-        Mesh { form: Form::Lists(data.into()), made: None, center: self.center }
+        Mesh { storage: TriangleStorage::Lists(data.into()), computed_normals: None, center: self.center }
     }
 
     /// Hash of the whole mesh.
@@ -159,26 +163,26 @@ impl Mesh {
         let (normals, triangles) = self.normals();
         let (normals, triangles) = (normals.to_vec(), triangles.into_owned());
         let own = MeshData { normals, triangles, ..MeshData::default() };
-        let of_form = match &self.form {
-            Form::Lists(data) => data.digest(),
-            Form::Terrain(terrain) => terrain.digest(),
+        let of_form = match &self.storage {
+            TriangleStorage::Lists(data) => data.digest(),
+            TriangleStorage::Terrain(terrain) => terrain.digest(),
         };
         Digest::of(format!("{of_form} {} {:?}", own.digest(), self.center).as_bytes())
     }
 
     /// Returns the mesh as lists, whose normals may differ from [`Mesh::normals`].
     pub fn to_data(&self) -> Cow<'_, MeshData> {
-        match &self.form {
-            Form::Lists(data) => Cow::Borrowed(data),
-            Form::Terrain(terrain) => Cow::Owned(terrain.to_data()),
+        match &self.storage {
+            TriangleStorage::Lists(data) => Cow::Borrowed(data),
+            TriangleStorage::Terrain(terrain) => Cow::Owned(terrain.to_data()),
         }
     }
 
     /// Builds a BVH over the triangles.
     pub fn tree(&self, quality: BuildQuality) -> TriangleBvh {
-        match &self.form {
-            Form::Lists(data) => TriangleBvh::build(&data.positions, &data.triangles, quality),
-            Form::Terrain(terrain) => terrain.tree(quality),
+        match &self.storage {
+            TriangleStorage::Lists(data) => TriangleBvh::build(&data.positions, &data.triangles, quality),
+            TriangleStorage::Terrain(terrain) => terrain.tree(quality),
         }
     }
 
@@ -188,7 +192,7 @@ impl Mesh {
     }
 
     /// Returns the texture coordinates if they are equal at all corners.
-    pub fn only_uv(&self) -> Option<Vec2> {
+    pub fn constant_uv(&self) -> Option<Vec2> {
         let uvs = &self.lists()?.uvs;
         let first = *uvs.first()?;
         uvs.iter().all(|uv| (*uv - first).abs().max_element() < 1e-6).then_some(first)
@@ -196,13 +200,13 @@ impl Mesh {
 
     /// True if the mesh is a height field.
     pub fn is_terrain(&self) -> bool {
-        matches!(self.form, Form::Terrain(_))
+        matches!(self.storage, TriangleStorage::Terrain(_))
     }
 
     fn lists(&self) -> Option<&MeshData> {
-        match &self.form {
-            Form::Lists(data) => Some(data),
-            Form::Terrain(_) => None,
+        match &self.storage {
+            TriangleStorage::Lists(data) => Some(data),
+            TriangleStorage::Terrain(_) => None,
         }
     }
 
@@ -213,9 +217,9 @@ impl Mesh {
 
     /// Number of triangles.
     pub fn len(&self) -> usize {
-        match &self.form {
-            Form::Lists(data) => data.triangles.len(),
-            Form::Terrain(terrain) => terrain.len(),
+        match &self.storage {
+            TriangleStorage::Lists(data) => data.triangles.len(),
+            TriangleStorage::Terrain(terrain) => terrain.len(),
         }
     }
 
@@ -226,10 +230,10 @@ impl Mesh {
 
     /// Size in memory in bytes, without the acceleration structure.
     pub fn bytes(&self) -> usize {
-        let made = self.made.as_ref();
-        let own = match &self.form {
-            Form::Lists(data) => data.bytes(),
-            Form::Terrain(terrain) => terrain.grid().memory_usage(),
+        let made = self.computed_normals.as_ref();
+        let own = match &self.storage {
+            TriangleStorage::Lists(data) => data.bytes(),
+            TriangleStorage::Terrain(terrain) => terrain.grid().memory_usage(),
         };
         own + made.map_or(0, Normals::bytes)
     }
@@ -241,10 +245,10 @@ impl Mesh {
         // A height field with walls and floor is closed.
         self.lists()?;
         let mut edges: Vec<([[u32; 3]; 2], [Vec3; 2])> = Vec::with_capacity(3 * self.len());
-        for part in 0..self.len() as u32 {
-            let [a, b, c] = self.corners(part);
+        for triangle in 0..self.len() as u32 {
+            let [a, b, c] = self.corners(triangle);
             for [p, q] in [[a, b], [b, c], [c, a]] {
-                let (k, l) = (place_key(p), place_key(q));
+                let (k, l) = (position_key(p), position_key(q));
                 if k != l {
                     edges.push(([k.min(l), k.max(l)], [p, q]));
                 }
@@ -256,64 +260,66 @@ impl Mesh {
 
     /// Returns the corners of a triangle.
     #[inline]
-    pub fn corners(&self, part: u32) -> [Vec3; 3] {
-        match &self.form {
-            Form::Lists(data) => data.corners(part as usize),
-            Form::Terrain(terrain) => terrain.corners(part as usize),
+    pub fn corners(&self, triangle: u32) -> [Vec3; 3] {
+        match &self.storage {
+            TriangleStorage::Lists(data) => data.corners(triangle as usize),
+            TriangleStorage::Terrain(terrain) => terrain.corners(triangle as usize),
         }
     }
 
     /// Interpolated normal of a triangle at a crossing, not normalized; `None` if the triangle is
     /// flat.
-    pub fn mixed_normal(&self, part: u32, uv: Vec2) -> Option<Vec3> {
-        let [a, b, c] = self.corner_normals(part)?.map(Vec3::normalize_or_zero);
+    pub fn interpolated_normal(&self, triangle: u32, uv: Vec2) -> Option<Vec3> {
+        let [a, b, c] = self.corner_normals(triangle)?.map(Vec3::normalize_or_zero);
         Some((1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c)
     }
 
     /// True if triangles may have vertex normals.
     pub fn has_normals(&self) -> bool {
-        self.made.is_some() || self.lists().is_some_and(|data| !data.normals.is_empty())
+        self.computed_normals.is_some() || self.lists().is_some_and(|data| !data.normals.is_empty())
     }
 
     /// Returns the normals at a triangle's corners, if it has any.
     #[inline]
-    pub fn corner_normals(&self, part: u32) -> Option<[Vec3; 3]> {
-        match (&self.made, &self.form) {
-            (Some(made), Form::Lists(data)) => made.of_triangle(&**data, part as usize),
-            (Some(made), Form::Terrain(terrain)) => made.of_triangle(terrain, part as usize),
-            (None, Form::Lists(data)) => attribute(&data.triangle_normals, &data.normals, part),
-            (None, Form::Terrain(_)) => None,
+    pub fn corner_normals(&self, triangle: u32) -> Option<[Vec3; 3]> {
+        match (&self.computed_normals, &self.storage) {
+            (Some(made), TriangleStorage::Lists(data)) => made.of_triangle(&**data, triangle as usize),
+            (Some(made), TriangleStorage::Terrain(terrain)) => made.of_triangle(terrain, triangle as usize),
+            (None, TriangleStorage::Lists(data)) => attribute(&data.triangle_normals, &data.normals, triangle),
+            (None, TriangleStorage::Terrain(_)) => None,
         }
     }
 
     /// Returns the texture coordinates at a triangle's corners, if it has any.
     #[inline]
-    fn corner_uvs(&self, part: u32) -> Option<[Vec2; 3]> {
-        match &self.form {
-            Form::Lists(data) => attribute(&data.triangle_uvs, &data.uvs, part),
-            Form::Terrain(terrain) => Some(terrain.triangle(part as usize).map(|vertex| terrain.uv(vertex))),
+    fn corner_uvs(&self, triangle: u32) -> Option<[Vec2; 3]> {
+        match &self.storage {
+            TriangleStorage::Lists(data) => attribute(&data.triangle_uvs, &data.uvs, triangle),
+            TriangleStorage::Terrain(terrain) => {
+                Some(terrain.triangle(triangle as usize).map(|vertex| terrain.uv(vertex)))
+            }
         }
     }
 
     /// Interpolated vertex colour and opacity at a point of a triangle.
-    fn color(&self, part: u32, barycentric: Vec3) -> Option<[f32; 4]> {
+    fn color(&self, triangle: u32, barycentric: Vec3) -> Option<[f32; 4]> {
         let data = self.lists()?;
-        let [a, b, c] = attribute(&data.triangles, &data.colors, part)?;
+        let [a, b, c] = attribute(&data.triangles, &data.colors, triangle)?;
         let Vec3 { x, y, z } = barycentric;
         Some(std::array::from_fn(|i| x * a[i] + y * b[i] + z * c[i]))
     }
 
     /// Interpolated second texture coordinates at a point of a triangle.
-    pub fn second_uv(&self, part: u32, barycentric: Vec3) -> Option<Vec2> {
+    pub fn second_uv(&self, triangle: u32, barycentric: Vec3) -> Option<Vec2> {
         let data = self.lists()?;
-        let [a, b, c] = attribute(&data.triangles, &data.second_uvs, part)?;
+        let [a, b, c] = attribute(&data.triangles, &data.second_uvs, triangle)?;
         Some(barycentric.x * a + barycentric.y * b + barycentric.z * c)
     }
 
     /// Directions of increasing u and v at a point of a triangle: from the file's tangents, or else
     /// from the triangle's texture coordinates.
-    pub fn tangents(&self, part: u32, barycentric: Vec3, normal: Vec3, second: bool) -> Option<[Vec3; 2]> {
-        let tangents = self.lists().and_then(|data| attribute(&data.triangles, &data.tangents, part));
+    pub fn tangents(&self, triangle: u32, barycentric: Vec3, normal: Vec3, second: bool) -> Option<[Vec3; 2]> {
+        let tangents = self.lists().and_then(|data| attribute(&data.triangles, &data.tangents, triangle));
         if let Some(corners) = tangents.filter(|_| !second) {
             let [a, b, c] = corners.map(|[x, y, z, _]| Vec3::new(x, y, z));
             let tangent = barycentric.x * a + barycentric.y * b + barycentric.z * c;
@@ -321,16 +327,16 @@ impl Mesh {
                 return Some([tangent, corners[0][3] * normal.cross(tangent)]);
             }
         }
-        self.derivatives(part, second)
+        self.derivatives(triangle, second)
     }
 
     /// Partial derivatives of the position with respect to u and v on a triangle.
-    pub fn derivatives(&self, part: u32, second: bool) -> Option<[Vec3; 2]> {
+    pub fn derivatives(&self, triangle: u32, second: bool) -> Option<[Vec3; 2]> {
         let [a, b, c] = match second {
-            true => self.lists().and_then(|data| attribute(&data.triangles, &data.second_uvs, part))?,
-            false => self.corner_uvs(part)?,
+            true => self.lists().and_then(|data| attribute(&data.triangles, &data.second_uvs, triangle))?,
+            false => self.corner_uvs(triangle)?,
         };
-        let [p, q, r] = self.corners(part);
+        let [p, q, r] = self.corners(triangle);
         let (along, across) = (b - a, c - a);
         let area = along.perp_dot(across);
         let u = ((q - p) * across.y - (r - p) * along.y) / area;
@@ -340,21 +346,21 @@ impl Mesh {
 
     /// Computes the surface of a triangle at a crossing.
     #[inline]
-    pub fn surface(&self, part: u32, crossing: &ShapeHit) -> Surface {
+    pub fn surface(&self, triangle: u32, crossing: &ShapeHit) -> SurfacePoint {
         // Load everything that may miss the cache before starting any computation that depends on
         // it.
-        let (corners, normals) = (self.corners(part), self.corner_normals(part));
-        let uvs = self.corner_uvs(part);
+        let (corners, normals) = (self.corners(triangle), self.corner_normals(triangle));
+        let uvs = self.corner_uvs(triangle);
         let mut surface = triangle_surface(corners, normals, crossing.uv);
         let barycentric = surface.barycentric;
         surface.uv = uvs.map(|[a, b, c]| barycentric.x * a + barycentric.y * b + barycentric.z * c).into();
-        surface.color = self.color(part, barycentric).unwrap_or([1.0; 4]);
+        surface.color = self.color(triangle, barycentric).unwrap_or([1.0; 4]);
         surface
     }
 }
 
 /// Values of an attribute at the corners of a triangle, if it has all of them.
-fn attribute<T: Copy>(indices: &[[u32; 3]], values: &[T], part: u32) -> Option<[T; 3]> {
-    let [a, b, c] = *indices.get(part as usize)?;
+fn attribute<T: Copy>(indices: &[[u32; 3]], values: &[T], triangle: u32) -> Option<[T; 3]> {
+    let [a, b, c] = *indices.get(triangle as usize)?;
     Some([*values.get(a as usize)?, *values.get(b as usize)?, *values.get(c as usize)?])
 }

@@ -7,7 +7,7 @@ use crate::source::Digest;
 pub const NO_INDEX: u32 = u32::MAX;
 
 /// Key of a position: equal for corners at the same position, where zeros of both signs are equal.
-pub fn place_key(p: Vec3) -> [u32; 3] {
+pub fn position_key(p: Vec3) -> [u32; 3] {
     (p + 0.0).to_array().map(f32::to_bits)
 }
 
@@ -68,7 +68,7 @@ pub trait Triangles: Sync {
     }
 
     /// Number of leading triangles whose corners [`Triangles::ordered_around`] finds without lists.
-    fn ordered(&self) -> usize {
+    fn ordered_count(&self) -> usize {
         0
     }
 
@@ -189,20 +189,20 @@ impl MeshData {
             (self.tangents.len(), &mut self.tangents.iter().flatten().copied()),
         ];
         for (count, values) in floats {
-            hasher.count(count as u64);
-            values.for_each(|value| hasher.word(value.to_bits()));
+            hasher.add_u64(count as u64);
+            values.for_each(|value| hasher.add_u32(value.to_bits()));
         }
         for list in [&self.triangles, &self.triangle_uvs, &self.triangle_normals, &self.vertices] {
-            hasher.count(list.len() as u64);
-            list.iter().flatten().for_each(|&index| hasher.word(index));
+            hasher.add_u64(list.len() as u64);
+            list.iter().flatten().for_each(|&index| hasher.add_u32(index));
         }
-        hasher.count(self.flat.into());
+        hasher.add_u64(self.flat.into());
         hasher.finish()
     }
 
     /// Assigns to every corner the normal with its position index; returns false if there are fewer
     /// normals than positions.
-    pub fn give_normals_by_vertex(&mut self) -> bool {
+    pub fn use_normals_by_vertex(&mut self) -> bool {
         let enough = self.normals.len() >= self.positions.len();
         if enough {
             self.triangle_normals = self.triangles.clone();
@@ -210,9 +210,9 @@ impl MeshData {
         enough
     }
 
-    /// Separates all triangles and enlarges each of them slightly; see [`loosened`].
-    pub fn loosen(&mut self) {
-        let corners = |t: &[u32; 3]| loosened(t.map(|i| self.positions[i as usize]));
+    /// Separates all triangles and enlarges each of them slightly; see [`enlarged`].
+    pub fn separate_and_enlarge(&mut self) {
+        let corners = |t: &[u32; 3]| enlarged(t.map(|i| self.positions[i as usize]));
         self.positions = self.triangles.iter().flat_map(corners).collect();
         fn apart<T: Copy>(values: &mut Vec<T>, triangles: &[[u32; 3]]) {
             if !values.is_empty() {
@@ -229,7 +229,7 @@ impl MeshData {
 
 /// Returns the triangle of all points whose barycentric coordinates are at least -0.00001: the
 /// original triangle enlarged about its centroid by three times that.
-pub fn loosened([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
+pub fn enlarged([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
     const SLACK: f64 = 1e-5;
     let corners = [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()];
     let centroid = (corners[0] + corners[1] + corners[2]) / 3.0;

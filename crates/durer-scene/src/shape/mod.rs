@@ -27,7 +27,7 @@ pub mod uv;
 pub mod voxels;
 
 use crate::describe::described_list;
-use crate::light::{EmitterShape, Placement};
+use crate::light::{EmitterShape, EmitterTransform};
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, fp, gamma};
 pub use cone::Cone;
 pub use cuboid::Cuboid;
@@ -62,17 +62,17 @@ macro_rules! delegate {
             fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
                 match self { $(Primitive::$variant(s) => s.intersect(ray),)+ }
             }
-            fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
-                match self { $(Primitive::$variant(s) => s.crossings(line, offer),)+ }
+            fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
+                match self { $(Primitive::$variant(s) => s.crossings(line, emit),)+ }
             }
             fn axis(&self) -> Option<Axis> {
                 match self { $(Primitive::$variant(s) => Shape::axis(s),)+ }
             }
             #[inline(always)]
-            fn crossings_about(&self, axis: Option<&Axis>, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
-                match self { $(Primitive::$variant(s) => s.crossings_about(axis, line, offer),)+ }
+            fn crossings_about(&self, axis: Option<&Axis>, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
+                match self { $(Primitive::$variant(s) => s.crossings_about(axis, line, emit),)+ }
             }
-            fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface {
+            fn surface(&self, point: DVec3, crossing: &ShapeHit) -> SurfacePoint {
                 match self { $(Primitive::$variant(s) => s.surface(point, crossing),)+ }
             }
             fn inside(&self, point: DVec3) -> Option<bool> {
@@ -96,8 +96,8 @@ macro_rules! delegate {
             fn polygons(&self) -> Vec<Vec<Vec3>> {
                 match self { $(Primitive::$variant(s) => s.polygons(),)+ }
             }
-            fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
-                match self { $(Primitive::$variant(s) => s.emitter(place),)+ }
+            fn emitter(&self, transform: &EmitterTransform) -> Option<(EmitterShape, Vec3)> {
+                match self { $(Primitive::$variant(s) => s.emitter(transform),)+ }
             }
             fn tangent(&self, point: Vec3) -> Option<Vec3> {
                 match self { $(Primitive::$variant(s) => s.tangent(point),)+ }
@@ -153,11 +153,11 @@ pub struct ShapeHit {
 /// Point where a ray crosses the surface of a shape, with its normals and error bounds, in object
 /// space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Surface {
+pub struct SurfacePoint {
     /// The point, rounded to single precision.
     pub position: Vec3,
-    /// Rounding error of `position`: see [`Surface::point`].
-    pub rest: Vec3,
+    /// Rounding error of `position`: see [`SurfacePoint::point`].
+    pub rounding_error: Vec3,
     /// Bound on the absolute error of the point, by axis.
     pub error: Vec3,
     /// Bound on the curvature in object space: 1 over the smallest radius. Zero if flat.
@@ -181,11 +181,11 @@ pub struct Surface {
     pub solid: Option<u32>,
 }
 
-impl Surface {
+impl SurfacePoint {
     /// Placeholder of zeros, which are the fastest to write.
-    pub const NOWHERE: Surface = Surface {
+    pub const ZERO: SurfacePoint = SurfacePoint {
         position: Vec3::ZERO,
-        rest: Vec3::ZERO,
+        rounding_error: Vec3::ZERO,
         error: Vec3::ZERO,
         curvature: 0.0,
         n_geo: Vec3::ZERO,
@@ -203,9 +203,9 @@ impl Surface {
         let position = point.as_vec3();
         let n = normal.normalize_or(DVec3::Y).as_vec3();
         let error = gamma(2) * position.abs() + floor;
-        Surface {
+        SurfacePoint {
             position,
-            rest: Vec3::ZERO,
+            rounding_error: Vec3::ZERO,
             error,
             curvature: 0.0,
             n_geo: n,
@@ -221,17 +221,17 @@ impl Surface {
     /// Creates a flat surface at a point in space, accurate to a few roundings.
     pub fn around(point: DVec3, normal: Vec3) -> Self {
         let floor = gamma(4) * point.abs().max_element() as f32;
-        Surface::new(point, normal.as_dvec3(), floor.max(f32::MIN_POSITIVE), Vec2::ZERO)
+        SurfacePoint::new(point, normal.as_dvec3(), floor.max(f32::MIN_POSITIVE), Vec2::ZERO)
     }
 
     /// The point in full precision, which is higher than `f32` far from the origin.
     #[inline]
     pub fn point(&self) -> DVec3 {
-        self.position.as_dvec3() + self.rest.as_dvec3()
+        self.position.as_dvec3() + self.rounding_error.as_dvec3()
     }
 
     fn curved(self, curvature: f64) -> Self {
-        Surface { curvature: curvature as f32, ..self }
+        SurfacePoint { curvature: curvature as f32, ..self }
     }
 
     /// Bound on the distance of the surface from its tangent plane within an error of the point.
@@ -254,7 +254,7 @@ fn inset(x: f64, end: f64, error: f32) -> f64 {
 }
 
 /// Returns points relative to a centre, if `f32` represents them exactly.
-fn exactly<const N: usize>(points: [Vec3; N], center: Vec3) -> Option<[Vec3; N]> {
+fn exact_offsets<const N: usize>(points: [Vec3; N], center: Vec3) -> Option<[Vec3; N]> {
     let exact = |p: &Vec3| (*p - center).as_dvec3() == p.as_dvec3() - center.as_dvec3();
     points.iter().all(exact).then(|| points.map(|p| p - center))
 }
@@ -275,13 +275,13 @@ pub trait Shape {
     ///
     /// A closed shape is crossed only where the line enters or leaves. A line that touches it does
     /// not count, so that entries and exits alternate along the line.
-    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2));
+    fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2));
 
     /// Returns the crossing with the smallest `t` inside the ray's open interval.
     fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
         let line = ray.line();
         let mut first: Option<ShapeHit> = None;
-        if line.is_sound() {
+        if line.is_valid() {
             self.crossings(&line, &mut |t, uv| {
                 let t = t as f32;
                 if ray.contains(t) && first.is_none_or(|first| t < first.t) {
@@ -299,12 +299,12 @@ pub trait Shape {
 
     /// Offers crossings as [`Shape::crossings`] does, given the result of [`Shape::axis`].
     #[inline(always)]
-    fn crossings_about(&self, _axis: Option<&Axis>, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
-        self.crossings(line, offer);
+    fn crossings_about(&self, _axis: Option<&Axis>, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
+        self.crossings(line, emit);
     }
 
     /// Computes the surface at a crossing; `point` is on it up to rounding.
-    fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface;
+    fn surface(&self, point: DVec3, crossing: &ShapeHit) -> SurfacePoint;
 
     /// True if a point is inside; `None` for shapes that are surfaces only.
     fn inside(&self, point: DVec3) -> Option<bool>;
@@ -340,7 +340,7 @@ pub trait Shape {
     /// Returns the surface to sample as a light, in world space, and its outward unit normal; the
     /// normal is zero if it varies. With `None`, only rays that hit the shape by chance find its
     /// light, which is noisy.
-    fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)>;
+    fn emitter(&self, transform: &EmitterTransform) -> Option<(EmitterShape, Vec3)>;
 
     /// Direction of the texture coordinate u at a point, in object space, of any length; the
     /// direction of anisotropic highlights. `None`: horizontal and perpendicular to the normal.
@@ -355,12 +355,12 @@ pub trait Shape {
 }
 
 /// Angle of (x, y) about an axis as a fraction of a full turn, in [0, 1], measured from -x.
-fn turn(x: f64, y: f64) -> f32 {
+fn angle_fraction(x: f64, y: f64) -> f32 {
     (fp::atan2(y as f32, x as f32) / std::f32::consts::TAU + 0.5).clamp(0.0, 1.0)
 }
 
 /// Box of points in double precision, enlarged by their rounding to `f32`.
-fn padded(min: DVec3, max: DVec3) -> Aabb {
+fn padded_box(min: DVec3, max: DVec3) -> Aabb {
     let pad = gamma(6) * min.abs().max(max.abs()).max_element() as f32;
     Aabb { min: min.as_vec3() - pad, max: max.as_vec3() + pad }
 }

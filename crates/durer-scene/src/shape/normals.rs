@@ -22,12 +22,12 @@ pub(super) struct Normals {
     /// Normals, not necessarily of unit length; may be empty.
     pub values: Vec<Vec3>,
     /// Mapping from corners to normals.
-    pub corners: Corners,
+    pub corners: CornerMap,
 }
 
 /// Mapping from the corners of a mesh's triangles to normals.
 #[derive(Clone, Debug)]
-pub(super) enum Corners {
+pub(super) enum CornerMap {
     /// Three indices per triangle, or [`NO_INDEX`]; empty if no triangle has any.
     Listed(Vec<[u32; 3]>),
     /// Index of the first normal of each vertex, and each corner's offset from it: a third of the
@@ -35,9 +35,9 @@ pub(super) enum Corners {
     ByVertex(Vec<u32>, Vec<[u8; 3]>),
 }
 
-impl Default for Corners {
+impl Default for CornerMap {
     fn default() -> Self {
-        Corners::Listed(Vec::new())
+        CornerMap::Listed(Vec::new())
     }
 }
 
@@ -46,16 +46,16 @@ impl Normals {
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.values)
             + match &self.corners {
-                Corners::Listed(triangles) => size_of_val(&**triangles),
-                Corners::ByVertex(firsts, behind) => size_of_val(&**firsts) + size_of_val(&**behind),
+                CornerMap::Listed(triangles) => size_of_val(&**triangles),
+                CornerMap::ByVertex(firsts, offsets) => size_of_val(&**firsts) + size_of_val(&**offsets),
             }
     }
 
     /// Returns three normal indices per triangle of a mesh.
     pub fn listed(&self, mesh: &impl Triangles) -> Cow<'_, [[u32; 3]]> {
         match &self.corners {
-            Corners::Listed(triangles) => Cow::Borrowed(triangles),
-            Corners::ByVertex(..) => (0..mesh.len()).map(|i| self.at_corners(mesh, i)).collect(),
+            CornerMap::Listed(triangles) => Cow::Borrowed(triangles),
+            CornerMap::ByVertex(..) => (0..mesh.len()).map(|i| self.at_corners(mesh, i)).collect(),
         }
     }
 
@@ -63,9 +63,9 @@ impl Normals {
     #[inline]
     fn at_corners(&self, mesh: &impl Triangles, triangle: usize) -> [u32; 3] {
         match &self.corners {
-            Corners::Listed(triangles) => triangles.get(triangle).copied().unwrap_or([NO_INDEX; 3]),
-            Corners::ByVertex(firsts, behind) => {
-                let ([a, b, c], [i, j, k]) = (mesh.triangle(triangle), behind[triangle].map(u32::from));
+            CornerMap::Listed(triangles) => triangles.get(triangle).copied().unwrap_or([NO_INDEX; 3]),
+            CornerMap::ByVertex(firsts, offsets) => {
+                let ([a, b, c], [i, j, k]) = (mesh.triangle(triangle), offsets[triangle].map(u32::from));
                 [firsts[a as usize] + i, firsts[b as usize] + j, firsts[c as usize] + k]
             }
         }
@@ -81,7 +81,7 @@ impl Normals {
 
 /// Computes normals for triangles without normals, or for all triangles unless `file_normals` is
 /// set. Returns the normals of all triangles; `None` if the mesh needs only its own normals.
-pub(super) fn made(data: &MeshData, rule: MeshNormals, file_normals: bool) -> Option<Normals> {
+pub(super) fn computed(data: &MeshData, rule: MeshNormals, file_normals: bool) -> Option<Normals> {
     let own: (&[Vec3], &[[u32; 3]]) = match file_normals {
         true => (&data.normals, &data.triangle_normals),
         false => (&[], &[]),
@@ -92,16 +92,16 @@ pub(super) fn made(data: &MeshData, rule: MeshNormals, file_normals: bool) -> Op
     if data.flat || (0..data.triangles.len()).all(|i| !missing(i)) {
         return as_they_are();
     }
-    let Some(mut made) = by_rule(data, &data.vertices, rule, false) else { return as_they_are() };
+    let Some(mut computed_normals) = by_rule(data, &data.vertices, rule, false) else { return as_they_are() };
     if !own.0.is_empty() {
         let base = own.0.len() as u32;
-        made.values.splice(..0, own.0.iter().copied());
-        let Corners::Listed(triangles) = &mut made.corners else { unreachable!("rules list") };
+        computed_normals.values.splice(..0, own.0.iter().copied());
+        let CornerMap::Listed(triangles) = &mut computed_normals.corners else { unreachable!("rules list") };
         for (i, triangle) in triangles.iter_mut().enumerate() {
             *triangle = if missing(i) { triangle.map(|n| n + base) } else { own.1[i] };
         }
     }
-    Some(made)
+    Some(computed_normals)
 }
 
 /// Computes the normals of a terrain. Each vertex has few normals, because few triangles meet there
@@ -118,7 +118,7 @@ fn by_rule(mesh: &impl Triangles, vertices: &[[u32; 3]], rule: MeshNormals, by_v
         MeshNormals::SmoothAbove(count) if mesh.vertices() <= count => None,
         MeshNormals::SmoothByArea | MeshNormals::SmoothAbove(_) => Some(smooth(mesh, vertices, |cross| cross)),
         MeshNormals::SmoothByFace => Some(smooth(mesh, vertices, DVec3::normalize_or_zero)),
-        MeshNormals::SpoiledByFace => Some(spoiled(mesh, vertices)),
+        MeshNormals::SpoiledByFace => Some(smooth_or_nan(mesh, vertices)),
         // Triangles without shared vertices have no neighbours to smooth with.
         MeshNormals::Crease(_) if !shares_vertices(mesh) => None,
         MeshNormals::Crease(degrees) => Some(creased(mesh, degrees, by_vertex)),
@@ -148,13 +148,13 @@ fn smooth(mesh: &impl Triangles, vertices: &[[u32; 3]], weigh: impl Fn(DVec3) ->
         }
     }
     let values = sums.into_iter().map(|sum| sum.normalize_or_zero().as_vec3()).collect();
-    Normals { values, corners: Corners::Listed(triangles) }
+    Normals { values, corners: CornerMap::Listed(triangles) }
 }
 
 /// Normals from faces with equal weights; NaN at the vertices of a degenerate face.
-fn spoiled(mesh: &impl Triangles, vertices: &[[u32; 3]]) -> Normals {
+fn smooth_or_nan(mesh: &impl Triangles, vertices: &[[u32; 3]]) -> Normals {
     let mut normals = smooth(mesh, vertices, DVec3::normalize_or_zero);
-    let Corners::Listed(triangles) = &normals.corners else { unreachable!("rules list") };
+    let CornerMap::Listed(triangles) = &normals.corners else { unreachable!("rules list") };
     for (i, triangle) in triangles.iter().enumerate() {
         if cross(mesh, i).normalize_or_zero() == DVec3::ZERO {
             triangle.iter().for_each(|&vertex| normals.values[vertex as usize] = Vec3::NAN);
@@ -165,8 +165,8 @@ fn spoiled(mesh: &impl Triangles, vertices: &[[u32; 3]]) -> Normals {
 
 /// True if any vertex belongs to two triangles.
 fn shares_vertices(mesh: &impl Triangles) -> bool {
-    let mut seen = vec![false; mesh.vertices()];
-    let mut is_second = |vertex: u32| std::mem::replace(&mut seen[vertex as usize], true);
+    let mut visited = vec![false; mesh.vertices()];
+    let mut is_second = |vertex: u32| std::mem::replace(&mut visited[vertex as usize], true);
     (0..mesh.len()).any(|i| mesh.triangle(i).into_iter().any(&mut is_second))
 }
 
@@ -193,7 +193,7 @@ fn creased(mesh: &impl Triangles, degrees: f32, by_vertex: bool) -> Normals {
         let (mut corners, mut faces): (Vec<u32>, Vec<(Vec3, f32)>) = Default::default();
         for vertex in vertices {
             corners.clear();
-            around.offer(mesh, vertex as u32, |corner| corners.push(corner));
+            around.for_each_corner(mesh, vertex as u32, |corner| corners.push(corner));
             faces.clear();
             // A vertex with very many faces stays faceted, to avoid quadratic time.
             let is_faceted = corners.len() > MANY;
@@ -220,23 +220,23 @@ fn creased(mesh: &impl Triangles, degrees: f32, by_vertex: bool) -> Normals {
     let count = mesh.vertices();
     let mut values = Vec::with_capacity(count);
     let mut of_corners = match by_vertex {
-        true => Corners::ByVertex(Vec::with_capacity(count), vec![[0; 3]; mesh.len()]),
-        false => Corners::Listed(vec![[0; 3]; mesh.len()]),
+        true => CornerMap::ByVertex(Vec::with_capacity(count), vec![[0; 3]; mesh.len()]),
+        false => CornerMap::Listed(vec![[0; 3]; mesh.len()]),
     };
     for first in (0..count).step_by(PER_TASK) {
         let starts = (first..count.min(first + PER_TASK)).into_par_iter().step_by(AT_ONCE);
-        let made: Vec<_> = starts.map(|start| some(start..count.min(start + AT_ONCE))).collect();
-        for (own, of_vertices, numbers) in made {
+        let computed_normals: Vec<_> = starts.map(|start| some(start..count.min(start + AT_ONCE))).collect();
+        for (own, of_vertices, numbers) in computed_normals {
             let base = values.len() as u32;
-            if let Corners::ByVertex(firsts, _) = &mut of_corners {
+            if let CornerMap::ByVertex(firsts, _) = &mut of_corners {
                 firsts.extend(of_vertices.iter().map(|first| base + first));
             }
             for [corner, number] in numbers {
                 let (i, k) = (corner as usize / 3, corner as usize % 3);
                 match &mut of_corners {
-                    Corners::Listed(triangles) => triangles[i][k] = base + number,
-                    Corners::ByVertex(firsts, behind) => {
-                        behind[i][k] = (base + number - firsts[mesh.triangle(i)[k] as usize]) as u8;
+                    CornerMap::Listed(triangles) => triangles[i][k] = base + number,
+                    CornerMap::ByVertex(firsts, offsets) => {
+                        offsets[i][k] = (base + number - firsts[mesh.triangle(i)[k] as usize]) as u8;
                     }
                 }
             }
@@ -248,7 +248,7 @@ fn creased(mesh: &impl Triangles, degrees: f32, by_vertex: bool) -> Normals {
 }
 
 /// Corners at each vertex of a mesh, as one flat list, for computing normals: corner k of triangle
-/// i is 3 i + k. Omits the triangles that [`Triangles::ordered`] covers.
+/// i is 3 i + k. Omits the triangles that [`Triangles::ordered_count`] covers.
 struct VertexCorners {
     /// Start of each vertex's corners, then the end of the last.
     starts: Vec<u32>,
@@ -257,7 +257,7 @@ struct VertexCorners {
 
 impl VertexCorners {
     fn new(mesh: &impl Triangles) -> Self {
-        let listed = mesh.ordered()..mesh.len();
+        let listed = mesh.ordered_count()..mesh.len();
         let mut starts = vec![0; mesh.vertices() + 1];
         for vertex in listed.clone().flat_map(|i| mesh.triangle(i)) {
             starts[vertex as usize + 1] += 1;
@@ -280,9 +280,9 @@ impl VertexCorners {
     }
 
     /// Offers all corners at a vertex, in the order of the triangles.
-    fn offer(&self, mesh: &impl Triangles, vertex: u32, mut offer: impl FnMut(u32)) {
-        mesh.ordered_around(vertex, &mut offer);
+    fn for_each_corner(&self, mesh: &impl Triangles, vertex: u32, mut emit: impl FnMut(u32)) {
+        mesh.ordered_around(vertex, &mut emit);
         let [start, end] = [0, 1].map(|next| self.starts[vertex as usize + next] as usize);
-        self.corners[start..end].iter().for_each(|&corner| offer(corner));
+        self.corners[start..end].iter().for_each(|&corner| emit(corner));
     }
 }

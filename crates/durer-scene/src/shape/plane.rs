@@ -1,9 +1,9 @@
 //! The infinite plane normal · p = offset.
 
-use super::{Flip, MeshData, Shape, ShapeHit, Surface, Uv};
+use super::{Flip, MeshData, Shape, ShapeHit, SurfacePoint, Uv};
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
-use crate::light::{EmitterShape, Placement};
+use crate::light::{EmitterShape, EmitterTransform};
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;
 
@@ -31,11 +31,11 @@ impl Shape for Plane {
         (slope.is_finite() && t.is_finite() && ray.contains(t)).then_some(ShapeHit { t, uv: Vec2::ZERO })
     }
 
-    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+    fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         let n = self.normal.as_dvec3();
         let slope = n.dot(line.dir);
         if slope != 0.0 {
-            offer((f64::from(self.offset) - n.dot(line.origin)) / slope, Vec2::ZERO);
+            emit((f64::from(self.offset) - n.dot(line.origin)) / slope, Vec2::ZERO);
         }
     }
 
@@ -50,21 +50,21 @@ impl Shape for Plane {
     }
 
     #[inline(always)]
-    fn surface(&self, p: DVec3, _crossing: &ShapeHit) -> Surface {
+    fn surface(&self, p: DVec3, _crossing: &ShapeHit) -> SurfacePoint {
         let n = self.normal.as_dvec3();
         // Project the point back onto the plane, so that its error is the rounding of the
         // coordinates.
         let on = p - n * ((n.dot(p) - f64::from(self.offset)) / n.dot(n));
         let position = on.as_vec3();
         let normal = n.normalize_or(DVec3::Y).as_vec3();
-        Surface {
+        SurfacePoint {
             position,
-            rest: Vec3::ZERO,
+            rounding_error: Vec3::ZERO,
             error: gamma(2) * position.abs(),
             curvature: 0.0,
             n_geo: normal,
             n_shade: normal,
-            uv: Uv::Sheet(normal, position),
+            uv: Uv::Plane(normal, position),
             barycentric: Vec3::ZERO,
             shadow_offsets: [Vec3::ZERO; 2],
             color: [1.0; 4],
@@ -92,7 +92,7 @@ impl Shape for Plane {
         Vec::new()
     }
 
-    fn emitter(&self, _: &Placement) -> Option<(EmitterShape, Vec3)> {
+    fn emitter(&self, _: &EmitterTransform) -> Option<(EmitterShape, Vec3)> {
         None
     }
 

@@ -1,9 +1,9 @@
 //! General quadric: the zeros of a polynomial of degree two in x, y and z.
 
-use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, padded, turn};
+use super::{Flip, MeshData, Plane, Shape, ShapeHit, SurfacePoint, angle_fraction, padded_box};
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
-use crate::light::{EmitterShape, Placement};
+use crate::light::{EmitterShape, EmitterTransform};
 use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
 use glam::{DMat3, DVec3};
 
@@ -59,22 +59,22 @@ impl Shape for Quadric {
         let size = (-self.value(center)).max(0.0);
         let diagonal = DVec3::new(inverse.x_axis.x, inverse.y_axis.y, inverse.z_axis.z);
         let reach = (size * diagonal).map(f64::sqrt) * (1.0 + 1e-6);
-        Some(padded(center - reach, center + reach))
+        Some(padded_box(center - reach, center + reach))
     }
 
-    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+    fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         let (shift, [a, b, c]) = self.along(line);
         if a != 0.0 {
             if let Some((first, second)) = roots::quadratic(a, b, c) {
-                offer(first + shift, Vec2::ZERO);
-                offer(second + shift, Vec2::ZERO);
+                emit(first + shift, Vec2::ZERO);
+                emit(second + shift, Vec2::ZERO);
             }
         } else if b != 0.0 {
-            offer(shift - 0.5 * c / b, Vec2::ZERO);
+            emit(shift - 0.5 * c / b, Vec2::ZERO);
         }
     }
 
-    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
+    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> SurfacePoint {
         // Move back onto the surface by Newton steps along the gradient.
         let mut p = point;
         let mut gradient = self.gradient(p);
@@ -92,10 +92,10 @@ impl Shape for Quadric {
         // curvature unbounded.
         let curvature = (bend / steepness.max(1e-6 * bend * size)).min(1e30);
         // Texture coordinates: longitude and latitude seen from the origin.
-        let seen = p.normalize_or(DVec3::Z);
-        let v = fp::asin((seen.y as f32).clamp(-1.0, 1.0)) / std::f32::consts::PI + 0.5;
+        let direction = p.normalize_or(DVec3::Z);
+        let v = fp::asin((direction.y as f32).clamp(-1.0, 1.0)) / std::f32::consts::PI + 0.5;
         let floor = gamma(2) * size as f32;
-        Surface::new(p, gradient, floor, Vec2::new(turn(-seen.z, seen.x), v)).curved(curvature)
+        SurfacePoint::new(p, gradient, floor, Vec2::new(angle_fraction(-direction.z, direction.x), v)).curved(curvature)
     }
 
     fn inside(&self, point: DVec3) -> Option<bool> {
@@ -131,7 +131,7 @@ impl Shape for Quadric {
         Vec::new()
     }
 
-    fn emitter(&self, _: &Placement) -> Option<(EmitterShape, Vec3)> {
+    fn emitter(&self, _: &EmitterTransform) -> Option<(EmitterShape, Vec3)> {
         None
     }
 

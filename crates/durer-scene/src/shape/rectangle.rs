@@ -1,9 +1,9 @@
 //! The rectangle or parallelogram.
 
-use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, inset, padded, tessellate};
+use super::{Flip, MeshData, Plane, Shape, ShapeHit, SurfacePoint, inset, padded_box, tessellate};
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
-use crate::light::{EmitterShape, Placement};
+use crate::light::{EmitterShape, EmitterTransform};
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;
 
@@ -34,7 +34,7 @@ impl Rectangle {
 
     /// Edge coordinates of a point of the plane if it is on the rectangle. NaN coordinates fail the
     /// test.
-    fn place(&self, point: DVec3) -> Option<Vec2> {
+    fn local_uv(&self, point: DVec3) -> Option<Vec2> {
         let [u, v] = self.shares(point);
         let inside = (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v);
         inside.then(|| Vec2::new(u as f32, v as f32))
@@ -52,13 +52,13 @@ impl Shape for Rectangle {
     fn bounds(&self) -> Option<Aabb> {
         let ([e, f], corner) = (self.edges(), self.corner.as_dvec3());
         let zero = DVec3::ZERO;
-        Some(padded(corner + e.min(zero) + f.min(zero), corner + e.max(zero) + f.max(zero)))
+        Some(padded_box(corner + e.min(zero) + f.min(zero), corner + e.max(zero) + f.max(zero)))
     }
 
-    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+    fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         let t = self.plane_at(line);
-        if let Some(uv) = self.place(line.at(t)) {
-            offer(t, uv);
+        if let Some(uv) = self.local_uv(line.at(t)) {
+            emit(t, uv);
         }
     }
 
@@ -67,8 +67,8 @@ impl Shape for Rectangle {
         // rest.
         let line = ray.line();
         let t = self.plane_at(&line);
-        let hit = ray.contains(t as f32) && line.is_sound();
-        let uv = if hit { self.place(line.at(t)) } else { None };
+        let hit = ray.contains(t as f32) && line.is_valid();
+        let uv = if hit { self.local_uv(line.at(t)) } else { None };
         uv.map(|uv| ShapeHit { t: t as f32, uv })
     }
 
@@ -76,13 +76,13 @@ impl Shape for Rectangle {
         Some((Rectangle { corner: Vec3::ZERO, ..self.clone() }, self.corner))
     }
 
-    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
+    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> SurfacePoint {
         let ([e, f], corner) = (self.edges(), self.corner.as_dvec3());
         let error = gamma(2) * (self.corner.abs() + self.edge0.abs() + self.edge1.abs()).max_element();
         let [u, v] = self.shares(point);
         let [u, v] = [(u, e), (v, f)].map(|(x, edge)| inset(x, 1.0, error / edge.length() as f32));
         let floor = 1e-14 * (corner.abs() + e.abs() + f.abs()).max_element();
-        Surface::new(corner + u * e + v * f, e.cross(f), floor as f32, Vec2::new(u as f32, v as f32))
+        SurfacePoint::new(corner + u * e + v * f, e.cross(f), floor as f32, Vec2::new(u as f32, v as f32))
     }
 
     fn validate(&self) -> Result<(), String> {
@@ -114,10 +114,10 @@ impl Shape for Rectangle {
         vec![vec![self.corner, a, a + self.edge1, b]]
     }
 
-    fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
+    fn emitter(&self, transform: &EmitterTransform) -> Option<(EmitterShape, Vec3)> {
         let n = self.edge0.as_dvec3().cross(self.edge1.as_dvec3()).normalize_or_zero().as_vec3();
-        let edges = [place.vector(self.edge0), place.vector(self.edge1)];
-        Some((EmitterShape::Parallelogram(place.point(self.corner), edges), place.normal(n)))
+        let edges = [transform.vector(self.edge0), transform.vector(self.edge1)];
+        Some((EmitterShape::Parallelogram(transform.point(self.corner), edges), transform.normal(n)))
     }
 
     fn tangent(&self, _: Vec3) -> Option<Vec3> {

@@ -1,9 +1,9 @@
 //! The sphere |p - center|^2 = radius^2.
 
-use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, Uv, tessellate};
+use super::{Flip, MeshData, Plane, Shape, ShapeHit, SurfacePoint, Uv, tessellate};
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
-use crate::light::{Body, EmitterShape, Placement};
+use crate::light::{ClosedBody, EmitterShape, EmitterTransform};
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, fp, gamma};
 use glam::DVec3;
 
@@ -56,9 +56,9 @@ impl Shape for Sphere {
         (cell.center() - self.center).length() <= reach * (1.0 + gamma(8))
     }
 
-    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+    fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         for t in self.roots(line).into_iter().flatten() {
-            offer(t, Vec2::ZERO);
+            emit(t, Vec2::ZERO);
         }
     }
 
@@ -78,20 +78,20 @@ impl Shape for Sphere {
     }
 
     #[inline(always)]
-    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
+    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> SurfacePoint {
         let offset = point - self.center.as_dvec3();
         let normal = offset.normalize_or(DVec3::Z).as_vec3();
         // Project the point back onto the sphere, which makes it as exact as its coordinates.
         let position = self.center + self.radius * normal;
         let error = gamma(3) * (self.center.abs() + self.radius * normal.abs());
-        Surface {
+        SurfacePoint {
             position,
-            rest: Vec3::ZERO,
+            rounding_error: Vec3::ZERO,
             error,
             curvature: 1.0 / self.radius,
             n_geo: normal,
             n_shade: normal,
-            uv: Uv::Globe(normal),
+            uv: Uv::Sphere(normal),
             barycentric: Vec3::ZERO,
             shadow_offsets: [Vec3::ZERO; 2],
             color: [1.0; 4],
@@ -119,18 +119,18 @@ impl Shape for Sphere {
         Vec::new()
     }
 
-    fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
-        let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| place.vector(self.radius * axis));
+    fn emitter(&self, transform: &EmitterTransform) -> Option<(EmitterShape, Vec3)> {
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| transform.vector(self.radius * axis));
         let radius = axes[0].length();
         // A transform can make it an ellipsoid, which is sampled as an affine body.
         let round = axes.iter().all(|axis| (axis.length() - radius).abs() < 1e-5 * radius)
             && axes[0].dot(axes[1]).abs() + axes[1].dot(axes[2]).abs() + axes[2].dot(axes[0]).abs()
                 < 1e-5 * radius * radius;
         match round {
-            true => Some((EmitterShape::Sphere(place.point(self.center), radius), Vec3::ZERO)),
+            true => Some((EmitterShape::Sphere(transform.point(self.center), radius), Vec3::ZERO)),
             false => EmitterShape::body(
-                place,
-                Body::Ball,
+                transform,
+                ClosedBody::Ball,
                 self.center,
                 [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| self.radius * axis),
             ),

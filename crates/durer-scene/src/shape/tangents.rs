@@ -92,14 +92,14 @@ impl Corners {
     }
 
     /// True if the triangle and its texture coordinates have an area.
-    fn counts(&self, triangle: usize) -> bool {
+    fn has_area(&self, triangle: usize) -> bool {
         self.triangles[triangle].0 != Vec3::ZERO
     }
 
     /// Finds pairs of corners that share a tangent, at common edges of triangles.
     fn pairs(&self) -> Vec<[u32; 2]> {
         let mut edges: Vec<([u32; 2], bool, [u32; 2])> = (0..self.positions.len())
-            .filter(|corner| self.counts(corner / 3))
+            .filter(|corner| self.has_area(corner / 3))
             .map(|corner| {
                 let next = corner - corner % 3 + (corner + 1) % 3;
                 let (a, b) = (self.vertices[corner], self.vertices[next]);
@@ -137,10 +137,10 @@ impl Corners {
 
     /// Tangent of each corner, and 1 or -1 for the bitangent's sign; zero if undefined.
     fn tangents(&self) -> Vec<[f32; 4]> {
-        let mut groups = Groups((0..self.positions.len() as u32).collect());
+        let mut groups = UnionFind((0..self.positions.len() as u32).collect());
         self.pairs().into_iter().for_each(|[a, b]| groups.join(a, b));
         let mut sums = vec![Vec3::ZERO; self.positions.len()];
-        for corner in (0..self.positions.len()).filter(|corner| self.counts(corner / 3)) {
+        for corner in (0..self.positions.len()).filter(|corner| self.has_area(corner / 3)) {
             sums[groups.of(corner as u32) as usize] += self.share(corner);
         }
         // Corners of degenerate triangles use the tangent of a neighbour at the vertex.
@@ -149,12 +149,12 @@ impl Corners {
         for corner in 0..self.positions.len() {
             let Vec3 { x, y, z } = sums[groups.of(corner as u32) as usize].normalize_or_zero();
             let tangent = [x, y, z, if self.triangles[corner / 3].1 { 1.0 } else { -1.0 }];
-            if self.counts(corner / 3) {
+            if self.has_area(corner / 3) {
                 any[self.vertices[corner] as usize] = tangent;
             }
             tangents.push(tangent);
         }
-        for corner in (0..self.positions.len()).filter(|corner| !self.counts(corner / 3)) {
+        for corner in (0..self.positions.len()).filter(|corner| !self.has_area(corner / 3)) {
             tangents[corner] = any[self.vertices[corner] as usize];
         }
         tangents
@@ -173,9 +173,9 @@ fn growth([p, q, r]: &[Vec3; 3], [a, b, c]: &[Vec2; 3]) -> (Vec3, bool) {
 
 /// Union-find structure that groups corners with a shared tangent. Each corner refers to another
 /// one in its group, the root to itself.
-struct Groups(Vec<u32>);
+struct UnionFind(Vec<u32>);
 
-impl Groups {
+impl UnionFind {
     fn of(&mut self, mut corner: u32) -> u32 {
         while self.0[corner as usize] != corner {
             // Path halving.

@@ -2,7 +2,7 @@
 //! shape, and distances from their surfaces in double precision.
 
 use super::*;
-use crate::describe::DescribedList;
+use crate::describe::DescribedKind;
 use crate::math::random::Random;
 
 /// One shape of each kind, about `size` large and about `distance` from the origin. Add a new shape

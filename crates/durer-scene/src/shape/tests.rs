@@ -50,7 +50,7 @@ fn crossings(shape: &Primitive, o: DVec3, d: DVec3) -> Vec<(f64, bool)> {
 }
 
 #[test]
-fn first_crossing_in_the_open_interval_is_found() {
+fn first_crossing_in_the_open_interval_is_returned() {
     let mut random = Random(1);
     let mut found = [0; 11];
     for round in 0..40_000 {
@@ -78,8 +78,8 @@ fn first_crossing_in_the_open_interval_is_found() {
             let crossing = shape.intersect(&ray);
             // Roots are accurate to a rounding of the largest of them; on curved shapes, of the
             // shape's size.
-            let own = if kind == 0 || kind > 2 { f64::from(size) / ray.dir.as_dvec3().length() } else { 0.0 };
-            let near = |a: f64, b: f64| (a - b).abs() <= 2e-7 * (a.abs() + own);
+            let rounding = if kind == 0 || kind > 2 { f64::from(size) / ray.dir.as_dvec3().length() } else { 0.0 };
+            let near = |a: f64, b: f64| (a - b).abs() <= 2e-7 * (a.abs() + rounding);
             if let Some(crossing) = crossing {
                 let t = f64::from(crossing.t);
                 assert!(ray.contains(crossing.t), "{shape:?} {ray:?} {crossing:?}");

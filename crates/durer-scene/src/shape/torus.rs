@@ -1,10 +1,10 @@
 //! Torus: all points at a fixed distance from a circle.
 
-use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, disc_reach, padded, tessellate, turn};
+use super::{Flip, MeshData, Plane, Shape, ShapeHit, SurfacePoint, angle_fraction, disc_reach, padded_box, tessellate};
 use crate::bsdf::Frame;
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
-use crate::light::{Body, EmitterShape, Placement};
+use crate::light::{ClosedBody, EmitterShape, EmitterTransform};
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
 use glam::DVec3;
 
@@ -43,7 +43,7 @@ impl Shape for Torus {
         let (major, minor) = self.radii();
         let reach = major * disc_reach(self.axis()) + minor;
         let center = self.center.as_dvec3();
-        Some(padded(center - reach, center + reach))
+        Some(padded_box(center - reach, center + reach))
     }
 
     /// Solves (|p|^2 + R^2 - r^2)^2 = 4 R^2 (|p|^2 - (p·a)^2) for p relative to the centre, a the
@@ -52,7 +52,7 @@ impl Shape for Torus {
     /// Lengths are in units of R, measured from the point of the line nearest to the centre along a
     /// unit direction, so that all coefficients have the same order of magnitude. Source of the
     /// equation: Hanrahan in Glassner, *An Introduction to Ray Tracing* (1989), chapter 3.
-    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+    fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         let ((major, minor), a) = (self.radii(), self.axis());
         let shift = line.nearest(self.center.as_dvec3());
         let scale = line.dir.length() / major;
@@ -79,23 +79,26 @@ impl Shape for Torus {
             1.0,
         ];
         let (found, count) = roots::quartic(coefficients, -half, half);
-        found[..count].iter().for_each(|s| offer(s / scale + shift, Vec2::ZERO));
+        found[..count].iter().for_each(|s| emit(s / scale + shift, Vec2::ZERO));
     }
 
     fn centered(&self) -> Option<(Self, Vec3)> {
         Some((Torus { center: Vec3::ZERO, ..self.clone() }, self.center))
     }
 
-    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
+    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> SurfacePoint {
         let ((major, minor), a, center) = (self.radii(), self.axis(), self.center.as_dvec3());
         let q = point - center;
         let ring = self.nearest(q);
         let normal = (q - ring).normalize_or(a);
         let (x, z) = a.any_orthonormal_pair();
-        let uv = Vec2::new(turn(ring.dot(x), ring.dot(z)), turn(normal.dot(ring) / major, normal.dot(a)));
+        let uv = Vec2::new(
+            angle_fraction(ring.dot(x), ring.dot(z)),
+            angle_fraction(normal.dot(ring) / major, normal.dot(a)),
+        );
         let floor = gamma(2) * (self.major_radius + self.minor_radius);
         let curvature = (1.0 / minor).max(1.0 / (major - minor));
-        Surface::new(center + ring + minor * normal, normal, floor, uv).curved(curvature)
+        SurfacePoint::new(center + ring + minor * normal, normal, floor, uv).curved(curvature)
     }
 
     fn inside(&self, point: DVec3) -> Option<bool> {
@@ -127,11 +130,11 @@ impl Shape for Torus {
         Vec::new()
     }
 
-    fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
+    fn emitter(&self, transform: &EmitterTransform) -> Option<(EmitterShape, Vec3)> {
         let axis = self.axis.normalize_or(Vec3::Y);
         let frame = Frame::around(axis);
         let axes = [frame.tangent, frame.bitangent, axis].map(|axis| self.major_radius * axis);
-        EmitterShape::body(place, Body::Ring(self.minor_radius / self.major_radius), self.center, axes)
+        EmitterShape::body(transform, ClosedBody::Ring(self.minor_radius / self.major_radius), self.center, axes)
     }
 
     fn tangent(&self, point: Vec3) -> Option<Vec3> {

@@ -1,10 +1,10 @@
 //! A single triangle.
 
 use super::watertight::{self, WatertightRay};
-use super::{Flip, INSET, MeshData, Plane, Shape, ShapeHit, Surface, Uv, exactly, tessellate};
+use super::{Flip, INSET, MeshData, Plane, Shape, ShapeHit, SurfacePoint, Uv, exact_offsets, tessellate};
 use crate::describe::{Constraint, described};
 use crate::dialect::set;
-use crate::light::{EmitterShape, Placement};
+use crate::light::{EmitterShape, EmitterTransform};
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;
 
@@ -42,10 +42,10 @@ impl Shape for Triangle {
         WatertightRay::new(ray).intersect(self.corners(), ray.t_min, ray.t_max).map(ShapeHit::from)
     }
 
-    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+    fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         let ray = Ray::new(line.origin.as_vec3(), line.dir.as_vec3());
         let found = self.intersect(&Ray { t_min: f32::NEG_INFINITY, ..ray });
-        found.into_iter().for_each(|crossing| offer(f64::from(crossing.t), crossing.uv));
+        found.into_iter().for_each(|crossing| emit(f64::from(crossing.t), crossing.uv));
     }
 
     /// Moves the triangle by a multiple of a power of two above its size, so that neighbours mostly
@@ -55,12 +55,12 @@ impl Shape for Triangle {
         let size = Aabb::around(corners).size().max_element().max(f32::MIN_POSITIVE);
         let grid = 64.0 * f32::from_bits(size.to_bits() & 0x7f80_0000);
         let center = (self.vertex0 / grid).round() * grid;
-        let [vertex0, vertex1, vertex2] = exactly(corners, center)?;
+        let [vertex0, vertex1, vertex2] = exact_offsets(corners, center)?;
         Some((Triangle { vertex0, vertex1, vertex2 }, center))
     }
 
-    fn surface(&self, _point: DVec3, crossing: &ShapeHit) -> Surface {
-        Surface { uv: Uv::At(crossing.uv), ..triangle_surface(self.corners(), None, crossing.uv) }
+    fn surface(&self, _point: DVec3, crossing: &ShapeHit) -> SurfacePoint {
+        SurfacePoint { uv: Uv::Value(crossing.uv), ..triangle_surface(self.corners(), None, crossing.uv) }
     }
 
     fn inside(&self, _: DVec3) -> Option<bool> {
@@ -87,8 +87,8 @@ impl Shape for Triangle {
         vec![self.corners().to_vec()]
     }
 
-    fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
-        Some(EmitterShape::triangle(self.corners(), place))
+    fn emitter(&self, transform: &EmitterTransform) -> Option<(EmitterShape, Vec3)> {
+        Some(EmitterShape::triangle(self.corners(), transform))
     }
 
     fn tangent(&self, _: Vec3) -> Option<Vec3> {
@@ -151,21 +151,21 @@ pub fn face_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
 /// Computes the surface of a triangle at a crossing, without texture coordinates and colour. A zero
 /// shading normal is replaced by the geometric one.
 #[inline(always)]
-pub fn triangle_surface(corners: [Vec3; 3], normals: Option<[Vec3; 3]>, uv: Vec2) -> Surface {
+pub fn triangle_surface(corners: [Vec3; 3], normals: Option<[Vec3; 3]>, uv: Vec2) -> SurfacePoint {
     let (position, error, barycentric) = interpolate(corners, uv);
     let n_geo = face_normal(corners);
     let (mut n_shade, mut shadow_offsets) = (n_geo, [Vec3::ZERO; 2]);
     // Closures passed to `map_or` would not be inlined here.
     if let Some(normals) = normals {
-        n_shade = mixed(normals, barycentric).normalize_or(n_geo);
-        let [front, back] = offsets_of_corners(position, corners, normals);
-        shadow_offsets = [mixed(front, barycentric), mixed(back, barycentric)];
+        n_shade = interpolate_vectors(normals, barycentric).normalize_or(n_geo);
+        let [front, back] = corner_offsets(position, corners, normals);
+        shadow_offsets = [interpolate_vectors(front, barycentric), interpolate_vectors(back, barycentric)];
     }
     // The stored normals define the outside, regardless of the winding of the corners.
     let n_geo = if n_geo.dot(n_shade) < 0.0 { -n_geo } else { n_geo };
-    Surface {
+    SurfacePoint {
         position,
-        rest: Vec3::ZERO,
+        rounding_error: Vec3::ZERO,
         error,
         curvature: 0.0,
         n_geo,
@@ -179,7 +179,7 @@ pub fn triangle_surface(corners: [Vec3; 3], normals: Option<[Vec3; 3]>, uv: Vec2
 }
 
 #[inline(always)]
-fn mixed([a, b, c]: [Vec3; 3], barycentric: Vec3) -> Vec3 {
+fn interpolate_vectors([a, b, c]: [Vec3; 3], barycentric: Vec3) -> Vec3 {
     barycentric.x * a + barycentric.y * b + barycentric.z * c
 }
 
@@ -191,7 +191,7 @@ fn mixed([a, b, c]: [Vec3; 3], barycentric: Vec3) -> Vec3 {
 /// coarse mesh along the terminator. Source: Johannes Hanika, *Hacking the Shadow Terminator*, Ray
 /// Tracing Gems II (2021), chapter 4.
 #[inline(always)]
-fn offsets_of_corners(point: Vec3, corners: [Vec3; 3], normals: [Vec3; 3]) -> [[Vec3; 3]; 2] {
+fn corner_offsets(point: Vec3, corners: [Vec3; 3], normals: [Vec3; 3]) -> [[Vec3; 3]; 2] {
     let mut shadow_offsets = [[Vec3::ZERO; 3]; 2];
     for i in 0..3 {
         let n = normals[i].normalize_or_zero();

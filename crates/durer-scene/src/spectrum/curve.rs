@@ -17,7 +17,7 @@ impl Curve {
     /// `None` if there are no rows.
     pub fn reflectance(rows: Vec<[f32; 2]>) -> Option<Self> {
         rows.first()?;
-        let color = seen(&rows, |[_, _, _, light]| f64::from(OBSERVER.daylight) * light);
+        let color = observed_color(&rows, |[_, _, _, light]| f64::from(OBSERVER.daylight) * light);
         Some(Curve { rows, color })
     }
 
@@ -26,7 +26,7 @@ impl Curve {
     pub fn light(mut rows: Vec<[f32; 2]>) -> Option<Self> {
         let bright = integral(|nm, [_, y, _, _]| y * f64::from(at(&rows, nm))) as f32;
         rows.iter_mut().for_each(|row| row[1] /= bright);
-        let color = seen(&rows, |_| 1.0);
+        let color = observed_color(&rows, |_| 1.0);
         let in_range = color.is_finite() && rows.iter().all(|row| row[1].is_finite());
         (bright > 0.0 && bright.is_finite() && in_range).then_some(Curve { rows, color })
     }
@@ -46,7 +46,7 @@ impl Lanes {
     /// Spectrum of a measured reflectance or emission that appears as `color`: the curve, times the
     /// factor from its own colour to `color`.
     pub fn measured(&self, color: Color, curve: &Curve) -> Spectrum {
-        let Lanes::Waves(waves) = self else { return color.extend(color.y) };
+        let Lanes::Wavelengths(waves) = self else { return color.extend(color.y) };
         let known = curve.color.cmpgt(Color::splat(1e-6));
         let ratio = Color::select(known, color / curve.color, Color::ZERO);
         // Use the largest factor of the others for a channel that the curve lacks.
@@ -69,7 +69,7 @@ fn at(rows: &[[f32; 2]], nm: f32) -> f32 {
 }
 
 /// Colour of a curve times a light, for the standard observer.
-fn seen(rows: &[[f32; 2]], light: impl Fn([f64; 4]) -> f64) -> Color {
+fn observed_color(rows: &[[f32; 2]], light: impl Fn([f64; 4]) -> f64) -> Color {
     let channel = |[a, b, c]: [f32; 3]| {
         let [a, b, c] = [a, b, c].map(f64::from);
         integral(|nm, here| {

@@ -18,7 +18,7 @@ mod tables;
 mod tests;
 mod upsample;
 
-use crate::describe::{FieldType, Kind, Value};
+use crate::describe::{FieldKind, FieldType, Value};
 use crate::math::{Color, fp};
 pub use curve::Curve;
 pub use interference::interference;
@@ -58,7 +58,7 @@ impl ColorMode {
 }
 
 impl FieldType for ColorMode {
-    const KIND: Kind = Kind::Word(&ColorMode::NAMES);
+    const KIND: FieldKind = FieldKind::Word(&ColorMode::NAMES);
 
     fn value(&self) -> Option<Value> {
         Some(Value::Word(self.name().into()))
@@ -78,12 +78,12 @@ pub enum Lanes {
     #[default]
     Rgb,
     /// Light at four wavelengths.
-    Waves(Waves),
+    Wavelengths(Wavelengths),
 }
 
 /// Four wavelengths of a path, with the tabulated spectra at these wavelengths.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Waves {
+pub struct Wavelengths {
     /// Wavelengths in nanometres. The first is the hero wavelength.
     pub nm: Spectrum,
     /// Spectrum of the light with colour 1 1 1: D65.
@@ -98,7 +98,7 @@ impl Lanes {
     pub fn new(mode: ColorMode, u: f32) -> Self {
         match mode {
             ColorMode::Rgb => Lanes::Rgb,
-            ColorMode::Spectral => Lanes::Waves(Waves::new(u)),
+            ColorMode::Spectral => Lanes::Wavelengths(Wavelengths::new(u)),
         }
     }
 
@@ -106,10 +106,10 @@ impl Lanes {
     pub fn reflectance(&self, color: Color) -> Spectrum {
         match self {
             Lanes::Rgb => color.extend(color.y),
-            Lanes::Waves(_) if color.x == color.y && color.y == color.z => Spectrum::splat(color.x),
-            Lanes::Waves(waves) => {
+            Lanes::Wavelengths(_) if color.x == color.y && color.y == color.z => Spectrum::splat(color.x),
+            Lanes::Wavelengths(waves) => {
                 let most = color.max_element().max(1.0);
-                most * upsample::share(color / most, waves.nm)
+                most * upsample::reflectance(color / most, waves.nm)
             }
         }
     }
@@ -118,11 +118,11 @@ impl Lanes {
     pub fn light(&self, color: Color) -> Spectrum {
         match self {
             Lanes::Rgb => color.extend(color.y),
-            Lanes::Waves(waves) if color.x == color.y && color.y == color.z => color.x * waves.white,
-            Lanes::Waves(waves) => {
+            Lanes::Wavelengths(waves) if color.x == color.y && color.y == color.z => color.x * waves.white,
+            Lanes::Wavelengths(waves) => {
                 // At half the maximum reflectance, spectra are smoother.
                 let most = 2.0 * color.max_element();
-                most * waves.white * upsample::share(color / most, waves.nm)
+                most * waves.white * upsample::reflectance(color / most, waves.nm)
             }
         }
     }
@@ -132,7 +132,7 @@ impl Lanes {
     pub fn light_of<'c>(&self, color: Color, measured: impl FnOnce() -> Option<&'c Curve>) -> Spectrum {
         match self {
             Lanes::Rgb => self.light(color),
-            Lanes::Waves(_) => measured().map_or_else(|| self.light(color), |curve| self.measured(color, curve)),
+            Lanes::Wavelengths(_) => measured().map_or_else(|| self.light(color), |curve| self.measured(color, curve)),
         }
     }
 
@@ -141,7 +141,7 @@ impl Lanes {
     pub fn coefficient(&self, color: Color) -> Spectrum {
         match self {
             Lanes::Rgb => color.extend(color.y),
-            Lanes::Waves(_) => {
+            Lanes::Wavelengths(_) => {
                 let most = 2.0 * color.max_element();
                 if most > 0.0 { most * self.reflectance(color / most) } else { Spectrum::ZERO }
             }
@@ -152,7 +152,7 @@ impl Lanes {
     pub fn color(&self, light: Spectrum) -> Color {
         match self {
             Lanes::Rgb => light.truncate(),
-            Lanes::Waves(waves) => Color::from_array(waves.observer.map(|observer| observer.dot(light))),
+            Lanes::Wavelengths(waves) => Color::from_array(waves.observer.map(|observer| observer.dot(light))),
         }
     }
 
@@ -165,12 +165,12 @@ impl Lanes {
     pub fn hero(&self) -> Option<f32> {
         match self {
             Lanes::Rgb => None,
-            Lanes::Waves(waves) => Some(waves.nm.x),
+            Lanes::Wavelengths(waves) => Some(waves.nm.x),
         }
     }
 }
 
-impl Waves {
+impl Wavelengths {
     /// Weights of red, green and blue at each wavelength.
     pub fn observer(&self) -> &[Spectrum; 3] {
         &self.observer
@@ -179,19 +179,19 @@ impl Waves {
     /// Samples four wavelengths in proportion to the eye's sensitivity. The four numbers are
     /// equidistant.
     fn new(u: f32) -> Self {
-        let nm = Spectrum::from_array([0.0, 0.25, 0.5, 0.75].map(|step| wavelength((u + step).fract())));
+        let nm = Spectrum::from_array([0.0, 0.25, 0.5, 0.75].map(|step| sample_wavelength((u + step).fract())));
         let at = |column: usize| nm.map(|nm| observer_and_daylight(nm)[column]);
         let [x, y, z] = [at(0), at(1), at(2)];
-        let weight = 0.25 / nm.map(density);
+        let weight = 0.25 / nm.map(wavelength_pdf);
         let observer = OBSERVER.to_rgb.map(|[a, b, c]| (a * x + b * y + c * z) * weight);
-        Waves { nm, white: OBSERVER.daylight * at(3), observer }
+        Wavelengths { nm, white: OBSERVER.daylight * at(3), observer }
     }
 }
 
 /// Maps a random number in [0, 1) to a wavelength in nanometres.
 ///
-/// Source: *Physically Based Rendering*, 4th edition, section 4.5.4, also for [`density`].
-fn wavelength(u: f32) -> f32 {
+/// Source: *Physically Based Rendering*, 4th edition, section 4.5.4, also for [`wavelength_pdf`].
+fn sample_wavelength(u: f32) -> f32 {
     let x = 0.856_910_6 - 1.827_502 * u;
     // The inverse hyperbolic tangent.
     let atanh = 0.5 * fp::ln((1.0 + x) / (1.0 - x));
@@ -199,7 +199,7 @@ fn wavelength(u: f32) -> f32 {
 }
 
 /// Sampling pdf of a wavelength, per nanometre.
-fn density(nm: f32) -> f32 {
+fn wavelength_pdf(nm: f32) -> f32 {
     let x = fp::exp(0.0072 * (nm - 538.0));
     let cosh = 0.5 * (x + 1.0 / x);
     0.003_939_804 / (cosh * cosh)

@@ -52,7 +52,7 @@ impl SpectrumSource {
 
     /// Linear sRGB as pbrt-v3 computes it for lights, reflectances and indices: a spectrum of 1 has
     /// luminance 1. A curve is constant beyond its ends. A black body is 1 at its peak.
-    pub fn plain(&self) -> Color {
+    pub fn pbrt_v3_color(&self) -> Color {
         match self {
             SpectrumSource::Rgb(color) | SpectrumSource::Illuminant(color) => *color,
             SpectrumSource::Blackbody(kelvin) => {

@@ -34,10 +34,10 @@ fn wavelength_samples_average_to_the_colour() {
 fn wavelength_samples_agree_with_pdf() {
     // Between two quantiles, the pdf integrates to the step of the random number.
     for i in 0..100 {
-        let (a, b) = (wavelength((i as f32 + 1.0) / 100.0), wavelength(i as f32 / 100.0));
+        let (a, b) = (sample_wavelength((i as f32 + 1.0) / 100.0), sample_wavelength(i as f32 / 100.0));
         let (low, high) = (a.min(b), a.max(b));
         let middle = 0.5 * (low + high);
-        let mass = (density(low) + 4.0 * density(middle) + density(high)) * (high - low) / 6.0;
+        let mass = (wavelength_pdf(low) + 4.0 * wavelength_pdf(middle) + wavelength_pdf(high)) * (high - low) / 6.0;
         assert!((mass - 0.01).abs() < 2e-4, "{i}: {mass} between {low} and {high}");
     }
 }

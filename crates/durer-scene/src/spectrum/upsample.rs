@@ -14,9 +14,9 @@ use std::sync::LazyLock;
 
 /// Smooth spectrum with values in [0, 1], given by the three coefficients of a sigmoid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Smooth([f32; 3]);
+struct SigmoidSpectrum([f32; 3]);
 
-impl Smooth {
+impl SigmoidSpectrum {
     /// Values at four wavelengths in nanometres.
     fn at(&self, nm: Spectrum) -> Spectrum {
         let [a, b, c] = self.0;
@@ -44,9 +44,9 @@ static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
 
 /// Reflectance spectrum of a colour in [0, 1]. A colour darker than 0.5 uses the scaled spectrum of
 /// a brighter colour with the same hue.
-pub(super) fn share(color: Color, nm: Spectrum) -> Spectrum {
+pub(super) fn reflectance(color: Color, nm: Spectrum) -> Spectrum {
     let scale = (2.0 * color.max_element()).clamp(1e-12, 1.0);
-    scale * TABLE.find(color / scale).at(nm)
+    scale * TABLE.lookup(color / scale).at(nm)
 }
 
 /// Grid values from 0.5 to 1. They are denser near white, where the coefficients change most.
@@ -76,7 +76,7 @@ impl Table {
                     let mut color = [most; 3];
                     color[(greatest + 1) % 3] = most * share(i);
                     color[(greatest + 2) % 3] = most * share(j);
-                    numbers = fit.find(color, numbers);
+                    numbers = fit.fit(color, numbers);
                     all[Self::place(greatest, k, j, i)] = numbers.map(|x| x as f32);
                 }
             }
@@ -88,7 +88,7 @@ impl Table {
         ((greatest * STRENGTHS + k) * SIDE + j) * SIDE + i
     }
 
-    fn find(&self, color: Color) -> Smooth {
+    fn lookup(&self, color: Color) -> SigmoidSpectrum {
         let [r, g, b] = color.to_array();
         let greatest = if r >= g && r >= b {
             0
@@ -118,7 +118,7 @@ impl Table {
             let numbers = self.0[Self::place(greatest, k + c, j + b, i + a)];
             (0..3).for_each(|n| sum[n] += weight * numbers[n]);
         }
-        Smooth(sum)
+        SigmoidSpectrum(sum)
     }
 }
 
@@ -175,7 +175,7 @@ impl Fit {
 
     /// Fits the three coefficients of a colour by the Levenberg-Marquardt method, starting from
     /// `start`.
-    fn find(&self, wanted: [f64; 3], start: [f64; 3]) -> [f64; 3] {
+    fn fit(&self, wanted: [f64; 3], start: [f64; 3]) -> [f64; 3] {
         let mut numbers = start;
         let (mut color, mut change) = self.color(numbers);
         let error = |color: [f64; 3]| (0..3).map(|n| (color[n] - wanted[n]) * (color[n] - wanted[n])).sum::<f64>();
@@ -215,7 +215,7 @@ pub(super) fn color_of(color: Color) -> Color {
     Color::from_array(OBSERVER.to_rgb.map(|m| {
         integral(|nm, [x, y, z, light]| {
             let [a, b, c] = m.map(f64::from);
-            weight * f64::from(share(color, Spectrum::splat(nm)).x) * (a * x + b * y + c * z) * light
+            weight * f64::from(reflectance(color, Spectrum::splat(nm)).x) * (a * x + b * y + c * z) * light
         }) as f32
     }))
 }

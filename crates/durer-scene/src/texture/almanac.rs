@@ -68,7 +68,7 @@ pub fn sun([latitude, longitude]: [f64; 2], moment: &Moment) -> [f64; 2] {
 }
 
 /// Unit vector for an altitude and an azimuth in degrees: y is up, -z north, x east.
-pub fn way([altitude, azimuth]: [f64; 2]) -> Vec3 {
+pub fn direction([altitude, azimuth]: [f64; 2]) -> Vec3 {
     let ((sin, cos), (s, c)) = (fp::sin_cos_degrees(altitude), fp::sin_cos_degrees(azimuth));
     Vec3::new((cos * s) as f32, sin as f32, (-cos * c) as f32)
 }
@@ -115,9 +115,9 @@ mod tests {
         let [noon, morning] = [[13.0, 0.0, 0.0], [7.0, 0.0, 0.0]].map(|time| at(place, next, time, 11.0));
         assert!(noon[1] < 20.0 || noon[1] > 340.0, "{noon:?}");
         assert!((morning[1] - 90.0).abs() < 20.0, "{morning:?}");
-        let [x, y, z] = way(morning).to_array();
+        let [x, y, z] = direction(morning).to_array();
         assert!(x > 0.9 && y > 0.0 && z.abs() < 0.4);
-        assert!((way([0.0, 0.0]) - Vec3::NEG_Z).length() < 1e-6);
+        assert!((direction([0.0, 0.0]) - Vec3::NEG_Z).length() < 1e-6);
     }
 
     #[test]

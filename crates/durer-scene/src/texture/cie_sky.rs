@@ -35,7 +35,7 @@ pub const OVERCAST: u32 = 16;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CieSky {
     /// Coefficients of types 1 to 15; `None` for type 16.
-    numbers: Option<[f32; 5]>,
+    coefficients: Option<[f32; 5]>,
     /// Unit vector to the sun. Its direct light is not included.
     sun: Vec3,
     /// Factor from relative luminance to cd/m^2.
@@ -49,21 +49,21 @@ impl CieSky {
     /// is the luminance at the zenith in cd/m^2. The ground reflects the share `ground_reflectance`
     /// of its illuminance.
     pub fn new(number: u32, sun: Vec3, zenith: f32, ground_reflectance: f32) -> Self {
-        let numbers = TYPES.get((number as usize).wrapping_sub(1)).copied();
+        let coefficients = TYPES.get((number as usize).wrapping_sub(1)).copied();
         let sun = Vec3::new(sun.x, sun.y.max(0.0), sun.z).normalize_or(Vec3::Y);
-        let unit = CieSky { numbers, sun, scale: 1.0, ground: 0.0 };
-        let sky = CieSky { scale: zenith / unit.shape(Vec3::Y), ..unit };
+        let unit = CieSky { coefficients, sun, scale: 1.0, ground: 0.0 };
+        let sky = CieSky { scale: zenith / unit.relative_luminance(Vec3::Y), ..unit };
         CieSky { ground: ground_reflectance * sky.illuminance() / PI, ..sky }
     }
 
     /// True if skies of this type depend on the position of the sun.
-    pub fn wants_sun(number: u32) -> bool {
+    pub fn depends_on_sun(number: u32) -> bool {
         TYPES.get((number as usize).wrapping_sub(1)).is_some_and(|numbers| numbers[2] != 0.0)
     }
 
-    fn shape(&self, dir: Vec3) -> f32 {
+    fn relative_luminance(&self, dir: Vec3) -> f32 {
         let height = dir.y.clamp(0.0, 1.0);
-        let Some([a, b, c, d, e]) = self.numbers else { return (1.0 + 2.0 * height) / 3.0 };
+        let Some([a, b, c, d, e]) = self.coefficients else { return (1.0 + 2.0 * height) / 3.0 };
         let zenith = 1.0 + a * fp::exp(b / height.max(1e-3));
         let cosine = dir.dot(self.sun).clamp(-1.0, 1.0);
         let to_sun = fp::atan2((1.0 - cosine * cosine).sqrt(), cosine);
@@ -72,7 +72,7 @@ impl CieSky {
 
     /// Luminance from a unit direction, in cd/m^2.
     pub fn luminance(&self, dir: Vec3) -> f32 {
-        if dir.y < 0.0 { self.ground } else { self.scale * self.shape(dir) }
+        if dir.y < 0.0 { self.ground } else { self.scale * self.relative_luminance(dir) }
     }
 
     /// Radiance from a unit direction.
@@ -118,7 +118,7 @@ mod tests {
             let sky = CieSky::new(number, sun, 5_000.0, 0.2);
             assert!((sky.luminance(Vec3::Y) - 5_000.0).abs() < 1.0, "{number}");
             let (there, away) = (sky.luminance(sun), sky.luminance(Vec3::new(-sun.x, sun.y, 0.0)));
-            assert_eq!(there > away, CieSky::wants_sun(number), "{number}: {there} {away}");
+            assert_eq!(there > away, CieSky::depends_on_sun(number), "{number}: {there} {away}");
         }
         // Type 12, the standard clear sky, at the horizon below the sun, computed by hand from the
         // formula.

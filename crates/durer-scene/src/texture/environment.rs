@@ -39,8 +39,8 @@ pub struct Environment {
     /// fraction.
     hints: Arc<[u32]>,
     /// Cumulative weights of the rows, from the top.
-    columns: Arc<[f32]>,
-    column_hints: Arc<[u32]>,
+    row_sums: Arc<[f32]>,
+    row_hints: Arc<[u32]>,
 }
 
 /// Sampling weights of a row of an environment map.
@@ -54,21 +54,21 @@ struct Row {
 
 /// Minimum weight of a direction, as a fraction of its brightness. Some light is only found by
 /// light sampling, for example behind panes at which paths end.
-const LEAST: f32 = 0.05;
+const MIN_WEIGHT: f32 = 0.05;
 
 /// Number of table entries per start index.
 const STEP: usize = 4;
 
 /// Number of entries that the search compares at once.
-const AHEAD: usize = 8;
+const SEARCH_WIDTH: usize = 8;
 
 /// Returns, for each step of the fraction from 0 to 1, the index of the entry that reaches it.
 fn hints(sums: &[f32]) -> impl Iterator<Item = u32> {
     let steps = sums.len().div_ceil(STEP);
     let mut i = 0;
     (0..steps).map(move |step| {
-        let wanted = step as f32 / steps as f32 * sums[sums.len() - 1];
-        i += sums[i..].iter().take_while(|sum| **sum <= wanted).count();
+        let target = step as f32 / steps as f32 * sums[sums.len() - 1];
+        i += sums[i..].iter().take_while(|sum| **sum <= target).count();
         i = i.min(sums.len() - 1);
         i as u32
     })
@@ -110,7 +110,7 @@ impl Environment {
         for (row, sine) in sums.chunks_mut(width).zip(&sines) {
             let mut sum = 0.0_f64;
             for light in row {
-                sum += f64::from((*light - (1.0 - LEAST) * mean).max(LEAST * *light) * sine);
+                sum += f64::from((*light - (1.0 - MIN_WEIGHT) * mean).max(MIN_WEIGHT * *light) * sine);
                 *light = sum as f32;
             }
             all += sum;
@@ -118,20 +118,20 @@ impl Environment {
         }
         let turn = (degrees / 360.0).rem_euclid(1.0);
         let sound = all > 0.0 && mean.is_finite() && turn.is_finite();
-        let column_hints = hints(&columns).collect();
+        let row_hints = hints(&columns).collect();
         let share = |y: usize| (columns[y] - if y > 0 { columns[y - 1] } else { 0.0 }) / columns[height - 1];
         let row = |y: usize| Row { sum: sums[(y + 1) * width - 1], share: share(y) };
         sound.then(|| Environment {
             rows: (0..height).map(row).collect(),
             hints: sums.chunks(width).flat_map(hints).collect(),
-            column_hints,
+            row_hints,
             width,
             height,
             texels: texels.iter().zip(&sums).map(|(color, sum)| color.extend(*sum)).collect(),
             turn,
             scale,
             mean,
-            columns: columns.as_slice().into(),
+            row_sums: columns.as_slice().into(),
         })
     }
 
@@ -143,18 +143,18 @@ impl Environment {
     /// Approximate mean of the sampling weights, which is the radiance above [`Environment::mean`].
     pub fn mean_above(&self) -> Color {
         // Weights are means over texels, times the sine of the row.
-        self.scale * (self.columns[self.height - 1] * PI / 2.0 / (self.width * self.height) as f32)
+        self.scale * (self.row_sums[self.height - 1] * PI / 2.0 / (self.width * self.height) as f32)
     }
 
     /// Approximate maximum of radiance over pdf. It is reached in the directions with the lowest
     /// pdf relative to their brightness.
-    pub fn most_of_one(&self) -> Color {
-        4.0 * PI * self.mean_above() / LEAST
+    pub fn max_weight(&self) -> Color {
+        4.0 * PI * self.mean_above() / MIN_WEIGHT
     }
 
     /// Temporary memory of [`Environment::new`] in bytes per texel, in addition to the given
     /// texels: the texels with their sums, the sums alone, and the hints while they grow.
-    pub const MAKING: usize = size_of::<Vec4>() + size_of::<[f32; 2]>();
+    pub const BUILD_BYTES_PER_TEXEL: usize = size_of::<Vec4>() + size_of::<[f32; 2]>();
 
     /// Size in memory in bytes.
     pub fn bytes(&self) -> usize {
@@ -230,9 +230,9 @@ impl Environment {
     /// its pdf per solid angle.
     pub fn direction(&self, u: Vec2) -> Option<(Vec3, TexelPosition, f32)> {
         let steps = self.width.div_ceil(STEP);
-        let (y, v) = choose(&self.columns, |sum| *sum, self.columns[self.height - 1], &self.column_hints, u.y);
+        let (y, v) = find_entry(&self.row_sums, |sum| *sum, self.row_sums[self.height - 1], &self.row_hints, u.y);
         let hints = &self.hints[y * steps..(y + 1) * steps];
-        let (x, h) = choose(self.row(y), |texel| texel.w, self.rows[y].sum, hints, u.x);
+        let (x, h) = find_entry(self.row(y), |texel| texel.w, self.rows[y].sum, hints, u.x);
         let [across, down] = [x as f32 + h, y as f32 + v];
         let (sine, cosine) = fp::sin_cos_turn(0.5 * down / self.height as f32);
         let (sin_turn, cos_turn) = fp::sin_cos_turn(across / self.width as f32 + self.turn - 0.5);
@@ -244,27 +244,27 @@ impl Environment {
 
 /// Returns the index of the entry at which the fraction `u` of the sum is reached, and the position
 /// within it.
-fn choose<T>(entries: &[T], sum: impl Fn(&T) -> f32, whole: f32, hints: &[u32], u: f32) -> (usize, f32) {
+fn find_entry<T>(entries: &[T], sum: impl Fn(&T) -> f32, whole: f32, hints: &[u32], u: f32) -> (usize, f32) {
     let last = entries.len() - 1;
-    let wanted = u * whole;
+    let target = u * whole;
     let mut i = hints[((u * hints.len() as f32) as usize).min(hints.len() - 1)] as usize;
     // Rounding can put the start index too far.
-    while i > 0 && sum(&entries[i - 1]) > wanted {
+    while i > 0 && sum(&entries[i - 1]) > target {
         i -= 1;
     }
     // Compare several entries at once to avoid branch mispredictions.
-    while let Some(ahead) = entries[i..last].first_chunk::<AHEAD>() {
-        let below = ahead.iter().filter(|entry| sum(entry) <= wanted).count();
+    while let Some(ahead) = entries[i..last].first_chunk::<SEARCH_WIDTH>() {
+        let below = ahead.iter().filter(|entry| sum(entry) <= target).count();
         i += below;
-        if below < AHEAD {
+        if below < SEARCH_WIDTH {
             break;
         }
     }
-    while i < last && sum(&entries[i]) <= wanted {
+    while i < last && sum(&entries[i]) <= target {
         i += 1;
     }
     let before = if i > 0 { sum(&entries[i - 1]) } else { 0.0 };
-    let inside = (wanted - before) / (sum(&entries[i]) - before);
+    let inside = (target - before) / (sum(&entries[i]) - before);
     (i, if inside.is_finite() { inside.clamp(0.0, 1.0 - f32::EPSILON * 0.5) } else { 0.5 })
 }
 

@@ -79,20 +79,20 @@ impl Default for Mapping {
 impl Mapping {
     /// Position in the texture, in widths from the left and heights from the top, for surface
     /// coordinates with v up.
-    pub fn place(&self, uv: Vec2) -> Vec2 {
+    pub fn texture_position(&self, uv: Vec2) -> Vec2 {
         let (u, v) = (uv.x, 1.0 - uv.y);
         let [x, y] = self.transform.map(|[a, b, c]| a * u + b * v + c);
         Vec2::new(x, y)
     }
 
     /// Maps a channel value to the range.
-    pub fn ranged(&self, x: f32) -> f32 {
+    pub fn map_to_range(&self, x: f32) -> f32 {
         let [low, high] = self.range;
         if [low, high] == [0.0, 1.0] { x } else { low + x * (high - low) }
     }
 
     /// Applies the alpha cutoff, if there is one.
-    pub(super) fn cut(&self, [r, g, b, alpha]: [f32; 4]) -> [f32; 4] {
+    pub(super) fn apply_cutoff(&self, [r, g, b, alpha]: [f32; 4]) -> [f32; 4] {
         let alpha = match self.cutoff {
             Some(least) if alpha >= least => 1.0,
             Some(_) => 0.0,

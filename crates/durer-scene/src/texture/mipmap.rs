@@ -96,7 +96,7 @@ mod tests {
     #[test]
     fn levels_average_linear_values_and_round_to_eight_bits() {
         let texture = Texture::new(2, 1, vec![[0, 10, 255], [255, 12, 255]]).unwrap();
-        let square = texture.decoded(|x| (f32::from(x) / 255.0) * (f32::from(x) / 255.0)).with_levels();
+        let square = texture.with_decoding(|x| (f32::from(x) / 255.0) * (f32::from(x) / 255.0)).with_levels();
         // The mean of the decoded 10 and 12 is nearly the decoded 11: (11 / 255)^2.
         let [r, g, b] = square.levels[0].color(0);
         assert!((r - 0.5).abs() < 0.004 && (g - 0.00186).abs() < 1e-4 && b == 1.0, "{r} {g} {b}");

@@ -68,7 +68,7 @@ impl Texture {
     }
 
     /// Replaces the decoded values of 8-bit codes. Has no effect on `f32` texels.
-    pub fn decoded(self, decode: impl Fn(u8) -> f32) -> Self {
+    pub fn with_decoding(self, decode: impl Fn(u8) -> f32) -> Self {
         let texels = match self.texels {
             Texels::Eight(texels, _) => Texels::Eight(texels, Box::new(std::array::from_fn(|i| decode(i as u8)))),
             floats => floats,
@@ -138,7 +138,7 @@ impl Texture {
     }
 
     /// Returns a texture that shares the texels but has another mapping.
-    pub fn mapped(&self, mapping: Mapping) -> Self {
+    pub fn with_mapping(&self, mapping: Mapping) -> Self {
         Texture { mapping: Some(mapping), ..self.clone() }
     }
 
@@ -151,9 +151,9 @@ impl Texture {
     /// values. `width` is the width of the sample, in texels of the full-size image. With mipmap
     /// levels, interpolates between the two levels whose texels are about that wide.
     pub fn texel(&self, mapping: &Mapping, uv: Vec2, width: f32) -> [f32; 4] {
-        let place = mapping.place(uv);
+        let place = mapping.texture_position(uv);
         if width <= 1.0 || width.is_nan() || self.levels.is_empty() {
-            return mapping.cut(self.texel_at(mapping, place));
+            return mapping.apply_cutoff(self.texel_at(mapping, place));
         }
         let level = (fp::ln(width) * std::f32::consts::LOG2_E).min(self.levels.len() as f32);
         let (larger, part) = (level as usize, level.fract());
@@ -164,7 +164,7 @@ impl Texture {
             }
         };
         let (larger, smaller) = (of(larger), of(larger + 1));
-        mapping.cut(std::array::from_fn(|c| larger[c] + part * (smaller[c] - larger[c])))
+        mapping.apply_cutoff(std::array::from_fn(|c| larger[c] + part * (smaller[c] - larger[c])))
     }
 
     /// Converts a length in texture coordinates to texels.
@@ -176,7 +176,7 @@ impl Texture {
 
     /// Gradient of the red channel with respect to u and v.
     pub fn slope(&self, mapping: &Mapping, uv: Vec2) -> Vec2 {
-        let place = mapping.place(uv);
+        let place = mapping.texture_position(uv);
         // Step by one texel. A smaller step would only show the texel grid.
         let step = Vec2::new(1.0 / self.width as f32, 1.0 / self.height as f32);
         let along = |way: Vec2| {

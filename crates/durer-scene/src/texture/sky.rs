@@ -26,7 +26,7 @@ pub struct Sky {
     /// Perez's five coefficients for luminance, x and y.
     perez: [[f32; 5]; 3],
     /// Value of Perez's function at the zenith.
-    there: Vec3,
+    perez_zenith: Vec3,
     /// Radiance from below the horizon.
     ground: Color,
 }
@@ -62,21 +62,21 @@ impl Sky {
             line([(-0.0193, -0.2592), (-0.0665, 0.0008), (-0.0004, 0.2125), (-0.0641, -0.8989), (-0.0033, 0.0452)]),
             line([(-0.0167, -0.2608), (-0.0950, 0.0092), (-0.0079, 0.2102), (-0.0441, -1.6537), (-0.0109, 0.0529)]),
         ];
-        let there = Vec3::from(perez.map(|p| shape(&p, 1.0, theta, sun.y)));
+        let perez_zenith = Vec3::from(perez.map(|p| shape(&p, 1.0, theta, sun.y)));
         let zenith = Vec3::new(bright.max(0.0), x, y);
         // The ground has a fifth of the zenith luminance.
-        Sky { sun, turbidity: t, zenith, perez, there, ground: Vec3::splat(0.2 * zenith.x) }
+        Sky { sun, turbidity: t, zenith, perez, perez_zenith, ground: Vec3::splat(0.2 * zenith.x) }
     }
 
     /// Returns the sky above a diffuse ground that reflects a share of the light of sun and sky.
-    pub fn over(self, reflectance: f32) -> Self {
-        let ground = reflectance * (self.on_level_ground() + self.sun() * self.sun.y / PI);
+    pub fn with_ground(self, reflectance: f32) -> Self {
+        let ground = reflectance * (self.mean_on_horizontal() + self.sun() * self.sun.y / PI);
         Sky { ground, ..self }
     }
 
     /// Cosine-weighted mean radiance of the sky, without the sun: the illuminance of horizontal
     /// ground over pi.
-    pub fn on_level_ground(&self) -> Color {
+    pub fn mean_on_horizontal(&self) -> Color {
         const ROWS: u32 = 64;
         let mut sky = Color::ZERO;
         for row in 0..ROWS {
@@ -98,8 +98,8 @@ impl Sky {
         }
         let cos_sun = dir.dot(self.sun).clamp(-1.0, 1.0);
         let here = Vec3::from(self.perez.map(|p| shape(&p, dir.y.max(0.01), angle(cos_sun), cos_sun)));
-        let Vec3 { x: bright, y: x, z: y } = self.zenith * here / self.there;
-        linear(bright.max(0.0), x, y)
+        let Vec3 { x: bright, y: x, z: y } = self.zenith * here / self.perez_zenith;
+        rgb_from_yxy(bright.max(0.0), x, y)
     }
 
     /// Illuminance from the sun, in lux by colour channel, on a surface that faces it.
@@ -119,7 +119,7 @@ impl Sky {
 }
 
 /// Renders a function of the direction as an environment map, with its centre towards -z and y up.
-pub fn picture(width: u32, height: u32, at: impl Fn(Vec3) -> Color) -> Vec<Color> {
+pub fn environment_map(width: u32, height: u32, at: impl Fn(Vec3) -> Color) -> Vec<Color> {
     let pixel = |i: u32| {
         let place = (Vec2::new((i % width) as f32, (i / width) as f32) + 0.5) / Vec2::new(width as f32, height as f32);
         let (sin, cos) = fp::sin_cos_degrees(180.0 * f64::from(place.y));
@@ -139,7 +139,7 @@ fn shape(&[a, b, c, d, e]: &[f32; 5], cos_zenith: f32, to_sun: f32, cos_sun: f32
 }
 
 /// Converts CIE Yxy to linear Rec.709.
-fn linear(bright: f32, x: f32, y: f32) -> Color {
+fn rgb_from_yxy(bright: f32, x: f32, y: f32) -> Color {
     let xyz = Vec3::new(bright * x / y, bright, bright * (1.0 - x - y) / y);
     (SRGB_FROM_XYZ.as_mat3() * xyz).max(Vec3::ZERO)
 }
@@ -160,7 +160,7 @@ mod tests {
 
     #[test]
     fn ground_reflects_its_share_of_sun_and_sky() {
-        let sky = Sky::new(Vec3::new(0.3, 0.6, -0.5), 3.0).over(0.5);
+        let sky = Sky::new(Vec3::new(0.3, 0.6, -0.5), 3.0).with_ground(0.5);
         // Integrate by equal solid angles instead of equal projected areas.
         let (mut light, steps) = (Color::ZERO, 400);
         for row in 0..steps {
@@ -215,7 +215,7 @@ mod tests {
         for height in [0.0, 1.0, 10.0, 45.0, 90.0] {
             for turbidity in [2.0, 4.0, 9.0] {
                 let sky = sky(height, turbidity);
-                let picture = picture(64, 32, |dir| sky.at(dir));
+                let picture = environment_map(64, 32, |dir| sky.at(dir));
                 assert!(picture.iter().all(|color| color.is_finite() && color.min_element() >= 0.0));
                 let away = sky.at(Vec3::new(-0.8, 0.6, 0.0));
                 assert!(brightness(sky.at(sky.sun)) > brightness(away), "{height} {turbidity}");

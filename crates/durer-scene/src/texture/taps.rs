@@ -7,7 +7,7 @@ use crate::math::{Color, Vec2};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tap {
     /// Column and row, from the upper left corner.
-    pub place: (u32, u32),
+    pub texel: (u32, u32),
     /// Weight in the lookup.
     pub weight: f32,
     /// The file's three bytes, if it has 8 bits per channel.
@@ -25,8 +25,8 @@ impl Texture {
         // column and row.
         let (x, y, nearest) = match &self.mapping {
             Some(mapping) => {
-                let place = mapping.place(uv);
-                (f64::from(place.x) * width, f64::from(place.y) * height, mapping.nearest)
+                let texel = mapping.texture_position(uv);
+                (f64::from(texel.x) * width, f64::from(texel.y) * height, mapping.nearest)
             }
             None => {
                 let clamped = |v: f64, most: f64| v.max(0.0).min(most);
@@ -39,13 +39,13 @@ impl Texture {
             None => i.clamp(0, i64::from(size) - 1) as u32,
         };
         let tap = |i: i64, j: i64, weight: f64| {
-            let place = (index(0, i, self.width), index(1, j, self.height));
-            let at = place.1 as usize * self.width as usize + place.0 as usize;
+            let texel = (index(0, i, self.width), index(1, j, self.height));
+            let at = texel.1 as usize * self.width as usize + texel.0 as usize;
             let bytes = match &self.texels {
                 Texels::Eight(texels, _) => Some(texels[at]),
                 Texels::Float(_) => None,
             };
-            Tap { place, weight: weight as f32, bytes, color: self.color(at).into() }
+            Tap { texel, weight: weight as f32, bytes, color: self.color(at).into() }
         };
         if nearest {
             return vec![tap(x.floor() as i64, y.floor() as i64, 1.0)];
@@ -58,7 +58,7 @@ impl Texture {
             [(i, j, (1.0 - a) * (1.0 - b)), (i + 1, j, a * (1.0 - b)), (i, j + 1, (1.0 - a) * b), (i + 1, j + 1, a * b)]
         {
             let next = tap(i, j, weight);
-            match taps.iter_mut().find(|known| known.place == next.place) {
+            match taps.iter_mut().find(|known| known.texel == next.texel) {
                 Some(known) => known.weight += next.weight,
                 None if next.weight > 0.0 => taps.push(next),
                 None => {}

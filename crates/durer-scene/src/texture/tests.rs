@@ -51,7 +51,7 @@ fn cube_map_directions_select_their_face() {
     // One colour for each face, in the order of the names.
     let face = |i: u8| Texture::new(1, 1, vec![[i * 10; 3]]).unwrap();
     let map = CubeMap { faces: std::array::from_fn(|i| face(i as u8)), mirrored_back: false };
-    let seen = |d: Vec3| CubeMap::FACES[(map.at(d).x * 25.5).round() as usize];
+    let faces = |d: Vec3| CubeMap::FACES[(map.at(d).x * 25.5).round() as usize];
     for (direction, name) in [
         (Vec3::NEG_X, "left"),
         (Vec3::X, "right"),
@@ -60,11 +60,11 @@ fn cube_map_directions_select_their_face() {
         (Vec3::Z, "front"),
         (Vec3::NEG_Z, "back"),
     ] {
-        assert_eq!(seen(direction), name);
-        assert_eq!(seen(3.0 * direction + Vec3::splat(0.9)), name);
+        assert_eq!(faces(direction), name);
+        assert_eq!(faces(3.0 * direction + Vec3::splat(0.9)), name);
     }
-    assert_eq!(seen(Vec3::ONE), "right");
-    assert_eq!(seen(Vec3::new(0.0, -1.0, 1.0)), "down");
+    assert_eq!(faces(Vec3::ONE), "right");
+    assert_eq!(faces(Vec3::new(0.0, -1.0, 1.0)), "down");
     assert!(map.at(Vec3::ZERO).is_finite() && map.at(Vec3::NAN).is_finite());
 }
 
@@ -94,7 +94,7 @@ fn faces_are_upright_and_the_course_mirrors_two() {
     let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
     for (i, (forward, up)) in [(-x, y), (x, y), (y, z), (-y, -z), (z, y), (-z, y)].into_iter().enumerate() {
         let side = forward.cross(up);
-        let seen = |map: &CubeMap, mirror: bool, flip: bool| -> Vec<String> {
+        let faces = |map: &CubeMap, mirror: bool, flip: bool| -> Vec<String> {
             let cell = |i: usize| (2.0 * i as f32 + 1.0) / 5.0 - 1.0;
             // Texels are exact at their corners, so look each up just inside its corner.
             let shift = |turned: bool| if turned { 0.999 / 5.0 } else { -0.999 / 5.0 };
@@ -105,11 +105,11 @@ fn faces_are_upright_and_the_course_mirrors_two() {
             (0..5).map(|row| (0..5).map(|column| pixel(row, column)).collect()).collect()
         };
         let written: Vec<String> = LETTERS[i].iter().map(|row| row.to_string()).collect();
-        assert_eq!(seen(&right, false, false), written, "{}", CubeMap::FACES[i]);
+        assert_eq!(faces(&right, false, false), written, "{}", CubeMap::FACES[i]);
         let (is_down, is_back) = (CubeMap::FACES[i] == "down", CubeMap::FACES[i] == "back");
-        let wanted = if is_down { flipped(LETTERS[i]) } else { written };
-        let wanted = if is_back { mirrored(LETTERS[i]) } else { wanted };
-        assert_eq!(seen(&old, is_back, is_down), wanted, "{} of the course", CubeMap::FACES[i]);
+        let expected = if is_down { flipped(LETTERS[i]) } else { written };
+        let expected = if is_back { mirrored(LETTERS[i]) } else { expected };
+        assert_eq!(faces(&old, is_back, is_down), expected, "{} of the course", CubeMap::FACES[i]);
     }
 }
 
@@ -120,7 +120,7 @@ fn float_texels_keep_their_values() {
     let mapping = Mapping { nearest: true, ..Mapping::default() };
     assert_eq!(texture.texel(&mapping, Vec2::new(0.25, 0.5), 0.0), [2.0, 0.1, -1.0, 0.25]);
     // Float texels have no decoding curve, and take 16 bytes each with their opacity.
-    assert_eq!(texture.clone().decoded(|_| 0.5), texture);
+    assert_eq!(texture.clone().with_decoding(|_| 0.5), texture);
     assert!(texture.bytes() == 32 && texture.has_alpha() && !texture.is_flat());
     assert!(Texture::from_floats(1, 1, texels).is_none());
 }

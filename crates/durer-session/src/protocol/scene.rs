@@ -63,7 +63,7 @@ pub enum Motion {
 /// An item from which a page lets the user choose, such as an integrator, with its description.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Choice {
+pub struct NamedChoice {
     /// Name of the item.
     pub name: String,
     /// Meaning of the item.
@@ -73,7 +73,7 @@ pub struct Choice {
 /// Position of an item or a finding in the text of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Place {
+pub struct TextPosition {
     /// Line, from 1.
     pub line: u32,
     /// Column in characters, from 1.
@@ -114,15 +114,15 @@ pub struct Finding {
     /// Name of the file, if it is not the scene's own.
     pub file: Option<String>,
     /// Place in the file.
-    pub place: Option<Place>,
+    pub place: Option<TextPosition>,
     /// Edits that fix the problem.
-    pub fix: Vec<Change>,
+    pub fix: Vec<TextEdit>,
 }
 
 /// A text replacement that is part of the fix of a [`Finding`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Change {
+pub struct TextEdit {
     /// Byte offset of the start of the replaced range.
     pub start: u32,
     /// Byte offset of its end, exclusive.
@@ -134,19 +134,19 @@ pub struct Change {
 /// Summary of a scene: its camera, objects, lights, bounds, and job options.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Contents {
+pub struct SceneSummary {
     /// Name of the dialect.
     pub dialect: String,
     /// The current camera.
     pub camera: CameraState,
     /// Objects by number, up to a limit.
-    pub objects: Vec<Thing>,
+    pub objects: Vec<SceneItem>,
     /// Number of objects.
     pub object_count: u32,
     /// Number of triangles.
     pub triangles: f64,
     /// Lights by number.
-    pub lights: Vec<Thing>,
+    pub lights: Vec<SceneItem>,
     /// Minimum and maximum corner of the bounding box of all bounded objects, in world space.
     pub bounds: [[f32; 3]; 2],
     /// Options of the job, without its size.
@@ -172,11 +172,11 @@ pub struct JobState {
 /// An object or light in the list of a scene's contents.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Thing {
+pub struct SceneItem {
     /// Keyword and line.
     pub name: String,
     /// Place in the scene's text.
-    pub place: Option<Place>,
+    pub place: Option<TextPosition>,
 }
 
 /// The current camera of a session: its position, directions, and fields.
@@ -226,7 +226,7 @@ pub struct FieldState {
 /// Description of a picture that is sent to a page: its size, progress, and timing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct PictureHead {
+pub struct PictureInfo {
     /// `color`, or the name of an auxiliary picture.
     pub picture: String,
     /// Width of the payload in pixels.
@@ -261,7 +261,7 @@ pub struct PictureHead {
 /// A keyword that begins a statement of the scene language, with its documentation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Word {
+pub struct Keyword {
     /// The keyword.
     pub word: String,
     /// Chapter of the manual.
@@ -269,7 +269,7 @@ pub struct Word {
     /// Meaning.
     pub doc: String,
     /// Fields of its block.
-    pub fields: Vec<WordField>,
+    pub fields: Vec<KeywordField>,
     /// Example.
     pub example: String,
 }
@@ -277,7 +277,7 @@ pub struct Word {
 /// A field in the block of a statement, with its documentation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct WordField {
+pub struct KeywordField {
     /// The keyword.
     pub word: String,
     /// Type and range.

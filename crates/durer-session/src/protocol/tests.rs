@@ -8,44 +8,44 @@ fn typescript() -> String {
         ($($type:ty),+ $(,)?) => { [$(<$type>::decl()),+] };
     }
     let all = declarations![
-        Ask,
-        Answer,
+        RequestMessage,
+        EventMessage,
         Request,
         Event,
         Setting,
         Motion,
-        Choice,
-        Place,
+        NamedChoice,
+        TextPosition,
         Severity,
         Finding,
-        Change,
-        Contents,
+        TextEdit,
+        SceneSummary,
         JobState,
-        Thing,
+        SceneItem,
         CameraState,
         FieldState,
-        PictureHead,
-        Row,
+        PictureInfo,
+        FormulaRow,
         Segment,
-        Role,
+        SegmentKind,
         Term,
-        PixelAccount,
+        PixelExplanation,
         Verdict,
         ObjectTest,
-        CastAccount,
-        HitAccount,
+        CastResult,
+        CastHit,
         Outline,
-        Lamp,
+        LightMarker,
         Structure,
-        RayAccount,
-        WalkTest,
-        WalkStep,
-        WalkAccount,
-        BoxState,
-        TreeNode,
+        CameraRay,
+        TraversalTest,
+        TraversalStep,
+        Traversal,
+        TreeBox,
+        SceneNode,
         MaterialState,
-        Word,
-        WordField,
+        Keyword,
+        KeywordField,
     ];
     let head = "// Written by `DURER_WRITE=1 cargo test -p durer-session` from crates/durer-session/src/protocol.rs.\n";
     let types: Vec<String> = all.iter().map(|declaration| format!("export {declaration}\n")).collect();
@@ -65,10 +65,10 @@ fn typescript_types_match_the_protocol() {
 
 #[test]
 fn answer_is_encoded_as_length_json_and_payload() {
-    let answer = Answer { session: 3, id: 7, event: Event::Saved };
+    let answer = EventMessage { session: 3, id: 7, event: Event::Saved };
     let bytes = answer.encode(&[1, 2, 3]);
     let length = u32::from_le_bytes(bytes[..4].try_into().unwrap()) as usize;
-    let read: Answer = serde_json::from_slice(&bytes[4..4 + length]).unwrap();
+    let read: EventMessage = serde_json::from_slice(&bytes[4..4 + length]).unwrap();
     assert_eq!((read.session, read.id), (3, 7));
     assert!(matches!(read.event, Event::Saved));
     assert_eq!(&bytes[4 + length..], [1, 2, 3]);

@@ -30,7 +30,7 @@ impl Session {
     /// Reads the scene file again if it has changed on disk. If the text was edited in the session
     /// too, it is kept, and the page is notified of the conflict when it saves.
     #[cfg(feature = "fs")]
-    pub(crate) fn look_at_disk(&mut self, say: &mut dyn FnMut(Message)) {
+    pub(crate) fn check_disk(&mut self, send_message: &mut dyn FnMut(Message)) {
         let Some(document) = self.document.as_ref().filter(|_| self.on_disk) else { return };
         let stamp = durer::format::folder::stamp_of(&document.path);
         if stamp == self.stamp || stamp == self.reported || stamp.is_none() {
@@ -39,7 +39,7 @@ impl Session {
         let Ok(bytes) = read(&document.path) else { return };
         if bytes != document.bytes {
             let Ok(text) = std::str::from_utf8(&bytes) else { return };
-            say((Event::Text { text: text.into(), from_disk: true }, Vec::new()));
+            send_message((Event::Text { text: text.into(), from_disk: true }, Vec::new()));
             self.reported = stamp;
         } else {
             self.stamp = stamp;
@@ -48,7 +48,7 @@ impl Session {
 
     /// If the scene file contains `text`, records its current version as the one that was read.
     #[cfg(feature = "fs")]
-    pub(crate) fn take_over(&mut self, text: &str) {
+    pub(crate) fn accept_disk_version(&mut self, text: &str) {
         if let Some(document) = self.document.as_ref().filter(|_| self.on_disk)
             && read(&document.path).is_ok_and(|bytes| *bytes == *text.as_bytes())
         {

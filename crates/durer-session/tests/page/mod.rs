@@ -2,8 +2,8 @@
 
 #![allow(dead_code, reason = "each test uses a part")]
 
-use durer_session::protocol::{Answer, Event, PictureHead};
-use durer_session::{Host, Start};
+use durer_session::protocol::{Event, EventMessage, PictureInfo};
+use durer_session::{Host, SessionFiles};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -14,10 +14,10 @@ pub struct Page(Host);
 
 impl Page {
     pub fn new(file: Option<PathBuf>) -> Page {
-        Page::begin(Start { file, lesson: None })
+        Page::begin(SessionFiles { file, lesson: None })
     }
 
-    pub fn begin(start: Start) -> Page {
+    pub fn begin(start: SessionFiles) -> Page {
         let now = Arc::new(AtomicU64::new(0));
         Page(Host::new(start, Arc::new(move || now.fetch_add(1, Relaxed) as f64)))
     }
@@ -30,7 +30,7 @@ impl Page {
     }
 
     /// Returns the pictures that the session sends until it is idle.
-    pub fn pictures(&mut self) -> Vec<(PictureHead, Vec<u8>)> {
+    pub fn pictures(&mut self) -> Vec<(PictureInfo, Vec<u8>)> {
         let mut all = Vec::new();
         while self.0.is_busy() {
             self.0.step(&mut |bytes| {
@@ -45,7 +45,7 @@ impl Page {
 
 fn read(bytes: &[u8]) -> (Event, Vec<u8>) {
     let length = u32::from_le_bytes(bytes[..4].try_into().unwrap()) as usize;
-    let answer: Answer = serde_json::from_slice(&bytes[4..4 + length]).unwrap();
+    let answer: EventMessage = serde_json::from_slice(&bytes[4..4 + length]).unwrap();
     (answer.event, bytes[4 + length..].to_vec())
 }
 

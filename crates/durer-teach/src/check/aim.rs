@@ -27,8 +27,8 @@ pub(super) enum Aim {
 /// distance. Ignores occlusion.
 pub(super) fn share(world: &World, light: usize, point: Vec3) -> f32 {
     let emitter = &world.lights()[light];
-    let Some((place, strongest)) = emitter.place() else { return 1.0 };
-    let most = world.profiles().get(light).and_then(Option::as_ref).map_or(1.0, |profile| profile.most());
+    let Some((place, strongest)) = emitter.inverse_square() else { return 1.0 };
+    let most = world.profiles().get(light).and_then(Option::as_ref).map_or(1.0, |profile| profile.max_candela());
     let full = most * strongest.max_element() / (point - place).length_squared().max(f32::MIN_POSITIVE);
     world.illuminate(light, point.as_dvec3()).color.max_element() / full.max(f32::MIN_POSITIVE)
 }

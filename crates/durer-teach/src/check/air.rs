@@ -13,7 +13,7 @@ const WALL: f32 = 0.01;
 pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let (Some(fog), Some(written)) = (world.fog(), &scout.subject.scene.fog) else { return Vec::new() };
-    let Some(place) = fog.place.as_ref().filter(|_| scout.is_physical()) else { return Vec::new() };
+    let Some(place) = fog.region.as_ref().filter(|_| scout.is_physical()) else { return Vec::new() };
     let goes_through = |probe: &super::probes::Probe| {
         let end = probe.seen.as_ref().map_or(f32::INFINITY, |seen| seen.t);
         place.bounds.clip(probe.ray.origin, probe.ray.dir).is_some_and(|(from, to)| to > 0.0 && from < end)
@@ -49,7 +49,7 @@ pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
         .seen()
         .filter_map(|(probe, seen)| {
             let length = probe.ray.dir.length();
-            let (from, to) = match &fog.place {
+            let (from, to) = match &fog.region {
                 Some(place) => place.bounds.clip(probe.ray.origin, probe.ray.dir)?,
                 None => (0.0, f32::INFINITY),
             };
@@ -57,7 +57,7 @@ pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
         })
         .collect();
     ways.sort_by(f32::total_cmp);
-    let even = fog.place.as_ref().is_none_or(|place| place.density.is_none());
+    let even = fog.region.as_ref().is_none_or(|place| place.density.is_none());
     let swallowed = ways.iter().filter(|way| fp::exp(-extinction * **way) < WALL).count();
     if even && !ways.is_empty() && swallowed * 20 > scout.seen().count() * 19 {
         let middle = ways[ways.len() / 2];
@@ -73,7 +73,7 @@ pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
         let value = scout.value(span, &["extinction"]);
         let diagnostic = diagnostic.fix_at(value, some);
         found.push(Finding::from(scout.at_value(diagnostic, span, &["extinction"])).whole(true));
-    } else if fog.place.is_none() {
+    } else if fog.region.is_none() {
         let sky = world.environment().is_some()
             || world.cube_map().is_some()
             || world.background() != Color::ZERO && !world.is_dark();

@@ -13,7 +13,7 @@ use durer_scene::scene::Spanned;
 /// Reports lights whose beam misses everything visible.
 pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     missing(scout, Aim::Away, |diagnostic, light| {
-        let place = light.value.place().map_or(Vec3::ZERO, |(place, _)| place);
+        let place = light.value.inverse_square().map_or(Vec3::ZERO, |(place, _)| place);
         // The visible part of a plane reaches the horizon, so aim at bounded objects only.
         let objects = scout.seen().filter(|(_, seen)| scout.world().objects()[seen.object as usize].bounds().is_some());
         let objects: Vec<Vec3> = objects.map(|(probe, seen)| probe.ray.at(seen.t)).collect();

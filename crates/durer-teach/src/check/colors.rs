@@ -4,7 +4,7 @@ use super::finding::{Finding, MAX_SOUGHT, counted, percent, vector};
 use super::scene_probe::SceneProbe;
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::world::{Geometry, Material, Phong};
-use durer_scene::dialect::{Dialect, Quirk, Secondary};
+use durer_scene::dialect::{Dialect, Quirk, SecondaryRays};
 use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::material::Pattern;
 use durer_scene::math::Color;
@@ -85,7 +85,7 @@ pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
     let bounces = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
     // If highlights and mirrors share one colour, it is meant as a mirror only if the material
     // would be black without reflection.
-    let shared = matches!(scout.world().rules().secondary, Secondary::Specular | Secondary::SpecularFresnel);
+    let shared = matches!(scout.world().rules().secondary, SecondaryRays::Specular | SecondaryRays::SpecularFresnel);
     let intended = |phong: &Phong| phong.fresnel || !shared || phong.diffuse.max_element() < 0.15;
     let all: Vec<_> =
         phongs(scout).filter(|(i, _, phong)| bounces(phong) && intended(phong) && rays(scout, *i) > 0).collect();
@@ -195,7 +195,7 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
             // An index of 1 without Fresnel reflection is correct for coloured foil.
             None if phong.ior == 1.0 && !phong.fresnel => Diagnostic::note(format!(
                 "material {i} transmits light but has no `{}`",
-                if scout.world().rules().secondary == Secondary::Colors { fields[0] } else { fields[1] }
+                if scout.world().rules().secondary == SecondaryRays::Colors { fields[0] } else { fields[1] }
             ))
             .effect("light passes straight through without refraction, as through foil")
             .help("glass has 1.5, water 1.33"),
@@ -352,7 +352,7 @@ pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
     if scout.is_physical() {
         return super::layers::dull_glass(scout);
     }
-    if scout.world().rules().secondary != Secondary::SpecularFresnel {
+    if scout.world().rules().secondary != SecondaryRays::SpecularFresnel {
         return dull_by_color(scout);
     }
     let dull = |(i, written, _): &(u32, &Spanned<Written>, &Phong)| match &written.value {

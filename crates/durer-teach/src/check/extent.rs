@@ -9,7 +9,7 @@ use durer_diag::{Diagnostic, Span};
 use durer_scene::camera::{Camera, Projection};
 use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::{Aabb, Vec3, fp};
-use durer_scene::scene::{MatrixOp, Node, Object};
+use durer_scene::scene::{MatrixOp, Object, ObjectKind};
 
 /// Minimum size in pixels of a recognisable object.
 const FEWEST_PIXELS: f32 = 6.0;
@@ -345,7 +345,7 @@ type Rotation = (Span, [&'static str; 2], f32);
 
 fn rotations(object: &Object, angles: &mut Vec<Rotation>) {
     match &object.node {
-        Node::Transform(ops, inner) => {
+        ObjectKind::Transform(ops, inner) => {
             angles.extend(ops.iter().filter_map(|op| match op {
                 MatrixOp::XRotate(angle) => Some((object.span, ["XRotate", "x_rotate"], *angle)),
                 MatrixOp::YRotate(angle) => Some((object.span, ["YRotate", "y_rotate"], *angle)),
@@ -355,8 +355,8 @@ fn rotations(object: &Object, angles: &mut Vec<Rotation>) {
             }));
             rotations(inner, angles);
         }
-        Node::Group(group) => group.objects.iter().for_each(|inner| rotations(inner, angles)),
-        Node::Solid(_, parts) => parts.iter().for_each(|part| rotations(part, angles)),
+        ObjectKind::Group(group) => group.objects.iter().for_each(|inner| rotations(inner, angles)),
+        ObjectKind::Solid(_, parts) => parts.iter().for_each(|part| rotations(part, angles)),
         _ => {}
     }
 }

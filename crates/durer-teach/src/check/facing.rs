@@ -7,7 +7,7 @@ use super::scene_probe::SceneProbe;
 use super::shapes::{plane, shape, triangle};
 use durer_diag::{Diagnostic, Severity};
 use durer_render::world::Object;
-use durer_scene::describe::{DescribedList as _, Value};
+use durer_scene::describe::{DescribedKind as _, Value};
 use durer_scene::math::{Affine, Vec3};
 use durer_scene::shape::{Flip, Shape as _};
 
@@ -50,7 +50,7 @@ pub(super) fn flipped(scout: &SceneProbe, diagnostic: &Diagnostic, object: u32) 
 
 /// Returns how to flip a flat shape that the course's programs support.
 fn course_flip(object: &Object) -> Option<Flip> {
-    shape(object).filter(|shape| !shape.is_ours())?.flip()
+    shape(object).filter(|shape| !shape.is_durer_only())?.flip()
 }
 
 /// Adds the edit that flips a flat shape that the course's programs support.

@@ -103,7 +103,7 @@ fn in_the_way(scout: &SceneProbe) -> Vec<Finding> {
             covered += usize::from(hit.object as usize == front);
         }
     }
-    if looked == 0 || covered * 10 < looked * 7 || bounds.holds(eye) {
+    if looked == 0 || covered * 10 < looked * 7 || bounds.contains(eye) {
         return Vec::new();
     }
     let diagnostic = Diagnostic::note(format!("the {} covers most of the picture", scout.object(front as u32)))

@@ -78,7 +78,7 @@ pub(super) fn holes(scout: &SceneProbe) -> Vec<Finding> {
 /// Reports flat objects of glass, which have no interior.
 pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
     use super::shapes::{shape, triangle};
-    use durer_scene::describe::DescribedList as _;
+    use durer_scene::describe::DescribedKind as _;
     use durer_scene::shape::Shape as _;
     let world = scout.world();
     let glass = |object: &&Placed| {

@@ -8,7 +8,7 @@ use super::visibility::Visibility;
 use durer_diag::{Diagnostic, Span};
 use durer_render::world::{Geometry, Object};
 use durer_scene::math::{Ray, Vec3};
-use durer_scene::scene::{MatrixOp, Node, Object as Written};
+use durer_scene::scene::{MatrixOp, Object as Written, ObjectKind};
 use durer_scene::shape::{Plane, Shape};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -120,9 +120,9 @@ fn squashed_parts(object: &Written, within: bool) -> Vec<Finding> {
         _ => 1.0,
     };
     match &object.node {
-        Node::Group(group) => group.objects.iter().flat_map(|inner| squashed_parts(inner, within)).collect(),
-        Node::Solid(_, parts) => parts.iter().flat_map(|part| squashed_parts(part, true)).collect(),
-        Node::Transform(ops, inner) => {
+        ObjectKind::Group(group) => group.objects.iter().flat_map(|inner| squashed_parts(inner, within)).collect(),
+        ObjectKind::Solid(_, parts) => parts.iter().flat_map(|part| squashed_parts(part, true)).collect(),
+        ObjectKind::Transform(ops, inner) => {
             let mut found = squashed_parts(inner, within);
             if within && ops.iter().map(least).product::<f32>() < SQUASHED {
                 let diagnostic = Diagnostic::warning("a scale makes this part of a solid almost disappear")

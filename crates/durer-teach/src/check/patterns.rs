@@ -4,7 +4,7 @@ use super::finding::{Finding, MAX_SOUGHT, number, percent};
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
 use durer_render::world::{Geometry, Material, World};
-use durer_scene::material::{ColorNoise, Solid};
+use durer_scene::material::{ColorNoise, PatternMaterial};
 use durer_scene::math::Vec3;
 use durer_scene::scene::Material as Written;
 
@@ -21,7 +21,7 @@ const FEWEST: usize = 20;
 /// the picture. `Solid` carries the matrix to pattern space and
 /// [`ShadingRules::conic_rings`](durer_render::world::ShadingRules::conic_rings).
 enum PatternSampler<'w> {
-    Solid(&'w Solid, &'w glam::DAffine3, bool),
+    Solid(&'w PatternMaterial, &'w glam::DAffine3, bool),
     Noise(&'w ColorNoise),
 }
 
@@ -77,14 +77,14 @@ pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
         let fine = places.iter().filter(|place| noisy(place)).count();
         let (message, effect, help) = if let Some((message, help)) = without_change(scout, &look, &written.value) {
             (message, "the pattern is invisible: one colour, or a few large patches", help)
-        } else if matches!(look, PatternSampler::Solid(Solid::Mix(_) | Solid::TwoSided(_), ..)) {
+        } else if matches!(look, PatternSampler::Solid(PatternMaterial::Mix(_) | PatternMaterial::TwoSided(_), ..)) {
             continue;
         } else if most - least < 1e-3 {
             (
                 "only one part of this pattern is in the picture".to_string(),
                 "the pattern is invisible: a single colour",
                 match &written.value {
-                    Written::Solid(Solid::Checkerboard(_), _) => {
+                    Written::Solid(PatternMaterial::Checkerboard(_), _) => {
                         "its cells are larger than the visible scene: check the `Scale` of its `Transform`"
                     }
                     _ => "check its `frequency`, `amplitude` and `Transform`",
@@ -110,13 +110,13 @@ pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
 /// Explains from the scene description why a pattern does not vary, if possible.
 fn without_change(scout: &SceneProbe, look: &PatternSampler, written: &Written) -> Option<(String, &'static str)> {
     let PatternSampler::Solid(solid, to_pattern, _) = look else { return None };
-    if let Solid::Mix(mix) = solid {
+    if let PatternMaterial::Mix(mix) = solid {
         let message = format!("the `share` of this mix is {}", number(mix.share));
         let help = "the other material is invisible: a `share` between 0 and 1 shows both";
         let shows_one = mix.share <= 0.0 || mix.share >= 1.0 && mix.share_texture.is_none();
         return shows_one.then_some((message, help));
     }
-    if !matches!(solid, Solid::Checkerboard(_)) || !matches!(written, Written::Solid(..)) {
+    if !matches!(solid, PatternMaterial::Checkerboard(_)) || !matches!(written, Written::Solid(..)) {
         return None;
     }
     let cell = to_pattern.inverse().matrix3;
@@ -141,7 +141,8 @@ pub(super) fn flat_texture(scout: &SceneProbe) -> Vec<Finding> {
         let Some(Material::Phong(phong)) = world.materials().get(number) else { continue };
         let Some(texture) = phong.texture.and_then(|texture| world.textures().get(texture as usize)) else { continue };
         let own = || world.objects().iter().filter(|object| object.material as usize == number);
-        let is_still = |geometry: &Geometry| matches!(geometry, Geometry::Mesh(tree) if tree.mesh.only_uv().is_some());
+        let is_still =
+            |geometry: &Geometry| matches!(geometry, Geometry::Mesh(tree) if tree.mesh.constant_uv().is_some());
         let one_place = own().find(|object| is_still(&object.geometry));
         let (message, help) = if scout.material_rays()[number] == 0 {
             continue;

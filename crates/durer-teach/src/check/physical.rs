@@ -100,7 +100,8 @@ pub(super) fn lamp_in_glass(scout: &SceneProbe) -> Vec<Finding> {
     if !matches!(scout.subject.job.method, IntegratorKind::Path(_)) {
         return Vec::new();
     }
-    let lights = world.lights().iter().enumerate().filter_map(|(number, light)| Some((number, light.place()?.0)));
+    let lights =
+        world.lights().iter().enumerate().filter_map(|(number, light)| Some((number, light.inverse_square()?.0)));
     let enclosed = lights.filter_map(|(number, place)| {
         let glass = world.glass_around(place).find(|&(_, ior)| ior != 1.0)?.0;
         let message =

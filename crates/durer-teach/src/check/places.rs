@@ -3,7 +3,7 @@
 use super::scene_probe::SceneProbe;
 use durer_diag::Span;
 use durer_scene::math::Vec3;
-use durer_scene::scene::{MatrixOp, MatrixRules, Node, Object};
+use durer_scene::scene::{MatrixOp, MatrixRules, Object, ObjectKind};
 
 /// If nothing is in the picture, returns the span of the first transform that moves its object out
 /// of the picture but would not if it were reversed or removed, and a sentence about it.
@@ -13,7 +13,7 @@ pub(super) fn moved(scout: &SceneProbe) -> Option<(Span, String)> {
 }
 
 fn of(scout: &SceneProbe, object: &Object) -> Option<(Span, String)> {
-    let Node::Transform(ops, inner) = &object.node else { return None };
+    let ObjectKind::Transform(ops, inner) = &object.node else { return None };
     // Find the compiled object by the position of its keyword.
     let world = scout.world();
     let own =

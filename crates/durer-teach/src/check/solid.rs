@@ -4,7 +4,7 @@ use super::finding::{Finding, MAX_SOUGHT};
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
 use durer_scene::math::Aabb;
-use durer_scene::scene::{Node, Operation, extent};
+use durer_scene::scene::{CsgOperation, ObjectKind, extent};
 
 /// Reports subtracted parts whose bounds do not overlap those of the first part.
 pub(super) fn idle_part(scout: &SceneProbe) -> Vec<Finding> {
@@ -13,16 +13,17 @@ pub(super) fn idle_part(scout: &SceneProbe) -> Vec<Finding> {
     let mut all: Vec<&durer_scene::scene::Object> = scene.root.iter().flat_map(|root| &root.objects).collect();
     while let Some(object) = all.pop().filter(|_| found.len() < MAX_SOUGHT) {
         match &object.node {
-            Node::Group(group) => all.extend(&group.objects),
-            Node::Transform(_, inner) => all.push(inner),
-            Node::Solid(operation, parts) => {
+            ObjectKind::Group(group) => all.extend(&group.objects),
+            ObjectKind::Transform(_, inner) => all.push(inner),
+            ObjectKind::Solid(operation, parts) => {
                 all.extend(parts);
                 let bounds = |part: &durer_scene::scene::Object| {
                     let mut bounds = Aabb::EMPTY;
-                    extent::of(scene, part, &mut |p| bounds = bounds.with(p.as_vec3()));
+                    extent::object_points(scene, part, &mut |p| bounds = bounds.union_point(p.as_vec3()));
                     Some(bounds).filter(|bounds| !bounds.is_empty())
                 };
-                let Some(first) = parts.first().and_then(bounds).filter(|_| *operation == Operation::Difference) else {
+                let Some(first) = parts.first().and_then(bounds).filter(|_| *operation == CsgOperation::Difference)
+                else {
                     continue;
                 };
                 let apart = |b: &Aabb| b.min.cmpgt(first.max).any() || b.max.cmplt(first.min).any();

@@ -8,7 +8,7 @@ use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::world::{Geometry, Object};
 use durer_scene::camera::Projection;
 use durer_scene::math::{Aabb, Vec3};
-use durer_scene::scene::Node;
+use durer_scene::scene::ObjectKind;
 
 /// In scenes with more objects than this, some objects can be out of sight on purpose.
 const FEW_OBJECTS: usize = 8;
@@ -127,8 +127,8 @@ fn mirrored(scout: &SceneProbe, number: u32) -> Option<(Span, String)> {
             return Some((value, scout.text(value)));
         }
         match &inner.node {
-            Node::Group(group) => all.extend(group.objects.iter().map(|object| (object, around))),
-            Node::Transform(_, within) => all.push((within, Some(inner.span))),
+            ObjectKind::Group(group) => all.extend(group.objects.iter().map(|object| (object, around))),
+            ObjectKind::Transform(_, within) => all.push((within, Some(inner.span))),
             _ => {}
         }
     }
@@ -184,10 +184,10 @@ pub(super) fn flat_field(scout: &SceneProbe) -> Vec<Finding> {
         scout.subject.scene.root.iter().flat_map(|root| &root.objects).collect();
     while let Some(object) = all.pop().filter(|_| found.len() < MAX_SOUGHT) {
         match &object.node {
-            Node::Group(group) => all.extend(&group.objects),
-            Node::Transform(_, inner) => all.push(inner),
-            Node::Solid(_, parts) => all.extend(parts),
-            Node::HeightField(field) => {
+            ObjectKind::Group(group) => all.extend(&group.objects),
+            ObjectKind::Transform(_, inner) => all.push(inner),
+            ObjectKind::Solid(_, parts) => all.extend(parts),
+            ObjectKind::HeightField(field) => {
                 let size = field.max - field.min;
                 let wide = size.x.max(size.z);
                 if size.y > 0.002 * wide {

@@ -13,12 +13,12 @@ use durer_formats::course::place::section;
 use durer_render::world::{Material, Object};
 use durer_scene::camera::{Camera, Projection};
 use durer_scene::math::{Aabb, Color, Vec3, fp};
-use durer_scene::scene::{Group, Node};
+use durer_scene::scene::{Group, ObjectKind};
 
 /// Reports a scene without objects.
 pub(super) fn no_objects(scout: &SceneProbe) -> Vec<Finding> {
     // `empty-solid` reports solids that are empty.
-    let solid = |object: &Node| matches!(object, Node::Solid(..));
+    let solid = |object: &ObjectKind| matches!(object, ObjectKind::Solid(..));
     let empty = |root: &&Group| scout.world().objects().is_empty() && !root.objects.iter().any(|o| solid(&o.node));
     let Some(root) = scout.subject.scene.root.as_ref().filter(empty) else { return Vec::new() };
     // Models and JSON scenes have no `Group` keyword.

@@ -17,7 +17,7 @@ const DIRECTIONS: [Vec3; 5] = [
 pub(super) fn around(world: &World, point: Vec3) -> Vec<u32> {
     let boxed = |object: &u32| {
         let bounds = world.objects()[*object as usize].bounds();
-        bounds.is_some_and(|b| b.holds(point))
+        bounds.is_some_and(|b| b.contains(point))
     };
     let mut inside: Vec<u32> = (0..world.objects().len() as u32).filter(boxed).collect();
     for direction in DIRECTIONS {

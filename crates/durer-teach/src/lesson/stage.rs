@@ -14,7 +14,7 @@ use durer_render::render::explain::Names;
 use durer_render::render::{Control, Job, RenderError, Sampling, center_ray, raster, render};
 use durer_render::world::{Material, World};
 use durer_scene::camera::Raster;
-use durer_scene::dialect::{Dialect, Highlight, Rules, Secondary};
+use durer_scene::dialect::{Dialect, DialectRules, Highlight, SecondaryRays};
 use durer_scene::light::Light;
 use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::Scene;
@@ -53,7 +53,7 @@ pub struct Stage {
     lights: Vec<Light>,
     ambient: Color,
     materials: Vec<Material>,
-    rules: Rules,
+    rules: DialectRules,
     /// Recent pictures, since a step often starts with the last picture of the previous one.
     made: Vec<(Shot, LessonPicture)>,
 }
@@ -85,13 +85,13 @@ impl Stage {
         let (highlights, secondary) = (self.rules.highlight, self.rules.secondary);
         match topic {
             "specular" if highlights == Highlight::None => Some("this year's program has no highlights"),
-            "reflection" | "refraction" | "fresnel" if secondary == Secondary::None => {
+            "reflection" | "refraction" | "fresnel" if secondary == SecondaryRays::None => {
                 Some("this year's program traces no reflected or transmitted rays")
             }
-            "refraction" | "fresnel" if secondary == Secondary::Specular => {
+            "refraction" | "fresnel" if secondary == SecondaryRays::Specular => {
                 Some("this year's program has mirrors, but no glass")
             }
-            "fresnel" if secondary == Secondary::Colors => Some("this year's program does not apply Fresnel's law"),
+            "fresnel" if secondary == SecondaryRays::Colors => Some("this year's program does not apply Fresnel's law"),
             _ => None,
         }
     }

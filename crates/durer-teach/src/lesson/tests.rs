@@ -129,7 +129,7 @@ fn moved_normals_are_transformed_by_the_matrix_itself() {
         Group { Transform { Scale 2 0.5 1 Sphere { center 0 0 0 radius 1 } } }";
     for (quirk, expected) in [(false, Vec3::new(0.3, 0.8, 0.0)), (true, Vec3::new(1.2, 0.2, 0.0))] {
         let mut rules = Dialect::Durer.rules().clone();
-        rules.compat = if quirk { Quirk::MovedNormals.bit() } else { 0 };
+        rules.quirks = if quirk { Quirk::MovedNormals.bit() } else { 0 };
         let folder = Path::new(".");
         let (world, _) = durer_render::compile::testing::try_read(text, &rules, AccelKind::Bvh, folder);
         // The point (0.6, 0.4, z) of the sphere in object space is (1.2, 0.2, z) in world space.

@@ -19,7 +19,7 @@ use durer_render::world::{Epsilon, Geometry, HighlightModel, Phong, SurfaceInter
 use durer_scene::camera::Projection;
 use durer_scene::light::{Illuminate, Light, LightLiSample};
 use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3, fp, gamma, reflect};
-use durer_scene::shape::{Primitive, Surface};
+use durer_scene::shape::{Primitive, SurfacePoint};
 use glam::DVec3;
 use smallvec::SmallVec;
 
@@ -63,7 +63,7 @@ impl<'w> BuggyTracer<'w> {
             let Some((hit, t)) = self.closest(&reaching) else { break };
             let mut at = self.world.interaction(self.own_ray(ray, hit.object), hit);
             if self.bugs.pick == HitChoice::MovedDirection {
-                (at.ray, at.surface.position, at.surface.rest) = (*ray, ray.rounded.at(t), Vec3::ZERO);
+                (at.ray, at.surface.position, at.surface.rounding_error) = (*ray, ray.rounded.at(t), Vec3::ZERO);
             }
             match self.right.passage(&at, &path.media) {
                 Some(Passage { hidden: true, behind, .. }) => (path.media, rest.rounded.t_min) = (behind, hit.t),
@@ -86,10 +86,10 @@ impl<'w> BuggyTracer<'w> {
         let (bugs, object) = (self.bugs, &self.world.objects()[at.hit.object as usize]);
         let SurfaceInteraction { ray, hit, surface, .. } = &mut at;
         if t != hit.t {
-            (surface.position, surface.rest) = (ray.rounded.at(t), Vec3::ZERO);
+            (surface.position, surface.rounding_error) = (ray.rounded.at(t), Vec3::ZERO);
         }
         if let (Geometry::Mesh(tree), true) = (&object.geometry, bugs.long_mixed)
-            && let Some(mixed) = tree.mesh.mixed_normal(hit.part, hit.uv)
+            && let Some(mixed) = tree.mesh.interpolated_normal(hit.part, hit.uv)
         {
             // Only the length of the interpolated normal is needed: rotations and uniform scales
             // preserve it.
@@ -99,8 +99,8 @@ impl<'w> BuggyTracer<'w> {
             const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [0, 2, 1], [2, 1, 0]];
             let weights = [1.0 - hit.uv.x - hit.uv.y, hit.uv.x, hit.uv.y];
             let [_, u, v] = ORDERS[bugs.mixed_otherwise.min(5)].map(|i| weights[i]);
-            if let Some(mixed) = tree.mesh.mixed_normal(hit.part, Vec2::new(u, v)) {
-                let world = object.to_world.as_ref().map_or(mixed, |to_world| to_world.long_normal(mixed));
+            if let Some(mixed) = tree.mesh.interpolated_normal(hit.part, Vec2::new(u, v)) {
+                let world = object.to_world.as_ref().map_or(mixed, |to_world| to_world.unnormalized_normal(mixed));
                 surface.n_shade = world.normalize_or(surface.n_shade);
             }
         }
@@ -108,11 +108,11 @@ impl<'w> BuggyTracer<'w> {
             surface.n_shade = surface.n_geo;
         }
         if let (Some(to_world), true) = (&object.to_world, bugs.normals != Normals::Right) {
-            let local = to_world.local_normal(surface.n_shade);
+            let local = to_world.inverse_normal(surface.n_shade);
             surface.n_shade = match bugs.normals {
                 Normals::Right => surface.n_shade,
                 Normals::Local => local,
-                Normals::Long => to_world.long_normal(local),
+                Normals::Long => to_world.unnormalized_normal(local),
                 Normals::ByInverse => to_world.inverse_ray(&Ray::new(Vec3::ZERO, local)).dir.normalize_or(local),
             };
         }
@@ -361,7 +361,7 @@ impl<'w> BuggyTracer<'w> {
     }
 
     /// Returns the fraction of a light that reaches a surface, per channel; 0 in full shadow.
-    fn visible(&self, surface: &Surface, light: usize, seen: &LightLiSample, first: bool) -> Color {
+    fn visible(&self, surface: &SurfacePoint, light: usize, seen: &LightLiSample, first: bool) -> Color {
         let bugs = self.bugs.shadows;
         let unshadowed = self.bugs.bounces.unshadowed && !first;
         if !self.settings.shadows || unshadowed || seen.color == Color::ZERO {
@@ -536,7 +536,7 @@ impl<'w> BuggyTracer<'w> {
         color
     }
 
-    fn bounce(&self, surface: &Surface, dir: Vec3, weight: Color, path: RayState) -> Color {
+    fn bounce(&self, surface: &SurfacePoint, dir: Vec3, weight: Color, path: RayState) -> Color {
         if weight.max_element() <= 0.0 {
             return Color::ZERO;
         }

@@ -14,7 +14,7 @@ use durer_render::compile::{AccelKind, Resources, compile};
 use durer_render::integrator::Whitted;
 use durer_render::render::{Job, Sampling, center_ray};
 use durer_render::world::World;
-use durer_scene::dialect::{Dialect, Rules};
+use durer_scene::dialect::{Dialect, DialectRules};
 use durer_scene::scene::Scene;
 use std::collections::BTreeSet;
 
@@ -33,11 +33,11 @@ Group { numObjects 4
   MaterialIndex 1 Plane { normal 0 1 0 offset -0.5 } }
 ";
 
-fn world(rules: &Rules) -> (Scene, World) {
+fn world(rules: &DialectRules) -> (Scene, World) {
     world_of(SCENE, rules)
 }
 
-fn world_of(text: &str, rules: &Rules) -> (Scene, World) {
+fn world_of(text: &str, rules: &DialectRules) -> (Scene, World) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let file = files.add("scene.txt", text.as_bytes().into());
     let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };

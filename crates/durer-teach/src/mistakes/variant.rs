@@ -9,11 +9,11 @@ use durer_render::integrator::WhittedOptions;
 use durer_render::render::raster;
 use durer_render::world::{Geometry, HighlightModel, Material, MeshTree, Object, Phong, World};
 use durer_scene::camera::{Camera, CameraBasis, CameraSample, Projection, Raster};
-use durer_scene::dialect::{Highlight, Quirk, Rules};
+use durer_scene::dialect::{DialectRules, Highlight, Quirk};
 use durer_scene::light::Light;
 use durer_scene::material::PhongMaterial;
 use durer_scene::math::{Color, Ray, Vec2};
-use durer_scene::scene::{self, Group, MatrixOp, MatrixRules, Node, Scene};
+use durer_scene::scene::{self, Group, MatrixOp, MatrixRules, ObjectKind, Scene};
 use durer_scene::shape::{Primitive, Triangle};
 use glam::DAffine3;
 use std::sync::Arc;
@@ -117,11 +117,11 @@ impl<'s> SceneVariant<'s> {
 
     /// Switches a quirk of the dialect on or off.
     pub fn toggle(&mut self, compat: Quirk) {
-        self.change_rules(|rules| rules.compat ^= compat.bit());
+        self.change_rules(|rules| rules.quirks ^= compat.bit());
     }
 
     /// Changes the dialect's rules. The camera basis, lights, materials and objects stay the same.
-    pub fn change_rules(&mut self, change: impl FnOnce(&mut Rules)) {
+    pub fn change_rules(&mut self, change: impl FnOnce(&mut DialectRules)) {
         let mut rules = self.world.rules().clone();
         change(&mut rules);
         self.world.edit().set_rules(rules);
@@ -235,7 +235,7 @@ impl<'s> SceneVariant<'s> {
                     }
                 }
                 Geometry::Mesh(tree) => {
-                    *tree = Arc::new(MeshTree::new(tree.mesh.parallelograms(), BuildQuality::Balanced))
+                    *tree = Arc::new(MeshTree::new(tree.mesh.with_parallelograms(), BuildQuality::Balanced))
                 }
                 Geometry::Solid(_) => {}
             }
@@ -257,7 +257,8 @@ impl<'s> SceneVariant<'s> {
                     }
                 }
                 Geometry::Mesh(tree) => {
-                    *tree = Arc::new(MeshTree::new(tree.mesh.grown(corner, WIDE), BuildQuality::Balanced))
+                    *tree =
+                        Arc::new(MeshTree::new(tree.mesh.with_scaled_triangles(corner, WIDE), BuildQuality::Balanced))
                 }
                 Geometry::Solid(_) => {}
             }
@@ -281,8 +282,8 @@ fn placed(group: &Group, to_world: DAffine3, product: &dyn Fn(&[MatrixOp]) -> DA
         places: &mut Vec<DAffine3>,
     ) {
         match &object.node {
-            Node::Group(group) => placed(group, to_world, product, places),
-            Node::Transform(ops, inner) => one(inner, to_world * product(ops), product, places),
+            ObjectKind::Group(group) => placed(group, to_world, product, places),
+            ObjectKind::Transform(ops, inner) => one(inner, to_world * product(ops), product, places),
             _ => places.push(to_world),
         }
     }

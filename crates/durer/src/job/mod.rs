@@ -5,7 +5,7 @@
 //! ([`RenderJob::spelled`]), JSON and Python use. [`RenderJob::resolve`] turns the options into a
 //! [`Job`], with defaults from the scene.
 
-mod form;
+mod option_form;
 
 use durer_render::film::Filter;
 use durer_render::film::aov::Aov;
@@ -14,13 +14,13 @@ use durer_render::film::false_color::LightScale;
 use durer_render::integrator::{IntegratorKind, WhittedOptions};
 use durer_render::render::{Crop, Job, Sampling};
 use durer_scene::camera::{Projection, Raster};
-use durer_scene::describe::{DescribedList, Field, Value};
-use durer_scene::dialect::{Dialect, Rules};
+use durer_scene::describe::{DescribedKind, Field, Value};
+use durer_scene::dialect::{Dialect, DialectRules};
 use durer_scene::sampler::Sampler;
 use durer_scene::scene::Scene;
-pub(crate) use form::unknown_option;
-pub use form::{JobOption, OptionForm};
-use form::{OptionValue, one_of};
+pub(crate) use option_form::unknown_option;
+pub use option_form::{JobOption, OptionForm};
+use option_form::{OptionValue, one_of};
 
 /// Maximum number of samples per pixel with a noise threshold.
 const MAX_FOR_NOISE: u32 = 4096;
@@ -41,8 +41,8 @@ macro_rules! options {
         #[derive(Clone, Debug, Default, PartialEq)]
         pub struct $name {
             $($field: Option<$type>,)*
-            method: Option<String>,
-            method_options: Vec<(&'static str, Value)>,
+            integrator_name: Option<String>,
+            integrator_option_values: Vec<(&'static str, Value)>,
         }
 
         impl $name {
@@ -73,7 +73,7 @@ macro_rules! options {
                 }
                 match name {
                     $($word => self.$field = Some(OptionValue::parse(text)?),)*
-                    _ => return self.set_of_method(name, text),
+                    _ => return self.set_integrator_text(name, text),
                 }
                 Ok(())
             }
@@ -81,7 +81,7 @@ macro_rules! options {
             /// Returns an option's value as text; `None` if it is not set.
             pub fn get(&self, name: &str) -> Option<String> {
                 match name {
-                    $($word => self.$field.as_ref().map(OptionValue::shown),)*
+                    $($word => self.$field.as_ref().map(OptionValue::to_text),)*
                     _ => None,
                 }
             }
@@ -159,13 +159,13 @@ options! {
 
 /// Returns the default integrator of a scene: path tracing for layered materials, environments, fog
 /// and emissive surfaces, otherwise Whitted's.
-pub fn usual_method(scene: &Scene) -> IntegratorKind {
+pub fn default_integrator(scene: &Scene) -> IntegratorKind {
     if scene.is_physical() { IntegratorKind::PATH } else { IntegratorKind::WHITTED }
 }
 
 /// Returns the name of an integrator's option on the command line.
 pub fn option_name(field: &Field) -> &'static str {
-    field.spelling(Dialect::Durer).unwrap_or(field.name)
+    field.keyword(Dialect::Durer).unwrap_or(field.name)
 }
 
 /// Returns the index of an option among the fields of an integrator; `None` if the integrator does
@@ -180,7 +180,7 @@ pub struct JobContext<'a> {
     /// The scene.
     pub scene: &'a Scene,
     /// Rules of the scene's dialect.
-    pub rules: &'a Rules,
+    pub rules: &'a DialectRules,
     /// True if a dialect was requested, so that its program is emulated with all quirks.
     pub emulates: bool,
     /// True if a time limit ends the sampling.
@@ -189,16 +189,16 @@ pub struct JobContext<'a> {
 
 /// Selection of the pictures that a render writes, and of the part of the picture to render.
 #[derive(Clone, Debug)]
-pub struct View {
+pub struct OutputSelection {
     /// Crop of the picture: left, top, width, height; `None` for the scene's own crop.
     pub crop: Option<(u32, u32, u32, u32)>,
     /// Names of the pictures to write: `color`, or names from [`durer_render::film::aov::AOVS`].
     pub show: Vec<String>,
 }
 
-impl Default for View {
+impl Default for OutputSelection {
     fn default() -> Self {
-        View { crop: None, show: vec!["color".into()] }
+        OutputSelection { crop: None, show: vec!["color".into()] }
     }
 }
 
@@ -206,7 +206,7 @@ impl RenderJob {
     /// Sets the integrator by its name.
     #[must_use]
     pub fn integrator(mut self, name: impl Into<String>) -> Self {
-        self.method = Some(name.into());
+        self.integrator_name = Some(name.into());
         self
     }
 
@@ -219,27 +219,27 @@ impl RenderJob {
         let kinds = IntegratorKind::kinds();
         let fields = kinds.iter().flat_map(|kind| kind.fields());
         let name = fields.map(option_name).find(|word| *word == name).ok_or_else(|| self.unknown(name))?;
-        self.method_options.retain(|known| known.0 != name);
-        self.method_options.push((name, value));
+        self.integrator_option_values.retain(|known| known.0 != name);
+        self.integrator_option_values.push((name, value));
         Ok(())
     }
 
-    fn set_of_method(&mut self, name: &str, text: &str) -> Result<(), String> {
+    fn set_integrator_text(&mut self, name: &str, text: &str) -> Result<(), String> {
         if name == "integrator" {
             one_of(text, &IntegratorKind::kinds().iter().map(IntegratorKind::name).collect::<Vec<_>>())?;
-            self.method = Some(text.into());
+            self.integrator_name = Some(text.into());
             return Ok(());
         }
         let kinds = IntegratorKind::kinds();
         let field = kinds.iter().flat_map(|kind| kind.fields()).find(|field| option_name(field) == name);
         let kind = field.map(|field| field.kind).ok_or_else(|| self.unknown(name))?;
-        use durer_scene::describe::Kind;
+        use durer_scene::describe::FieldKind;
         let value = match kind {
-            Kind::Word(words) => {
+            FieldKind::Word(words) => {
                 one_of(text, words)?;
                 Value::Word(text.into())
             }
-            Kind::Int => Value::Int(text.parse().map_err(|_| "expected a whole number".to_string())?),
+            FieldKind::Int => Value::Int(text.parse().map_err(|_| "expected a whole number".to_string())?),
             _ => Value::Float(text.parse().map_err(|_| "expected a number".to_string())?),
         };
         self.set_integrator_option(name, value)
@@ -255,26 +255,26 @@ impl RenderJob {
     ///
     /// A message, if the integrator is unknown, or an option does not apply to it or is out of
     /// range.
-    pub fn resolved_method(&self, usual: IntegratorKind) -> Result<IntegratorKind, String> {
+    pub fn resolve_integrator(&self, usual: IntegratorKind) -> Result<IntegratorKind, String> {
         let has = |kind: &IntegratorKind, (option, _): &(&str, Value)| option_index(kind, option).is_some();
         let mut methods = std::iter::once(usual).chain(IntegratorKind::kinds());
         // Without a requested integrator, find one with all options that are set, or at least the
         // last one.
-        let fitting = methods.clone().find(|kind| self.method_options.iter().all(|option| has(kind, option)));
-        let last = self.method_options.last();
-        let found = match &self.method {
+        let fitting = methods.clone().find(|kind| self.integrator_option_values.iter().all(|option| has(kind, option)));
+        let last = self.integrator_option_values.last();
+        let kind = match &self.integrator_name {
             Some(name) => methods.find(|kind| kind.name() == name),
             None => fitting.or_else(|| methods.find(|kind| last.is_none_or(|option| has(kind, option)))),
         };
-        let Some(mut method) = found else {
+        let Some(mut method) = kind else {
             let known: Vec<&str> = IntegratorKind::kinds().iter().map(IntegratorKind::name).collect();
             return Err(format!("unknown integrator; expected one of {}", known.join(", ")));
         };
-        for (option, value) in &self.method_options {
+        for (option, value) in &self.integrator_option_values {
             let Some(at) = option_index(&method, option) else {
                 return Err(format!("--{option} does not apply to --integrator {}", method.name()));
             };
-            if let Err(wrong) = method.fields()[at].rule.validate(value) {
+            if let Err(wrong) = method.fields()[at].constraint.validate(value) {
                 return Err(format!("--{option} {wrong}"));
             }
             method.set(at, value.clone());
@@ -283,7 +283,7 @@ impl RenderJob {
     }
 
     /// Returns the picture's size, if it is set.
-    pub fn given_size(&self) -> Option<(u32, u32)> {
+    pub fn requested_size(&self) -> Option<(u32, u32)> {
         self.size
     }
 
@@ -294,16 +294,17 @@ impl RenderJob {
     /// # Errors
     ///
     /// A message, if options contradict each other or the scene.
-    pub fn resolve(&self, context: &JobContext, view: Option<&View>) -> Result<Job, String> {
+    pub fn resolve(&self, context: &JobContext, view: Option<&OutputSelection>) -> Result<Job, String> {
         let JobContext { scene, rules, emulates, .. } = *context;
         let camera = scene.camera.as_ref();
         let render_defaults = scene.render_defaults;
         let natural = || Raster::natural_size(camera.and_then(|camera| camera.proportions()), rules.size);
         let (width, height) = self.size.or(render_defaults.size).unwrap_or_else(natural);
-        let method = self.resolved_method(usual_method(scene))?;
+        let method = self.resolve_integrator(default_integrator(scene))?;
         // Blur from an aperture, and random integrators, need more samples than antialiasing.
-        let plenty = if camera.is_some_and(|camera| camera.has_aperture()) || method.is_random() { 64 } else { 16 };
-        let plenty = render_defaults.samples.unwrap_or(plenty);
+        let default_samples =
+            if camera.is_some_and(|camera| camera.has_aperture()) || method.is_random() { 64 } else { 16 };
+        let default_samples = render_defaults.samples.unwrap_or(default_samples);
         let is = |flag: Option<bool>| flag.unwrap_or(false);
         if method.is_random() && (is(self.jitter) || is(self.blur)) {
             return Err(format!("--jitter and --blur do not apply to --integrator {}", method.name()));
@@ -328,15 +329,15 @@ impl RenderJob {
             None => None,
         };
         // The crop in the scene applies only if the picture has the size in the scene.
-        let wished = render_defaults.crop.filter(|_| render_defaults.size == Some((width, height)));
-        let crop = view.and_then(|view| view.crop.or(wished));
-        let shown = view.map_or(&[][..], |view| &view.show);
+        let scene_crop = render_defaults.crop.filter(|_| render_defaults.size == Some((width, height)));
+        let crop = view.and_then(|view| view.crop.or(scene_crop));
+        let pictures = view.map_or(&[][..], |view| &view.show);
         Ok(Job {
             width,
             height,
             crop: crop.map(|(left, top, width, height)| Crop { left, top, width, height }),
             seed: self.seed.unwrap_or(0),
-            sampling: self.sampling(context, plenty)?,
+            sampling: self.sampling(context, default_samples)?,
             noise: self.noise_threshold,
             adaptive: is(self.adaptive),
             method,
@@ -349,8 +350,8 @@ impl RenderJob {
                 refraction: !is(self.no_refraction),
                 least_weight: self.min_throughput.unwrap_or(if emulates { 0.0 } else { MIN_THROUGHPUT }),
             },
-            color: view.is_none() || shown.iter().any(|show| show == "color"),
-            aovs: shown.iter().filter_map(|name| Aov::from_name(name)).collect(),
+            color: view.is_none() || pictures.iter().any(|show| show == "color"),
+            aovs: pictures.iter().filter_map(|name| Aov::from_name(name)).collect(),
             depth_range,
             light_scale,
         })
@@ -377,7 +378,7 @@ impl RenderJob {
         Err(wrong.into())
     }
 
-    fn sampling(&self, context: &JobContext, plenty: u32) -> Result<Sampling, String> {
+    fn sampling(&self, context: &JobContext, default_samples: u32) -> Result<Sampling, String> {
         let (jitter, blur) = (self.jitter.unwrap_or(false), self.blur.unwrap_or(false));
         if jitter || blur {
             return Ok(Sampling::Course2012 { jitter, blur });
@@ -402,7 +403,7 @@ impl RenderJob {
             (true, ..) => 1,
             (false, true, _) => MAX_FOR_NOISE,
             (false, false, true) => Job::MAX_SAMPLES,
-            (false, false, false) => plenty,
+            (false, false, false) => default_samples,
         };
         let samples = self.samples.unwrap_or(usual);
         if sampler == Sampler::Sobol {
@@ -427,14 +428,14 @@ impl RenderJob {
         let JobContext { scene, rules, emulates, .. } = *context;
         let settings = &job.settings;
         let unless = |value: bool, usual: bool| (value != usual).then_some(value);
-        let usual = usual_method(scene);
+        let usual = default_integrator(scene);
         let plain =
             IntegratorKind::kinds().into_iter().find(|kind| kind.name() == job.method.name()).unwrap_or_default();
         let fields = job.method.fields().iter().enumerate();
         let differing = fields.filter(|&(at, _)| job.method.get(at) != plain.get(at));
         let mut options = RenderJob {
-            method: (job.method.name() != usual.name()).then(|| job.method.name().into()),
-            method_options: differing
+            integrator_name: (job.method.name() != usual.name()).then(|| job.method.name().into()),
+            integrator_option_values: differing
                 .filter_map(|(at, field)| Some((option_name(field), job.method.get(at)?)))
                 .collect(),
             bounces: Some(settings.bounces).filter(|&bounces| bounces != usual_bounces(job.method, context)),
@@ -479,9 +480,9 @@ impl RenderJob {
     }
 
     /// Returns the options that are set, as arguments of the command line.
-    pub fn spelled(&self) -> Vec<String> {
-        let mut words: Vec<String> = self.method.iter().map(|name| format!("--integrator {name}")).collect();
-        words.extend(self.method_options.iter().filter_map(|(name, value)| match value {
+    pub fn to_arguments(&self) -> Vec<String> {
+        let mut words: Vec<String> = self.integrator_name.iter().map(|name| format!("--integrator {name}")).collect();
+        words.extend(self.integrator_option_values.iter().filter_map(|(name, value)| match value {
             Value::Float(number) => Some(format!("--{name} {number}")),
             Value::Int(number) => Some(format!("--{name} {number}")),
             Value::Word(word) => Some(format!("--{name} {word}")),

@@ -2,7 +2,7 @@ use super::*;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::scene::{Material, RenderDefaults, Spanned};
 
-fn context<'a>(scene: &'a Scene, rules: &'a Rules) -> JobContext<'a> {
+fn context<'a>(scene: &'a Scene, rules: &'a DialectRules) -> JobContext<'a> {
     JobContext { scene, rules, emulates: false, timed: false }
 }
 
@@ -22,7 +22,7 @@ fn defaults_follow_from_the_scene() {
     let physical = job(&scene);
     assert_eq!((physical.width, physical.height, physical.method), (64, 32, IntegratorKind::PATH));
     assert_eq!((physical.sampling.samples(), physical.settings.bounces), (64, 3));
-    let view = View::default();
+    let view = OutputSelection::default();
     let crop = |job: RenderJob| job.resolve(&context(&scene, rules), Some(&view)).unwrap().crop;
     assert_eq!(crop(RenderJob::default()).map(|crop| crop.left), Some(1));
     assert_eq!(crop(RenderJob::default().size((640, 320))), None);
@@ -37,7 +37,7 @@ fn defaults_follow_from_the_scene() {
 fn options_are_set_by_name_and_printed_back() {
     let rules = Dialect::Durer.rules();
     let scene = Scene::default();
-    let given = [
+    let pairs = [
         ("integrator", "path"),
         ("clamp", "2"),
         ("bounces", "3"),
@@ -51,23 +51,23 @@ fn options_are_set_by_name_and_printed_back() {
         ("seed", "7"),
     ];
     let mut options = RenderJob::default();
-    for (name, text) in given {
+    for (name, text) in pairs {
         options.set(name, text).unwrap();
     }
     let job = options.resolve(&context(&scene, rules), None).unwrap();
     let again = RenderJob::of(&job, &context(&scene, rules));
     let words = "--integrator path --clamp 2 --bounces 3 --shadows=off --no-refraction --min-throughput 0.25 \
                  --samples 9 --filter mitchell --filter-radius 3 --noise-threshold 0.5 --seed 7";
-    assert_eq!(again.spelled().join(" "), words);
+    assert_eq!(again.to_arguments().join(" "), words);
     let text = |job: &Job| serde_json::to_string(job).unwrap();
     assert_eq!(text(&again.resolve(&context(&scene, rules), None).unwrap()), text(&job));
     let adaptive = RenderJob::default().samples(32_u32).adaptive(true).resolve(&context(&scene, rules), None).unwrap();
-    assert_eq!(RenderJob::of(&adaptive, &context(&scene, rules)).spelled(), ["--samples 32", "--adaptive"]);
+    assert_eq!(RenderJob::of(&adaptive, &context(&scene, rules)).to_arguments(), ["--samples 32", "--adaptive"]);
     let both = RenderJob::default().adaptive(true).noise_threshold(0.5_f32).resolve(&context(&scene, rules), None);
     assert!(both.unwrap_err().contains("remove one of them"));
     // For a job with default options, only the number of samples is spelled out.
     let usual = RenderJob::default().resolve(&context(&scene, rules), None).unwrap();
-    assert_eq!(RenderJob::of(&usual, &context(&scene, rules)).spelled(), ["--samples 16"]);
+    assert_eq!(RenderJob::of(&usual, &context(&scene, rules)).to_arguments(), ["--samples 16"]);
 }
 
 #[test]

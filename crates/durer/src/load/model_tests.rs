@@ -5,7 +5,7 @@ use durer_diag::Diagnostic;
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::{Vec3, fp};
-use durer_scene::scene::{DefaultLighting, Material, Node, View};
+use durer_scene::scene::{DefaultLighting, Material, ObjectKind, PresetView};
 use durer_scene::source::Digest;
 use durer_scene::texture::Channel;
 use std::fs;
@@ -124,7 +124,7 @@ fn model_renders_the_same_in_every_format() {
     assert_ne!(hash(folder.path(), "a.stl", &options), obj);
     // A different view gives a different picture and digest.
     let front = LoadOptions {
-        scene_defaults: SceneDefaults { view: Some(View::Front), ..SceneDefaults::default() },
+        scene_defaults: SceneDefaults { view: Some(PresetView::Front), ..SceneDefaults::default() },
         ..options.clone()
     };
     assert_ne!(hash(folder.path(), "a.obj", &front), obj);
@@ -186,7 +186,7 @@ fn meshes_are_equal_after_writing_and_reading() {
 fn model_without_light_is_dark_only_on_request() {
     let folder = tetrahedra();
     let none = LoadOptions {
-        scene_defaults: SceneDefaults { studio: Some(DefaultLighting::None), ..SceneDefaults::default() },
+        scene_defaults: SceneDefaults { lighting: Some(DefaultLighting::None), ..SceneDefaults::default() },
         ..Default::default()
     };
     let scene = read(folder.path(), "a.ply", &none).0.unwrap();
@@ -321,7 +321,7 @@ fn obj_is_split_by_material_and_reads_mtl() {
     // Three meshes in the order of each material's first triangle, then the ground.
     let objects = &scene.root.as_ref().unwrap().objects;
     let triangles = objects.iter().filter_map(|object| match &object.node {
-        Node::Mesh(mesh) => Some((scene.assets.meshes[&mesh.obj_file.path].triangles.len(), object.material)),
+        ObjectKind::Mesh(mesh) => Some((scene.assets.meshes[&mesh.obj_file.path].triangles.len(), object.material)),
         _ => None,
     });
     assert_eq!(triangles.collect::<Vec<_>>(), [(2, Some(0)), (1, Some(1)), (1, Some(2))]);

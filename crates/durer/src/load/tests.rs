@@ -20,7 +20,7 @@ fn house(objects: &str) -> tempfile::TempDir {
 
 /// Loads and compiles the scene. Returns the world and the diagnostics as `file:line:column
 /// severity: message (help)`, with paths relative to `root`.
-fn made(root: &tempfile::TempDir, options: &LoadOptions) -> (Option<World>, Vec<String>) {
+fn load_world(root: &tempfile::TempDir, options: &LoadOptions) -> (Option<World>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let path = root.path().join("scene/scene.txt");
     let loaded = load(&path, options, &mut files, &mut diagnostics).unwrap();
@@ -39,7 +39,7 @@ fn made(root: &tempfile::TempDir, options: &LoadOptions) -> (Option<World>, Vec<
 }
 
 fn findings(objects: &str) -> Vec<String> {
-    made(&house(objects), &LoadOptions::default()).1
+    load_world(&house(objects), &LoadOptions::default()).1
 }
 
 fn mesh(path: &str) -> String {
@@ -49,7 +49,7 @@ fn mesh(path: &str) -> String {
 #[test]
 fn mesh_is_found_beside_its_scene() {
     for path in ["tri.obj", ".\\tri.obj", "../scene/tri.obj"] {
-        let (world, findings) = made(&house(&mesh(path)), &LoadOptions::default());
+        let (world, findings) = load_world(&house(&mesh(path)), &LoadOptions::default());
         assert_eq!(findings, [""; 0]);
         assert_eq!(world.unwrap().objects().len(), 1);
     }
@@ -58,7 +58,7 @@ fn mesh_is_found_beside_its_scene() {
 #[test]
 fn file_outside_is_refused_at_the_line_that_names_it() {
     let root = house(&mesh("../outside.obj"));
-    let (_, found) = made(&root, &LoadOptions::default());
+    let (_, found) = load_world(&root, &LoadOptions::default());
     assert_eq!(
         found,
         [
@@ -66,10 +66,12 @@ fn file_outside_is_refused_at_the_line_that_names_it() {
           can only use files in or below its own folder, unless `--allow-outside` is given)"
         ]
     );
-    let (world, found) = made(&root, &LoadOptions { allow_outside: true, ..Default::default() });
+    let (world, found) = load_world(&root, &LoadOptions { allow_outside: true, ..Default::default() });
     assert!(world.is_some() && found.is_empty(), "{found:?}");
-    let (world, found) =
-        made(&house(&mesh("outside.obj")), &LoadOptions { assets: vec![root.path().into()], ..Default::default() });
+    let (world, found) = load_world(
+        &house(&mesh("outside.obj")),
+        &LoadOptions { assets: vec![root.path().into()], ..Default::default() },
+    );
     assert!(world.is_some() && found.is_empty(), "{found:?}");
 }
 
@@ -90,7 +92,7 @@ fn missing_mesh_is_reported_once_with_a_similar_name() {
 fn mesh_error_is_reported_in_the_mesh_and_in_the_scene() {
     let root = house(&mesh("bad.obj"));
     fs::write(root.path().join("scene/bad.obj"), "v 0 0 0\nv 1 0 zero\nf 1 2 9\n").unwrap();
-    let (_, found) = made(&root, &LoadOptions::default());
+    let (_, found) = load_world(&root, &LoadOptions::default());
     assert!(found[0].starts_with("scene/scene.txt:5:25 error: cannot use the mesh `bad.obj`"), "{found:?}");
     assert!(found[1].starts_with("bad.obj:2:7 error: "), "{found:?}");
 }
@@ -135,13 +137,13 @@ fn missing_lights_materials_and_objects_are_reported() {
         (text(LIGHT, ""), vec!["- warning: the scene has no objects: it has no `Group`"]),
     ] {
         fs::write(root.path().join("scene/scene.txt"), text).unwrap();
-        let (world, found) = made(&root, &LoadOptions::default());
+        let (world, found) = load_world(&root, &LoadOptions::default());
         assert!(world.is_some());
         assert_eq!(found, expected);
     }
     fs::write(root.path().join("scene/scene.txt"), "Group { }").unwrap();
     assert_eq!(
-        made(&root, &LoadOptions::default()).1,
+        load_world(&root, &LoadOptions::default()).1,
         ["- error: the scene has no camera (add a `PerspectiveCamera { ... }`)"]
     );
 }
@@ -157,7 +159,7 @@ fn flattening_transform_is_reported_at_its_object() {
 
 #[test]
 fn digest_covers_everything_that_the_picture_depends_on() {
-    let digest = |root: &tempfile::TempDir, options: &LoadOptions| made(root, options).0.unwrap().digest();
+    let digest = |root: &tempfile::TempDir, options: &LoadOptions| load_world(root, options).0.unwrap().digest();
     let (root, again) = (house(&mesh("tri.obj")), house(&mesh("tri.obj")));
     let options = LoadOptions::default();
     let first = digest(&root, &options);

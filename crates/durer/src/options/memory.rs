@@ -119,17 +119,17 @@ mod tests {
     }
 
     #[test]
-    fn groups_around_the_own_one_limit_memory_too() {
-        let found = |text: &str| -> Vec<String> {
+    fn parent_groups_limit_memory_too() {
+        let limits_of = |text: &str| -> Vec<String> {
             limit_files(text, Path::new("/c")).iter().map(|file| file.display().to_string()).collect()
         };
         let slurm = ["/c/slurm/job_1/memory.max", "/c/slurm/memory.max", "/c/memory.max"];
-        assert_eq!(found("0::/slurm/job_1\n"), slurm);
-        assert_eq!(found("0::/\n"), ["/c/memory.max"]);
+        assert_eq!(limits_of("0::/slurm/job_1\n"), slurm);
+        assert_eq!(limits_of("0::/\n"), ["/c/memory.max"]);
         let old = "12:cpu,cpuacct:/a\n9:memory:/docker/x\n0::/\nrubbish\n";
         let limit = "memory.limit_in_bytes";
         let old_files =
             ["/c/memory/docker/x", "/c/memory/docker", "/c/memory"].map(|folder| format!("{folder}/{limit}"));
-        assert_eq!(found(old), [&old_files[..], &["/c/memory.max".to_string()]].concat());
+        assert_eq!(limits_of(old), [&old_files[..], &["/c/memory.max".to_string()]].concat());
     }
 }

@@ -1,8 +1,8 @@
 //! Options of a render as pairs of name and text, for the command line and Python.
 //!
-//! [`statements`] lists all options with their meaning, and [`RenderOptions::set`] parses one.
-//! Options that are not set have the same defaults as on the command line, so equal options give
-//! the same bits from every language.
+//! [`option_descriptions`] lists all options with their meaning, and [`RenderOptions::set`] parses
+//! one. Options that are not set have the same defaults as on the command line, so equal options
+//! give the same bits from every language.
 //!
 //! ```
 //! use durer::options::RenderOptions;
@@ -18,13 +18,13 @@ pub mod memory;
 mod rows;
 
 pub use crate::job::{JobOption, OptionForm};
-use crate::job::{RenderJob, View, option_index, option_name, unknown_option};
+use crate::job::{OutputSelection, RenderJob, option_index, option_name, unknown_option};
 use crate::{LoadOptions, LoadedScene};
 use durer_render::integrator::IntegratorKind;
 use durer_render::render::{Control, Job, Shard};
-use durer_scene::describe::{DescribedList, Field, Kind};
+use durer_scene::describe::{DescribedKind, Field, FieldKind};
 use memory::Memory;
-use rows::{READING, VIEW, WORK};
+use rows::{EXECUTION, LOADING, VIEW};
 pub use rows::{compat, crop, doc, grid_cells};
 use std::time::Duration;
 
@@ -38,7 +38,7 @@ pub struct RenderOptions {
     /// Options of the picture: size, samples, integrator.
     pub job: RenderJob,
     /// Crop and selection of output pictures.
-    pub view: View,
+    pub view: OutputSelection,
     /// Memory limit for the scene and the picture.
     pub memory: Memory,
     /// Number of threads; `None`: one per processor.
@@ -56,7 +56,7 @@ impl Default for RenderOptions {
         RenderOptions {
             load: LoadOptions::default(),
             job: RenderJob::default(),
-            view: View::default(),
+            view: OutputSelection::default(),
             memory: Memory::default(),
             threads: None,
             tile: None,
@@ -74,10 +74,12 @@ impl RenderOptions {
     ///
     /// A message, if the option is unknown or the text is not a valid value.
     pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
-        let mut rows = READING.iter().chain(VIEW).chain(WORK);
+        let mut rows = LOADING.iter().chain(VIEW).chain(EXECUTION);
         let set = match rows.find(|row| row.option.name == name) {
             Some(row) => row.option.form.check(text).and_then(|()| (row.set)(self, text)),
-            None if !is_known(name) => return Err(unknown_option(name, statements().iter().map(|option| option.name))),
+            None if !is_known(name) => {
+                return Err(unknown_option(name, option_descriptions().iter().map(|option| option.name)));
+            }
             None => self.job.set(name, text),
         };
         set.map_err(|reason| match text {
@@ -91,7 +93,8 @@ impl RenderOptions {
         let mut load = self.load.clone();
         load.threads = self.threads;
         load.memory = self.memory.bytes();
-        load.scene_defaults.aspect = self.job.given_size().map(|(width, height)| width as f32 / height.max(1) as f32);
+        load.scene_defaults.aspect =
+            self.job.requested_size().map(|(width, height)| width as f32 / height.max(1) as f32);
         load
     }
 
@@ -120,17 +123,17 @@ impl RenderOptions {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OptionGroup {
     /// Reading and compiling the scene.
-    Reading,
+    Loading,
     /// The picture. Together with the scene, these options determine every bit of it.
     Picture,
     /// Execution: threads, time and shards. These options do not change a finished picture.
-    Work,
+    Execution,
 }
 
 /// Documentation of an option of a render, from which help and bindings are generated.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct OptionStatement {
+pub struct OptionDescription {
     /// Name without dashes.
     pub name: &'static str,
     /// Meaning, unit and default value.
@@ -144,30 +147,30 @@ pub struct OptionStatement {
 }
 
 /// Returns the descriptions of all options.
-pub fn statements() -> Vec<OptionStatement> {
-    let rows = |rows: &[rows::Row], group| rows.iter().map(|row| stated(&row.option, group)).collect::<Vec<_>>();
-    let mut all = rows(READING, OptionGroup::Reading);
-    all.push(OptionStatement {
+pub fn option_descriptions() -> Vec<OptionDescription> {
+    let rows = |rows: &[rows::Row], group| rows.iter().map(|row| describe(&row.option, group)).collect::<Vec<_>>();
+    let mut all = rows(LOADING, OptionGroup::Loading);
+    all.push(OptionDescription {
         name: "integrator",
         help: integrator_help(),
         value: Some("METHOD".into()),
         words: IntegratorKind::kinds().iter().map(IntegratorKind::name).collect(),
         group: OptionGroup::Picture,
     });
-    all.extend(integrator_options().into_iter().map(|(field, help)| OptionStatement {
+    all.extend(integrator_options().into_iter().map(|(field, help)| OptionDescription {
         name: option_name(&field),
         help,
-        value: Some(if let Kind::Word(_) = field.kind { "WORD" } else { "NUMBER" }.into()),
-        words: if let Kind::Word(words) = field.kind { words.to_vec() } else { Vec::new() },
+        value: Some(if let FieldKind::Word(_) = field.kind { "WORD" } else { "NUMBER" }.into()),
+        words: if let FieldKind::Word(words) = field.kind { words.to_vec() } else { Vec::new() },
         group: OptionGroup::Picture,
     }));
-    all.extend(RenderJob::OPTIONS.iter().map(|option| stated(option, OptionGroup::Picture)));
+    all.extend(RenderJob::OPTIONS.iter().map(|option| describe(option, OptionGroup::Picture)));
     all.extend(rows(VIEW, OptionGroup::Picture));
-    all.extend(rows(WORK, OptionGroup::Work));
+    all.extend(rows(EXECUTION, OptionGroup::Execution));
     all
 }
 
-fn stated(option: &JobOption, group: OptionGroup) -> OptionStatement {
+fn describe(option: &JobOption, group: OptionGroup) -> OptionDescription {
     let (value, words) = match option.form {
         OptionForm::Flag => (None, Vec::new()),
         OptionForm::Switch => (Some("on|off".into()), Vec::new()),
@@ -176,7 +179,7 @@ fn stated(option: &JobOption, group: OptionGroup) -> OptionStatement {
         OptionForm::Two(first, second) => (Some(format!("{first} {second}")), Vec::new()),
         OptionForm::Words(words) => (Some(option.name.to_uppercase()), words()),
     };
-    OptionStatement { name: option.name, help: one_line(option.doc), value, words, group }
+    OptionDescription { name: option.name, help: one_line(option.doc), value, words, group }
 }
 
 fn is_known(name: &str) -> bool {

@@ -10,7 +10,7 @@ use durer_render::compile::AccelKind;
 use durer_render::film::aov::AOVS;
 use durer_render::render::ShardBy;
 use durer_scene::dialect::{Dialect, Quirk};
-use durer_scene::scene::{Axis, DefaultLighting, View};
+use durer_scene::scene::{Axis, DefaultLighting, PresetView};
 
 /// Row of a table of options: the definition of the option, and a function that parses and sets it.
 pub(super) struct Row {
@@ -27,54 +27,54 @@ const fn row(
     Row { option: JobOption { name, doc, form }, set }
 }
 
-const SAY_NUMBER: &str = "expected a number";
+const NUMBER_EXPECTED: &str = "expected a number";
 
 /// Options for reading and compiling a scene.
-pub(super) const READING: &[Row] = &[
+pub(super) const LOADING: &[Row] = &[
     row(
         "dialect",
         OptionForm::Words(|| Dialect::ALL.map(Dialect::name).to_vec()),
-        |to, text| Ok(to.load.dialect = Dialect::from_name(text)),
+        |options, text| Ok(options.load.dialect = Dialect::from_name(text)),
         "Dialect of the scene, with all quirks of the official program for that year [default: detected, without \
          quirks]",
     ),
     row(
         "compat",
         OptionForm::Value("NAME"),
-        |to, text| text.split(',').try_for_each(|name| Ok(to.load.compat.push(compat(name)?))),
+        |options, text| text.split(',').try_for_each(|name| Ok(options.load.compat.push(compat(name)?))),
         "Enable a quirk of an official program, or disable it with the prefix `no-`; `durer dialects` lists all \
          quirks",
     ),
     row(
         "strict",
         OptionForm::Flag,
-        |to, text| Ok(to.load.strict = flag(text)?),
+        |options, text| Ok(options.load.strict = flag(text)?),
         "Accept only the words of the dialect: no comments, no extensions",
     ),
     row(
         "allow-outside",
         OptionForm::Flag,
-        |to, text| Ok(to.load.allow_outside = flag(text)?),
+        |options, text| Ok(options.load.allow_outside = flag(text)?),
         "Allow the scene to read files outside its own folder",
     ),
     row(
         "assets",
         OptionForm::Value("FOLDER"),
-        |to, text| Ok(to.load.assets.push(text.into())),
+        |options, text| Ok(options.load.assets.push(text.into())),
         "Folder to search for missing meshes and textures; can be given several times",
     ),
     row(
         "memory",
         OptionForm::Value("SIZE"),
-        |to, text| Ok(to.memory = Memory::parse(text)?),
+        |options, text| Ok(options.memory = Memory::parse(text)?),
         "Memory limit for the scene and the picture: a size such as 512M or 8G, or a percentage of the least of \
          the machine's memory, the limits of the control groups, and `ulimit -v` [default: 80%]",
     ),
     row(
         "accel",
         OptionForm::Words(|| vec!["bvh", "grid", "none"]),
-        |to, text| {
-            to.load.accel = match text {
+        |options, text| {
+            options.load.accel = match text {
                 "grid" => AccelKind::Grid(None),
                 "none" => AccelKind::None,
                 _ => AccelKind::Bvh,
@@ -86,14 +86,14 @@ pub(super) const READING: &[Row] = &[
     row(
         "grid",
         OptionForm::Value("XxYxZ"),
-        |to, text| Ok(to.load.accel = AccelKind::Grid(Some(grid_cells(text)?))),
+        |options, text| Ok(options.load.accel = AccelKind::Grid(Some(grid_cells(text)?))),
         "Number of grid cells along each axis; implies --accel grid [default: based on the number of objects]",
     ),
     row(
         "up",
         OptionForm::Words(|| vec!["x", "y", "z"]),
-        |to, text| {
-            to.load.scene_defaults.up = Some(match text {
+        |options, text| {
+            options.load.scene_defaults.up = Some(match text {
                 "x" => Axis::X,
                 "y" => Axis::Y,
                 _ => Axis::Z,
@@ -105,56 +105,58 @@ pub(super) const READING: &[Row] = &[
     row(
         "view",
         OptionForm::Words(|| VIEWS.map(|row| row.0).to_vec()),
-        |to, text| Ok(to.load.scene_defaults.view = VIEWS.iter().find(|row| row.0 == text).map(|row| row.1)),
+        |options, text| Ok(options.load.scene_defaults.view = VIEWS.iter().find(|row| row.0 == text).map(|row| row.1)),
         "View to render a model from; overrides the model's own camera [default: three-quarter if the model has no \
          camera]",
     ),
     row(
         "studio",
         OptionForm::Words(|| STUDIOS.map(|row| row.0).to_vec()),
-        |to, text| Ok(to.load.scene_defaults.studio = STUDIOS.iter().find(|row| row.0 == text).map(|row| row.1)),
+        |options, text| {
+            Ok(options.load.scene_defaults.lighting = STUDIOS.iter().find(|row| row.0 == text).map(|row| row.1))
+        },
         "Lights to render a model with; overrides the model's own lights [default: soft if the model has no lights]",
     ),
     row(
         "environment",
         OptionForm::Value("FILE"),
-        |to, text| Ok(to.load.scene_defaults.environment = Some(text.into())),
+        |options, text| Ok(options.load.scene_defaults.environment = Some(text.into())),
         "Environment map (.hdr, .exr) that lights the model; overrides the model's own sky and the studio lights",
     ),
     row(
         "view-file",
         OptionForm::Value("FILE"),
-        |to, text| Ok(to.load.scene_defaults.view_file = Some(text.into())),
+        |options, text| Ok(options.load.scene_defaults.view_file = Some(text.into())),
         "Radiance view file (.vf); the last view in it is used as the camera",
     ),
     row(
         "camera",
         OptionForm::Value("NAME"),
-        |to, text| Ok(to.load.scene_defaults.camera = Some(text.into())),
+        |options, text| Ok(options.load.scene_defaults.camera = Some(text.into())),
         "Name or number of the model's camera to render from [default: the first]",
     ),
     row(
         "variant",
         OptionForm::Value("NAME"),
-        |to, text| Ok(to.load.scene_defaults.variant = Some(text.into())),
+        |options, text| Ok(options.load.scene_defaults.variant = Some(text.into())),
         "Name or number of the material variant of a glTF file [default: the file's own materials]",
     ),
     row(
         "fit",
         OptionForm::Flag,
-        |to, text| Ok(to.load.scene_defaults.fit = flag(text)?),
+        |options, text| Ok(options.load.scene_defaults.fit = flag(text)?),
         "Move the model's own camera along its view direction until the entire model is visible",
     ),
     row(
         "turned",
-        OptionForm::Number("DEGREES", f32::is_finite, SAY_NUMBER),
-        |to, text| Ok(to.load.scene_defaults.turned = text.parse().ok()),
+        OptionForm::Number("DEGREES", f32::is_finite, NUMBER_EXPECTED),
+        |options, text| Ok(options.load.scene_defaults.orbit_degrees = text.parse().ok()),
         "Rotate the camera around the model by this many degrees [default: 0]",
     ),
     row(
         "at",
         OptionForm::Number("SECONDS", |x| x.is_finite() && x >= 0.0, "expected seconds, 0 or more"),
-        |to, text| Ok(to.load.scene_defaults.at = text.parse().ok()),
+        |options, text| Ok(options.load.scene_defaults.animation_time = text.parse().ok()),
         "Time in the model's animation, in seconds [default: the pose without animation]",
     ),
 ];
@@ -164,19 +166,19 @@ pub(super) const VIEW: &[Row] = &[
     row(
         "crop",
         OptionForm::Value("LEFT,TOP,WIDTHxHEIGHT"),
-        |to, text| Ok(to.view.crop = Some(crop(text)?)),
+        |options, text| Ok(options.view.crop = Some(crop(text)?)),
         "Render only this rectangle of the picture, in pixels",
     ),
     row(
         "show",
         OptionForm::Value("PICTURE,..."),
-        |to, text| {
+        |options, text| {
             let known = shown();
             let wrong = text.split(',').find(|name| !known.contains(name));
             if wrong.is_some() {
                 return Err(format!("expected one of {}", known.join(", ")));
             }
-            to.view.show = text.split(',').map(String::from).collect();
+            options.view.show = text.split(',').map(String::from).collect();
             Ok(())
         },
         "Comma-separated list of pictures to write [default: color]",
@@ -184,25 +186,25 @@ pub(super) const VIEW: &[Row] = &[
 ];
 
 /// Options for execution: threads, time, shards.
-pub(super) const WORK: &[Row] = &[
+pub(super) const EXECUTION: &[Row] = &[
     row(
         "threads",
         OptionForm::Whole(1, 1024),
-        |to, text| Ok(to.threads = text.parse().ok()),
+        |options, text| Ok(options.threads = text.parse().ok()),
         "Number of threads for building and rendering [default: one per processor]",
     ),
     row(
         "tile",
         OptionForm::Whole(8, 4096),
-        |to, text| Ok(to.tile = text.parse().ok()),
+        |options, text| Ok(options.tile = text.parse().ok()),
         "Tile width and height in pixels, a multiple of 8 [default: based on the picture's size]",
     ),
     row(
         "time-limit",
         OptionForm::Value("TIME"),
-        |to, text| {
+        |options, text| {
             let time = humantime::parse_duration(text).map_err(|_| "expected a time, for example 30s, 10m or 1h30m")?;
-            Ok(to.time_limit = Some(time))
+            Ok(options.time_limit = Some(time))
         },
         "Stop after this much time (for example 30s, 10m or 1h30m), but not before every pixel has at least one \
          sample",
@@ -210,10 +212,10 @@ pub(super) const WORK: &[Row] = &[
     row(
         "shard",
         OptionForm::Value("INDEX/COUNT"),
-        |to, text| {
-            let by = to.shard.by;
-            to.shard = text.parse()?;
-            to.shard.by = by;
+        |options, text| {
+            let by = options.shard.by;
+            options.shard = text.parse()?;
+            options.shard.by = by;
             Ok(())
         },
         "Render only one of several parts, to be merged by `durer merge`",
@@ -221,18 +223,18 @@ pub(super) const WORK: &[Row] = &[
     row(
         "shard-by",
         OptionForm::Words(|| vec!["tiles", "samples"]),
-        |to, text| Ok(to.shard.by = if text == "samples" { ShardBy::Samples } else { ShardBy::Tiles }),
+        |options, text| Ok(options.shard.by = if text == "samples" { ShardBy::Samples } else { ShardBy::Tiles }),
         "Split the picture into parts by tiles or by samples [default: tiles]",
     ),
 ];
 
 /// Names of the views from which a model can be rendered.
-const VIEWS: [(&str, View); 5] = [
-    ("three-quarter", View::ThreeQuarter),
-    ("front", View::Front),
-    ("side", View::Side),
-    ("top", View::Top),
-    ("iso", View::Iso),
+const VIEWS: [(&str, PresetView); 5] = [
+    ("three-quarter", PresetView::ThreeQuarter),
+    ("front", PresetView::Front),
+    ("side", PresetView::Side),
+    ("top", PresetView::Top),
+    ("iso", PresetView::Iso),
 ];
 
 /// Names of the sets of lights for models.
@@ -253,7 +255,7 @@ fn flag(text: &str) -> Result<bool, String> {
 
 /// Returns the help of an option in these tables; empty for other names.
 pub fn doc(name: &str) -> &'static str {
-    let mut rows = READING.iter().chain(VIEW).chain(WORK);
+    let mut rows = LOADING.iter().chain(VIEW).chain(EXECUTION);
     rows.find(|row| row.option.name == name).map_or("", |row| row.option.doc)
 }
 

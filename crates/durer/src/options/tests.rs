@@ -9,7 +9,7 @@ fn set(name: &str, text: &str) -> Result<RenderOptions, String> {
 
 #[test]
 fn every_option_can_be_set_and_is_stated_once() {
-    let all = statements();
+    let all = option_descriptions();
     for option in &all {
         assert_eq!(all.iter().filter(|other| other.name == option.name).count(), 1, "{}", option.name);
         assert!(option.help.len() > 10, "{}", option.name);

@@ -5,8 +5,8 @@ use durer_teach::check::Finding;
 use serde_json::{Value, json};
 
 /// Creates the list of findings in the output of `durer check --json`.
-pub fn findings(found: &[Finding], files: &Files) -> Value {
-    found.iter().map(|found| finding(found, files)).collect()
+pub fn findings(findings: &[Finding], files: &Files) -> Value {
+    findings.iter().map(|item| finding(item, files)).collect()
 }
 
 /// Creates the entry of a finding in the output of `durer check --json`.

@@ -5,13 +5,13 @@ use serde_json::{Value, json};
 
 /// Creates the entry of a pair of pictures in the output of `durer compare --json`. `there` lists
 /// the objects of the scene at each region, in the order of the regions, and can be shorter.
-pub fn comparison(found: &Comparison, there: &[Value]) -> Value {
-    let m = &found.measures;
+pub fn comparison(comparison: &Comparison, there: &[Value]) -> Value {
+    let m = &comparison.measures;
     json!({
-        "verdict": found.verdict.name(),
-        "width": found.width,
-        "height": found.height,
-        "scale": found.scale.name(),
+        "verdict": comparison.verdict.name(),
+        "width": comparison.width,
+        "height": comparison.height,
+        "scale": comparison.scale.name(),
         "rmse": m.rmse,
         "psnr": m.psnr.is_finite().then_some(m.psnr),
         "ssim": m.ssim,
@@ -22,11 +22,11 @@ pub fn comparison(found: &Comparison, there: &[Value]) -> Value {
             "reference": l.reference.to_array(), "picture": l.test.to_array(),
         })),
         "over_tolerance": { "pixels": m.over_tolerance,
-            "share": m.over_tolerance as f64 / (f64::from(found.width) * f64::from(found.height)) },
+            "share": m.over_tolerance as f64 / (f64::from(comparison.width) * f64::from(comparison.height)) },
         "not_finite": { "reference": m.not_finite[0], "picture": m.not_finite[1], "first": m.first_not_finite },
-        "findings": found.findings.iter().map(|f| json!({ "kind": f.kind, "words": f.words, "explained": f.explained }))
+        "findings": comparison.findings.iter().map(|f| json!({ "kind": f.kind, "words": f.description, "explained": f.explained }))
             .collect::<Vec<_>>(),
-        "regions": found.regions.iter().enumerate().map(|(i, r)| json!({
+        "regions": comparison.regions.iter().enumerate().map(|(i, r)| json!({
             "x": r.x, "y": r.y, "width": r.width, "height": r.height, "pixels": r.pixels,
             "mean_difference": r.mean_difference.to_array(), "share": r.share, "worst": r.worst,
             "there": there.get(i),

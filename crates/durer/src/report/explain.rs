@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 const VERSION: u32 = 2;
 
 /// A traced pixel or ray, of which [`explanation`] creates the JSON document.
-pub enum Subject {
+pub enum Explained {
     /// A pixel with all its samples.
     Pixel(Explanation),
     /// A single ray.
@@ -20,7 +20,7 @@ pub enum Subject {
 
 /// Creates the output of `durer explain --json`: the tree of terms, and the names of the objects,
 /// materials and lights to which it refers by index.
-pub fn explanation(subject: &Subject, names: &Names) -> Value {
+pub fn explanation(subject: &Explained, names: &Names) -> Value {
     let (mut objects, mut lights, mut materials) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
     let mut note = |node: &TraceNode| match &node.what {
         TermKind::Ray { hit: Some(hit), .. } => {
@@ -34,8 +34,8 @@ pub fn explanation(subject: &Subject, names: &Names) -> Value {
         _ => {}
     };
     match subject {
-        Subject::Ray(light) => visit(&light.root, &mut note),
-        Subject::Pixel(pixel) => {
+        Explained::Ray(light) => visit(&light.root, &mut note),
+        Explained::Pixel(pixel) => {
             pixel.samples.iter().filter_map(|s| s.light.as_ref()).for_each(|light| visit(&light.root, &mut note));
         }
     }
@@ -49,11 +49,11 @@ pub fn explanation(subject: &Subject, names: &Names) -> Value {
         "lights": lights,
     });
     match subject {
-        Subject::Ray(light) => {
+        Explained::Ray(light) => {
             json["ray"] = json!(light);
             annotate(&light.root, &mut json["ray"], (Vec3::ZERO, Vec3::ZERO), names);
         }
-        Subject::Pixel(pixel) => {
+        Explained::Pixel(pixel) => {
             json["pixel"] = json!(pixel);
             for (i, sample) in pixel.samples.iter().enumerate() {
                 if let Some(light) = &sample.light {

@@ -12,5 +12,5 @@ mod outlines;
 
 pub use check::{finding, findings, place};
 pub use compare::comparison;
-pub use explain::{Subject, explanation};
+pub use explain::{Explained, explanation};
 pub use outlines::{LightMark, light_marks, lights, object_outlines, outlines};

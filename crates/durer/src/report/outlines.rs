@@ -36,9 +36,9 @@ pub fn light_marks(world: &World) -> impl Iterator<Item = LightMark> {
     let bounds = with_camera(world);
     let reach = 0.6 * bounds.size().length();
     world.lights().iter().map(move |light| {
-        let seen = light.illuminate(bounds.center().as_dvec3());
-        let is_far = seen.distance.is_infinite();
-        LightMark { at: bounds.center() + if is_far { reach } else { seen.distance } * seen.to_light, is_far }
+        let sample = light.illuminate(bounds.center().as_dvec3());
+        let is_far = sample.distance.is_infinite();
+        LightMark { at: bounds.center() + if is_far { reach } else { sample.distance } * sample.to_light, is_far }
     })
 }
 

@@ -1,6 +1,6 @@
 import { useState } from "preact/hooks";
 import { add, type Eye, mul, type Vec } from "../../explain/space";
-import type { RayAccount } from "../../protocol";
+import type { CameraRay } from "../../protocol";
 import { fixed, Slider } from "../../ui/slider";
 import { useAnswer, usePaper, useScene } from "../context";
 import { Dot, Line } from "../draw";
@@ -144,7 +144,7 @@ function CamerasFigure() {
   const columns = 15;
   const rows = Math.max(5, Math.round((columns * height) / width) | 1);
   const rays = useAnswer(seen, { kind: "rays", columns, rows, row: null }, "rays", text)?.rays ?? [];
-  const there = rays.filter((ray): ray is RayAccount => ray !== null);
+  const there = rays.filter((ray): ray is CameraRay => ray !== null);
   const starts = new Set(there.map(({ origin }) => origin.map((c) => c.toFixed(4)).join(" "))).size;
   return (
     <Figure

@@ -1,6 +1,6 @@
 import { useState } from "preact/hooks";
 import box from "../../../../scenes/caustic.txt?raw";
-import type { PictureHead } from "../../protocol";
+import type { PictureInfo } from "../../protocol";
 import { Slider } from "../../ui/slider";
 import { usePixel, useScene } from "../context";
 import { Choice, Equation, Figure, Sym } from "../parts";
@@ -16,7 +16,7 @@ function CausticsFigure() {
   const [power, setPower] = useState(10);
   const [radius, setRadius] = useState(0.05);
   const [step, setStep] = useState(3);
-  const [head, setHead] = useState<PictureHead | null>(null);
+  const [head, setHead] = useState<PictureInfo | null>(null);
   const [place, setPlace] = useState({ x: 0.78, y: 0.935 });
   const pixel = { x: Math.floor(place.x * width), y: Math.floor(place.y * height) };
   const photons = Math.round(10 ** (2 + power / 5));

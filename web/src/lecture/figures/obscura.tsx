@@ -1,7 +1,7 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Session } from "../../engine/engine";
 import { type Eye, sub, type Vec } from "../../explain/space";
-import type { CastAccount } from "../../protocol";
+import type { CastResult } from "../../protocol";
 import { fixed, Slider } from "../../ui/slider";
 import { usePaper, useScene } from "../context";
 import { Dot, Line, Name, Path } from "../draw";
@@ -20,8 +20,8 @@ const garden = `MaterialIndex 1 Sphere { center -0.9 -0.3 -3 radius 0.7 }
   MaterialIndex 3 Box { min 2 -1 -4.6 max 3 0.4 -3.8 }`;
 
 /** Returns the results of intersecting several rays with all objects. */
-function useCasts(session: Session, origin: Vec, targets: Vec[], key: string): CastAccount[] {
-  const [casts, setCasts] = useState<CastAccount[]>([]);
+function useCasts(session: Session, origin: Vec, targets: Vec[], key: string): CastResult[] {
+  const [casts, setCasts] = useState<CastResult[]>([]);
   const latest = useRef(0);
   useEffect(() => {
     const number = ++latest.current;

@@ -1,5 +1,5 @@
 import { useContext, useState } from "preact/hooks";
-import type { PictureHead, Setting } from "../../protocol";
+import type { PictureInfo, Setting } from "../../protocol";
 import { OwnSceneContext, useOpened } from "../context";
 import { Explained } from "../explained";
 import { Choice, Equation, Figure, Sym } from "../parts";
@@ -58,7 +58,7 @@ type Id = (typeof steps)[number]["id"];
 function OwnFigure() {
   const own = useContext(OwnSceneContext);
   const [id, setId] = useState<Id>("depth");
-  const [head, setHead] = useState<PictureHead | null>(null);
+  const [head, setHead] = useState<PictureInfo | null>(null);
   const step = steps.find((known) => known.id === id) ?? steps[0];
   const options: Setting[] = step.options.map(([name, value]) => ({ name, value }));
   const { session, size, refused } = useOpened(own, options, step.picture);

@@ -1,6 +1,6 @@
 import { useState } from "preact/hooks";
 import room from "../../../../scenes/cornell-box.txt?raw";
-import type { PictureHead } from "../../protocol";
+import type { PictureInfo } from "../../protocol";
 import { Slider } from "../../ui/slider";
 import { useScene } from "../context";
 import { Choice, Equation, Figure, Sym } from "../parts";
@@ -14,7 +14,7 @@ function PathsFigure() {
   const [step, setStep] = useState(3);
   const [bounces, setBounces] = useState(4);
   const [direct, setDirect] = useState<Direct>("both");
-  const [head, setHead] = useState<PictureHead | null>(null);
+  const [head, setHead] = useState<PictureInfo | null>(null);
   const samples = counts[step] ?? 1;
   const session = useScene(room, [
     { name: "integrator", value: "path" },

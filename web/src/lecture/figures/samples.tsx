@@ -1,5 +1,5 @@
 import { useState } from "preact/hooks";
-import type { PictureHead } from "../../protocol";
+import type { PictureInfo } from "../../protocol";
 import { Slider } from "../../ui/slider";
 import { usePaper, useScene } from "../context";
 import { Choice, Equation, Figure, Sym } from "../parts";
@@ -19,7 +19,7 @@ type Filter = (typeof filters)[number][0];
 function SamplesFigure() {
   const [step, setStep] = useState(0);
   const [filter, setFilter] = useState<Filter>("box");
-  const [head, setHead] = useState<PictureHead | null>(null);
+  const [head, setHead] = useState<PictureInfo | null>(null);
   const samples = counts[step] ?? 1;
   const text = sceneOf({
     paper: usePaper(),

@@ -1,7 +1,7 @@
 import { useState } from "preact/hooks";
 import { Boxes } from "../../explain/edges";
 import { add, type Eye, length, mul, sub, type Vec } from "../../explain/space";
-import type { Structure, WalkAccount, WalkStep } from "../../protocol";
+import type { Structure, Traversal, TraversalStep } from "../../protocol";
 import { fixed, Slider } from "../../ui/slider";
 import { useAnswer, usePaper, useScene } from "../context";
 import { Arrow, Dot, Line, Name } from "../draw";
@@ -152,7 +152,7 @@ function StructuresFigure() {
   );
 }
 
-function words(step: WalkStep | null): string {
+function words(step: TraversalStep | null): string {
   if (!step) return "…";
   const hits = step.tests.filter((test) => test.t !== null).length;
   const tested = step.tests.length === 1 ? "1 object tested" : `${step.tests.length} objects tested`;
@@ -164,7 +164,7 @@ function words(step: WalkStep | null): string {
 }
 
 /** Returns the box of a step as a list with at most one element. */
-function cube(step: WalkStep): WalkAccount["boxes"] {
+function cube(step: TraversalStep): Traversal["boxes"] {
   if (!step.bounds) return [];
   const [low, high] = step.bounds;
   const corners: number[] = [];

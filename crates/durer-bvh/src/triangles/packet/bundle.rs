@@ -1,25 +1,25 @@
 //! A packet of coherent rays, and the data that they share.
 
 use super::rays::PacketRays;
-use super::shared::{Axes, PacketHit};
+use super::shared::{HitTriangle, PacketAxes};
 use crate::lanes::WIDE;
 use crate::triangles::tree::TriangleBvh;
 
 /// Maximum number of rays in a packet.
 pub const RAYS: usize = 64;
 /// Rays of a packet, in four groups of sixteen.
-pub type Sixteens = [PacketRays; RAYS / WIDE];
+pub type RayGroups = [PacketRays; RAYS / WIDE];
 
 /// Up to 64 coherent rays that traverse a [`TriangleBvh`] together, with their hits so far.
 pub struct Packet<'a> {
     pub bvh: &'a TriangleBvh,
-    pub axes: Axes,
+    pub axes: PacketAxes,
     pub numbers: [u32; RAYS],
-    pub sixteens: &'a mut Sixteens,
+    pub sixteens: &'a mut RayGroups,
     /// Number of groups in use.
     pub groups: usize,
     /// True if all rays have the same origin.
-    pub is_point: bool,
+    pub has_common_origin: bool,
     /// Mask of the rays that are still searching.
     pub alive: u64,
     /// Mask of the rays with a hit.
@@ -27,5 +27,5 @@ pub struct Packet<'a> {
     /// Upper bound on the `t` of all rays.
     pub limit: f32,
     /// Triangles that were hit so far. The first entry is a placeholder for no hit.
-    pub packet_hits: &'a mut Vec<PacketHit>,
+    pub packet_hits: &'a mut Vec<HitTriangle>,
 }

@@ -1,10 +1,10 @@
 //! Tests the rays of a packet against the triangles of a leaf.
 
 use super::bundle::{Packet, RAYS};
-use super::shared::PacketHit;
-use crate::lanes::{Columns, Lanes, Numbers, WIDE, WIDTH, Wide};
+use super::shared::HitTriangle;
+use crate::lanes::{CornerColumns, FloatLanes, Lanes, WIDE, WIDTH, WideLanes};
 use crate::node;
-use crate::triangles::leaf::{Flat, by_corner, ends, from_origin};
+use crate::triangles::leaf::{ProjectedTriangles, by_corner, ends, from_origin};
 use crate::triangles::number;
 use std::mem::MaybeUninit;
 
@@ -25,7 +25,7 @@ impl Corners {
 
     /// Broadcasts the corners of one triangle to all lanes.
     #[inline(always)]
-    fn triangle<N: Numbers>(&self, numbers: N, lane: usize) -> [[N::Floats; 3]; 3] {
+    fn triangle<N: FloatLanes>(&self, numbers: N, lane: usize) -> [[N::Floats; 3]; 3] {
         macro_rules! one {
             ($corner:literal, $axis:literal) => {
                 numbers.splat(self.0[$corner][$axis][lane])
@@ -37,22 +37,22 @@ impl Corners {
 
 /// Projects triangles along rays. With `POINT`, the corners are relative to the common origin.
 #[inline(always)]
-fn flat<N: Numbers, const POINT: bool>(
+fn flat<N: FloatLanes, const POINT: bool>(
     numbers: N,
     triangles: [[N::Floats; 3]; 3],
     origin: [N::Floats; 3],
     shear: [N::Floats; 2],
-) -> Flat<N> {
+) -> ProjectedTriangles<N> {
     match POINT {
-        true => Flat::seen(numbers, triangles, shear),
-        false => Flat::new(numbers, triangles, origin, shear),
+        true => ProjectedTriangles::new_relative(numbers, triangles, shear),
+        false => ProjectedTriangles::new(numbers, triangles, origin, shear),
     }
 }
 
 impl Packet<'_> {
     /// Corners relative to the common origin of the rays.
     #[inline(always)]
-    fn as_seen<L: Lanes>(&self, lanes: L, corners: [[L::Floats; 3]; 3]) -> [[L::Floats; 3]; 3] {
+    fn relative_corners<L: Lanes>(&self, lanes: L, corners: [[L::Floats; 3]; 3]) -> [[L::Floats; 3]; 3] {
         let [x, y, z] = self.axes.turned();
         let [e, ..] = &self.sixteens;
         from_origin(lanes, corners, lanes.splat3([e.origin[x][0], e.origin[y][0], e.origin[z][0]]))
@@ -70,9 +70,9 @@ impl Packet<'_> {
         // If few rays are left in the groups, or there are many triangles, test ray by ray. Tuned
         // by measurement.
         let hits = match 2 * (rays.count_ones() as usize) < groups * (count + 4) {
-            true if self.is_point => self.ray_by_ray::<L, ANY, true>(lanes, leaf, rays),
+            true if self.has_common_origin => self.ray_by_ray::<L, ANY, true>(lanes, leaf, rays),
             true => self.ray_by_ray::<L, ANY, false>(lanes, leaf, rays),
-            false if self.is_point => self.one_by_one::<L, ANY, true>(lanes, leaf, rays),
+            false if self.has_common_origin => self.one_by_one::<L, ANY, true>(lanes, leaf, rays),
             false => self.one_by_one::<L, ANY, false>(lanes, leaf, rays),
         };
         self.hit_mask |= hits;
@@ -96,9 +96,9 @@ impl Packet<'_> {
         let mut room = MaybeUninit::uninit();
         let (rows, count) = self.bvh.rows(leaf, &mut room);
         let [x, y, z] = self.axes.turned();
-        let columns = Columns::new(&self.axes.turn, count);
+        let columns = CornerColumns::new(&self.axes.turn, count);
         let triangles = lanes.corners(rows, columns);
-        let triangles = Corners::new(lanes, if POINT { self.as_seen(lanes, triangles) } else { triangles });
+        let triangles = Corners::new(lanes, if POINT { self.relative_corners(lanes, triangles) } else { triangles });
         let mut all_hit = 0;
         // Index of each triangle in the list of hits, or 0.
         let mut packet_hits = [0; WIDTH];
@@ -149,7 +149,7 @@ impl Packet<'_> {
                     let meeting = &mut packet_hits[lane];
                     if *meeting == 0 {
                         *meeting = self.packet_hits.len() as u32;
-                        self.packet_hits.push(PacketHit::new(corners, number(rows, count, lane)));
+                        self.packet_hits.push(HitTriangle::new(corners, number(rows, count, lane)));
                     }
                     hits |= e.intersect_node(lanes, &self.axes, self.packet_hits, *meeting, crossed);
                 }
@@ -168,9 +168,9 @@ impl Packet<'_> {
         let mut room = MaybeUninit::uninit();
         let (rows, count) = self.bvh.rows(leaf, &mut room);
         let [x, y, z] = self.axes.turned();
-        let columns = Columns::new(&self.axes.turn, count);
+        let columns = CornerColumns::new(&self.axes.turn, count);
         let triangles = lanes.corners(rows, columns);
-        let triangles = if POINT { self.as_seen(lanes, triangles) } else { triangles };
+        let triangles = if POINT { self.relative_corners(lanes, triangles) } else { triangles };
         let (mut all_hit, mut some) = (0, 0);
         let mut masks = [[0u8; 2]; RAYS];
         let mut left = rays;
@@ -207,7 +207,7 @@ impl Packet<'_> {
                 if crossed >> lane & 1 == 0 && e.crossing(1 << i, corners) == 0 {
                     continue;
                 }
-                let meeting = PacketHit::new(corners, number(rows, count, lane));
+                let meeting = HitTriangle::new(corners, number(rows, count, lane));
                 if e.intersect_one(&self.axes, self.packet_hits, &meeting, i) {
                     self.packet_hits.push(meeting);
                     all_hit |= 1 << ray;

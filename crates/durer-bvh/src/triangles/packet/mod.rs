@@ -25,25 +25,25 @@ mod bundle;
 mod leaf;
 mod rays;
 mod shared;
-mod walk;
+mod traverse;
 
 use super::tree::{TriangleBvh, TriangleHit};
-use crate::lanes::{Kernel, Lanes, Numbers, WIDE, WIDTH, Wide, numbers_of};
+use crate::lanes::{FloatLanes, Kernel, Lanes, WIDE, WIDTH, WideLanes, as_floats};
 use crate::math::{Ray, Vec2};
-use bundle::{Packet, RAYS, Sixteens};
+use bundle::{Packet, RAYS, RayGroups};
 use glam::Vec3A;
-use shared::{Axes, PacketHit};
+use shared::{HitTriangle, PacketAxes};
 use std::cell::RefCell;
-use walk::Entry;
+use traverse::StackEntry;
 
 /// Minimum number of rays in a packet. Fewer rays are faster when traced one by one.
 const MIN_SIZE: usize = 16;
 /// Maximum number of windows that are skipped after incoherent rays.
 const MAX_SKIPPED_WINDOWS: u32 = 15;
 /// Maximum spread of the directions of a packet across the longest axis, per unit along it.
-const MAX_ANGLE: f32 = 0.5;
+const MAX_DIRECTION_SPREAD: f32 = 0.5;
 /// Maximum spread of the origins, relative to the longest side of the tree's bounds.
-const MAX_START: f32 = 0.25;
+const MAX_ORIGIN_SPREAD: f32 = 0.25;
 
 impl TriangleBvh {
     /// Traces coherent rays in packets, then passes the numbers of the other rays to `others`. With
@@ -56,7 +56,7 @@ impl TriangleBvh {
     ) {
         SCRATCH.with_borrow_mut(|scratch| {
             scratch.rest.clear();
-            if self.nodes.is_empty() || self.least_volume != 0.0 {
+            if self.nodes.is_empty() || self.min_volume != 0.0 {
                 scratch.rest.extend(0..rays.len() as u32);
             } else {
                 self.level.run(Packets::<_, ANY> { bvh: self, rays, answer, scratch });
@@ -71,9 +71,9 @@ impl TriangleBvh {
 struct Scratch {
     /// Numbers of the rays that are not traced in packets.
     rest: Vec<u32>,
-    packet_hits: Vec<PacketHit>,
-    stack: Vec<Entry>,
-    sixteens: Box<Sixteens>,
+    packet_hits: Vec<HitTriangle>,
+    stack: Vec<StackEntry>,
+    sixteens: Box<RayGroups>,
 }
 
 thread_local! {
@@ -96,11 +96,11 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
         let Scratch { rest, packet_hits, stack, sixteens } = self.scratch;
         let mut packet = Packet {
             bvh: self.bvh,
-            axes: Axes::of_key(0),
+            axes: PacketAxes::of_key(0),
             numbers: [0; RAYS],
             sixteens,
             groups: 0,
-            is_point: false,
+            has_common_origin: false,
             alive: 0,
             hit_mask: 0,
             limit: 0.0,
@@ -151,7 +151,7 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
                     continue;
                 }
                 packet.packet_hits.clear();
-                packet.packet_hits.push(PacketHit::new([Vec3A::ZERO; 3], u32::MAX));
+                packet.packet_hits.push(HitTriangle::new([Vec3A::ZERO; 3], u32::MAX));
                 packet.traverse::<L, ANY>(lanes, stack);
                 packet.answer::<L, ANY>(lanes, count, &mut self.answer);
             }
@@ -188,12 +188,12 @@ impl Packet<'_> {
             match in_order.get(k..k + WIDTH) {
                 Some(rays) => {
                     for (row, ray) in eight.iter_mut().zip(rays) {
-                        *row = lanes.load(numbers_of(ray));
+                        *row = lanes.load(as_floats(ray));
                     }
                 }
                 None => {
                     for (i, row) in eight.iter_mut().enumerate() {
-                        *row = lanes.load(numbers_of(&rays[self.numbers[(k + i).min(count - 1)] as usize]));
+                        *row = lanes.load(as_floats(&rays[self.numbers[(k + i).min(count - 1)] as usize]));
                     }
                 }
             }
@@ -216,7 +216,7 @@ impl Packet<'_> {
     /// Prepares rays with a common key. Returns true if they are coherent.
     #[inline(always)]
     fn prepare<L: Lanes>(&mut self, lanes: L, key: usize, count: usize) -> bool {
-        self.axes = Axes::of_key(key);
+        self.axes = PacketAxes::of_key(key);
         (self.alive, self.hit_mask) = (0, 0);
         for group in 0..self.groups {
             let fast = self.sixteens[group].prepare(lanes, &self.axes, self.bvh.reach);
@@ -224,7 +224,7 @@ impl Packet<'_> {
         }
         let all = u64::MAX >> (RAYS - count);
         self.alive &= all;
-        self.is_point = self.is_point(lanes);
+        self.has_common_origin = self.is_point(lanes);
         self.alive == all && self.is_narrow(lanes)
     }
 
@@ -237,9 +237,9 @@ impl Packet<'_> {
                 end!(self, wide, max, greatest, $($of)*) - end!(self, wide, min, least, $($of)*)
             };
         }
-        let apart = MAX_START * self.bvh.bounds.size().max_element();
-        extent!(shear[0]).max(extent!(shear[1])) <= MAX_ANGLE
-            && (self.is_point || extent!(origin[0]).max(extent!(origin[1])).max(extent!(origin[2])) <= apart)
+        let apart = MAX_ORIGIN_SPREAD * self.bvh.bounds.size().max_element();
+        extent!(shear[0]).max(extent!(shear[1])) <= MAX_DIRECTION_SPREAD
+            && (self.has_common_origin || extent!(origin[0]).max(extent!(origin[1])).max(extent!(origin[2])) <= apart)
     }
 
     /// Returns true if all rays have the same origin.
@@ -299,7 +299,7 @@ impl Packet<'_> {
         // The triangles are often the same. Indices are compared as integers, since as floats they
         // are subnormal.
         let (all, one) = (lanes.load(numbers), lanes.splat(first));
-        if lanes.signs(lanes.before(all, one)) | lanes.signs(lanes.before(one, all)) == 0 {
+        if lanes.signs(lanes.lt_as_int(all, one)) | lanes.signs(lanes.lt_as_int(one, all)) == 0 {
             let [a, b, c] = self.packet_hits[first.to_bits() as usize].corners;
             return [lanes.splat3(a), lanes.splat3(b), lanes.splat3(c)];
         }

@@ -1,10 +1,10 @@
 //! The rays of a packet, sixteen at a time with one ray per lane.
 
-use super::shared::{Axes, PacketHit};
-use crate::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
+use super::shared::{HitTriangle, PacketAxes};
+use crate::lanes::{FloatLanes, Lanes, WIDE, WIDTH, WideLanes};
 use crate::math::{Doubles, Ray, Vec3};
 use crate::traverse::{FAST_RANGE, MIN_MAIN_COMPONENT, PADDING};
-use crate::triangles::leaf::{across, from_origin};
+use crate::triangles::leaf::{from_origin, project};
 use crate::watertight::{Plane, PreciseLine, WatertightRay, uv_across};
 use glam::Vec3A;
 
@@ -73,7 +73,7 @@ impl PacketRays {
     /// Prepares the rays for a tree whose coordinates are at most `most`. Returns a mask of the
     /// fast rays.
     #[inline(always)]
-    pub fn prepare<L: Lanes>(&mut self, lanes: L, axes: &Axes, most: f32) -> u32 {
+    pub fn prepare<L: Lanes>(&mut self, lanes: L, axes: &PacketAxes, most: f32) -> u32 {
         let wide = lanes.wide();
         let (least, greatest) = (wide.splat(FAST_RANGE.start), wide.splat(FAST_RANGE.end));
         let (mut far, mut above, mut long) = (wide.splat(0.0), u32::MAX, 0);
@@ -118,7 +118,7 @@ impl PacketRays {
 
     /// Sets the bounds of heights.
     #[inline(always)]
-    fn bound<L: Lanes>(&mut self, lanes: L, axes: &Axes) {
+    fn bound<L: Lanes>(&mut self, lanes: L, axes: &PacketAxes) {
         let wide = lanes.wide();
         let dz = wide.load(&self.dir[axes.turned()[2]]);
         let (near, far) = (wide.mul(wide.load(&self.t_min), dz), wide.mul(wide.load(&self.t_last), dz));
@@ -134,7 +134,7 @@ impl PacketRays {
 
     /// Updates the outer bound of heights that depends on `t_last`.
     #[inline(always)]
-    pub fn bound_last<L: Lanes>(&mut self, lanes: L, axes: &Axes) {
+    pub fn bound_last<L: Lanes>(&mut self, lanes: L, axes: &PacketAxes) {
         let wide = lanes.wide();
         let far = wide.mul(wide.load(&self.t_last), wide.load(&self.dir[axes.turned()[2]]));
         match axes.is_down() {
@@ -150,14 +150,14 @@ impl PacketRays {
     pub fn intersect_node<L: Lanes>(
         &mut self,
         lanes: L,
-        axes: &Axes,
-        packet_hits: &[PacketHit],
+        axes: &PacketAxes,
+        packet_hits: &[HitTriangle],
         number: u32,
         crossed: u32,
     ) -> u32 {
         let [x, y, z] = axes.turned();
         let splat3 = |v: [f64; 3]| [lanes.splat_double(v[0]), lanes.splat_double(v[1]), lanes.splat_double(v[2])];
-        let PacketHit { plane, triangle, .. } = &packet_hits[number as usize];
+        let HitTriangle { plane, triangle, .. } = &packet_hits[number as usize];
         let [low, high] = plane.heights;
         let plane = Plane {
             normal: splat3(plane.normal),
@@ -202,7 +202,13 @@ impl PacketRays {
     /// Tests a single ray as [`PacketRays::intersect_node`] does, with a triangle that is appended
     /// to the list if it is hit.
     #[inline(always)]
-    pub fn intersect_one(&mut self, axes: &Axes, packet_hits: &[PacketHit], next: &PacketHit, lane: usize) -> bool {
+    pub fn intersect_one(
+        &mut self,
+        axes: &PacketAxes,
+        packet_hits: &[HitTriangle],
+        next: &HitTriangle,
+        lane: usize,
+    ) -> bool {
         let [x, y, z] = axes.turned();
         let at = |v: &[PerRay; 3]| [v[x][lane], v[y][lane], v[z][lane]].map(f64::from);
         let inverse = self.inverse_z[lane / WIDTH][lane % WIDTH];
@@ -218,7 +224,13 @@ impl PacketRays {
 
     /// Barycentric coordinates of the hits of half of the rays.
     #[inline(always)]
-    pub fn uv<L: Lanes>(&self, lanes: L, axes: &Axes, half: usize, corners: [[L::Floats; 3]; 3]) -> [[f32; WIDTH]; 2] {
+    pub fn uv<L: Lanes>(
+        &self,
+        lanes: L,
+        axes: &PacketAxes,
+        half: usize,
+        corners: [[L::Floats; 3]; 3],
+    ) -> [[f32; WIDTH]; 2] {
         macro_rules! half {
             ($v:expr) => {
                 lanes.load(part(&$v, half))
@@ -230,7 +242,7 @@ impl PacketRays {
         let corners = from_origin(lanes, corners, origin);
         macro_rules! flat {
             ($corner:literal) => {{
-                let [x, y, _] = across(lanes, corners[$corner], shear);
+                let [x, y, _] = project(lanes, corners[$corner], shear);
                 [lanes.doubles(x), lanes.doubles(y)]
             }};
         }
@@ -275,7 +287,7 @@ fn part(numbers: &PerRay, half: usize) -> &[f32; WIDTH] {
 
 /// Upper bound on the rounding error of heights.
 #[inline(always)]
-fn slack<W: Wide>(wide: W, height: W::Floats) -> W::Floats {
+fn slack<W: WideLanes>(wide: W, height: W::Floats) -> W::Floats {
     let slack = wide.add(wide.mul(wide.splat(8.0 * f32::EPSILON), wide.abs(height)), wide.splat(f32::MIN_POSITIVE));
     // Infinity minus infinity is NaN.
     wide.min(slack, wide.splat(f32::MAX))

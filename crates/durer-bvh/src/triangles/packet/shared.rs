@@ -1,23 +1,23 @@
 //! Axes and hit triangles of a packet.
 
-use crate::watertight::{AxisOrder, Plane, turned_axes};
+use crate::watertight::{AxisOrder, Plane, axis_order_for};
 use glam::Vec3A;
 
 /// Axis order and direction signs that all rays of a packet have in common.
 #[derive(Clone, Copy)]
-pub struct Axes {
+pub struct PacketAxes {
     /// Axis order, as in [`WatertightRay`](crate::watertight::WatertightRay).
     pub turn: AxisOrder,
     /// 1 for axes along which directions are negative, else 0.
     pub negative: [usize; 3],
 }
 
-impl Axes {
+impl PacketAxes {
     /// Decodes a key of signs and longest axis.
     pub fn of_key(key: usize) -> Self {
         let negative = [key & 1, key >> 1 & 1, key >> 2 & 1];
         let longest = key >> 3;
-        Axes { turn: turned_axes(longest, negative[longest]), negative }
+        PacketAxes { turn: axis_order_for(longest, negative[longest]), negative }
     }
 
     /// Indices of the first, second, and third axis of permuted vectors.
@@ -36,16 +36,16 @@ impl Axes {
 
 /// A triangle that at least one ray of a packet has hit, prepared for computing t and barycentric
 /// coordinates.
-pub struct PacketHit {
+pub struct HitTriangle {
     /// Corners with permuted axes.
     pub corners: [[f32; 3]; 3],
     pub triangle: u32,
     pub plane: Plane<[f64; 3]>,
 }
 
-impl PacketHit {
+impl HitTriangle {
     #[inline(always)]
     pub fn new(corners: [Vec3A; 3], triangle: u32) -> Self {
-        PacketHit { corners: corners.map(|corner| corner.to_array()), triangle, plane: Plane::single(corners) }
+        HitTriangle { corners: corners.map(|corner| corner.to_array()), triangle, plane: Plane::single(corners) }
     }
 }

@@ -41,7 +41,7 @@ fn height_field_is_hit_like_its_triangles() {
                     let tree = over(&both, quality);
                     let all = SimdLevel::available().map(|level| (format!("{level:?}"), tree.clone().at_level(level)));
                     let stored = ("stored".into(), TriangleBvh::from_bytes(&tree.to_bytes()).unwrap());
-                    all.chain([stored, ("blind".into(), tree.clone().least_volume(1e-38))])
+                    all.chain([stored, ("blind".into(), tree.clone().min_volume(1e-38))])
                         .map(move |(kind, tree)| (format!("{word} {kind}"), tree))
                         .collect::<Vec<_>>()
                 })
@@ -68,7 +68,7 @@ fn height_field_is_hit_like_its_triangles() {
                     assert_eq!(occluded[i], one.is_some(), "{size:?} {kind} {ray:?}");
                 }
                 let numbers: Vec<u32> = (0..rays.len() as u32).collect();
-                tree.stream::<Nearest>(&rays, &numbers, |i, hit| closest[i] = hit);
+                tree.stream::<ClosestHit>(&rays, &numbers, |i, hit| closest[i] = hit);
                 assert!(rays.iter().zip(&closest).all(|(ray, hit)| tree.closest(ray) == *hit), "{size:?} {kind}");
             }
         }
@@ -128,8 +128,8 @@ fn other_queries_of_a_height_field_match_its_triangles() {
 fn invalid_grid_is_refused() {
     let made =
         |columns: usize, rows: usize, heights: Vec<f32>| HeightGrid::new(vec![0.0; columns], vec![1.0; rows], heights);
-    assert_eq!(made(1, 2, vec![0.0; 2]), Err(BuildError::NoGrid { columns: 1, rows: 2, heights: 2 }));
-    assert_eq!(made(3, 2, vec![0.0; 5]), Err(BuildError::NoGrid { columns: 3, rows: 2, heights: 5 }));
+    assert_eq!(made(1, 2, vec![0.0; 2]), Err(BuildError::InvalidGridSize { columns: 1, rows: 2, heights: 2 }));
+    assert_eq!(made(3, 2, vec![0.0; 5]), Err(BuildError::InvalidGridSize { columns: 3, rows: 2, heights: 5 }));
     assert_eq!(made(2, 2, vec![0.0, 0.0, f32::NAN, 0.0]), Err(BuildError::NotFinite));
     assert!(made(2, 2, vec![0.0; 4]).is_ok());
 }

@@ -129,12 +129,12 @@ fn invalid_meshes_are_refused_with_a_reason() {
     assert_eq!(error, BuildError::MissingVertex { triangle: 1, index: 7, vertices: 3 });
     assert_eq!(error.to_string(), "triangle 1 refers to vertex 7, but there are 3 vertices, numbered from 0");
     let error = TriangleBvh::from_flat(&[0.0; 10], &[0, 1, 2], quality).unwrap_err();
-    assert_eq!(error, BuildError::NotInThrees { list: "positions", len: 10 });
+    assert_eq!(error, BuildError::NotMultipleOfThree { list: "positions", len: 10 });
     let error = TriangleBvh::from_flat(&[0.0; 9], &[0, 1], quality).unwrap_err();
-    assert_eq!(error, BuildError::NotInThrees { list: "indices", len: 2 });
+    assert_eq!(error, BuildError::NotMultipleOfThree { list: "indices", len: 2 });
     let mut bvh = TriangleBvh::build(&vertices, &[[0, 1, 2]], quality);
     let error = bvh.try_refit(&vertices, &[]).unwrap_err();
-    assert_eq!(error, BuildError::OtherTriangles { built: 1, given: 0 });
+    assert_eq!(error, BuildError::TriangleCountMismatch { built: 1, refitted: 0 });
     assert!(bvh.try_refit(&vertices[..2], &[[0, 1, 2]]).is_err());
     assert!(bvh.occluded(&Ray::new(Vec3::new(0.2, 0.2, 1.0), Vec3::NEG_Z)));
 }

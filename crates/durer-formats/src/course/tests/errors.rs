@@ -2,7 +2,7 @@
 
 use super::*;
 use durer_scene::math::Vec3;
-use durer_scene::scene::{MatrixOp, Node};
+use durer_scene::scene::{MatrixOp, ObjectKind};
 
 fn findings(text: &str, dialect: Dialect) -> Vec<String> {
     read_as(text.as_bytes(), dialect, false).1
@@ -317,7 +317,7 @@ fn repeated_and_foreign_words_give_one_warning() {
         "1:42 warning: a node has one transform; the last one is used [Transform] (nested nodes have one each)",
     );
     let objects = read_as(twice.as_bytes(), Dialect::F23, false).0.unwrap().root.unwrap().objects;
-    let Node::Transform(ops, _) = &objects[0].node else { panic!("{objects:?}") };
+    let ObjectKind::Transform(ops, _) = &objects[0].node else { panic!("{objects:?}") };
     assert_eq!(ops[..], [MatrixOp::Translate(Vec3::X)]);
     one("Group { } // no", "1:11 warning: comments begin with `#`; this one is ignored anyway [// no]");
     let shared = "Lights { PointLight { position 0 0 0 color 1 1 1 attenuation 1 0 0 attenuation 1 0 0 } }";

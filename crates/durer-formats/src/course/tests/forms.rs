@@ -2,32 +2,34 @@
 
 use super::*;
 use durer_scene::camera::Camera;
-use durer_scene::describe::{Constraint, DescribedList, Kind, Value};
+use durer_scene::describe::{Constraint, DescribedKind, FieldKind, Value};
 use durer_scene::light::Light;
-use durer_scene::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
+use durer_scene::material::{ColorNoise, PatternMaterial, PhongMaterial, PrincipledMaterial};
 use durer_scene::math::Vec3;
 use durer_scene::medium::Fog;
-use durer_scene::scene::{Background, Material, MatrixOp, Node, Object};
+use durer_scene::scene::{Background, Material, MatrixOp, Object, ObjectKind};
 use durer_scene::shape::{HeightField, Primitive, TriangleMesh};
 
 /// Returns a value of a type that differs from the default, as text and as it is read.
-fn sample(kind: Kind, rule: Constraint) -> (String, Value) {
+fn sample(kind: FieldKind, rule: Constraint) -> (String, Value) {
     let (text, value) = match kind {
-        Kind::Word(words) => (words[words.len() - 1], Value::Word(words[words.len() - 1].into())),
-        Kind::Rows(width) => {
+        FieldKind::Word(words) => (words[words.len() - 1], Value::Word(words[words.len() - 1].into())),
+        FieldKind::Rows(width) => {
             let count = if let Constraint::Rows(least, _) = rule { least } else { 1 };
             let rows: Vec<Vec<f32>> = (0..count).map(|i| (0..width).map(|j| (3 * i + j) as f32).collect()).collect();
             let numbers: Vec<String> = rows.iter().flatten().map(f32::to_string).collect();
             return (format!("{{ {} }}", numbers.join(" ")), Value::Rows(rows));
         }
-        Kind::Float if matches!(rule, Constraint::Share | Constraint::Between(..)) => ("0.125", Value::Float(0.125)),
-        Kind::Float => ("12.5", Value::Float(12.5)),
+        FieldKind::Float if matches!(rule, Constraint::UnitInterval | Constraint::Between(..)) => {
+            ("0.125", Value::Float(0.125))
+        }
+        FieldKind::Float => ("12.5", Value::Float(12.5)),
         // Index of one of the two materials before the solid texture.
-        Kind::Int if rule == Constraint::Any => ("1", Value::Int(1)),
-        Kind::Int => ("7", Value::Int(7)),
-        Kind::Vec3 if matches!(rule, Constraint::Counts(_)) => ("3 1. 2", Value::Vec3(Vec3::new(3.0, 1.0, 2.0))),
-        Kind::Vec3 => (".25 -1.5e1 3.", Value::Vec3(Vec3::new(0.25, -15.0, 3.0))),
-        Kind::Path => {
+        FieldKind::Int if rule == Constraint::Any => ("1", Value::Int(1)),
+        FieldKind::Int => ("7", Value::Int(7)),
+        FieldKind::Vec3 if matches!(rule, Constraint::Counts(_)) => ("3 1. 2", Value::Vec3(Vec3::new(3.0, 1.0, 2.0))),
+        FieldKind::Vec3 => (".25 -1.5e1 3.", Value::Vec3(Vec3::new(0.25, -15.0, 3.0))),
+        FieldKind::Path => {
             ("a/b.x", Value::Path(durer_scene::describe::FileName { path: "a/b.x".into(), ..Default::default() }))
         }
     };
@@ -36,7 +38,7 @@ fn sample(kind: Kind, rule: Constraint) -> (String, Value) {
 
 /// Writes every statement of a list with all fields of a dialect, reads it inside the text of
 /// `wrap`, and compares the result.
-fn every_word<T: DescribedList + PartialEq + std::fmt::Debug>(
+fn every_word<T: DescribedKind + PartialEq + std::fmt::Debug>(
     wrap: impl Fn(&str, &str) -> String,
     find: impl Fn(Scene) -> T,
 ) {
@@ -46,8 +48,8 @@ fn every_word<T: DescribedList + PartialEq + std::fmt::Debug>(
                 let mut item = T::from_keyword(keyword).unwrap();
                 let mut fields = String::new();
                 for (i, field) in kind.fields().iter().enumerate() {
-                    let Some(word) = field.spelling(dialect) else { continue };
-                    let (text, value) = sample(field.kind, field.rule);
+                    let Some(word) = field.keyword(dialect) else { continue };
+                    let (text, value) = sample(field.kind, field.constraint);
                     fields += &format!("{word} {text} ");
                     item.set(i, value);
                 }
@@ -66,7 +68,7 @@ fn every_keyword_and_field_is_read_in_every_dialect_that_has_it() {
     every_word::<Fog>(|_, text| text.into(), |scene| scene.fog.unwrap().value);
     every_word::<Light>(|_, text| format!("Lights {{ numLights 1 {text} }}"), |s| s.lights.unwrap()[0].value.clone());
     let materials = |text: &str| format!("Materials {{ numMaterials 3 Material {{ }} Material {{ }} {text} }}");
-    every_word::<Solid>(
+    every_word::<PatternMaterial>(
         |_, text| materials(text),
         |scene| match &scene.materials[2].value {
             Material::Solid(solid, _) => solid.clone(),
@@ -91,21 +93,21 @@ fn every_keyword_and_field_is_read_in_every_dialect_that_has_it() {
     every_word::<Primitive>(
         |_, text| group(text),
         |scene| match first(scene) {
-            Node::Primitive(shape) => shape,
+            ObjectKind::Primitive(shape) => shape,
             other => panic!("{other:?}"),
         },
     );
     every_word::<HeightField>(
         |_, text| group(text),
         |scene| match first(scene) {
-            Node::HeightField(field) => field,
+            ObjectKind::HeightField(field) => field,
             other => panic!("{other:?}"),
         },
     );
     every_word::<TriangleMesh>(
         |_, text| group(text),
         |scene| match first(scene) {
-            Node::Mesh(mesh) => mesh,
+            ObjectKind::Mesh(mesh) => mesh,
             other => panic!("{other:?}"),
         },
     );
@@ -181,7 +183,7 @@ fn matrix_lists_rows_in_2004_and_columns_later() {
             "Group {{ numObjects 1 Transform {{ {word} {{ {listed} }} Sphere {{ center 0 0 0 radius 1 }} }} }}"
         );
         match clean(&text, dialect).root.unwrap().objects.remove(0).node {
-            Node::Transform(ops, _) => ops,
+            ObjectKind::Transform(ops, _) => ops,
             other => panic!("{other:?}"),
         }
     };
@@ -204,9 +206,9 @@ fn material_index_applies_to_all_following_objects() {
     let root = scene.root.unwrap().objects;
     let materials: Vec<_> = root.iter().map(|object| object.material).collect();
     assert_eq!(materials, [None, Some(1), Some(1), Some(2)]);
-    let Node::Group(group) = &root[2].node else { panic!() };
+    let ObjectKind::Group(group) = &root[2].node else { panic!() };
     assert_eq!(group.objects.iter().map(|o| o.material).collect::<Vec<_>>(), [Some(1), Some(2)]);
-    let Node::Transform(_, inner) = &root[3].node else { panic!() };
+    let ObjectKind::Transform(_, inner) = &root[3].node else { panic!() };
     assert_eq!(inner.material, Some(2));
 }
 
@@ -214,12 +216,12 @@ fn material_index_applies_to_all_following_objects() {
 fn flat(objects: &[Object], out: &mut Vec<(String, Option<u32>)>) {
     for object in objects {
         match &object.node {
-            Node::Group(group) => flat(&group.objects, out),
-            Node::Transform(_, inner) => flat(std::slice::from_ref(inner), out),
-            Node::Primitive(shape) => out.push((shape.keyword(Dialect::F23).into(), object.material)),
-            Node::Mesh(_) | Node::HeightField(_) => out.push(("mesh".into(), object.material)),
-            Node::Voxels(..) => out.push(("grid".into(), object.material)),
-            Node::Solid(_, parts) => flat(parts, out),
+            ObjectKind::Group(group) => flat(&group.objects, out),
+            ObjectKind::Transform(_, inner) => flat(std::slice::from_ref(inner), out),
+            ObjectKind::Primitive(shape) => out.push((shape.keyword(Dialect::F23).into(), object.material)),
+            ObjectKind::Mesh(_) | ObjectKind::HeightField(_) => out.push(("mesh".into(), object.material)),
+            ObjectKind::Voxels(..) => out.push(("grid".into(), object.material)),
+            ObjectKind::Solid(_, parts) => flat(parts, out),
         }
     }
 }
@@ -268,7 +270,7 @@ fn node_transforms_all_its_objects() {
     let text = "Scene { Node { Transform { scale 2 2 2 } Component<Object> { type sphere radius 1 }\n\
                 Component<Object> { type sphere radius 2 } } }";
     let objects = clean(text, Dialect::F23).root.unwrap().objects;
-    let Node::Transform(ops, inner) = &objects[0].node else { panic!("{objects:?}") };
+    let ObjectKind::Transform(ops, inner) = &objects[0].node else { panic!("{objects:?}") };
     assert_eq!(ops[..], [MatrixOp::Scale(Vec3::splat(2.0))]);
-    assert!(matches!(&inner.node, Node::Group(group) if group.objects.len() == 2));
+    assert!(matches!(&inner.node, ObjectKind::Group(group) if group.objects.len() == 2));
 }

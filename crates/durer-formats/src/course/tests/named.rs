@@ -3,7 +3,7 @@
 use super::*;
 use crate::testing::{folder, read_in};
 use durer_scene::material::Pattern;
-use durer_scene::scene::{Material, Node, Object};
+use durer_scene::scene::{Material, Object, ObjectKind};
 
 const HEAD: &str = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 30 } Background { color 0 0 0 }\n";
 const PAINTS: &str = "Materials { PhongMaterial red { diffuseColor 1 0 0 } PhongMaterial blue { diffuseColor 0 0 1 } Mix both { materialIndex blue materialIndex red } }\n";
@@ -21,9 +21,9 @@ fn refused(text: &str) -> Vec<String> {
 /// Collects the materials of all shapes, in order.
 fn materials(object: &Object, found: &mut Vec<Option<u32>>) {
     match &object.node {
-        Node::Group(group) => group.objects.iter().for_each(|object| materials(object, found)),
-        Node::Transform(_, inner) => materials(inner, found),
-        Node::Solid(_, parts) => parts.iter().for_each(|object| materials(object, found)),
+        ObjectKind::Group(group) => group.objects.iter().for_each(|object| materials(object, found)),
+        ObjectKind::Transform(_, inner) => materials(inner, found),
+        ObjectKind::Solid(_, parts) => parts.iter().for_each(|object| materials(object, found)),
         _ => found.push(object.material),
     }
 }

@@ -3,7 +3,7 @@
 use super::{BOUNDS, document, mesh};
 use crate::testing::read_in;
 use durer_scene::math::Vec3;
-use durer_scene::scene::Node;
+use durer_scene::scene::ObjectKind;
 
 /// Returns the diagnostics for a file.
 fn messages(name: &str, bytes: &[u8]) -> Vec<String> {
@@ -130,7 +130,7 @@ fn each_instance_of_a_flat_mesh_has_its_own_sheet() {
     let scene = scene.unwrap();
     let objects = &scene.root.as_ref().unwrap().objects;
     let counts = objects.iter().filter_map(|object| match &object.node {
-        Node::Mesh(mesh) => Some(scene.assets.meshes[&mesh.obj_file.path].triangles.len()),
+        ObjectKind::Mesh(mesh) => Some(scene.assets.meshes[&mesh.obj_file.path].triangles.len()),
         _ => None,
     });
     // Skip the ground plane at the end.

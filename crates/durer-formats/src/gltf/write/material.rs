@@ -5,11 +5,11 @@ use super::Writer;
 use durer_scene::bsdf::lobe::hair::Fibre;
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::describe::FileName;
-use durer_scene::material::parameters::TEXTURED;
+use durer_scene::material::parameters::TEXTURE_FIELDS;
 use durer_scene::material::principled::{Backs, Walls};
 use durer_scene::material::{Pattern, PhongMaterial, PrincipledMaterial};
 use durer_scene::math::{Vec2, Vec3, fp};
-use durer_scene::scene::{Material, Picture};
+use durer_scene::scene::{Material, TextureImage};
 use durer_scene::texture::{Channel, Mapping};
 use serde_json::{Map, Value, json};
 use std::f32::consts::TAU;
@@ -165,8 +165,8 @@ impl Writer<'_> {
             });
             extend("KHR_materials_diffuse_transmission", value);
         }
-        for row in TEXTURED.iter().filter(|row| row.field != "base_color_texture") {
-            let Some(name) = (row.picture)(m) else { continue };
+        for row in TEXTURE_FIELDS.iter().filter(|row| row.field != "base_color_texture") {
+            let Some(name) = (row.texture_file)(m) else { continue };
             if !self.add_picture(m, row.field, name, &mut extensions) {
                 self.left_out(format!("glTF has no texture for `{}`: it is left out", row.field));
             }
@@ -214,11 +214,11 @@ impl Writer<'_> {
         }
         let Some((_, extension, key, channel)) = PICTURES.into_iter().find(|row| row.0 == field) else { return false };
         let Some(value) = extensions.get_mut(extension) else { return false };
-        let Picture { bytes, mapping } = self.picture(name);
+        let TextureImage { bytes, mapping } = self.picture(name);
         let fits = match field {
             // The rotation must be in the texture of the anisotropy strength.
             "specular_anisotropy_texture" => {
-                let turned = Picture { bytes, mapping: Mapping { channel: Some(Channel::Angle), ..mapping } };
+                let turned = TextureImage { bytes, mapping: Mapping { channel: Some(Channel::Angle), ..mapping } };
                 m.specular_rotation_texture.as_ref().is_some_and(|turns| self.picture(turns) == turned)
             }
             "thin_film_thickness_texture" => mapping.range[1] == 1.0,

@@ -16,11 +16,11 @@ use crate::packed::read_unpacked;
 use base64::Engine;
 use durer_diag::{Diagnostic, Diagnostics};
 use durer_scene::camera::{Camera, Projection};
-use durer_scene::describe::DescribedList;
+use durer_scene::describe::DescribedKind;
 use durer_scene::dialect::Dialect;
 use durer_scene::light::{Illuminate as _, Light};
 use durer_scene::math::{Vec3, fp};
-use durer_scene::scene::{MatrixOp, MatrixRules, Node, Object, Scene};
+use durer_scene::scene::{MatrixOp, MatrixRules, Object, ObjectKind, Scene};
 use durer_scene::shape::{MeshData, Shape as _};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use serde_json::{Map, Value, json};
@@ -107,11 +107,11 @@ impl Writer<'_> {
     /// Writes the node of an object; `None` if the object has no visible content.
     fn object(&mut self, object: &Object) -> Option<usize> {
         match &object.node {
-            Node::Group(group) => {
+            ObjectKind::Group(group) => {
                 let children: Vec<usize> = group.objects.iter().filter_map(|object| self.object(object)).collect();
                 (!children.is_empty()).then(|| self.add("nodes", json!({ "children": children })))
             }
-            Node::Transform(ops, inner) => {
+            ObjectKind::Transform(ops, inner) => {
                 let child = self.object(inner)?;
                 let map = MatrixOp::product(ops, MatrixRules::default());
                 let own = self.lists.get("nodes").is_some_and(|nodes| nodes[child].get("matrix").is_none());
@@ -124,20 +124,20 @@ impl Writer<'_> {
                 }
                 Some(self.add("nodes", json!({ "children": [child], "matrix": columns(map) })))
             }
-            Node::Mesh(mesh) => {
+            ObjectKind::Mesh(mesh) => {
                 let name = mesh.obj_file.path.clone();
                 let data = self.mesh_data(&name)?;
                 self.shown(name, &data, object.material)
             }
-            Node::Primitive(primitive) => {
+            ObjectKind::Primitive(primitive) => {
                 let Some(data) = primitive.to_mesh() else {
-                    let name = DescribedList::keyword(primitive, Dialect::Durer);
+                    let name = DescribedKind::keyword(primitive, Dialect::Durer);
                     self.left_out(format!("glTF has triangles only: `{name}` is left out"));
                     return None;
                 };
                 self.shown(format!("{primitive:?}"), &data, object.material)
             }
-            Node::Voxels(..) | Node::HeightField(_) | Node::Solid(..) => {
+            ObjectKind::Voxels(..) | ObjectKind::HeightField(_) | ObjectKind::Solid(..) => {
                 self.left_out("glTF has triangles only: solids, grids and height fields are left out");
                 None
             }
@@ -208,7 +208,7 @@ impl Writer<'_> {
 
     /// Writes the node of a light, using KHR_lights_punctual; returns its index.
     fn light(&mut self, light: &Light) -> Option<usize> {
-        let light = &light.in_units();
+        let light = &light.with_unit_color();
         let (mut written, center, direction) = match light {
             Light::Point(point) => {
                 if point.attenuation != Some(Vec3::Z) {

@@ -4,7 +4,7 @@ use super::Writer;
 use crate::pictures::{CHANGING, as_png};
 use durer_image::{self as image, Encoded, Transfer};
 use durer_scene::describe::FileName;
-use durer_scene::scene::{Picture, PictureBytes};
+use durer_scene::scene::{PictureBytes, TextureImage};
 use durer_scene::texture::{Mapping, Wrap};
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -27,12 +27,12 @@ impl Writer<'_> {
     }
 
     /// Returns the picture named by a material: an asset, or a file with the default mapping.
-    pub(super) fn picture(&self, name: &FileName) -> Picture {
-        let file = || Picture { bytes: PictureBytes::File(name.path.clone()), mapping: Mapping::default() };
+    pub(super) fn picture(&self, name: &FileName) -> TextureImage {
+        let file = || TextureImage { bytes: PictureBytes::File(name.path.clone()), mapping: Mapping::default() };
         self.scene.assets.pictures.get(&name.path).cloned().unwrap_or_else(file)
     }
 
-    fn info(&mut self, picture: &Picture) -> Option<Value> {
+    fn info(&mut self, picture: &TextureImage) -> Option<Value> {
         let source = self.image(&picture.bytes)?;
         let mapping = &picture.mapping;
         let wrap = |wrap: Wrap| match wrap {
@@ -74,12 +74,12 @@ impl Writer<'_> {
 
     /// Returns the index of an image; writes it on first use.
     fn image(&mut self, bytes: &PictureBytes) -> Option<usize> {
-        let (PictureBytes::File(name) | PictureBytes::Here(name, _)) = bytes;
+        let (PictureBytes::File(name) | PictureBytes::Memory(name, _)) = bytes;
         if let Some(known) = self.images.get(name) {
             return *known;
         }
         let found = match bytes {
-            PictureBytes::Here(_, bytes) => Some(bytes.clone()),
+            PictureBytes::Memory(_, bytes) => Some(bytes.clone()),
             PictureBytes::File(name) => self.output.source.read(name).ok(),
         };
         let memory = self.output.memory;

@@ -27,7 +27,7 @@ fn again(scene: &Scene, name: &str) -> (Scene, Vec<String>) {
     let write = SCENE_FORMATS.iter().find(|format| format.extensions.contains(&"glb")).unwrap().write.unwrap();
     let bytes = write(scene, &output, &mut messages);
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
-    let scene_defaults = SceneDefaults { bare: true, ..SceneDefaults::default() };
+    let scene_defaults = SceneDefaults { convert_only: true, ..SceneDefaults::default() };
     let options = LoadOptions { scene_defaults, ..LoadOptions::default() };
     let loaded = load_text(&folder.path().join(name), bytes.as_slice().into(), &options, &mut files, &mut diagnostics);
     assert_eq!(diagnostics.iter().map(|d| d.message.clone()).collect::<Vec<_>>(), [""; 0]);
@@ -134,7 +134,7 @@ fn each_loss_is_reported_once() {
 fn mesh_round_trips() {
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0.5\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0.25 1\nvn 0 0 1\nvn 0.6 0 0.8\nf 1/1/1 2/2/2 3/3/1\nf 2/2/2 4/3/1 3/3/1\n";
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
-    let scene_defaults = SceneDefaults { bare: true, ..SceneDefaults::default() };
+    let scene_defaults = SceneDefaults { convert_only: true, ..SceneDefaults::default() };
     let options = LoadOptions { scene_defaults, ..LoadOptions::default() };
     let path = std::env::temp_dir().join("a.obj");
     let loaded = load_text(&path, text.as_bytes().into(), &options, &mut files, &mut diagnostics).unwrap();

@@ -69,7 +69,7 @@ fn daylight_illuminance_on_level_ground_matches_mitsuba() {
     let illuminance = std::f32::consts::PI * sun.color.y;
     assert!((1.1..1.4).contains(&illuminance), "{illuminance}");
     let name = &scene.background.environment.as_ref().unwrap().path;
-    let PictureBytes::Here(_, bytes) = &scene.assets.pictures[name].bytes else { panic!() };
+    let PictureBytes::Memory(_, bytes) = &scene.assets.pictures[name].bytes else { panic!() };
     let texels = &bytes[bytes.len() - 1024 * 512 * 12..];
     let mut level = 0.0;
     for (i, texel) in texels.chunks_exact(12).enumerate() {

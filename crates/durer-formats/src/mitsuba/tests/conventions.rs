@@ -8,7 +8,7 @@ use durer_scene::light::Light;
 use durer_scene::material::principled::{Backs, Surroundings, Switch, Walls};
 use durer_scene::material::{HairMaterial, PrincipledMaterial};
 use durer_scene::math::{Vec2, Vec3, fp};
-use durer_scene::scene::{Material, MatrixOp, MatrixRules, Node, PictureBytes, Scene};
+use durer_scene::scene::{Material, MatrixOp, MatrixRules, ObjectKind, PictureBytes, Scene};
 
 pub(super) fn layers(bsdf: &str) -> PrincipledMaterial {
     let scene = clean(&format!("<shape type='sphere'>{bsdf}</shape>"));
@@ -182,7 +182,7 @@ fn textures_of_numbers_become_linear_pictures() {
         let scene = clean(&format!("<shape type='sphere'>{bsdf}</shape>"));
         let Material::Principled(layers) = material(&scene) else { panic!("{bsdf}") };
         let name = get(layers).unwrap_or_else(|| panic!("{bsdf} has a picture"));
-        let PictureBytes::Here(path, bytes) = &scene.assets.pictures[&name.path].bytes else { panic!() };
+        let PictureBytes::Memory(path, bytes) = &scene.assets.pictures[&name.path].bytes else { panic!() };
         let image = durer_image::read(bytes, path).unwrap();
         for (pixel, wanted) in image.pixels.iter().zip(wanted) {
             // The colours have 8 bits, before and after the change.
@@ -202,8 +202,8 @@ fn textures_of_numbers_become_linear_pictures() {
     let weight = fields("weight", 0.2, 0.7);
     let blend = format!("<bsdf type='blendbsdf'>{weight}{inner}<bsdf type='conductor'/></bsdf>");
     let scene = clean(&format!("<shape type='sphere'>{blend}</shape>"));
-    let Material::Solid(durer_scene::material::Solid::Mix(mix), _) = material(&scene) else { panic!() };
-    let PictureBytes::Here(path, bytes) = &scene.assets.pictures[&mix.share_texture.as_ref().unwrap().path].bytes
+    let Material::Solid(durer_scene::material::PatternMaterial::Mix(mix), _) = material(&scene) else { panic!() };
+    let PictureBytes::Memory(path, bytes) = &scene.assets.pictures[&mix.share_texture.as_ref().unwrap().path].bytes
     else {
         panic!()
     };
@@ -307,7 +307,7 @@ fn pictures_of_emitters_may_exceed_1() {
     let Material::Principled(emitter) = material(&scene) else { panic!() };
     assert_eq!((emitter.emission_luminance, emitter.emission_color), (8.0, Vec3::ONE));
     let name = &emitter.emission_texture.as_ref().unwrap().path;
-    let PictureBytes::Here(path, bytes) = &scene.assets.pictures[name].bytes else { panic!() };
+    let PictureBytes::Memory(path, bytes) = &scene.assets.pictures[name].bytes else { panic!() };
     let image = durer_image::read(bytes, path).unwrap();
     let wanted = [Vec3::new(1.0, 0.25, 0.0), Vec3::splat(0.5)];
     for (pixel, wanted) in image.pixels.iter().zip(wanted) {
@@ -336,7 +336,7 @@ fn picture_colours_are_srgb_unless_raw() {
         assert_eq!(picture.mapping.cutoff, Some(0.0));
         match &picture.bytes {
             PictureBytes::File(_) => srgb(128.0 / 255.0),
-            PictureBytes::Here(path, bytes) => srgb(durer_image::read(bytes, path).unwrap().pixels[0].x),
+            PictureBytes::Memory(path, bytes) => srgb(durer_image::read(bytes, path).unwrap().pixels[0].x),
         }
     };
     assert!((of(false) - 0.2159).abs() < 1e-3 && (of(true) - 128.0 / 255.0).abs() < 4e-3);
@@ -393,7 +393,7 @@ fn sides_and_facets_match_mitsuba() {
     let color = |value: &str| format!("<bsdf type='diffuse'><rgb name='reflectance' value='{value}'/></bsdf>");
     let sides = format!("<bsdf type='twosided'>{}{}</bsdf>", color("1,0,0"), color("0,1,0"));
     let scene = clean(&format!("<shape type='rectangle'>{sides}</shape>"));
-    let Material::Solid(durer_scene::material::Solid::TwoSided(two), _) = material(&scene) else { panic!() };
+    let Material::Solid(durer_scene::material::PatternMaterial::TwoSided(two), _) = material(&scene) else { panic!() };
     let base = |number: u32| match &scene.materials[number as usize].value {
         Material::Principled(layers) => layers.base_color,
         _ => panic!(),
@@ -516,7 +516,7 @@ fn cylinder_axes_match_mitsuba() {
         ));
         let (data, mut map) = (mesh(&scene), glam::DAffine3::IDENTITY);
         let mut object = &scene.root.as_ref().unwrap().objects[0];
-        while let Node::Transform(ops, inner) = &object.node {
+        while let ObjectKind::Transform(ops, inner) = &object.node {
             (map, object) = (map * MatrixOp::product(ops, MatrixRules::default()), inner);
         }
         let number = data.uvs.iter().position(|uv| uv.x == 0.0).unwrap();

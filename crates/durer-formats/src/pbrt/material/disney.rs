@@ -61,7 +61,7 @@ impl Reader<'_> {
             let what = "`flatness` has no counterpart: the base stays diffuse";
             self.report.once(params.place("flatness"), what);
         }
-        let distance = params.spectrum("scatterdistance").map_or(Color::ZERO, |spectrum| spectrum.plain());
+        let distance = params.spectrum("scatterdistance").map_or(Color::ZERO, |spectrum| spectrum.pbrt_v3_color());
         let onwards = self.value(params, "difftrans", 1.0).clamp(0.0, 2.0);
         let thin = params.truth("thin") == Some(true);
         if !thin && distance == Color::ZERO {

@@ -20,9 +20,9 @@ use durer_diag::{Diagnostic, Span};
 use durer_scene::describe::FileName;
 use durer_scene::material::mix::Mix;
 use durer_scene::material::principled::Walls;
-use durer_scene::material::{PrincipledMaterial, Solid};
+use durer_scene::material::{PatternMaterial, PrincipledMaterial};
 use durer_scene::math::{Color, Vec3};
-use durer_scene::scene::{Material, Picture, Spanned};
+use durer_scene::scene::{Material, Spanned, TextureImage};
 use durer_scene::texture::Mapping;
 use std::rc::Rc;
 
@@ -42,7 +42,7 @@ impl MaterialDef {
 
     fn is_pictured(&self) -> bool {
         match self {
-            MaterialDef::Layers(layers, _) => layers.has_pictures(),
+            MaterialDef::Layers(layers, _) => layers.has_textures(),
             MaterialDef::Mix { pictured, .. } => *pictured,
             MaterialDef::Hair(..) | MaterialDef::Nothing => false,
         }
@@ -146,7 +146,7 @@ impl Reader<'_> {
         if let Some(name) = params.text("normalmap") {
             let place = params.get("normalmap").map_or(params.at, |param| param.values_at);
             if let Some(bytes) = self.eight_bits(name, place) {
-                m.normal_texture = Some(self.asset(Picture { bytes, mapping: Mapping::default() }, place));
+                m.normal_texture = Some(self.asset(TextureImage { bytes, mapping: Mapping::default() }, place));
             }
         }
         if let Texture::Picture(picture, scale) = self.pattern(params, heights, false, Vec3::ZERO) {
@@ -207,7 +207,7 @@ impl Reader<'_> {
                 let (a, b, share, share_texture, at) = (*a, *b, *share, picture.clone(), *at);
                 match (self.number(a, light, opacity), self.number(b, light, opacity)) {
                     (Some(material1), Some(material2)) => {
-                        let solid = Solid::from(Mix { material1, material2, share, share_texture });
+                        let solid = PatternMaterial::from(Mix { material1, material2, share, share_texture });
                         Some(self.scene_material(Material::Solid(solid, Vec::new()), at))
                     }
                     (Some(only), None) | (None, Some(only)) => {
@@ -245,7 +245,7 @@ impl Reader<'_> {
         if let Some(name) = &light.picture
             && let Some(bytes) = self.eight_bits(name, light.at)
         {
-            m.emission_texture = Some(self.asset(Picture { bytes, mapping: Mapping::default() }, light.at));
+            m.emission_texture = Some(self.asset(TextureImage { bytes, mapping: Mapping::default() }, light.at));
         }
     }
 }

@@ -51,7 +51,9 @@ impl Reader<'_> {
     pub(super) fn old_index(&self, params: &Params, usual: f32) -> f32 {
         let name = if params.get("eta").is_some() { "eta" } else { "index" };
         let index = match params.get(name).map(|param| param.kind) {
-            Some(Kind::Spectrum | Kind::Rgb) => params.spectrum(name).map_or(usual, |spectrum| spectrum.plain().y),
+            Some(Kind::Spectrum | Kind::Rgb) => {
+                params.spectrum(name).map_or(usual, |spectrum| spectrum.pbrt_v3_color().y)
+            }
             _ => self.value(params, name, usual),
         };
         if index <= 0.0 {
@@ -86,7 +88,7 @@ impl Reader<'_> {
             "substrate" => self.substrate(params),
             "metal" => {
                 let rough = self.rough(params, Some("roughness"), true, 0.01);
-                let [eta, k] = ["eta", "k"].map(|name| params.spectrum(name).map(|spectrum| spectrum.plain()));
+                let [eta, k] = ["eta", "k"].map(|name| params.spectrum(name).map(|spectrum| spectrum.pbrt_v3_color()));
                 let [eta, k] = [eta.unwrap_or(COPPER[0]), k.unwrap_or(COPPER[1])];
                 let [f0, f82] = conductor_colors(&SpectrumSource::Rgb(eta), &SpectrumSource::Rgb(k), 1.0);
                 vec![Part { layers: metallic(f0, f82, &rough), most: 1.0 }]
@@ -218,7 +220,7 @@ impl Reader<'_> {
         params.left_out(&["Kr", "Kt"], "the boundary is not tinted");
         if kind == "kdsubsurface" {
             let color = self.colored(params, "Kd", 0.5);
-            let path = params.spectrum("mfp").map_or(Vec3::ONE, |spectrum| spectrum.plain());
+            let path = params.spectrum("mfp").map_or(Vec3::ONE, |spectrum| spectrum.pbrt_v3_color());
             below_skin(&mut m, params, color, path);
         } else {
             m.transmission_weight = 1.0;

@@ -207,7 +207,7 @@ fn materials_become_openpbr_parameters() {
          MakeNamedMaterial \"b\" \"string type\" \"conductor\"\n\
          Material \"mix\" \"string materials\" [ \"a\" \"b\" ] \"float amount\" 0.25 Shape \"sphere\"",
     );
-    assert!(matches!(&scene.materials[2].value, Material::Solid(durer_scene::material::Solid::Mix(mix), _)
+    assert!(matches!(&scene.materials[2].value, Material::Solid(durer_scene::material::PatternMaterial::Mix(mix), _)
         if (mix.material1, mix.material2, mix.share) == (0, 1, 0.75)));
     // An `interface` surface is not rendered.
     let scene = read("Camera \"perspective\" WorldBegin Material \"interface\" Shape \"sphere\"").0.unwrap();
@@ -461,7 +461,7 @@ fn media_fill_shapes_and_surround_the_camera() {
     let text = format!("{smoke} MediumInterface \"\" \"smoke\" Camera \"perspective\" WorldBegin Shape \"sphere\"");
     let fog = world("fog.pbrt", &text).fog().cloned().unwrap();
     close(fog.extinction, Vec3::splat(0.5));
-    assert!(fog.place.is_none() && !fog.scatters());
+    assert!(fog.region.is_none() && !fog.scatters());
     // The defaults of `subsurface`, and a sheet that scatters to both sides.
     let text = "Camera \"perspective\" WorldBegin Material \"subsurface\" Shape \"sphere\"\n\
                 Material \"diffusetransmission\" \"rgb reflectance\" [ 0.3 0.3 0.3 ] \"rgb transmittance\" [ 0.1 0.1 0.1 ] \

@@ -1,6 +1,6 @@
 use super::*;
 use durer_scene::math::Vec3;
-use durer_scene::scene::Node;
+use durer_scene::scene::ObjectKind;
 use durer_scene::shape::Primitive;
 use std::io::Write;
 
@@ -11,7 +11,7 @@ fn words_strings_brackets_and_comments() {
                 AttributeBegin Translate 1 2 3 Shape \"sphere\" \"float radius\" 2 AttributeEnd";
     let scene = clean(text);
     let object = &scene.root.as_ref().unwrap().objects[0];
-    let Node::Primitive(Primitive::Sphere(sphere)) = &object.node else { panic!("{object:?}") };
+    let ObjectKind::Primitive(Primitive::Sphere(sphere)) = &object.node else { panic!("{object:?}") };
     assert_eq!((sphere.center, sphere.radius), (Vec3::new(1.0, 2.0, 3.0), 2.0));
     let (m, _) = material("Material \"diffuse\" \"rgb reflectance\" [ .5 5e-1 +0.25 ]");
     assert_eq!((m.base_color, m.specular_weight), (Vec3::new(0.5, 0.5, 0.25), 0.0));
@@ -163,7 +163,7 @@ fn included_files_are_read_and_errors_name_their_file() {
     let objects = scene.unwrap().root.unwrap().objects;
     assert_eq!(objects.len(), 4);
     // `Import` restores the state.
-    assert!(objects[0].material == objects[3].material && matches!(objects[3].node, Node::Primitive(_)));
+    assert!(objects[0].material == objects[3].material && matches!(objects[3].node, ObjectKind::Primitive(_)));
     for (name, wanted) in [
         ("bad.pbrt", "bad.pbrt:2:10 error unknown shape `sfere`"),
         ("circle.pbrt", "round.pbrt:2:10 error `circle.pbrt` includes itself"),
@@ -234,14 +234,14 @@ fn attributes_are_restored_and_defaults_apply_by_kind() {
     );
     let objects = scene.root.unwrap().objects;
     let sphere = |i: usize| match &objects[i].node {
-        Node::Primitive(Primitive::Sphere(sphere)) => (sphere.center, sphere.radius),
+        ObjectKind::Primitive(Primitive::Sphere(sphere)) => (sphere.center, sphere.radius),
         other => panic!("{other:?}"),
     };
     assert_eq!((sphere(1), sphere(2)), ((Vec3::ZERO, 4.0), (Vec3::ZERO, 3.0)));
-    let Node::Transform(ops, inner) = &objects[0].node else { panic!("{:?}", objects[0]) };
+    let ObjectKind::Transform(ops, inner) = &objects[0].node else { panic!("{:?}", objects[0]) };
     let map = ops[0].matrix();
     assert!((map.transform_point3(glam::DVec3::X) - glam::DVec3::new(1.0, 2.0, 0.0)).length() < 1e-6);
-    assert!(matches!(&inner.node, Node::Primitive(Primitive::Sphere(sphere)) if sphere.radius == 3.0));
+    assert!(matches!(&inner.node, ObjectKind::Primitive(Primitive::Sphere(sphere)) if sphere.radius == 3.0));
 }
 
 #[test]

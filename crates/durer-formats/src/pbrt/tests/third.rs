@@ -3,7 +3,7 @@
 use super::*;
 use durer_image::{Image, Layer, WriteOptions, format_for};
 use durer_scene::light::{Fade, Light};
-use durer_scene::material::Solid;
+use durer_scene::material::PatternMaterial;
 use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::PictureBytes;
 
@@ -30,7 +30,7 @@ pub(super) fn parts(text: &str) -> Vec<(f32, PrincipledMaterial)> {
     while let Some((share, number)) = open.pop() {
         match &scene.materials[number as usize].value {
             Material::Principled(layers) => found.push((share, (**layers).clone())),
-            Material::Solid(Solid::Mix(mix), _) => {
+            Material::Solid(PatternMaterial::Mix(mix), _) => {
                 open.push((share * (1.0 - mix.share), mix.material2));
                 open.push((share * mix.share, mix.material1));
             }
@@ -141,7 +141,7 @@ fn environment_has_z_up_and_x_at_left_edge() {
         format!("{HEAD} LightSource \"infinite\" \"string mapname\" \"sky.pfm\" \"rgb L\" [ 2 1 1 ] Shape \"sphere\"");
     let (scene, messages) = read_in(folder.path(), &text);
     let scene = scene.unwrap_or_else(|| panic!("{messages:?}"));
-    let PictureBytes::Here(name, bytes) = &scene.assets.pictures["sky.pfm#environment.pfm"].bytes else { panic!() };
+    let PictureBytes::Memory(name, bytes) = &scene.assets.pictures["sky.pfm#environment.pfm"].bytes else { panic!() };
     let encoded = durer_image::Encoded::open(bytes, name).unwrap();
     let sky = encoded.read(u64::MAX, durer_image::decode_linear).unwrap();
     let at = |dir: [f64; 3]| crate::panorama::looked_up(&sky, dir.into());
@@ -166,7 +166,7 @@ fn pictured_lights_follow_their_pictures() {
             let each = scene.lights.iter().flatten().map(|light| {
                 use durer_scene::light::Illuminate;
                 let profile = &scene.assets.profiles[&light.value.profile().unwrap().path];
-                light.value.color() * profile.at(light.value.in_profile(Vec3::from_array(dir).normalize()))
+                light.value.color() * profile.at(light.value.to_profile(Vec3::from_array(dir).normalize()))
             });
             each.sum()
         }

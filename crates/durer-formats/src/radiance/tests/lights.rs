@@ -15,7 +15,7 @@ fn intensity(scene: &Scene, dir: DVec3) -> f64 {
     let strong = lights.map(|light| {
         let Light::Photometric(emitter) = &light.value else { panic!("{light:?}") };
         let profile = &scene.assets.profiles[&emitter.file.path];
-        f64::from(profile.at(emitter.in_profile(dir.as_vec3()))) * f64::from(emitter.color.x)
+        f64::from(profile.at(emitter.to_profile(dir.as_vec3()))) * f64::from(emitter.color.x)
     });
     strong.sum()
 }

@@ -1,7 +1,7 @@
 //! Detection of mistakes in parts of a picture: the location of the difference indicates its cause.
 
 use super::sample::{Sample, View};
-use super::{Finding, WELL, bytes, difference, flow};
+use super::{Finding, MIN_EXPLAINED_PART, bytes, difference, flow};
 use crate::compare::picture::Scale;
 use durer_bvh::math::Vec3;
 
@@ -12,7 +12,7 @@ type Detector = fn(&View, &View, &[Sample]) -> Option<Finding>;
 type Decode = fn(Vec3) -> Vec3;
 
 /// Minimum visible difference: slightly more than 1/255.
-const SEEN: f32 = 1.5 / 255.0;
+const VISIBLE: f32 = 1.5 / 255.0;
 /// Minimum difference between neighbours at an edge.
 const EDGE: f32 = 0.08;
 /// Minimum share of the difference at edges that mixtures of neighbouring colours must explain.
@@ -33,13 +33,13 @@ pub fn blank(reference: &View, test: &View) -> Option<Finding> {
         (true, false) => format!("the reference is {}, but it is not", what(reference.pixels[0])),
         _ => return None,
     };
-    Some(Finding { kind: "blank", words, explained: 1.0 })
+    Some(Finding { kind: "blank", description: words, explained: 1.0 })
 }
 
 /// Finds the part of a picture that explains nearly all of the difference.
 pub fn finding(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
-    let all: [Detector; 7] = [cut_normals, long_normals, saturated, speckles, edges, noise, shaded];
-    all.iter().find_map(|part| part(reference, test, samples).filter(|finding| finding.explained >= WELL))
+    let all: [Detector; 7] = [clamped_normals, unnormalized_normals, saturated, speckles, edges, noise, shaded];
+    all.iter().find_map(|part| part(reference, test, samples).filter(|finding| finding.explained >= MIN_EXPLAINED_PART))
 }
 
 /// Finds samples whose reference colours encode unit vectors, as absolute values or mapped from
@@ -58,7 +58,7 @@ fn unit_vectors(samples: &[Sample]) -> Option<(Decode, Vec<&Sample>)> {
 }
 
 /// Detects normals whose negative components are clamped instead of made positive.
-fn cut_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
+fn clamped_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     let (_, unit) = unit_vectors(samples)?;
     let cut = |s: &Sample| Vec3::from(std::array::from_fn(|c| if s.test[c] == 0.0 { 0.0 } else { s.reference[c] }));
     let rest: f64 = samples.iter().map(|s| f64::from((s.test - cut(s)).length_squared())).sum();
@@ -69,13 +69,13 @@ fn cut_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
          instead)";
     (unit.iter().filter(some).count() * 20 > unit.len()).then(|| Finding {
         kind: "normals-cut-off",
-        words: words.into(),
+        description: words.into(),
         explained,
     })
 }
 
 /// Detects normals with the right direction but a length other than 1.
-fn long_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
+fn unnormalized_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     let (decode, unit) = unit_vectors(samples)?;
     let encode = |vector: Vec3| if decode(Vec3::ZERO) == Vec3::ZERO { vector } else { 0.5 * vector + 0.5 };
     let wrong = unit.iter().filter(|s| (decode(s.test).length() - 1.0).abs() > 0.03).count();
@@ -87,7 +87,7 @@ fn long_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     let rest: f64 = unit.iter().map(rest).sum();
     let explained = (unit_difference - rest) / difference(samples);
     let words = "its normals have the right directions but not unit length: they are not normalised";
-    (20 * wrong > unit.len()).then(|| Finding { kind: "normals-not-normalised", words: words.into(), explained })
+    (20 * wrong > unit.len()).then(|| Finding { kind: "normals-not-normalised", description: words.into(), explained })
 }
 
 /// Detects differences only where the reference is saturated.
@@ -110,7 +110,7 @@ fn saturated(reference: &View, _: &View, samples: &[Sample]) -> Option<Finding> 
     let some = samples.iter().filter(wrapped).count();
     (full > 0 && full < 2 * samples.len() && some * 12 > full).then(|| Finding {
         kind: "not-clamped",
-        words: words.into(),
+        description: words.into(),
         explained: there / total,
     })
 }
@@ -160,7 +160,7 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     let is_mixed = mixed(reference, test, &at_edges) > MIXED;
     (share < 0.4 && is_mixed && has_equal_sides(reference, test, &at_edges)).then_some(Finding {
         kind: "edges",
-        words,
+        description: words,
         explained,
     })
 }
@@ -171,7 +171,7 @@ fn mixed(reference: &View, test: &View, at_edges: &[Sample]) -> f64 {
     let between = |value: Vec3, picture: &View, s: &Sample| {
         let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| picture.at(s.x + dx, s.y + dy)));
         let (low, high) = around.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
-        value.cmpge(low - SEEN).all() && value.cmple(high + SEEN).all()
+        value.cmpge(low - VISIBLE).all() && value.cmple(high + VISIBLE).all()
     };
     let is_between = |s: &&Sample| between(s.test, reference, s) || between(s.reference, test, s);
     difference(&at_edges.iter().filter(is_between).copied().collect::<Vec<_>>()) / difference(at_edges).max(1e-12)
@@ -180,12 +180,12 @@ fn mixed(reference: &View, test: &View, at_edges: &[Sample]) -> f64 {
 /// Returns true if the areas on both sides of the differing edges are equal in both pictures.
 /// Objects that are so thin that all their pixels are at edges are ignored.
 fn has_equal_sides(reference: &View, test: &View, at_edges: &[Sample]) -> bool {
-    let differing: Vec<&Sample> = at_edges.iter().filter(seen).collect();
+    let differing: Vec<&Sample> = at_edges.iter().filter(is_visible).collect();
     let sides = |s: &&&Sample| {
         let around = (-3..=3).flat_map(|dy| (-3..=3).map(move |dx| Sample { x: s.x + dx, y: s.y + dy, ..***s }));
         let flat = around.filter(|place| !at_edge(reference, place) && !at_edge(test, place));
         let equal = flat.map(|place| (reference.at(place.x, place.y), test.at(place.x, place.y)));
-        let equal = equal.filter(|(a, b)| (*a - *b).abs().max_element() <= SEEN).map(|(a, _)| a);
+        let equal = equal.filter(|(a, b)| (*a - *b).abs().max_element() <= VISIBLE).map(|(a, _)| a);
         let (low, high) = equal.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
         (high - low).max_element() > EDGE
     };
@@ -193,14 +193,14 @@ fn has_equal_sides(reference: &View, test: &View, at_edges: &[Sample]) -> bool {
 }
 
 /// Number of a pixel's eight neighbours whose difference is unlike that of the pixel.
-fn lonely(reference: &View, test: &View, s: &Sample) -> usize {
+fn dissimilar_neighbours(reference: &View, test: &View, s: &Sample) -> usize {
     let own = s.test - s.reference;
     let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (s.x + dx, s.y + dy)));
     around.filter(|&(x, y)| (test.at(x, y) - reference.at(x, y)).dot(own) < 0.5 * own.length_squared()).count()
 }
 
-fn seen(s: &&Sample) -> bool {
-    (s.test - s.reference).abs().max_element() > SEEN
+fn is_visible(s: &&Sample) -> bool {
+    (s.test - s.reference).abs().max_element() > VISIBLE
 }
 
 fn brighter(s: &Sample) -> bool {
@@ -209,11 +209,12 @@ fn brighter(s: &Sample) -> bool {
 
 /// Detects isolated pixels that are all darker or all brighter.
 fn speckles(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
-    let seen: Vec<&Sample> = samples.iter().filter(seen).collect();
+    let visible: Vec<&Sample> = samples.iter().filter(is_visible).collect();
     // Ignore isolated pixels at edges, which differ if an edge has moved.
-    let alone = seen.iter().filter(|s| lonely(reference, test, s) >= 7 && !at_edge(reference, s)).count();
-    let share = seen.len() as f64 / samples.len() as f64;
-    let (up, down): (Vec<Sample>, Vec<Sample>) = seen.iter().copied().copied().partition(brighter);
+    let alone =
+        visible.iter().filter(|s| dissimilar_neighbours(reference, test, s) >= 7 && !at_edge(reference, s)).count();
+    let share = visible.len() as f64 / samples.len() as f64;
+    let (up, down): (Vec<Sample>, Vec<Sample>) = visible.iter().copied().copied().partition(brighter);
     let (kind, words, part) = if down.len() > up.len() {
         (
             "dark-speckles",
@@ -225,22 +226,22 @@ fn speckles(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding
     };
     let explained = difference(&part) / difference(samples);
     let words = format!("{:.1} % of it is {words}", 100.0 * share);
-    (2 * alone > seen.len() && share < 0.5).then_some(Finding { kind, words, explained })
+    (2 * alone > visible.len() && share < 0.5).then_some(Finding { kind, description: words, explained })
 }
 
 /// Detects differences without a pattern.
 fn noise(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
-    let seen: Vec<&Sample> = samples.iter().filter(seen).collect();
-    let alone: usize = seen.iter().map(|s| lonely(reference, test, s)).sum();
-    let explained = difference(&seen.iter().copied().copied().collect::<Vec<_>>()) / difference(samples);
+    let visible: Vec<&Sample> = samples.iter().filter(is_visible).collect();
+    let alone: usize = visible.iter().map(|s| dissimilar_neighbours(reference, test, s)).sum();
+    let explained = difference(&visible.iter().copied().copied().collect::<Vec<_>>()) / difference(samples);
     let words = "it differs from pixel to pixel without a pattern: noise, from too few samples or other random \
                  numbers";
     // Edges of a fine pattern that have moved look like noise, but noise also occurs away from
     // edges.
-    let smooth = seen.iter().filter(|s| !at_edge(reference, s)).count();
-    (alone > 5 * seen.len() && 10 * seen.len() > samples.len() && 2 * smooth > seen.len()).then(|| Finding {
+    let smooth = visible.iter().filter(|s| !at_edge(reference, s)).count();
+    (alone > 5 * visible.len() && 10 * visible.len() > samples.len() && 2 * smooth > visible.len()).then(|| Finding {
         kind: "noise",
-        words: words.into(),
+        description: words.into(),
         explained,
     })
 }
@@ -248,11 +249,11 @@ fn noise(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
 /// Detects parts that are darker or brighter while the rest is equal.
 fn shaded(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     let total = difference(samples);
-    let (bright, dark): (Vec<Sample>, Vec<Sample>) = samples.iter().filter(seen).copied().partition(brighter);
+    let (bright, dark): (Vec<Sample>, Vec<Sample>) = samples.iter().filter(is_visible).copied().partition(brighter);
     let up = difference(&bright) > difference(&dark);
     let part = if up { bright } else { dark };
     let explained = difference(&part) / total;
-    if part.is_empty() || explained < WELL {
+    if part.is_empty() || explained < MIN_EXPLAINED_PART {
         return None;
     }
     // Fit one factor to the whole part.
@@ -261,7 +262,7 @@ fn shaded(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     });
     let factor = if squares > 0.0 { (sum / squares) as f32 } else { 0.0 };
     let rest: f64 = part.iter().map(|s| f64::from((s.test - factor * s.reference).length_squared())).sum();
-    let fits = squares > 0.0 && rest < (1.0 - WELL) * total;
+    let fits = squares > 0.0 && rest < (1.0 - MIN_EXPLAINED_PART) * total;
     let (kind, how) = match up {
         true => ("brighter-parts", "brighter"),
         false if fits && factor < 0.02 => ("black-parts", "black"),
@@ -277,5 +278,5 @@ fn shaded(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
         return None;
     }
     let words = format!("{:.1} % of it is {how}{by}, and the rest is equal: {cause}", 100.0 * share);
-    Some(Finding { kind, words, explained })
+    Some(Finding { kind, description: words, explained })
 }

@@ -7,37 +7,37 @@ use durer_bvh::math::{Vec3, fp};
 /// Rotation or reflection of a picture by a common mistake: an optional transposition, and
 /// mirroring of columns and rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Turn {
-    pub exchange: bool,
-    pub columns_back: bool,
-    pub rows_back: bool,
+pub struct Orientation {
+    pub transpose: bool,
+    pub flip_x: bool,
+    pub flip_y: bool,
 }
 
 /// The seven rotations and reflections other than the identity.
-pub const TURNS: [Turn; 7] = [
-    turn(false, true, false),
-    turn(false, false, true),
-    turn(false, true, true),
-    turn(true, false, false),
-    turn(true, true, false),
-    turn(true, false, true),
-    turn(true, true, true),
+pub const ORIENTATIONS: [Orientation; 7] = [
+    orientation(false, true, false),
+    orientation(false, false, true),
+    orientation(false, true, true),
+    orientation(true, false, false),
+    orientation(true, true, false),
+    orientation(true, false, true),
+    orientation(true, true, true),
 ];
 
-const fn turn(exchange: bool, columns_back: bool, rows_back: bool) -> Turn {
-    Turn { exchange, columns_back, rows_back }
+const fn orientation(transpose: bool, flip_x: bool, flip_y: bool) -> Orientation {
+    Orientation { transpose, flip_x, flip_y }
 }
 
-impl Turn {
+impl Orientation {
     pub fn exchanges(self) -> bool {
-        self.exchange
+        self.transpose
     }
 
     /// Pixel of the reference that moves to a position.
     fn source(self, picture: &View, x: isize, y: isize) -> (isize, isize) {
-        let x = if self.columns_back { picture.width as isize - 1 - x } else { x };
-        let y = if self.rows_back { picture.height as isize - 1 - y } else { y };
-        if self.exchange { (y, x) } else { (x, y) }
+        let x = if self.flip_x { picture.width as isize - 1 - x } else { x };
+        let y = if self.flip_y { picture.height as isize - 1 - y } else { y };
+        if self.transpose { (y, x) } else { (x, y) }
     }
 }
 
@@ -45,7 +45,7 @@ impl Turn {
 /// reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rule {
-    Turned(Turn),
+    Reoriented(Orientation),
     /// Shift in pixels to the right and down.
     Shifted(isize, isize),
     /// Source channel of the reference for each channel.
@@ -54,9 +54,9 @@ pub enum Rule {
     /// Flags for the channels in which black and white are exchanged.
     Inverted([bool; 3]),
     /// Inverts every channel, except in black pixels.
-    ThingsInverted,
-    CurveOnceMore,
-    CurveOnceLess,
+    InvertedExceptBlack,
+    GammaTwice,
+    GammaMissing,
     Power(f32),
     /// Factor on the stored values.
     Factor(f32),
@@ -73,19 +73,19 @@ pub enum Rule {
 
 impl Rule {
     /// Difference at a pixel that this rule leaves.
-    pub fn rest(&self, reference: &View, sample: &Sample) -> Vec3 {
+    pub fn residual(&self, reference: &View, sample: &Sample) -> Vec3 {
         sample.test - self.pixel(reference, sample.x, sample.y)
     }
 
     /// Applies the rule to the reference.
-    pub fn made(&self, reference: &View) -> Vec<Vec3> {
+    pub fn apply(&self, reference: &View) -> Vec<Vec3> {
         let width = reference.width as isize;
         (0..reference.pixels.len() as isize).map(|i| self.pixel(reference, i % width, i / width)).collect()
     }
 
     /// Returns true if the rule determines the value of a pixel. After a shift, pixels that come
     /// from outside the reference are undetermined.
-    pub fn knows(&self, picture: &View, x: isize, y: isize) -> bool {
+    pub fn determines(&self, picture: &View, x: isize, y: isize) -> bool {
         match *self {
             Rule::Shifted(dx, dy) => {
                 (0..picture.width as isize).contains(&(x - dx)) && (0..picture.height as isize).contains(&(y - dy))
@@ -98,28 +98,28 @@ impl Rule {
     fn pixel(&self, reference: &View, x: isize, y: isize) -> Vec3 {
         let value = reference.at(x, y);
         let scale = reference.scale;
-        let made = match *self {
-            Rule::Turned(turn) => {
-                let (x, y) = turn.source(reference, x, y);
+        let value = match *self {
+            Rule::Reoriented(orientation) => {
+                let (x, y) = orientation.source(reference, x, y);
                 reference.at(x, y)
             }
             // Pixels that come from outside the reference keep their value.
-            Rule::Shifted(dx, dy) if self.knows(reference, x, y) => reference.at(x - dx, y - dy),
+            Rule::Shifted(dx, dy) if self.determines(reference, x, y) => reference.at(x - dx, y - dy),
             Rule::Shifted(..) => value,
             Rule::Channels(order) => order.map(|channel| value[channel]).into(),
             Rule::Grey => Vec3::splat(value.dot(Vec3::new(0.299, 0.587, 0.114))),
             Rule::Inverted(which) => {
                 Vec3::from(std::array::from_fn(|c| if which[c] { 1.0 - value[c] } else { value[c] }))
             }
-            Rule::ThingsInverted => {
+            Rule::InvertedExceptBlack => {
                 if value == Vec3::ZERO {
                     value
                 } else {
                     1.0 - value
                 }
             }
-            Rule::CurveOnceMore => value.max(Vec3::ZERO).map(linear_to_srgb),
-            Rule::CurveOnceLess => value.max(Vec3::ZERO).map(srgb_to_linear),
+            Rule::GammaTwice => value.max(Vec3::ZERO).map(linear_to_srgb),
+            Rule::GammaMissing => value.max(Vec3::ZERO).map(srgb_to_linear),
             Rule::Power(exponent) => value.max(Vec3::ZERO).map(|value| fp::pow(value, exponent)),
             Rule::Factor(factor) => value * factor,
             Rule::LightFactor(factor) => scale.encode(scale.decode(value) * factor),
@@ -136,7 +136,7 @@ impl Rule {
             }
             Rule::Blurred => reference.blurred(x, y),
         };
-        scale.clamp(made)
+        scale.clamp(value)
     }
 
     /// Returns true if the rule has parameters that were fitted to the pictures.
@@ -148,7 +148,7 @@ impl Rule {
     /// Keyword of the rule.
     pub fn kind(&self) -> &'static str {
         match self {
-            Rule::Turned(turn) => match (turn.exchange, turn.columns_back, turn.rows_back) {
+            Rule::Reoriented(orientation) => match (orientation.transpose, orientation.flip_x, orientation.flip_y) {
                 (false, true, false) => "mirrored",
                 (false, false, true) => "upside-down",
                 (true, false, false) | (true, true, true) => "transposed",
@@ -157,9 +157,9 @@ impl Rule {
             Rule::Shifted(..) => "shifted",
             Rule::Channels(_) => "channels",
             Rule::Grey => "grey",
-            Rule::Inverted(_) | Rule::ThingsInverted => "inverted",
-            Rule::CurveOnceMore => "gamma-once-more",
-            Rule::CurveOnceLess => "gamma-once-less",
+            Rule::Inverted(_) | Rule::InvertedExceptBlack => "inverted",
+            Rule::GammaTwice => "gamma-once-more",
+            Rule::GammaMissing => "gamma-once-less",
             Rule::Power(_) => "gamma",
             Rule::Factor(_) | Rule::LightFactor(_) | Rule::Factors(_) => "factor",
             Rule::Added(_) | Rule::AddedEach(_) => "added",
@@ -176,6 +176,6 @@ pub fn same_color(a: Vec3, b: Vec3) -> bool {
 }
 
 /// Returns true if a value is at an end of the scale, where it may have been clamped.
-pub fn cut_off(scale: Scale, value: f32) -> bool {
+pub fn is_clamped(scale: Scale, value: f32) -> bool {
     value <= 0.0 || scale == Scale::Display && value >= 0.998
 }

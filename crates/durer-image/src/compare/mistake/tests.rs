@@ -47,11 +47,11 @@ fn finds(kind: &str, words: &str, reference: &Paint, test: &Paint) {
     let found = findings(reference, test);
     let first = found.first().unwrap_or_else(|| panic!("{kind}: nothing is found"));
     assert_eq!(first.kind, kind, "{found:?}");
-    assert!(first.words.contains(words) && first.explained > 0.9, "{found:?}");
+    assert!(first.description.contains(words) && first.explained > 0.9, "{found:?}");
 }
 
 #[test]
-fn places_of_pixels() {
+fn pixel_positions() {
     let last = SIDE - 1;
     finds("mirrored", "left to right", &scene, &move |x, y| scene(last - x, y));
     finds("upside-down", "upside down", &scene, &move |x, y| scene(x, last - y));
@@ -146,7 +146,7 @@ fn parts_of_a_picture() {
 
 /// Discs sampled at different subpixel positions.
 #[test]
-fn samples_at_other_places() {
+fn shifted_samples() {
     let disc = |x: f32, y: f32| {
         let (dx, dy) = (x - 46.3, y - 50.7);
         Vec3::splat(if dx * dx + dy * dy < 900.0 { 0.9 } else { 0.2 })

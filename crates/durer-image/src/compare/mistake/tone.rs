@@ -1,6 +1,6 @@
 //! Rules for brightness and colour, with parameters fitted to the samples by least squares.
 
-use super::rule::{Rule, cut_off, same_color};
+use super::rule::{Rule, is_clamped, same_color};
 use super::sample::Sample;
 use crate::compare::picture::Scale;
 use durer_bvh::math::{Vec3, fp};
@@ -11,7 +11,7 @@ fn values(scale: Scale, samples: &[Sample], channel: usize) -> impl Iterator<Ite
     samples
         .iter()
         .map(move |s| (s.reference[channel], s.test[channel]))
-        .filter(move |&(a, b)| !cut_off(scale, a) && !cut_off(scale, b))
+        .filter(move |&(a, b)| !is_clamped(scale, a) && !is_clamped(scale, b))
         .map(|(a, b)| (f64::from(a), f64::from(b)))
 }
 
@@ -60,7 +60,7 @@ pub fn fitted(scale: Scale, samples: &[Sample]) -> Vec<Rule> {
     if scale == Scale::Display {
         let light: Vec<Sample> = samples
             .iter()
-            .filter(|s| [s.reference, s.test].iter().all(|v| !v.to_array().iter().any(|&v| cut_off(scale, v))))
+            .filter(|s| [s.reference, s.test].iter().all(|v| !v.to_array().iter().any(|&v| is_clamped(scale, v))))
             .map(|s| Sample { reference: scale.decode(s.reference), test: scale.decode(s.test), ..*s })
             .collect();
         let sums = Sums::of((0..3).flat_map(|channel| values(scale, &light, channel)));

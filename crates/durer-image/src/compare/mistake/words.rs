@@ -6,7 +6,7 @@ use super::rule::Rule;
 /// Describes how a rule changes the picture.
 pub fn of(rule: &Rule) -> String {
     match *rule {
-        Rule::Turned(turn) => match (turn.exchange, turn.columns_back, turn.rows_back) {
+        Rule::Reoriented(orientation) => match (orientation.transpose, orientation.flip_x, orientation.flip_y) {
             (false, true, false) => "it is mirrored left to right",
             (false, false, true) => "it is upside down, mirrored top to bottom",
             (false, ..) => "it is rotated by 180 degrees",
@@ -42,11 +42,11 @@ pub fn of(rule: &Rule) -> String {
             let names: Vec<&str> = (0..3).filter(|&c| which[c]).map(|c| names[c]).collect();
             format!("{} inverted: an axis points in the opposite direction", joined(&names))
         }
-        Rule::ThingsInverted => {
+        Rule::InvertedExceptBlack => {
             "it is inverted where the reference is not black (a reversed depth range: near and far are swapped)".into()
         }
-        Rule::CurveOnceMore => "the sRGB curve (gamma) is applied once too often: its values are too bright".into(),
-        Rule::CurveOnceLess => "the sRGB curve (gamma) is missing once: its values are too dark".into(),
+        Rule::GammaTwice => "the sRGB curve (gamma) is applied once too often: its values are too bright".into(),
+        Rule::GammaMissing => "the sRGB curve (gamma) is missing once: its values are too dark".into(),
         Rule::Power(exponent) => format!(
             "its values are the reference's to the power of {exponent:.2}: a different \
                                           gamma"

@@ -29,9 +29,7 @@ impl Path<'_> {
         });
         let brightest = by_chance.map(|object| self.brightest(object.material, &brightness)).fold(0.0, f32::max);
         let sky = match self.transport.direct {
-            Direct::Lights | Direct::Middle => {
-                self.world.environment().map_or(0.0, |sky| brightness(sky.most_of_one()))
-            }
+            Direct::Lights | Direct::Middle => self.world.environment().map_or(0.0, |sky| brightness(sky.max_weight())),
             Direct::Both | Direct::Bsdf => 0.0,
         };
         // Directions are sampled in proportion to their cosine, so a hit counts pi times.

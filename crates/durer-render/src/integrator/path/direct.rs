@@ -213,7 +213,7 @@ impl Path<'_> {
         if !self.world.may_enter(at) || self.is_photon_target(at) {
             return around;
         }
-        around + opacity * self.world.shading(at, 1.0, &context.lanes).bsdf.straight()
+        around + opacity * self.world.shading(at, 1.0, &context.lanes).bsdf.straight_transmittance()
     }
 
     /// Returns true if this lobe transmits light as [`Path::straight_transmittance`] does. Light

@@ -30,7 +30,7 @@ use durer_scene::bsdf::{Bsdf, Frame};
 use durer_scene::camera::RayCone;
 use durer_scene::math::{Color, Ray, Ray64, Vec3};
 use durer_scene::sampler::SampleId;
-use durer_scene::shape::Surface;
+use durer_scene::shape::SurfacePoint;
 use durer_scene::spectrum::{Lanes, Spectrum};
 use glam::DVec3;
 pub use parameters::{Direct, PathOptions, PhotonParameters};
@@ -124,14 +124,14 @@ impl<'w> Path<'w> {
     /// Returns the irradiance at a point on the side of a unit normal: pi times the radiance of a
     /// white matte surface. `id` selects the random numbers.
     pub fn irradiance<T: TraceListener>(&self, point: DVec3, normal: Vec3, id: SampleId, tally: &mut T) -> Color {
-        self.irradiance_on(&Surface::around(point, normal), normal, id, tally)
+        self.irradiance_on(&SurfacePoint::around(point, normal), normal, id, tally)
     }
 
     /// Returns the irradiance at a surface point on the side of a unit shading normal. See
     /// [`Path::irradiance`].
     pub fn irradiance_on<T: TraceListener>(
         &self,
-        surface: &Surface,
+        surface: &SurfacePoint,
         normal: Vec3,
         id: SampleId,
         tally: &mut T,

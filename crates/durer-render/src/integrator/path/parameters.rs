@@ -2,7 +2,7 @@
 
 use super::{Path, Photons};
 use crate::integrator::{IntegratorContext, Parameters};
-use durer_scene::describe::{Constraint, Describe, Field, FieldType, Kind, Value, described};
+use durer_scene::describe::{Constraint, Describe, Field, FieldKind, FieldType, Value, described};
 use durer_scene::dialect::{DialectSet, set};
 use durer_scene::spectrum::ColorMode;
 use serde::{Deserialize, Serialize};
@@ -69,18 +69,18 @@ impl Describe for PhotonParameters {
         PathOptions::FIELDS[2],
         Field {
             name: "count",
-            kind: Kind::Int,
+            kind: FieldKind::Int,
             required: false,
-            rule: Constraint::Numbered(100_000_000),
-            spellings: &[("photons", set::DURER)],
+            constraint: Constraint::OneTo(100_000_000),
+            keywords: &[("photons", set::DURER)],
             doc: "Photons emitted per sample [default: 100000]",
         },
         Field {
             name: "radius",
-            kind: Kind::Float,
+            kind: FieldKind::Float,
             required: false,
-            rule: Constraint::Positive,
-            spellings: &[("photon-radius", set::DURER)],
+            constraint: Constraint::Positive,
+            keywords: &[("photon-radius", set::DURER)],
             doc: "Search radius for photons in the first sample, in world units; it shrinks with later samples \
                   [default: one twentieth of the radius of the smallest object that reflects or refracts]",
         },
@@ -157,7 +157,7 @@ impl Direct {
 }
 
 impl FieldType for Direct {
-    const KIND: Kind = Kind::Word(&Direct::NAMES);
+    const KIND: FieldKind = FieldKind::Word(&Direct::NAMES);
 
     fn value(&self) -> Option<Value> {
         Some(Value::Word(self.name().into()))

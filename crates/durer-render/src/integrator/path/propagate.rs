@@ -69,7 +69,7 @@ impl Path<'_> {
                 let length = hit.map_or(f32::INFINITY, |hit| hit.t * stretch);
                 if let Some(medium) = self.world.medium(state.media.object()) {
                     let way = Segment { origin: ray.origin(), dir: ray.dir() / stretch, from: walked, to: length };
-                    match medium.flight(&way, state.throughput, lanes, &mut || numbers.number()) {
+                    match medium.sample_distance(&way, state.throughput, lanes, &mut || numbers.number()) {
                         DistanceSample::Passed(left) => transmittance *= left,
                         DistanceSample::Scattered(distance, left) => {
                             transmittance *= left;

@@ -115,13 +115,13 @@ impl PathState {
 
     /// Returns the random numbers of the next vertex; see [`Dimension`].
     pub(super) fn vertex_sample(&self) -> SampleId {
-        self.sample.at(self.depth * DIMENSIONS as u32)
+        self.sample.with_first_dimension(self.depth * DIMENSIONS as u32)
     }
 
     /// Returns branch `number` of `count` at a vertex that splits. Branches continue the pixel's
     /// sample sequence, so that all of them are stratified together.
     pub(super) fn branch(&self, number: u32, count: u32) -> Self {
-        let sample = self.sample.of_sample(self.sample.sample.wrapping_mul(count).wrapping_add(number));
+        let sample = self.sample.with_sample(self.sample.sample.wrapping_mul(count).wrapping_add(number));
         PathState { sample, share: self.share / count as f32, ..self.clone() }
     }
 }

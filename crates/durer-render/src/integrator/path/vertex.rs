@@ -9,7 +9,7 @@ use crate::world::emitters::{LightSample, Receiver};
 use durer_scene::bsdf::{Lobe, Scatter};
 use durer_scene::math::{Ray64, Vec2, Vec3};
 use durer_scene::medium::HenyeyGreenstein;
-use durer_scene::shape::Surface;
+use durer_scene::shape::SurfacePoint;
 use durer_scene::spectrum::Spectrum;
 use glam::DVec3;
 
@@ -44,7 +44,7 @@ pub(super) struct Vertex<'a, 'w> {
 #[derive(Clone, Copy)]
 pub(super) enum VertexKind<'a, 'w> {
     /// A surface. With a passage, light can pass through it into another medium.
-    Surface(&'a Surface, &'a Shading<'w>, Option<&'a Passage>),
+    Surface(&'a SurfacePoint, &'a Shading<'w>, Option<&'a Passage>),
     /// A point in a medium, and the unit direction in which the ray arrives.
     Medium(DVec3, Vec3, HenyeyGreenstein),
 }
@@ -121,7 +121,7 @@ impl VertexKind<'_, '_> {
     /// Returns true if some lobe is not a delta lobe, so that light sampling is useful.
     pub(super) fn is_broad(&self) -> bool {
         match self {
-            VertexKind::Surface(_, shading, _) => shading.bsdf.is_broad(),
+            VertexKind::Surface(_, shading, _) => shading.bsdf.has_non_delta(),
             VertexKind::Medium(..) => true,
         }
     }

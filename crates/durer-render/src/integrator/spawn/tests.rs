@@ -186,7 +186,7 @@ fn closed_rooms_stay_dark_at_any_distance_from_the_origin() {
 #[test]
 fn shadow_rays_of_curved_surfaces_end_at_the_light() {
     let mut surface =
-        Surface::new(glam::DVec3::new(0.1, 0.2, 0.3), glam::DVec3::Y, 1e-7, durer_scene::math::Vec2::ZERO);
+        SurfacePoint::new(glam::DVec3::new(0.1, 0.2, 0.3), glam::DVec3::Y, 1e-7, durer_scene::math::Vec2::ZERO);
     surface.shadow_offsets = [Vec3::new(0.01, 0.05, -0.02), Vec3::ZERO];
     let to = Vec3::new(2.0, 3.0, 1.0);
     let ray = to_point(&surface, to.normalize(), to.length());

@@ -7,14 +7,14 @@ use crate::world::{HighlightModel, Hit, MAX_BATCH, Material, Phong};
 use durer_bvh::internal::{PlainKernel, run_plain};
 use durer_scene::light::LightLiSample;
 use durer_scene::math::{Color, Ray64, Vec3, fp, gamma, reflect};
-use durer_scene::shape::Surface;
+use durer_scene::shape::SurfacePoint;
 
 /// Maximum number of transparent surfaces along a shadow ray.
 const MOST_LAYERS: u32 = 64;
 
 impl Whitted<'_> {
     /// Returns the shadow ray to a light for the trace.
-    pub(super) fn shadow(&self, surface: &Surface, light: usize, seen: &LightLiSample, share: Color) -> Shadow {
+    pub(super) fn shadow(&self, surface: &SurfacePoint, light: usize, seen: &LightLiSample, share: Color) -> Shadow {
         let ray = self.shadow_ray(surface, light, seen);
         let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
         Shadow { ray: (&ray).into(), blocker, share: share.into() }
@@ -22,7 +22,7 @@ impl Whitted<'_> {
 
     /// Returns the shadow ray to a light.
     #[inline(always)]
-    pub(super) fn shadow_ray(&self, surface: &Surface, light: usize, seen: &LightLiSample) -> Ray64 {
+    pub(super) fn shadow_ray(&self, surface: &SurfacePoint, light: usize, seen: &LightLiSample) -> Ray64 {
         let epsilon = self.world.shading_rules().epsilon;
         if epsilon.is_none() {
             // End before the light, so that objects exactly at the light do not block it.
@@ -205,7 +205,7 @@ impl PlainKernel for PowerKernel<'_> {
         let mut powers = [0.0; MAX_BATCH];
         for start in (0..count).step_by(8) {
             for i in start..start + 8 {
-                powers[i] = fp::usual_pow(bases[i], exponents[i]);
+                powers[i] = fp::fast_pow(bases[i], exponents[i]);
             }
         }
         powers

@@ -7,7 +7,7 @@ use crate::integrator::spawn::spawn_ray;
 use crate::integrator::trace::{RayKind, TermKind, TraceListener};
 use crate::world::{Material, SurfaceInteraction, WeightedMaterial};
 use durer_scene::math::{Color, Vec3, reflect};
-use durer_scene::shape::Surface;
+use durer_scene::shape::SurfacePoint;
 
 /// Directions and weights of the reflected and the transmitted ray at a hit.
 struct SecondaryRays {
@@ -162,7 +162,7 @@ impl Whitted<'_> {
     fn spawn<T: TraceListener>(
         &self,
         (parent, from): (u32, RayKind),
-        surface: &Surface,
+        surface: &SurfacePoint,
         (dir, factor): (Vec3, Color),
         media: impl FnOnce(&mut Queue) -> Media,
         queue: &mut Queue,

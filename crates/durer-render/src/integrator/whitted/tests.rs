@@ -114,7 +114,7 @@ fn facing_mirrors_sum_a_geometric_series() {
     // two.
     let mut world = testing::read(&format!("{CAMERA}{hall}"));
     let rules = Dialect::Durer.rules();
-    world.edit().set_rules(durer_scene::dialect::Rules { epsilon: Some(1e-4), ..rules.clone() });
+    world.edit().set_rules(durer_scene::dialect::DialectRules { epsilon: Some(1e-4), ..rules.clone() });
     let cut = WhittedOptions { least_weight: 0.7, ..ALL };
     let old = Whitted { world: &world, settings: cut, cancel: None }.radiance(&Ray::new(Vec3::ZERO, Vec3::X), &mut ());
     assert!((old.x - 1.75).abs() < 1e-5, "{old}");
@@ -238,7 +238,7 @@ fn coarse_smooth_sphere_casts_no_shadow_on_points_that_face_the_light() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/meshes");
     let read = |wall: &str, compat: bool| {
         let rules = Dialect::Durer.rules();
-        let rules = durer_scene::dialect::Rules { epsilon: compat.then_some(1e-4), ..rules.clone() };
+        let rules = durer_scene::dialect::DialectRules { epsilon: compat.then_some(1e-4), ..rules.clone() };
         testing::try_read(&text("ball80-smooth.obj", wall), &rules, AccelKind::Bvh, &folder).0.unwrap()
     };
     // Returns the number of dark points whose normals face the light, and of all points whose

@@ -5,9 +5,9 @@ use super::numbers::{number, rgb, vector};
 use crate::integrator::TraceNode;
 use crate::integrator::trace::{HitRecord, RayRecord, TermKind};
 use crate::world::{Geometry, Material, Object, Phong, World};
-use durer_scene::describe::DescribedList;
+use durer_scene::describe::DescribedKind;
 use durer_scene::material::Pattern as _;
-use durer_scene::material::Solid;
+use durer_scene::material::PatternMaterial;
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Material as Written, Scene};
 use durer_scene::shape::Primitive;
@@ -103,12 +103,12 @@ fn of_color(hit: &HitRecord, scene: &Scene, world: &World) -> Vec<String> {
         let q = to_pattern.transform_point3(hit.position.as_dvec3());
         let [first, second] = solid.materials();
         let share = match solid {
-            Solid::TwoSided(_) | Solid::Mix(_) => None,
+            PatternMaterial::TwoSided(_) | PatternMaterial::Mix(_) => None,
             _ => Some(solid.share(q.as_vec3(), world.shading_rules().conic_rings)),
         };
         let Some(share) = share else { break };
         let (chosen, text) = match solid {
-            Solid::Checkerboard(_) => cell(q, share, [first, second]),
+            PatternMaterial::Checkerboard(_) => cell(q, share, [first, second]),
             _ => (
                 if share == 1.0 {
                     Some(first)
@@ -182,7 +182,7 @@ fn of_texture(hit: &HitRecord, material: u32, phong: &Phong, scene: &Scene, worl
 /// Describes the texels of a filtered texture lookup, with their weights.
 fn texels(texture: &Texture, uv: durer_scene::math::Vec2) -> Vec<String> {
     let line = |tap: &durer_scene::texture::Tap| {
-        let (x, y) = tap.place;
+        let (x, y) = tap.texel;
         let stored = tap.bytes.map_or(String::new(), |bytes| {
             let [r, g, b] = bytes;
             let plain = Vec3::from(bytes.map(|byte| f32::from(byte) / 255.0));

@@ -9,7 +9,7 @@ use crate::world::emitters::LightId;
 use crate::world::{Geometry, Material, World};
 use durer_diag::{Files, Span};
 use durer_image::Transfer;
-use durer_scene::describe::DescribedList;
+use durer_scene::describe::DescribedKind;
 use durer_scene::math::{Color, LUMINANCE, Vec3, reflect};
 use durer_scene::scene::Scene;
 use durer_scene::spectrum::{Lanes, Spectrum};
@@ -285,7 +285,7 @@ pub fn ray_text(light: &Tree, names: &Names, options: &ExplainOptions) -> Vec<Te
 
 /// Appends the lines of a tree.
 fn tree_lines(tree: &Tree, names: &Names, depth: usize, options: &ExplainOptions, lines: &mut Vec<TextLine>) {
-    if let Lanes::Waves(waves) = &tree.lanes {
+    if let Lanes::Wavelengths(waves) = &tree.lanes {
         let list = |numbers: Spectrum| numbers.to_array().map(number).join(", ");
         let text = format!("light at {} nm; converted to RGB", list(waves.nm));
         lines.push(TextLine::plain(depth, text));

@@ -25,8 +25,8 @@ impl Matrix {
             }
         });
         match () {
-            () if rules.dropped_tiny && MatrixOp::is_tiny(ops, rules) => Matrix::IDENTITY,
-            () if rules.dropped_shear => product.without_shear(),
+            () if rules.ignore_tiny && MatrixOp::is_tiny(ops, rules) => Matrix::IDENTITY,
+            () if rules.drop_shear => product.without_shear(),
             () => product,
         }
     }

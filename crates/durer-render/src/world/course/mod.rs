@@ -138,15 +138,15 @@ impl CourseHits {
             };
             match &object.geometry {
                 Geometry::Primitive(Primitive::Sphere(sphere)) => {
-                    counter.work(0, 1);
+                    counter.count_work(0, 1);
                     offer(shapes::sphere(sphere, &local, limits, self.rules), 0);
                 }
                 Geometry::Primitive(Primitive::Plane(plane)) => {
-                    counter.work(0, 1);
+                    counter.count_work(0, 1);
                     offer(shapes::plane(plane, &local, limits, self.rules.closed_planes), 0);
                 }
                 Geometry::Primitive(Primitive::Triangle(triangle)) => {
-                    counter.work(0, 1);
+                    counter.count_work(0, 1);
                     offer(shapes::triangle(triangle.corners(), &local, limits, self.rules), 0);
                 }
                 Geometry::Mesh(tree) => {
@@ -234,7 +234,7 @@ impl CourseObject {
         let mut best: Option<(Crossing, u32)> = None;
         match self.walk.as_deref()? {
             MeshOrder::Octree(octree) => octree.walk(ray.origin, rules.vectors.walked(ray.dir), &mut |part| {
-                counter.work(0, 1);
+                counter.count_work(0, 1);
                 if let Some(crossing) = shapes::triangle(tree.mesh.corners(part), ray, limits, rules) {
                     limits.best = Some(crossing.t);
                     best = Some((crossing, part));

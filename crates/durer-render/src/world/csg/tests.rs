@@ -5,7 +5,7 @@ use crate::compile::{AccelKind, testing};
 use crate::integrator::spawn::spawn_ray;
 use crate::world::{Hit, SurfaceInteraction, World};
 use durer_scene::math::random::Random;
-use durer_scene::scene::{self, Group, MatrixOp, MatrixRules, Node, Operation};
+use durer_scene::scene::{self, CsgOperation, Group, MatrixOp, MatrixRules, ObjectKind};
 use durer_scene::shape::*;
 use glam::{DAffine3, DVec3};
 use std::path::Path;
@@ -13,16 +13,16 @@ use std::path::Path;
 const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
     f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 4 8 7 3\nf 1 5 8 4\nf 2 3 7 6\n";
 
-fn object(node: Node) -> scene::Object {
+fn object(node: ObjectKind) -> scene::Object {
     scene::Object { node, material: None, span: Default::default() }
 }
 
-fn join(operation: Operation, parts: &[&scene::Object]) -> scene::Object {
-    object(Node::Solid(operation, parts.iter().map(|&part| part.clone()).collect()))
+fn join(operation: CsgOperation, parts: &[&scene::Object]) -> scene::Object {
+    object(ObjectKind::Solid(operation, parts.iter().map(|&part| part.clone()).collect()))
 }
 
 fn shape(shape: impl Into<Primitive>) -> scene::Object {
-    object(Node::Primitive(shape.into()))
+    object(ObjectKind::Primitive(shape.into()))
 }
 
 fn cuboid(min: [f32; 3], max: [f32; 3]) -> scene::Object {
@@ -34,7 +34,7 @@ fn ball(center: [f32; 3], radius: f32) -> scene::Object {
 }
 
 fn moved(op: MatrixOp, inner: &scene::Object) -> scene::Object {
-    object(Node::Transform(vec![op], Box::new(inner.clone())))
+    object(ObjectKind::Transform(vec![op], Box::new(inner.clone())))
 }
 
 fn world(object: &scene::Object) -> World {
@@ -57,7 +57,7 @@ fn closed_shape(random: &mut Random) -> scene::Object {
         4 => shape(Torus { center, axis, major_radius: 1.0, minor_radius: 0.5 * a }),
         5 => shape(Ellipsoid { center, radii: Vec3::new(a, b, c) }),
         6 => shape(Plane { normal: axis, offset: center.x }),
-        _ => object(Node::Mesh(mesh)),
+        _ => object(ObjectKind::Mesh(mesh)),
     }
 }
 
@@ -65,11 +65,11 @@ fn closed_shape(random: &mut Random) -> scene::Object {
 fn tree(random: &mut Random, depth: usize) -> scene::Object {
     let inner = match random.below(if depth == 0 { 1 } else { 5 }) {
         0 => closed_shape(random),
-        1 => object(Node::Group(Group { objects: (0..2).map(|_| tree(random, depth - 1)).collect() })),
+        1 => object(ObjectKind::Group(Group { objects: (0..2).map(|_| tree(random, depth - 1)).collect() })),
         _ => {
-            let operation = Operation::ALL[random.below(5)].1;
+            let operation = CsgOperation::ALL[random.below(5)].1;
             let count = 2 + random.below(3);
-            object(Node::Solid(operation, (0..count).map(|_| tree(random, depth - 1)).collect()))
+            object(ObjectKind::Solid(operation, (0..count).map(|_| tree(random, depth - 1)).collect()))
         }
     };
     if random.below(2) == 0 {
@@ -83,18 +83,18 @@ fn tree(random: &mut Random, depth: usize) -> scene::Object {
 fn member(object: &scene::Object, p: DVec3) -> bool {
     let count = |parts: &[scene::Object]| parts.iter().filter(|part| member(part, p)).count();
     match &object.node {
-        Node::Group(group) => count(&group.objects) > 0,
-        Node::Transform(ops, inner) => {
+        ObjectKind::Group(group) => count(&group.objects) > 0,
+        ObjectKind::Transform(ops, inner) => {
             member(inner, MatrixOp::product(ops, MatrixRules::default()).inverse().transform_point3(p))
         }
-        Node::Primitive(shape) => shape.inside(p).unwrap(),
-        Node::Mesh(_) => p.abs().max_element() < 1.0,
-        Node::HeightField(_) | Node::Voxels(..) => false,
-        Node::Solid(operation, parts) => match operation {
-            Operation::Union | Operation::Merge => count(parts) > 0,
-            Operation::Intersection => count(parts) == parts.len(),
-            Operation::Difference => member(&parts[0], p) && count(&parts[1..]) == 0,
-            Operation::Xor => count(parts) % 2 == 1,
+        ObjectKind::Primitive(shape) => shape.inside(p).unwrap(),
+        ObjectKind::Mesh(_) => p.abs().max_element() < 1.0,
+        ObjectKind::HeightField(_) | ObjectKind::Voxels(..) => false,
+        ObjectKind::Solid(operation, parts) => match operation {
+            CsgOperation::Union | CsgOperation::Merge => count(parts) > 0,
+            CsgOperation::Intersection => count(parts) == parts.len(),
+            CsgOperation::Difference => member(&parts[0], p) && count(&parts[1..]) == 0,
+            CsgOperation::Xor => count(parts) % 2 == 1,
         },
     }
 }
@@ -122,7 +122,7 @@ fn solids_contain_the_points_of_their_operations() {
     while points < wanted {
         // The parts of a top-level union stay separate objects with inner surfaces, so wrap it in
         // another operation.
-        let solid = join(Operation::Merge, &[&tree(&mut random, 3)]);
+        let solid = join(CsgOperation::Merge, &[&tree(&mut random, 3)]);
         let world = testing::object(solid.clone(), AccelKind::Bvh, folder.path());
         for _ in 0..40 {
             let ray = Ray::new(3.0 * random.point(), random.between(0.1, 3.0) * random.direction());
@@ -191,7 +191,7 @@ fn volumes_match_closed_forms() {
     let frustum = shape(Cone { base: -Vec3::Y, top: Vec3::Y, base_radius: 1.0, top_radius: 0.5 });
     let core = shape(Cylinder { base: -2.0 * Vec3::Y, top: 2.0 * Vec3::Y, radius: 0.25 });
     let half = shape(Plane { normal: Vec3::X, offset: 0.5 });
-    use Operation::*;
+    use CsgOperation::*;
     for (name, solid, expected) in [
         ("two crossing rods (Archimedes, Steinmetz)", join(Intersection, &[&x, &y]), 16.0 / 3.0),
         ("three crossing rods", join(Intersection, &[&x, &y, &z]), 8.0 * (2.0 - 2f64.sqrt())),
@@ -238,11 +238,11 @@ fn assert_same(a: &scene::Object, b: &scene::Object, random: &mut Random) -> usi
 
 #[test]
 fn set_identities_hold_bit_for_bit() {
-    use Operation::*;
+    use CsgOperation::*;
     let mut random = Random(23);
     let mut part = || loop {
         let object = closed_shape(&mut random);
-        if matches!(object.node, Node::Primitive(ref shape) if shape.bounds().is_some()) {
+        if matches!(object.node, ObjectKind::Primitive(ref shape) if shape.bounds().is_some()) {
             return object;
         }
     };
@@ -280,7 +280,7 @@ fn set_identities_hold_bit_for_bit() {
 
 #[test]
 fn coincident_faces_leave_no_skin() {
-    use Operation::*;
+    use CsgOperation::*;
     let mut random = Random(25);
     let long = cuboid([0.0; 3], [0.3, 0.1, 0.1]);
     // Get the same position from other numbers: 0.1 + 0.2 is not 0.3 in single precision.
@@ -361,7 +361,7 @@ fn lens_of_two_spheres_focuses_by_the_lensmakers_equation() {
     let thickness = 2.0 * (radius - offset);
     let f = 1.0 / ((n - 1.0) * (2.0 / radius - (n - 1.0) * thickness / (n * radius * radius)));
     let focus = 0.5 * thickness + f * (1.0 - (n - 1.0) * thickness / (n * radius));
-    let lens = join(Operation::Intersection, &[&ball([-1.9, 0.0, 0.0], 2.2), &ball([1.9, 0.0, 0.0], 2.2)]);
+    let lens = join(CsgOperation::Intersection, &[&ball([-1.9, 0.0, 0.0], 2.2), &ball([1.9, 0.0, 0.0], 2.2)]);
     let world = world(&lens);
     let mut random = Random(28);
     for _ in 0..1000 {
@@ -389,18 +389,18 @@ fn a_union_keeps_inner_surfaces_and_a_merge_does_not() {
         let world = world(&join(operation, &[&a, &b]));
         (world.objects().len(), world.all_hits(&Ray::new(Vec3::new(-5.0, 0.0, 0.0), Vec3::X)).count())
     };
-    assert_eq!(hits(Operation::Union), (2, 4));
+    assert_eq!(hits(CsgOperation::Union), (2, 4));
     // This also holds for nested unions.
-    let nested = join(Operation::Union, &[&join(Operation::Union, &[&a, &b]), &ball([9.0, 0.0, 0.0], 1.0)]);
+    let nested = join(CsgOperation::Union, &[&join(CsgOperation::Union, &[&a, &b]), &ball([9.0, 0.0, 0.0], 1.0)]);
     assert_eq!(world(&nested).objects().len(), 3);
-    assert_eq!(hits(Operation::Merge), (1, 2));
-    assert_eq!(hits(Operation::Xor), (1, 4));
-    assert_eq!(hits(Operation::Intersection), (1, 2));
+    assert_eq!(hits(CsgOperation::Merge), (1, 2));
+    assert_eq!(hits(CsgOperation::Xor), (1, 4));
+    assert_eq!(hits(CsgOperation::Intersection), (1, 2));
 }
 
 #[test]
 fn disjoint_parts_become_separate_objects() {
-    use Operation::*;
+    use CsgOperation::*;
     let balls: Vec<scene::Object> = (0..1000).map(|i| ball([3.0 * i as f32, 0.0, 0.0], 1.0)).collect();
     let list: Vec<&scene::Object> = balls.iter().collect();
     let merged = join(Merge, &list);
@@ -429,7 +429,7 @@ fn cluster_of_many_parts_matches_its_parts() {
     let balls: Vec<scene::Object> =
         (0..300).map(|i| ball([0.5 * (i % 20) as f32, 0.5 * (i / 20) as f32, random.unit()], 0.4)).collect();
     let list: Vec<&scene::Object> = balls.iter().collect();
-    let solid = join(Operation::Merge, &list);
+    let solid = join(CsgOperation::Merge, &list);
     let world = world(&solid);
     assert_eq!(world.objects().len(), 1);
     let mut inner = 0;
@@ -488,7 +488,7 @@ fn rays_that_leave_a_solid_do_not_hit_it_at_their_start() {
     let mut random = Random(27);
     let mut count = 0;
     for _ in 0..150 {
-        let solid = join(Operation::Merge, &[&tree(&mut random, 2)]);
+        let solid = join(CsgOperation::Merge, &[&tree(&mut random, 2)]);
         let rows = glam::DMat4::from(random.affine(3.0, 100.0)).transpose().to_cols_array().map(|x| x as f32);
         let placed = MatrixOp::Matrix(rows);
         let world = testing::object(moved(placed, &solid), AccelKind::Bvh, folder.path());
@@ -523,7 +523,9 @@ fn rays_that_leave_a_solid_do_not_hit_it_at_their_start() {
 #[test]
 fn coincident_parts_take_linear_time() {
     let count = 30_000;
-    for (operation, there) in [(Operation::Merge, true), (Operation::Xor, false), (Operation::Intersection, true)] {
+    for (operation, there) in
+        [(CsgOperation::Merge, true), (CsgOperation::Xor, false), (CsgOperation::Intersection, true)]
+    {
         let parts = vec![ball([0.0; 3], 1.0); count];
         let world = world(&join(operation, &parts.iter().collect::<Vec<_>>()));
         let ray = Ray::new(Vec3::new(0.1, 0.2, 5.0), Vec3::NEG_Z);

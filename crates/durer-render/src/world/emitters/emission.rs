@@ -221,7 +221,7 @@ fn from_all_around(sky: &Environment, u: Vec2) -> Option<(Vec3, Color, f32)> {
 
 /// Returns the intensity of a light with a position.
 fn strength(world: &World, light: u32) -> f32 {
-    world.lights()[light as usize].place().map_or(0.0, |(_, intensity)| intensity.max_element()).max(0.0)
+    world.lights()[light as usize].inverse_square().map_or(0.0, |(_, intensity)| intensity.max_element()).max(0.0)
 }
 
 /// Returns bounding spheres of all bounded objects with delta lobes, ordered by object.

@@ -6,9 +6,9 @@ pub mod tree;
 use super::material::Emission;
 use super::object::Geometry;
 use super::{Hit, Object, World};
-use durer_bvh::internal::{bring_near, room};
+use durer_bvh::internal::{prefetch, vec_on_large_pages};
 use durer_scene::bsdf::{Frame, warp};
-use durer_scene::light::{EmitterShape, Illuminate as _, Placement};
+use durer_scene::light::{EmitterShape, EmitterTransform, Illuminate as _};
 use durer_scene::math::{Aabb, Color, Vec2, Vec3, fp, gamma};
 use durer_scene::shape::Shape as _;
 use glam::DVec3;
@@ -264,10 +264,10 @@ impl LightSampler {
             }
         }
         for (number, light) in world.lights().iter().enumerate() {
-            match light.place() {
+            match light.inverse_square() {
                 Some((position, intensity)) => {
                     let profile = world.profiles().get(number).and_then(Option::as_ref);
-                    let most = profile.map_or(1.0, |profile| profile.most());
+                    let most = profile.map_or(1.0, |profile| profile.max_candela());
                     let power = PI * most * intensity.max_element().max(0.0);
                     emitters.sources.push(LightEntry::Light(number as u32));
                     bounds.push(Bounds {
@@ -295,7 +295,7 @@ impl LightSampler {
     /// Sorts the emitters into the order of the tree. Emitters that are not in the tree come last.
     fn arrange(&mut self, order: &[u32]) {
         self.parts = vec![u32::MAX; self.sources.len()];
-        let mut sources = room(self.sources.len());
+        let mut sources = vec_on_large_pages(self.sources.len());
         let rest = 0..self.sources.len() as u32;
         for from in order.iter().copied().chain(rest) {
             let part = &mut self.parts[from as usize];
@@ -353,7 +353,7 @@ impl LightSampler {
         let rest = (rest / chance).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
         let (source, probability) = self.tree.sample(to, rest)?;
         if let Some(source) = self.sources.get(source as usize) {
-            bring_near(source);
+            prefetch(source);
         }
         Some(Choice { of: ChosenLight::Source(source), probability: chance * probability })
     }
@@ -435,7 +435,7 @@ impl LightSampler {
 /// Returns the surface of a part of an object for light sampling, and its unit normal in world
 /// space. `None` if only rays that hit the part find its light.
 pub fn emitter_of(object: &Object, part: u32) -> Option<(EmitterShape, Vec3)> {
-    let place = Placement(object.to_world.as_ref());
+    let place = EmitterTransform(object.to_world.as_ref());
     match &object.geometry {
         Geometry::Mesh(tree) => Some(EmitterShape::triangle(tree.mesh.corners(part), &place)),
         Geometry::Primitive(shape) => shape.emitter(&place),
@@ -458,7 +458,7 @@ fn has_empty_inside(world: &World, number: usize) -> bool {
         _ => 0.0,
     };
     let within =
-        |other: &Object| other.bounds().is_some_and(|other| bounds.holds(other.min) && bounds.holds(other.max));
+        |other: &Object| other.bounds().is_some_and(|other| bounds.contains(other.min) && bounds.contains(other.max));
     let others = || objects.iter().enumerate().filter(|(i, _)| *i != number).map(|(_, other)| other);
     objects.len() <= MANY
         && object.extent().is_some()
@@ -485,7 +485,7 @@ fn of_light(world: &World, light: u32, point: DVec3, choice: f32) -> LightSample
 impl Sun {
     /// Creates a sun from a light, if the light has an angular extent.
     fn of(world: &World, light: u32) -> Option<Sun> {
-        let degrees = world.lights()[light as usize].spread();
+        let degrees = world.lights()[light as usize].angular_radius();
         let seen = of_light(world, light, DVec3::ZERO, 1.0);
         let (half, _) = fp::sin_cos_degrees(0.5 * f64::from(degrees.min(90.0)));
         // The solid angle 2 pi (1 - cos) equals pi times this.
@@ -496,7 +496,7 @@ impl Sun {
 
 /// Moves a sample to a random direction within the angular extent of its light.
 fn spread(world: &World, light: u32, sample: LightSample, u: Vec2) -> LightSample {
-    let degrees = world.lights()[light as usize].spread();
+    let degrees = world.lights()[light as usize].angular_radius();
     if degrees == 0.0 {
         return sample;
     }

@@ -8,7 +8,7 @@
 //! choices then read only the upper nodes, which stay in the CPU cache.
 
 use super::Receiver;
-use durer_bvh::internal::{PlainKernel, room, run_plain};
+use durer_bvh::internal::{PlainKernel, run_plain, vec_on_large_pages};
 use durer_scene::math::{Aabb, Vec3, fp};
 use std::f32::consts::PI;
 
@@ -358,7 +358,7 @@ impl LightTree {
             tree.parents.push(parent);
         }
         // Move the nodes to aligned memory, where reads are faster.
-        let mut placed = room(tree.nodes.len());
+        let mut placed = vec_on_large_pages(tree.nodes.len());
         placed.append(&mut tree.nodes);
         tree.nodes = placed;
         (tree, order)

@@ -88,7 +88,7 @@ fn every_texture_changes_its_parameter() {
             .iter()
             .enumerate()
             .filter_map(|(i, field)| {
-                let word = field.spelling(Dialect::Durer)?;
+                let word = field.keyword(Dialect::Durer)?;
                 match written.get(i)? {
                     Value::Float(x) => Some(format!("{word} {x:?}")),
                     Value::Vec3(v) => Some(format!("{word} {:?} {:?} {:?}", v.x, v.y, v.z)),
@@ -97,7 +97,7 @@ fn every_texture_changes_its_parameter() {
                 }
             })
             .collect();
-        let word = PrincipledMaterial::FIELDS[number].spelling(Dialect::Durer).unwrap();
+        let word = PrincipledMaterial::FIELDS[number].keyword(Dialect::Durer).unwrap();
         let color = matches!(written.get(number_of(stem)), Some(Value::Vec3(_)));
         for (suffix, channel) in [("", 0), (":g", 1), (":b", 2)] {
             if color && !suffix.is_empty() {
@@ -117,13 +117,13 @@ fn every_texture_changes_its_parameter() {
             let mut expected = Parameters::of(&expected);
             match stem {
                 "specular_weight" => (expected.specular_weight, expected.reflection) = (0.6, linear),
-                "subsurface_color" => expected.entering = tint,
+                "subsurface_color" => expected.entry_tint = tint,
                 _ => {}
             }
             expectations.push((format!("{word}{suffix}"), expected));
         }
     }
-    assert_eq!(seen, durer_scene::material::parameters::TEXTURED.len());
+    assert_eq!(seen, durer_scene::material::parameters::TEXTURE_FIELDS.len());
     let ball = |i: usize| format!("MaterialIndex {i} Sphere {{ center {} 0 0 radius 1 }}\n", 3 * i);
     let world = compiled(&materials, &(0..materials.len()).map(ball).collect::<String>(), folder.path());
     for (i, (word, expected)) in expectations.iter().enumerate() {

@@ -6,7 +6,7 @@
 //! spread across it, and the correlation of the two. In these coordinates the albedo is smooth for
 //! every anisotropy.
 
-use super::{direction, place_among};
+use super::{direction, table_position_in};
 use crate::bsdf::microfacet::{Ggx, SMOOTH};
 use crate::math::{Vec2, Vec3, fp};
 use rayon::prelude::*;
@@ -36,7 +36,7 @@ impl Table {
                 i /= size;
                 k as f32 / (size - 1) as f32
             });
-            let (ggx, wo) = seen(at);
+            let (ggx, wo) = from_axes(at);
             integral(EXACT, |u| value(ggx, wo, u))
         };
         Table((0..SIZES.iter().product()).into_par_iter().map(entry).collect())
@@ -90,7 +90,7 @@ fn axes(ggx: Ggx, wo: Vec3) -> [f32; 4] {
 }
 
 /// Inverse of [`axes`].
-fn seen([cosine, along, beside, correlation]: [f32; 4]) -> (Ggx, Vec3) {
+fn from_axes([cosine, along, beside, correlation]: [f32; 4]) -> (Ggx, Vec3) {
     let [along, beside] = [along * along, beside * beside].map(|alpha| alpha.max(SMOOTH));
     let both = correlation * along * beside;
     let (a2, b2) = (along * along, beside * beside);
@@ -105,7 +105,7 @@ fn seen([cosine, along, beside, correlation]: [f32; 4]) -> (Ggx, Vec3) {
 
 /// Index of the first of four entries around `x` in [0, 1], and the weight of each.
 fn cubic(x: f32, size: usize) -> (usize, [f32; 4]) {
-    let (i, f) = place_among(x, size);
+    let (i, f) = table_position_in(x, size);
     let first = i.saturating_sub(1).min(size - 4);
     // Position relative to the first of the four entries.
     let t = f + (i - first) as f32;
@@ -124,7 +124,7 @@ mod tests {
         let mut random = Random(21);
         for _ in 0..200 {
             let at: [f32; 4] = std::array::from_fn(|_| random.between(0.2, 0.95));
-            let (ggx, wo) = seen(at);
+            let (ggx, wo) = from_axes(at);
             let back = axes(ggx, wo);
             assert!(at.iter().zip(back).all(|(a, b)| (a - b).abs() < 2e-3), "{at:?} {back:?}");
         }
@@ -136,7 +136,7 @@ mod tests {
             let ggx = Ggx::new(roughness, 0.0);
             // A slight anisotropy selects the anisotropic table.
             let uneven = Ggx { alpha: Vec2::new(ggx.alpha.x, ggx.alpha.x * (1.0 - 1e-6)) };
-            let (own, even) = (albedo::facets(uneven, direction(cosine), roughness), albedo::ggx(cosine, roughness));
+            let (own, even) = (albedo::ggx_for(uneven, direction(cosine), roughness), albedo::ggx(cosine, roughness));
             assert!((own - even).abs() < 3e-3, "{cosine} {roughness}: {own} {even}");
         }
     }

@@ -1,6 +1,6 @@
 //! Blinn and Phong highlights, as in the course.
 
-use super::{LobeKind, LobeSample, NOTHING, Scatter};
+use super::{LobeKind, LobeSample, NO_SCATTERING, Scatter};
 use crate::bsdf::warp;
 use crate::math::{Vec2, Vec3, fp, reflect};
 use crate::spectrum::Spectrum;
@@ -43,7 +43,7 @@ impl Scatter for Blinn {
             false => (half.z, 4.0 * wo.dot(half)),
         };
         if wi.z <= 0.0 || base <= 0.0 {
-            return NOTHING;
+            return NO_SCATTERING;
         }
         let power = FRAC_1_PI * fp::pow(base, self.exponent);
         let density = if spread > 0.0 { 0.5 * (self.exponent + 1.0) * power / spread } else { 0.0 };

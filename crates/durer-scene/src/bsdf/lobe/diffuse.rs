@@ -3,8 +3,8 @@
 //! Source: Portsmouth, Kutz and Hill, *EON: A practical energy-preserving rough diffuse BRDF*, JCGT
 //! 14(1), 2025: Fujii's version of the Oren-Nayar model, with a term for multiple scattering.
 
-use super::{LobeKind, LobeSample, NOTHING, Scatter};
-use crate::bsdf::albedo::Dielectric;
+use super::{LobeKind, LobeSample, NO_SCATTERING, Scatter};
+use crate::bsdf::albedo::DielectricAlbedo;
 use crate::bsdf::{Frame, warp};
 use crate::math::{Vec2, Vec3, fp};
 use crate::spectrum::Spectrum;
@@ -29,7 +29,7 @@ pub struct Diffuse<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Boundary<'a> {
     /// Index of refraction and albedo tables.
-    pub dielectric: &'a Dielectric,
+    pub dielectric: &'a DielectricAlbedo,
     /// Roughness of the boundary.
     pub roughness: f32,
     /// Factor that scales its reflection, from 0 to 1.
@@ -48,8 +48,9 @@ impl Boundary<'_> {
     /// with Importance Sampling*, Eurographics 2001.
     fn entering(&self, cosine: f32) -> f32 {
         let passing = |reflected: f32| 1.0 - self.reflection * reflected;
-        let (own, mean) = (self.dielectric.reflectance(cosine, self.roughness), self.dielectric.mean(self.roughness));
-        passing(own) / passing(mean)
+        let (reflectance, mean) =
+            (self.dielectric.reflectance(cosine, self.roughness), self.dielectric.mean(self.roughness));
+        passing(reflectance) / passing(mean)
     }
 }
 
@@ -110,7 +111,7 @@ impl Scatter for Diffuse<'_> {
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         let into = wi.dot(self.normal);
         if into <= 0.0 || wi.z <= 0.0 {
-            return NOTHING;
+            return NO_SCATTERING;
         }
         let out = wo.dot(self.normal).max(1e-6);
         (into * self.value(wo.dot(wi), out, into), FRAC_1_PI * into)

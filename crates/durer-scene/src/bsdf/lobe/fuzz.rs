@@ -4,7 +4,7 @@
 //! Neubelt and Pettineo, *Crafting a Next-Gen Material Pipeline for The Order: 1886*, 2013 (the
 //! masking).
 
-use super::{LobeKind, LobeSample, NOTHING, Scatter};
+use super::{LobeKind, LobeSample, NO_SCATTERING, Scatter};
 use crate::bsdf::microfacet::fuzz_value;
 use crate::bsdf::warp;
 use crate::math::{Vec2, Vec3};
@@ -28,7 +28,7 @@ impl Scatter for Fuzz {
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         match wi.z > 0.0 {
             true => (Spectrum::splat(wi.z * fuzz_value(self.roughness, wo, wi)), 1.0 / (2.0 * PI)),
-            false => NOTHING,
+            false => NO_SCATTERING,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Delta lobes: mirror, smooth refraction and straight transmission.
 
-use super::{LobeKind, LobeSample, NOTHING, Scatter};
+use super::{LobeKind, LobeSample, NO_SCATTERING, Scatter};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
@@ -17,7 +17,7 @@ pub struct Refraction {
 
 /// Lobe for transmission that keeps the direction, as if there were no surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Through;
+pub struct StraightTransmission;
 
 /// Returns the refracted direction of `w` at a boundary with normal `h`; `None` for total internal
 /// reflection. Both `w` and `h` point to the same side. `eta` is the index behind the boundary,
@@ -32,7 +32,7 @@ macro_rules! single_direction {
     ($type:ty, |$own:ident| $kind:expr, |$lobe:ident, $wo:ident| $scattered:expr) => {
         impl Scatter for $type {
             fn eval(&self, _: Vec3, _: Vec3) -> (Spectrum, f32) {
-                NOTHING
+                NO_SCATTERING
             }
             fn sample(&self, $wo: Vec3, _: f32, _: Vec2) -> Option<LobeSample> {
                 let $lobe = self;
@@ -52,7 +52,7 @@ single_direction!(Mirror, |_lobe| LobeKind::MIRROR, |_lobe, wo| Some(LobeSample 
     value: Spectrum::ONE
 }));
 single_direction!(
-    Through,
+    StraightTransmission,
     |_lobe| LobeKind { is_straight: true, ..LobeKind::MIRROR.transmitting() },
     |_lobe, wo| Some(LobeSample { wi: -wo, value: Spectrum::ONE })
 );

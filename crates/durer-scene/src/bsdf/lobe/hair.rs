@@ -19,11 +19,11 @@ use crate::spectrum::{Lanes, Spectrum};
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 /// Number of light paths: R, TT, TRT, and all paths with more internal reflections.
-const WAYS: usize = 4;
+const PATHS: usize = 4;
 
 /// Index of the last path (all further internal reflections), which spreads light evenly around the
 /// fibre.
-const MORE: usize = WAYS - 1;
+const LAST_PATH: usize = PATHS - 1;
 
 /// Hair fibre of one material, with its pigment and roughness; shared by all points of the fibre.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,9 +32,9 @@ pub struct Fibre {
     /// Index of refraction inside, relative to the index outside.
     eta: f32,
     /// Sine and cosine of the angles by which the cuticle scales tilt the first three paths.
-    tilts: [Vec2; MORE],
+    tilts: [Vec2; LAST_PATH],
     /// Longitudinal variance of each path.
-    variances: [f32; WAYS],
+    variances: [f32; PATHS],
     /// Azimuthal distribution of each path except the last.
     spread: Logistic,
 }
@@ -89,7 +89,7 @@ impl Fibre {
     }
 
     /// Returns the hair lobe for light in the given lanes.
-    pub fn seen(&self, lanes: &Lanes) -> Hair<'_> {
+    pub fn lobe(&self, lanes: &Lanes) -> Hair<'_> {
         let absorption = match self.pigment {
             Pigment::Absorption(absorption) => lanes.coefficient(absorption),
             Pigment::Color(color, fit) => {
@@ -101,8 +101,8 @@ impl Fibre {
     }
 
     /// Longitudinal sine and cosine of the view direction, after the scale tilt for a path.
-    fn turned(&self, way: usize, out: &Direction) -> Vec2 {
-        let Some(tilt) = self.tilts.get(way) else { return out.along };
+    fn tilted(&self, path: usize, out: &FibreDirection) -> Vec2 {
+        let Some(tilt) = self.tilts.get(path) else { return out.along };
         let sine = out.along.x * tilt.y + out.along.y * tilt.x;
         Vec2::new(sine, (out.along.y * tilt.y - out.along.x * tilt.x).abs())
     }
@@ -117,25 +117,25 @@ pub struct Hair<'a> {
 }
 
 /// Direction in the coordinates of a hair fibre: longitudinal and azimuthal angle.
-struct Direction {
+struct FibreDirection {
     /// Sine and cosine of the angle to the plane perpendicular to the fibre.
     along: Vec2,
     /// Angle around the fibre, from the y axis to the z axis.
     around: f32,
 }
 
-impl Direction {
+impl FibreDirection {
     fn of(w: Vec3) -> Self {
         let along = Vec2::new(w.x.clamp(-1.0, 1.0), (w.y * w.y + w.z * w.z).sqrt());
-        Direction { along, around: TAU * fp::atan2_turn(w.z, w.y) }
+        FibreDirection { along, around: TAU * fp::atan2_turn(w.z, w.y) }
     }
 }
 
 /// Shares of light among the paths through a hair fibre, for one view direction.
 struct PathLobes {
-    shares: [Spectrum; WAYS],
+    shares: [Spectrum; PATHS],
     /// Sampling weight of each path, and their sum.
-    chances: [f32; WAYS],
+    sampling_weights: [f32; PATHS],
     total: f32,
     /// Azimuthal angles to the normal, outside and inside the fibre.
     angles: [f32; 2],
@@ -143,14 +143,14 @@ struct PathLobes {
 
 impl PathLobes {
     /// Angle by which a path deflects light around the fibre.
-    fn turn(&self, way: usize) -> f32 {
-        let way = way as f32;
-        2.0 * way * self.angles[1] - 2.0 * self.angles[0] + way * PI
+    fn turn(&self, path: usize) -> f32 {
+        let path = path as f32;
+        2.0 * path * self.angles[1] - 2.0 * self.angles[0] + path * PI
     }
 }
 
 impl Hair<'_> {
-    fn ways(&self, wo: Vec3, out: &Direction) -> PathLobes {
+    fn path_lobes(&self, wo: Vec3, out: &FibreDirection) -> PathLobes {
         let eta = self.fibre.eta;
         let (sine, cosine) = (out.along.x, out.along.y.max(1e-6));
         let outside = out.around - FRAC_PI_2;
@@ -166,17 +166,22 @@ impl Hair<'_> {
         let inside = mirrored * through;
         let rest = inside * inside / (Spectrum::ONE - inside).max(Spectrum::splat(1e-6));
         let shares = [Spectrum::splat(mirrored), once, once * inside, once * rest];
-        let chances = shares.map(|share| share.element_sum());
-        PathLobes { shares, chances, total: chances.iter().sum(), angles: [outside, fp::asin(sine_inside)] }
+        let sampling_weights = shares.map(|share| share.element_sum());
+        PathLobes {
+            shares,
+            sampling_weights,
+            total: sampling_weights.iter().sum(),
+            angles: [outside, fp::asin(sine_inside)],
+        }
     }
 
     /// Pdf of a path: per sine along the fibre times per radian around it.
-    fn density(&self, way: usize, ways: &PathLobes, out: &Direction, coming: &Direction) -> f32 {
-        let along = longitudinal(self.fibre.variances[way], self.fibre.turned(way, out), coming.along);
-        if way == MORE {
+    fn density(&self, path: usize, paths: &PathLobes, out: &FibreDirection, incident: &FibreDirection) -> f32 {
+        let along = longitudinal(self.fibre.variances[path], self.fibre.tilted(path, out), incident.along);
+        if path == LAST_PATH {
             return along / TAU;
         }
-        let off = coming.around - out.around - ways.turn(way);
+        let off = incident.around - out.around - paths.turn(path);
         along * self.fibre.spread.density(off - TAU * (off / TAU).round())
     }
 }
@@ -188,36 +193,36 @@ impl Scatter for Hair<'_> {
     }
 
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
-        let (out, coming) = (Direction::of(wo), Direction::of(wi));
-        let ways = self.ways(wo, &out);
+        let (out, incident) = (FibreDirection::of(wo), FibreDirection::of(wi));
+        let paths = self.path_lobes(wo, &out);
         let (mut value, mut density) = (Spectrum::ZERO, 0.0);
-        for way in 0..WAYS {
-            let own = self.density(way, &ways, &out, &coming);
-            value += ways.shares[way] * own;
-            density += ways.chances[way] * own;
+        for path in 0..PATHS {
+            let lobe_value = self.density(path, &paths, &out, &incident);
+            value += paths.shares[path] * lobe_value;
+            density += paths.sampling_weights[path] * lobe_value;
         }
-        (value, density / ways.total)
+        (value, density / paths.total)
     }
 
     fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<LobeSample> {
-        let out = Direction::of(wo);
-        let ways = self.ways(wo, &out);
-        let (mut rest, mut way) = (choice * ways.total, 0);
-        while way < MORE && rest >= ways.chances[way] {
-            rest -= ways.chances[way];
-            way += 1;
+        let out = FibreDirection::of(wo);
+        let paths = self.path_lobes(wo, &out);
+        let (mut rest, mut path) = (choice * paths.total, 0);
+        while path < LAST_PATH && rest >= paths.sampling_weights[path] {
+            rest -= paths.sampling_weights[path];
+            path += 1;
         }
         // Reuse the remainder of `choice`, which is uniform again.
-        let again = (rest / ways.chances[way]).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
-        let (turned, variance) = (self.fibre.turned(way, &out), self.fibre.variances[way]);
+        let again = (rest / paths.sampling_weights[path]).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
+        let (turned, variance) = (self.fibre.tilted(path, &out), self.fibre.variances[path]);
         // Sample the angle to the mirror direction on a sphere.
         let cosine = 1.0 + variance * fp::ln((u.x + (1.0 - u.x) * fp::exp(-2.0 / variance)).max(f32::MIN_POSITIVE));
         let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
         let beside = fp::sin_cos_turn(u.y).1;
         let along = (sine * beside * turned.y - cosine * turned.x).clamp(-1.0, 1.0);
-        let turn = match way {
-            MORE => TAU * again,
-            _ => ways.turn(way) + self.fibre.spread.sample(again),
+        let turn = match path {
+            LAST_PATH => TAU * again,
+            _ => paths.turn(path) + self.fibre.spread.sample(again),
         };
         let (sin, cos) = fp::sin_cos_turn((out.around + turn) / TAU);
         let across = (1.0 - along * along).max(0.0).sqrt();
@@ -227,12 +232,12 @@ impl Scatter for Hair<'_> {
 
 /// Longitudinal scattering: a distribution on the sphere around the mirror direction, averaged
 /// around the fibre. Both directions are given by sine and cosine.
-fn longitudinal(variance: f32, out: Vec2, coming: Vec2) -> f32 {
-    let [out, coming] = [out.as_dvec2(), coming.as_dvec2()];
+fn longitudinal(variance: f32, out: Vec2, incident: Vec2) -> f32 {
+    let [out, incident] = [out.as_dvec2(), incident.as_dvec2()];
     // 1 minus the cosine of the angle to the mirror cone.
-    let below = (1.0 - (coming.y * out.y - coming.x * out.x)) as f32;
+    let below = (1.0 - (incident.y * out.y - incident.x * out.x)) as f32;
     let height = variance * (1.0 - fp::exp(-2.0 / variance));
-    bessel((coming.y * out.y) as f32 / variance) * fp::exp(-below / variance) / height
+    bessel((incident.y * out.y) as f32 / variance) * fp::exp(-below / variance) / height
 }
 
 /// Modified Bessel function of the first kind and order 0, divided by e^x, for x from 0.
@@ -307,7 +312,7 @@ mod tests {
         for (along, around) in [(0.3, 0.3), (0.25, 0.7), (0.6, 0.4), (1.0, 1.0)] {
             let fibre = fibre(along, around);
             for (cosine, turn) in [(1.0, 0.0), (0.8, 0.1), (0.4, 0.2), (0.4, 0.55), (0.1, 0.9)] {
-                let (hair, wo) = (fibre.seen(&Lanes::Rgb), warp::polar(cosine, turn));
+                let (hair, wo) = (fibre.lobe(&Lanes::Rgb), warp::polar(cosine, turn));
                 let white = over_all(&mut random, |wi| hair.eval(wo, wi).0.x);
                 let density = over_all(&mut random, |wi| hair.eval(wo, wi).1);
                 assert!((white - 1.0).abs() < 0.03 && (density - 1.0).abs() < 0.03, "{along} {around} {wo}: {white}");
@@ -332,7 +337,7 @@ mod tests {
     #[test]
     fn hair_colour_round_trips_and_melanin_sets_absorption() {
         let color = Color::new(0.6, 0.3, 0.1);
-        let of = |m: HairMaterial| Fibre::new(&m).seen(&Lanes::Rgb).absorption.truncate();
+        let of = |m: HairMaterial| Fibre::new(&m).lobe(&Lanes::Rgb).absorption.truncate();
         let by_color = of(HairMaterial { color: Some(color), azimuthal_roughness: 0.0, ..Default::default() });
         let absorption = Some(by_color);
         let again = Fibre::new(&HairMaterial { absorption, ..Default::default() }).color();
@@ -347,7 +352,7 @@ mod tests {
         // scale tilt.
         let m = HairMaterial { longitudinal_roughness: 0.05, scale_tilt: 3.0, ..Default::default() };
         let fibre = Fibre::new(&HairMaterial { absorption: Some(Color::splat(1e3)), ..m });
-        let hair = fibre.seen(&Lanes::Rgb);
+        let hair = fibre.lobe(&Lanes::Rgb);
         let wo = Vec3::new(0.5, 0.0, 0.75_f32.sqrt());
         let mut random = Random(82);
         let mut mean = 0.0;

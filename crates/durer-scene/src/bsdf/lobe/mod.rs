@@ -21,7 +21,7 @@ pub struct LobeSample {
 }
 
 /// Value and pdf for a direction in which a lobe does not scatter.
-const NOTHING: (Spectrum, f32) = (Spectrum::ZERO, 0.0);
+const NO_SCATTERING: (Spectrum, f32) = (Spectrum::ZERO, 0.0);
 
 /// Interface for evaluating and sampling a BSDF lobe. Directions are local and point away from the
 /// surface. `wo` is above it (`wo.z` > 0).
@@ -135,7 +135,7 @@ lobes! {
     /// Blinn or Phong highlight, as in the course.
     Blinn(blinn::Blinn),
     /// Rough reflection: metal, a coat, the surface of plastic.
-    Rough(rough::Rough),
+    Rough(rough::RoughReflection),
     /// Rough glass.
     RoughGlass(rough_glass::RoughGlass),
     /// Perfect mirror.
@@ -143,7 +143,7 @@ lobes! {
     /// Perfect refraction.
     Refraction(glass::Refraction),
     /// Transmission that keeps the direction, as if there were no surface.
-    Through(glass::Through),
+    Through(glass::StraightTransmission),
     /// Fuzz of short fibres, as on velvet.
     Fuzz(fuzz::Fuzz),
     /// Single fibre of hair.

@@ -1,14 +1,14 @@
 //! Rough reflection: GGX facets with the reflectance of a metal, a dielectric, a thin sheet or a
 //! film.
 
-use super::{LobeKind, LobeSample, NOTHING, Scatter};
+use super::{LobeKind, LobeSample, NO_SCATTERING, Scatter};
 use crate::bsdf::film::Film;
 use crate::bsdf::fresnel::{self, F82, Sheet};
 use crate::bsdf::microfacet::Ggx;
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
-/// Reflectance model of the microfacets of a [`Rough`] lobe.
+/// Reflectance model of the microfacets of a [`RoughReflection`] lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Facet {
     /// Metal.
@@ -18,7 +18,7 @@ pub enum Facet {
     /// Reflection by a thin dielectric sheet.
     Sheet(Sheet),
     /// Transmission through a thin dielectric sheet.
-    BehindSheet(Sheet),
+    SheetTransmission(Sheet),
     /// Base with a thin film.
     Film(Film),
 }
@@ -31,39 +31,39 @@ impl Facet {
             Facet::Dielectric(eta) => Spectrum::splat(fresnel::dielectric(cosine, eta)),
             Facet::Sheet(sheet) => sheet.at(cosine).0,
             Facet::Film(film) => film.reflected(cosine),
-            Facet::BehindSheet(sheet) => sheet.at(cosine).1,
+            Facet::SheetTransmission(sheet) => sheet.at(cosine).1,
         }
     }
 }
 
 /// Lobe for reflection by a rough surface, or transmission through a thin rough sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rough {
+pub struct RoughReflection {
     /// Distribution of the facet normals.
     pub ggx: Ggx,
     /// Reflectance model of the facets.
     pub facet: Facet,
     /// True if light leaves on the other side, as the mirror image of the reflection: transmission
     /// through a thin sheet of rough glass.
-    pub behind: bool,
+    pub transmits: bool,
 }
 
-impl Rough {
+impl RoughReflection {
     /// Mirrors a direction behind the surface to the front, if the lobe transmits.
     fn above(&self, wi: Vec3) -> Vec3 {
-        if self.behind { Vec3::new(wi.x, wi.y, -wi.z) } else { wi }
+        if self.transmits { Vec3::new(wi.x, wi.y, -wi.z) } else { wi }
     }
 }
 
-impl Scatter for Rough {
+impl Scatter for RoughReflection {
     #[inline]
     fn kind(&self) -> LobeKind {
-        if self.behind { LobeKind::GLOSSY.transmitting() } else { LobeKind::GLOSSY }
+        if self.transmits { LobeKind::GLOSSY.transmitting() } else { LobeKind::GLOSSY }
     }
 
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         let wi = self.above(wi);
-        let Some(h) = (wo + wi).try_normalize().filter(|_| wi.z > 0.0) else { return NOTHING };
+        let Some(h) = (wo + wi).try_normalize().filter(|_| wi.z > 0.0) else { return NO_SCATTERING };
         let density = self.ggx.density(h) / (4.0 * wo.z);
         let (hidden_o, hidden_i) = (self.ggx.lambda(wo), self.ggx.lambda(wi));
         let value = density / (1.0 + hidden_o + hidden_i) * self.facet.at(wo.dot(h).clamp(0.0, 1.0));

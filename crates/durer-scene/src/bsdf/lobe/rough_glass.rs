@@ -3,7 +3,7 @@
 //! Source: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, EGSR 2007.
 
 use super::glass::refracted;
-use super::{LobeKind, LobeSample, NOTHING, Scatter};
+use super::{LobeKind, LobeSample, NO_SCATTERING, Scatter};
 use crate::bsdf::fresnel;
 use crate::bsdf::microfacet::Ggx;
 use crate::math::{Vec2, Vec3};
@@ -60,7 +60,7 @@ impl Scatter for RoughGlass {
 
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         let passes = wi.z < 0.0;
-        let Some((h, spread)) = facet(wo, wi, self.eta) else { return NOTHING };
+        let Some((h, spread)) = facet(wo, wi, self.eta) else { return NO_SCATTERING };
         let (hidden_o, hidden_i) = (self.ggx.lambda(wo), self.ggx.lambda(wi));
         let facets = self.share(passes, wo.dot(h)) * self.ggx.density(h) * wo.dot(h) / wo.z * spread;
         let value = facets / (1.0 + hidden_o + hidden_i);

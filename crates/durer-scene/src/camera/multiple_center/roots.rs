@@ -28,29 +28,29 @@ pub fn dot(a: &[DVec3; 4], b: &[DVec3; 4]) -> Sextic {
     product
 }
 
-/// Calls `found` with each root, in ascending order. The zero polynomial has none.
-pub fn each(polynomial: Sextic, found: &mut dyn FnMut(f64)) {
+/// Calls `emit` with each root, in ascending order. The zero polynomial has none.
+pub fn for_each_root(polynomial: Sextic, emit: &mut dyn FnMut(f64)) {
     if polynomial.iter().any(|c| *c != 0.0) {
-        search(&polynomial, 0.0, 1.0, found);
+        search(&polynomial, 0.0, 1.0, emit);
     }
 }
 
-fn search(c: &Sextic, start: f64, width: f64, found: &mut dyn FnMut(f64)) {
+fn search(c: &Sextic, start: f64, width: f64, emit: &mut dyn FnMut(f64)) {
     // Zero counts as positive, so a root on a border belongs to one side only.
     let changes = c.windows(2).filter(|pair| (pair[0] < 0.0) != (pair[1] < 0.0)).count();
     let ends_differ = (c[0] < 0.0) != (c[6] < 0.0);
     match changes {
         0 => {}
-        1 => found(start + width * close_in(c)),
+        1 => emit(start + width * refine(c)),
         _ if width <= NARROWEST => {
             if ends_differ {
-                found(start + 0.5 * width);
+                emit(start + 0.5 * width);
             }
         }
         _ => {
             let (left, right) = split(c, 0.5);
-            search(&left, start, 0.5 * width, found);
-            search(&right, start + 0.5 * width, 0.5 * width, found);
+            search(&left, start, 0.5 * width, emit);
+            search(&right, start + 0.5 * width, 0.5 * width, emit);
         }
     }
 }
@@ -69,7 +69,7 @@ fn split(c: &Sextic, at: f64) -> (Sextic, Sextic) {
 
 /// Returns the only root, by false position with the Illinois rule: the value at an end that is
 /// kept twice is halved.
-fn close_in(c: &Sextic) -> f64 {
+fn refine(c: &Sextic) -> f64 {
     let value = |at: f64| split(c, at).1[0];
     let ((mut a, mut at_a), (mut b, mut at_b)) = ((0.0, c[0]), (1.0, c[6]));
     for _ in 0..200 {
@@ -120,19 +120,19 @@ mod tests {
             {
                 continue;
             }
-            let mut found = Vec::new();
-            each(with_roots(&roots), &mut |root| found.push(root));
+            let mut collected = Vec::new();
+            for_each_root(with_roots(&roots), &mut |root| collected.push(root));
             let inside: Vec<f64> = roots.into_iter().filter(|r| (0.0..1.0).contains(r)).collect();
-            assert_eq!(found.len(), inside.len(), "{found:?} {inside:?}");
-            assert!(found.iter().zip(&inside).all(|(a, b)| (a - b).abs() < 1e-7), "{found:?} {inside:?}");
+            assert_eq!(collected.len(), inside.len(), "{collected:?} {inside:?}");
+            assert!(collected.iter().zip(&inside).all(|(a, b)| (a - b).abs() < 1e-7), "{collected:?} {inside:?}");
         }
     }
 
     #[test]
     fn polynomial_without_roots_and_zero_polynomial_give_none() {
-        let mut found = 0;
-        each([0.0; 7], &mut |_| found += 1);
-        each([1.0, -0.1, 1.0, 1.0, 1.0, -0.1, 1.0], &mut |_| found += 1);
-        assert_eq!(found, 0);
+        let mut count = 0;
+        for_each_root([0.0; 7], &mut |_| count += 1);
+        for_each_root([1.0, -0.1, 1.0, 1.0, 1.0, -0.1, 1.0], &mut |_| count += 1);
+        assert_eq!(count, 0);
     }
 }

@@ -29,17 +29,17 @@ fn solid_angle(camera: &impl Projection) -> f64 {
     let side = 2.0 / f64::from(CELLS);
     let at = |i: u32| (-1.0 + side * (f64::from(i) + 0.5)) as f32;
     let cells = (0..CELLS * CELLS).map(|i| CameraSample::at(Vec2::new(at(i % CELLS), at(i / CELLS))));
-    let seen = cells.filter(|sample| camera.ray(&frame, sample).is_some());
-    seen.map(|sample| f64::from(camera.footprint(&frame, &sample, 1.0)) * side * side).sum()
+    let visible = cells.filter(|sample| camera.ray(&frame, sample).is_some());
+    visible.map(|sample| f64::from(camera.footprint(&frame, &sample, 1.0)) * side * side).sum()
 }
 
 #[test]
 fn pictures_cover_the_solid_angles_of_their_fields_of_view() {
     let cap = |degrees: f64| 2.0 * PI * (1.0 - libm::cos((0.5 * degrees).to_radians()));
     let check = |camera: Camera, expected: f64| {
-        let found = solid_angle(&camera);
+        let actual = solid_angle(&camera);
         // A cell on the rim counts either fully or not at all.
-        assert!((found / expected - 1.0).abs() < 0.004, "{found} for {expected}: {camera:?}");
+        assert!((actual / expected - 1.0).abs() < 0.004, "{actual} for {expected}: {camera:?}");
     };
     for (projection, angle) in [
         (FisheyeProjection::Equidistant, 180.0),
@@ -160,9 +160,9 @@ fn walls_agree_along_their_common_edge() {
     for (column, eye_row) in [(200.0, 0.0), (200.0, 150.0), (400.0, 0.0), (400.0, 150.0)] {
         for row in [0.5, 70.5, 149.5] {
             let at = |x: f32| raster.point(Vec2::new(x, eye_row + row));
-            let seen =
+            let visible =
                 |pixel: f32| ray(&camera, CameraSample { pixel: at(pixel), ..CameraSample::at(at(column)) }).unwrap();
-            let (before, after) = (seen(column - 0.5), seen(column + 0.5));
+            let (before, after) = (visible(column - 0.5), visible(column + 0.5));
             assert_eq!(before.origin, after.origin);
             close(before.dir, after.dir);
             // This is also the ray to that edge in world space.
@@ -215,7 +215,7 @@ fn closed_path_is_smooth_and_sees_all_sides() {
     let slope = |x: f32| camera.footprint(&frame, &at(x), 3.0);
     assert!((slope(1.0) - slope(-1.0)).abs() < 1e-4 * slope(1.0), "{} {}", slope(1.0), slope(-1.0));
     // An off-centre point is seen from the front and from the back.
-    let mut found = Vec::new();
-    camera.project(&frame, Vec3::new(0.5, 0.1, 0.0), Vec2::ZERO, &mut |point| found.push(point));
-    assert_eq!(found.len(), 2, "{found:?}");
+    let mut actual = Vec::new();
+    camera.project(&frame, Vec3::new(0.5, 0.1, 0.0), Vec2::ZERO, &mut |point| actual.push(point));
+    assert_eq!(actual.len(), 2, "{actual:?}");
 }

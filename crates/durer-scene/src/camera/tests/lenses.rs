@@ -88,12 +88,12 @@ fn stereo_views_agree_at_the_convergence_distance() {
     assert_eq!(camera.proportions(), Some(Vec2::new(2.0, 1.0)));
     let frame = CameraBasis::of(&camera, OURS);
     let pair = |camera: &StereoCamera, point: Vec3| {
-        let mut found = Vec::new();
-        camera.project(&frame, point, Vec2::ZERO, &mut |p| found.push(p));
-        assert_eq!(found.len(), 2, "{found:?}");
-        assert!(found[0].x < 0.0 && found[1].x > 0.0, "the left eye's picture is on the left");
+        let mut projected = Vec::new();
+        camera.project(&frame, point, Vec2::ZERO, &mut |p| projected.push(p));
+        assert_eq!(projected.len(), 2, "{projected:?}");
+        assert!(projected[0].x < 0.0 && projected[1].x > 0.0, "the left eye's picture is on the left");
         // Difference between the point's positions in the two pictures.
-        (found[1] - found[0] - Vec2::X) * 2.0
+        (projected[1] - projected[0] - Vec2::X) * 2.0
     };
     for point in [Vec3::new(1.0, 0.7, -5.0), Vec3::new(-1.5, 0.2, -5.0)] {
         assert!(pair(&camera, point).length() < 1e-6);
@@ -136,11 +136,11 @@ fn projection_matrix_gives_the_camera_at_any_scale() {
 #[test]
 fn distortion_matches_the_formula_and_ends_at_the_fold() {
     let frame = CameraBasis::of(&photograph(), OURS);
-    let seen = |camera: &ProjectiveCamera, x: f32, y: f32| {
-        let mut found = None;
-        camera.project(&frame, Vec3::new(1.0 + x, 2.0 - y, 2.0), Vec2::ZERO, &mut |point| found = Some(point));
+    let project = |camera: &ProjectiveCamera, x: f32, y: f32| {
+        let mut projected = None;
+        camera.project(&frame, Vec3::new(1.0 + x, 2.0 - y, 2.0), Vec2::ZERO, &mut |point| projected = Some(point));
         // Pixel coordinates, y downwards.
-        found.map(|point| Vec2::new(100.0 + 100.0 * point.x - 0.5, 50.0 - 100.0 * point.y - 0.5))
+        projected.map(|point| Vec2::new(100.0 + 100.0 * point.x - 0.5, 50.0 - 100.0 * point.y - 0.5))
     };
     let camera = ProjectiveCamera { k1: -0.2, k2: 0.05, p1: 0.01, p2: -0.02, k3: 0.1, ..photograph() };
     let (x, y) = (0.4f32, 0.2f32);
@@ -150,12 +150,12 @@ fn distortion_matches_the_formula_and_ends_at_the_fold() {
         x * factor + 2.0 * 0.01 * x * y - 0.02 * (s + 2.0 * x * x),
         y * factor + 0.01 * (s + 2.0 * y * y) - 2.0 * 0.02 * x * y,
     );
-    let found = seen(&camera, x, y).unwrap();
-    assert!(found.distance(150.0 * expected + Vec2::new(99.5, 49.5)) < 1e-3, "{found} {expected}");
+    let projected = project(&camera, x, y).unwrap();
+    assert!(projected.distance(150.0 * expected + Vec2::new(99.5, 49.5)) < 1e-3, "{projected} {expected}");
     // r - r³ grows only up to r = 1/sqrt 3, where it is 0.385: beyond that neither `project` nor
     // `ray` finds a point.
     let folded = ProjectiveCamera { k1: -1.0, ..photograph() };
-    assert!(seen(&folded, 0.55, 0.0).is_some() && seen(&folded, 0.6, 0.0).is_none());
+    assert!(project(&folded, 0.55, 0.0).is_some() && project(&folded, 0.6, 0.0).is_none());
     let at = |pixels: f32| ray(&folded, CameraSample::at(Vec2::new(pixels / 100.0, 0.0)));
     assert!(at(0.38 * 150.0).is_some() && at(0.39 * 150.0).is_none());
 }

@@ -10,7 +10,8 @@ use crate::scene::MatrixOp;
 use crate::shape::{MeshData, TriangleMesh};
 use std::sync::Arc;
 
-const VIEWS: [View; 5] = [View::ThreeQuarter, View::Front, View::Side, View::Top, View::Iso];
+const VIEWS: [PresetView; 5] =
+    [PresetView::ThreeQuarter, PresetView::Front, PresetView::Side, PresetView::Top, PresetView::Iso];
 
 /// A scene of one mesh with these vertices, under a transform.
 fn scene(corners: Vec<Vec3>) -> Scene {
@@ -18,9 +19,9 @@ fn scene(corners: Vec<Vec3>) -> Scene {
     let data = MeshData { positions: corners, triangles, ..MeshData::default() };
     let assets = Assets { meshes: [("m".to_string(), Arc::new(data))].into(), ..Assets::default() };
     let mesh = TriangleMesh { obj_file: FileName { path: "m".into(), span: Span::default() } };
-    let inner = Object { node: Node::Mesh(mesh), material: None, span: Span::default() };
+    let inner = Object { node: ObjectKind::Mesh(mesh), material: None, span: Span::default() };
     let ops = vec![MatrixOp::Translate(Vec3::new(3.0, -2.0, 1.0)), MatrixOp::Scale(Vec3::new(1.0, 2.0, -0.5))];
-    let object = Object { node: Node::Transform(ops, Box::new(inner)), material: None, span: Span::default() };
+    let object = Object { node: ObjectKind::Transform(ops, Box::new(inner)), material: None, span: Span::default() };
     Scene { root: Some(Group { objects: vec![object] }), assets, ..Scene::default() }
 }
 
@@ -46,9 +47,9 @@ fn every_view_sees_the_whole_and_fills_the_picture() {
             let border = Vec2::new(aspect.min(1.0), (1.0 / aspect).min(1.0));
             let (mut most, mut low, mut high) = (0f32, Vec2::INFINITY, Vec2::NEG_INFINITY);
             points(&scene, &mut |p| {
-                let mut seen = None;
-                camera.project(&frame, p.as_vec3(), Vec2::splat(0.5), &mut |point| seen = Some(point / border));
-                let point = seen.unwrap_or_else(|| panic!("{view:?} {aspect}: {p} is not seen"));
+                let mut projected = None;
+                camera.project(&frame, p.as_vec3(), Vec2::splat(0.5), &mut |point| projected = Some(point / border));
+                let point = projected.unwrap_or_else(|| panic!("{view:?} {aspect}: {p} is not seen"));
                 most = most.max(point.abs().max_element());
                 (low, high) = (low.min(point), high.max(point));
                 // The eye is outside.
@@ -56,7 +57,10 @@ fn every_view_sees_the_whole_and_fills_the_picture() {
                 assert!((p.as_vec3() - ray.origin).dot(ray.dir) > 0.0, "{view:?}");
             });
             assert!((0.8..0.9).contains(&most), "{view:?} {aspect}: {most}");
-            assert!((low + high).abs().max_element() < 0.12 || view == View::ThreeQuarter, "{view:?} {low} {high}");
+            assert!(
+                (low + high).abs().max_element() < 0.12 || view == PresetView::ThreeQuarter,
+                "{view:?} {low} {high}"
+            );
         }
     }
 }
@@ -64,7 +68,7 @@ fn every_view_sees_the_whole_and_fills_the_picture() {
 #[test]
 fn up_in_a_model_is_up_in_its_picture() {
     for (axis, up) in [(Axis::X, Vec3::X), (Axis::Y, Vec3::Y), (Axis::Z, Vec3::Z)] {
-        for view in VIEWS.into_iter().filter(|view| *view != View::Top) {
+        for view in VIEWS.into_iter().filter(|view| *view != PresetView::Top) {
             let scene_defaults = SceneDefaults { view: Some(view), up: Some(axis), ..SceneDefaults::default() };
             let scene = staged(scene(vec![Vec3::ZERO, Vec3::ONE]), &scene_defaults);
             let pose = scene.camera.as_ref().unwrap().pose();
@@ -84,9 +88,11 @@ fn points_flat_and_empty_models_have_cameras() {
             assert!(pose.center.is_finite() && pose.direction.is_finite() && camera.validate().is_ok());
             let frame = CameraBasis::of(camera, CameraRules::default());
             points(&scene, &mut |p| {
-                let mut seen = false;
-                camera.project(&frame, p.as_vec3(), Vec2::splat(0.5), &mut |at| seen |= at.abs().max_element() <= 1.0);
-                assert!(seen, "{view:?} {corners:?} {p}");
+                let mut projected = false;
+                camera.project(&frame, p.as_vec3(), Vec2::splat(0.5), &mut |at| {
+                    projected |= at.abs().max_element() <= 1.0
+                });
+                assert!(projected, "{view:?} {corners:?} {p}");
             });
         }
     }
@@ -97,26 +103,29 @@ fn staging_adds_only_missing_parts() {
     let plain = staged(scene(vec![Vec3::ZERO, Vec3::ONE]), &SceneDefaults::default());
     assert_eq!((plain.lights.as_ref().unwrap().len(), plain.materials.len()), (2, 2));
     // The ground touches the lowest point, which is moved to y = -2.
-    let Some(Node::Primitive(crate::shape::Primitive::Plane(ground))) =
+    let Some(ObjectKind::Primitive(crate::shape::Primitive::Plane(ground))) =
         plain.root.as_ref().map(|root| &root.objects[1].node)
     else {
         panic!("a ground must be added");
     };
     assert_eq!((ground.normal, ground.offset), (Vec3::Y, -2.0));
-    let mut own = scene(vec![Vec3::ZERO, Vec3::ONE]);
-    own.camera = Some(PerspectiveCamera::default().into());
+    let mut complete = scene(vec![Vec3::ZERO, Vec3::ONE]);
+    complete.camera = Some(PerspectiveCamera::default().into());
     let light = Light::from(DirectionalLight::default());
-    own.lights = Some(vec![Spanned { value: light, span: Span::default() }]);
-    let same = staged(own.clone(), &SceneDefaults::default());
-    assert_eq!((&same.camera, &same.lights), (&own.camera, &own.lights));
+    complete.lights = Some(vec![Spanned { value: light, span: Span::default() }]);
+    let same = staged(complete.clone(), &SceneDefaults::default());
+    assert_eq!((&same.camera, &same.lights), (&complete.camera, &complete.lights));
     assert_eq!(same.root.unwrap().objects.len(), 1);
     // The background of a scene with its own light is black; without any light it is not, so that
     // something is visible.
     assert_eq!(same.background.color, Vec3::ZERO);
-    let none = SceneDefaults { studio: Some(DefaultLighting::None), ..SceneDefaults::default() };
+    let none = SceneDefaults { lighting: Some(DefaultLighting::None), ..SceneDefaults::default() };
     assert_eq!(staged(scene(vec![Vec3::ZERO, Vec3::ONE]), &none).background, Background::default());
-    let requested =
-        SceneDefaults { view: Some(View::Iso), studio: Some(DefaultLighting::None), ..SceneDefaults::default() };
-    let other = staged(own.clone(), &requested);
-    assert!(other.camera != own.camera && other.lights == own.lights);
+    let requested = SceneDefaults {
+        view: Some(PresetView::Iso),
+        lighting: Some(DefaultLighting::None),
+        ..SceneDefaults::default()
+    };
+    let other = staged(complete.clone(), &requested);
+    assert!(other.camera != complete.camera && other.lights == complete.lights);
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 
-const LEFT: MatrixRules = MatrixRules { matrix_on_left: true, dropped_shear: false, dropped_tiny: false };
+const LEFT: MatrixRules = MatrixRules { matrix_on_left: true, drop_shear: false, ignore_tiny: false };
 
 fn image(ops: &[MatrixOp], p: [f64; 3]) -> [f64; 3] {
     let image = MatrixOp::product(ops, MatrixRules::default()).transform_point3(p.into());

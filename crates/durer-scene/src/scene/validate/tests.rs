@@ -7,7 +7,7 @@ use crate::light::{PointLight, SpotLight};
 use crate::material::checkerboard::Checkerboard;
 use crate::material::{PhongMaterial, PrincipledMaterial};
 use crate::math::Vec3;
-use crate::scene::{Picture, PictureBytes};
+use crate::scene::{PictureBytes, TextureImage};
 use crate::shape::{Cuboid, HeightField, MeshData, Plane, Primitive, Sphere, VoxelGrid};
 use crate::texture::Mapping;
 use std::sync::Arc;
@@ -20,16 +20,16 @@ fn bare<T>(value: T) -> Spanned<T> {
     Spanned { value, span: Span::default() }
 }
 
-fn object(node: Node) -> Object {
+fn object(node: ObjectKind) -> Object {
     Object { node, material: None, span: Span::default() }
 }
 
-fn with_node(node: Node) -> Scene {
+fn with_node(node: ObjectKind) -> Scene {
     Scene { root: Some(Group { objects: vec![object(node)] }), ..Scene::default() }
 }
 
 fn with_shape(shape: impl Into<Primitive>) -> Scene {
-    with_node(Node::Primitive(shape.into()))
+    with_node(ObjectKind::Primitive(shape.into()))
 }
 
 fn with_materials(materials: Vec<Material>) -> Scene {
@@ -52,8 +52,8 @@ fn invalid_value_is_reported_with_object_and_field() {
         ..PrincipledMaterial::default()
     };
     let found = messages(&with_materials(vec![layers.into()]));
-    let wanted = ["specular_roughness -3 must be from 0 to 1", "specular_ior NaN must be finite"];
-    assert_eq!(found, wanted.map(|text| format!("PrincipledMaterial: {text}")));
+    let expected = ["specular_roughness -3 must be from 0 to 1", "specular_ior NaN must be finite"];
+    assert_eq!(found, expected.map(|text| format!("PrincipledMaterial: {text}")));
     let camera = PerspectiveCamera { angle: 180.0, ..PerspectiveCamera::default() };
     let found = messages(&Scene { camera: Some(camera.into()), ..Scene::default() });
     assert_eq!(found, ["PerspectiveCamera: angle 180 must be more than 0 and less than 180"]);
@@ -83,11 +83,11 @@ fn fields_are_checked_in_combination_if_each_is_valid() {
     assert!(fog(Some(Vec3::ONE), Some(Vec3::ZERO))[0].contains("this fog's `max`"));
     let background = Background { cie_sky: Some(12), ..Background::default() };
     assert!(messages(&Scene { background, ..Scene::default() })[0].contains("this `cieSky`"));
-    let flat = Node::HeightField(HeightField { max: Vec3::splat(-1.0), ..HeightField::default() });
+    let flat = ObjectKind::HeightField(HeightField { max: Vec3::splat(-1.0), ..HeightField::default() });
     assert!(messages(&with_node(flat))[0].contains("`min` of a `HeightField`"));
     let grid = VoxelGrid { max: Vec3::splat(-1.0), ..VoxelGrid::default() };
     let ball = Sphere { radius: 0.0, ..Sphere::default() };
-    let found = messages(&with_node(Node::Voxels(grid, vec![ball])));
+    let found = messages(&with_node(ObjectKind::Voxels(grid, vec![ball])));
     assert!(found.len() == 2 && found[0].contains("this grid's `max`"), "{found:?}");
 }
 
@@ -114,15 +114,15 @@ fn material_indices_must_exist_except_for_objects_of_files() {
 
 #[test]
 fn transforms_must_be_finite_and_nesting_bounded() {
-    let moved = |op, inner| Node::Transform(vec![op], Box::new(object(inner)));
+    let moved = |op, inner| ObjectKind::Transform(vec![op], Box::new(object(inner)));
     let nested = |levels: usize| {
-        let innermost = Node::Primitive(Sphere::default().into());
+        let innermost = ObjectKind::Primitive(Sphere::default().into());
         (1..levels).fold(innermost, |inner, _| moved(MatrixOp::UniformScale(1.0), inner))
     };
     assert_eq!(messages(&with_node(nested(MAX_NESTING))), [""; 0]);
     assert_eq!(messages(&with_node(nested(MAX_NESTING + 1))), ["objects are nested more than 640 levels deep"]);
     for op in [MatrixOp::XRotate(f32::NAN), MatrixOp::Translate(Vec3::INFINITY), MatrixOp::Rotate(Vec3::NAN, 0.0)] {
-        let found = messages(&with_node(moved(op, Node::Group(Group::default()))));
+        let found = messages(&with_node(moved(op, ObjectKind::Group(Group::default()))));
         assert_eq!(found, ["the numbers of a transform must be finite"], "{op:?}");
     }
 }
@@ -151,7 +151,7 @@ fn lists_of_meshes_and_mappings_of_pictures_are_checked() {
     let colors = MeshData { colors: vec![[1.0; 4]], ..triangle() };
     assert_eq!(found(colors), ["mesh `m`: `colors` has 1 entries for 3 positions"]);
     let mapping = Mapping { strength: f32::NAN, ..Mapping::default() };
-    let picture = Picture { bytes: PictureBytes::Here("p.png".into(), Arc::new([])), mapping };
+    let picture = TextureImage { bytes: PictureBytes::Memory("p.png".into(), Arc::new([])), mapping };
     let mut scene = Scene::default();
     scene.assets.pictures.insert("p".into(), picture);
     assert_eq!(messages(&scene), ["Texture: normal_scale NaN must be finite"]);

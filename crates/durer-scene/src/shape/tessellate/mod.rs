@@ -21,49 +21,49 @@ pub(super) fn triangle(corners: [Vec3; 3]) -> MeshData {
 /// A flat parallelogram.
 pub(super) fn parallelogram(corner: Vec3, edges: [Vec3; 2]) -> MeshData {
     let mut data = MeshData { flat: true, ..MeshData::default() };
-    face(&mut data, corner, edges);
+    push_parallelogram(&mut data, corner, edges);
     data
 }
 
 /// A flat ring around `axis`; a disc if `inner` is 0.
 pub(super) fn ring(center: Vec3, axis: Vec3, [inner, outer]: [f32; 2]) -> MeshData {
     let mut data = MeshData::default();
-    band(&mut data, axis, [(center, inner), (center, outer)]);
+    push_band(&mut data, axis, [(center, inner), (center, outer)]);
     data
 }
 
 /// Adds a parallelogram whose edges go around it counter-clockwise.
-pub(super) fn face(data: &mut MeshData, corner: Vec3, [e, f]: [Vec3; 2]) {
+pub(super) fn push_parallelogram(data: &mut MeshData, corner: Vec3, [e, f]: [Vec3; 2]) {
     let p = data.positions.len() as u32;
     data.positions.extend([corner, corner + e, corner + e + f, corner + f]);
     data.triangles.extend([[p, p + 1, p + 2], [p, p + 2, p + 3]]);
 }
 
 /// An axis-aligned box.
-pub(super) fn block(min: Vec3, max: Vec3) -> MeshData {
+pub(super) fn cuboid(min: Vec3, max: Vec3) -> MeshData {
     let mut data = MeshData { flat: true, ..MeshData::default() };
     let size = max - min;
     let [x, y, z] = [size.x * Vec3::X, size.y * Vec3::Y, size.z * Vec3::Z];
     for [e, f] in [[y, x], [x, z], [z, y]] {
-        face(&mut data, min, [e, f]);
-        face(&mut data, max, [-f, -e]);
+        push_parallelogram(&mut data, min, [e, f]);
+        push_parallelogram(&mut data, max, [-f, -e]);
     }
     data
 }
 
 /// A solid of revolution between two circles, with caps.
-pub(super) fn round([base, top]: [(Vec3, f32); 2]) -> MeshData {
+pub(super) fn frustum([base, top]: [(Vec3, f32); 2]) -> MeshData {
     let mut data = MeshData::default();
     let axis = (top.0 - base.0).normalize_or(Vec3::Y);
-    band(&mut data, -axis, [(base.0, 0.0), base]);
-    band(&mut data, axis, [base, top]);
-    band(&mut data, axis, [(top.0, 0.0), top]);
+    push_band(&mut data, -axis, [(base.0, 0.0), base]);
+    push_band(&mut data, axis, [base, top]);
+    push_band(&mut data, axis, [(top.0, 0.0), top]);
     data
 }
 
 /// Adds the surface between two circles about an axis. If their centres are equal, it is flat and
 /// faces along the axis; otherwise, it faces outwards.
-pub(super) fn band(data: &mut MeshData, axis: Vec3, circles: [(Vec3, f32); 2]) {
+pub(super) fn push_band(data: &mut MeshData, axis: Vec3, circles: [(Vec3, f32); 2]) {
     let axis = axis.normalize_or(Vec3::Y);
     let (x, y) = axis.any_orthonormal_pair();
     let [(from, inner), (to, outer)] = circles;
@@ -208,8 +208,8 @@ mod tests {
     #[test]
     fn ball_has_the_texture_coordinates_of_a_sphere() {
         let data = ball(Vec3::ZERO, 2.0);
-        let seen = data.uvs.iter().zip(&data.normals).find(|(_, n)| n.z < -0.99).unwrap();
-        assert!((seen.0.x - 0.5).abs() < 0.05);
+        let vertex = data.uvs.iter().zip(&data.normals).find(|(_, n)| n.z < -0.99).unwrap();
+        assert!((vertex.0.x - 0.5).abs() < 0.05);
     }
 
     #[test]
@@ -229,7 +229,7 @@ mod tests {
         // inscribed and the circumscribed polygon.
         let line = tube::straight([[0.0, 0.0, 0.0, 0.5], [0.0, 0.0, 3.0, 0.5]].map(Into::into));
         let mut data = MeshData::default();
-        tube::add_tube(&mut data, &tube::places(&[line], 1), false);
+        tube::add_tube(&mut data, &tube::sample_curve(&[line], 1), false);
         assert!((area(&data) / (PI * 0.5 * 3.0) - 1.0).abs() < 0.02, "{}", area(&data));
         // A flat bilinear patch becomes two triangles.
         let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::X + Vec3::Y];

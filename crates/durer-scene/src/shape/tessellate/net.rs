@@ -64,8 +64,8 @@ pub fn bilinear(patches: &Patches) -> MeshData {
             let weights = [(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v];
             let mix = |list: &[Vec3]| (0..4).map(|k| weights[k] * list[face[k] as usize]).sum::<Vec3>();
             data.positions.push(mix(positions));
-            let own = (0..4).map(|k| weights[k] * uvs.get(face[k] as usize).copied().unwrap_or(corner(k)));
-            data.uvs.push(own.sum());
+            let corner_uvs = (0..4).map(|k| weights[k] * uvs.get(face[k] as usize).copied().unwrap_or(corner(k)));
+            data.uvs.push(corner_uvs.sum());
             data.normals.push(match normals.is_empty() {
                 false => mix(normals),
                 true => {

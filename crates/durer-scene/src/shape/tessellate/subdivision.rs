@@ -10,7 +10,7 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// Triangle mesh at one level of Loop subdivision.
-struct Net {
+struct LoopMesh {
     points: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
 }
@@ -29,13 +29,13 @@ pub fn loop_surface(control: &MeshData, levels: u32, most: usize) -> (MeshData, 
     let points = control.positions.iter().map(|p| p.as_dvec3()).collect();
     // A triangle with a repeated corner has no area, and its edges cannot be traversed.
     let sound = |face: &&[u32; 3]| face[0] != face[1] && face[1] != face[2] && face[2] != face[0];
-    let mut net = Net { points, faces: control.triangles.iter().filter(sound).copied().collect() };
+    let mut net = LoopMesh { points, faces: control.triangles.iter().filter(sound).copied().collect() };
     let mut done = 0;
     while done < levels && net.faces.len() <= most / 4 {
-        net = net.finer();
+        net = net.subdivide();
         done += 1;
     }
-    (net.limit(), done)
+    (net.limit_surface(), done)
 }
 
 /// Weight of each of `count` neighbours of an inner point.
@@ -43,7 +43,7 @@ fn beta(count: usize) -> f64 {
     if count == 3 { 3.0 / 16.0 } else { 3.0 / (8.0 * count as f64) }
 }
 
-impl Net {
+impl LoopMesh {
     /// Returns the ring of each point; `None` where more than two sheets meet.
     fn rings(&self) -> Vec<Option<Ring>> {
         let mut sides: Vec<Vec<[u32; 2]>> = vec![Vec::new(); self.points.len()];
@@ -56,7 +56,7 @@ impl Net {
     }
 
     /// Returns the mesh of the next level, with four triangles for each triangle.
-    fn finer(&self) -> Net {
+    fn subdivide(&self) -> LoopMesh {
         let rings = self.rings();
         let even = |i: usize| {
             let point = self.points[i];
@@ -91,7 +91,7 @@ impl Net {
             let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
             [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
         };
-        Net { points, faces: self.faces.iter().flat_map(quarters).collect() }
+        LoopMesh { points, faces: self.faces.iter().flat_map(quarters).collect() }
     }
 
     /// Blends a point with its neighbours, each with a weight.
@@ -101,7 +101,7 @@ impl Net {
     }
 
     /// Moves the points to their limit positions and computes normals.
-    fn limit(mut self) -> MeshData {
+    fn limit_surface(mut self) -> MeshData {
         let rings = self.rings();
         let moved = |i: usize| {
             let point = self.points[i];

@@ -29,15 +29,15 @@ pub struct CurvePoint {
     /// Sine of the angle from the cross section to the surface normals.
     pub lean: f64,
     /// Position along the curve, from 0 at its start to 1 at its end.
-    pub share: f64,
+    pub u: f64,
     /// Index of the segment.
-    pub piece: usize,
+    pub segment: usize,
     /// Position within the segment, from 0 to 1.
-    pub part: f64,
+    pub t: f64,
 }
 
 /// Converts four control points of a uniform cubic B-spline to a Bézier segment.
-pub fn of_spline(p: &[DVec4; 4]) -> Piece {
+pub fn from_b_spline(p: &[DVec4; 4]) -> Piece {
     [
         (p[0] + 4.0 * p[1] + p[2]) / 6.0,
         (2.0 * p[1] + p[2]) / 3.0,
@@ -53,7 +53,7 @@ pub fn straight([a, b]: [DVec4; 2]) -> Piece {
 
 /// Samples a curve such that the chords deviate by at most a fiftieth of the width. The steps are
 /// coarser if `all_pieces`, the number of segments of all curves together, is very large.
-pub fn places(pieces: &[Piece], all_pieces: usize) -> Vec<CurvePoint> {
+pub fn sample_curve(pieces: &[Piece], all_pieces: usize) -> Vec<CurvePoint> {
     let mut all: Vec<CurvePoint> = Vec::new();
     let width = pieces.iter().flatten().map(|p| p.w).fold(0.0, f64::max);
     let most = ((MAX_STEPS / all_pieces.max(1)) as f64).clamp(STEPS[0], STEPS[1]);
@@ -64,20 +64,20 @@ pub fn places(pieces: &[Piece], all_pieces: usize) -> Vec<CurvePoint> {
         let steps = if steps.is_finite() { steps.clamp(STEPS[0], most) as u32 } else { most as u32 };
         let first = if i == 0 { 0 } else { 1 };
         for k in first..=steps {
-            let part = f64::from(k) / f64::from(steps);
-            let [ab, bc, cd] = [0, 1, 2].map(|k| piece[k].lerp(piece[k + 1], part));
-            let (abc, bcd) = (ab.lerp(bc, part), bc.lerp(cd, part));
-            let (point, chord) = (abc.lerp(bcd, part), (p[3] - p[0]).normalize_or(DVec3::X));
+            let t = f64::from(k) / f64::from(steps);
+            let [ab, bc, cd] = [0, 1, 2].map(|k| piece[k].lerp(piece[k + 1], t));
+            let (abc, bcd) = (ab.lerp(bc, t), bc.lerp(cd, t));
+            let (point, chord) = (abc.lerp(bcd, t), (p[3] - p[0]).normalize_or(DVec3::X));
             let along = (bcd - abc).truncate().normalize_or(chord);
-            let share = (i as f64 + part) / pieces.len() as f64;
-            all.push(CurvePoint { point: point.truncate(), along, width: point.w, lean: 0.0, share, piece: i, part });
+            let u = (i as f64 + t) / pieces.len() as f64;
+            all.push(CurvePoint { point: point.truncate(), along, width: point.w, lean: 0.0, u, segment: i, t });
         }
     }
     all
 }
 
 /// Adds a hemisphere at each end.
-pub fn rounded(mut places: Vec<CurvePoint>) -> Vec<CurvePoint> {
+pub fn with_round_caps(mut places: Vec<CurvePoint>) -> Vec<CurvePoint> {
     let cap = |end: &CurvePoint, side: f64, step: u32| {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(90 * step) / f64::from(CAP));
         let lean = side * sin;
@@ -116,7 +116,7 @@ pub fn add_tube(data: &mut MeshData, places: &[CurvePoint], many: bool) {
             let upright = (1.0 - place.lean * place.lean).max(0.0).sqrt();
             data.positions.push((place.point + 0.5 * corner * place.width * around).as_vec3());
             data.normals.push((upright * around + place.lean * place.along).as_vec3());
-            data.uvs.push(Vec2::new(place.share as f32, share as f32));
+            data.uvs.push(Vec2::new(place.u as f32, share as f32));
         }
     }
     add_strip(data, begin, places.len(), sides + 1);
@@ -139,13 +139,13 @@ fn add_strip(data: &mut MeshData, begin: u32, rows: usize, count: u32) {
 pub fn ribbon(places: &[CurvePoint], normals: &[DVec3]) -> MeshData {
     let mut data = MeshData::default();
     for place in places {
-        let normal = turned_between([normals[place.piece], normals[place.piece + 1]], place.part);
+        let normal = slerp([normals[place.segment], normals[place.segment + 1]], place.t);
         let across = normal.cross(place.along).normalize_or(place.along.any_orthonormal_vector());
         let faced = place.along.cross(across).as_vec3();
         for (side, v) in [(-0.5, 0.0), (0.5, 1.0)] {
             data.positions.push((place.point + side * place.width * across).as_vec3());
             data.normals.push(faced);
-            data.uvs.push(Vec2::new(place.share as f32, v));
+            data.uvs.push(Vec2::new(place.u as f32, v));
         }
     }
     add_strip(&mut data, 0, places.len(), 2);
@@ -153,7 +153,7 @@ pub fn ribbon(places: &[CurvePoint], normals: &[DVec3]) -> MeshData {
 }
 
 /// Spherical linear interpolation of unit vectors.
-fn turned_between([from, to]: [DVec3; 2], share: f64) -> DVec3 {
+fn slerp([from, to]: [DVec3; 2], share: f64) -> DVec3 {
     let cosine = from.dot(to).clamp(-1.0, 1.0);
     let across = to - cosine * from;
     let Some(across) = across.try_normalize().filter(|_| cosine < 0.999_999) else {
@@ -166,12 +166,12 @@ fn turned_between([from, to]: [DVec3; 2], share: f64) -> DVec3 {
 }
 
 /// Degree elevation of a quadratic Bézier segment to a cubic one.
-pub fn raised([a, b, c]: [DVec3; 3]) -> [DVec3; 4] {
+pub fn elevate_degree([a, b, c]: [DVec3; 3]) -> [DVec3; 4] {
     [a, a.lerp(b, 2.0 / 3.0), c.lerp(b, 2.0 / 3.0), c]
 }
 
 /// Creates the segments of a curve whose width changes linearly from one end to the other.
-pub fn widened(pieces: &[[DVec3; 4]], [first, last]: [f64; 2]) -> Vec<Piece> {
+pub fn with_widths(pieces: &[[DVec3; 4]], [first, last]: [f64; 2]) -> Vec<Piece> {
     let width = |i: usize, k: u32| first + (i as f64 + f64::from(k) / 3.0) / pieces.len() as f64 * (last - first);
     let wide = |(i, piece): (usize, &[DVec3; 4])| [0, 1, 2, 3].map(|k| piece[k as usize].extend(width(i, k)));
     pieces.iter().enumerate().map(wide).collect()

@@ -153,7 +153,7 @@ fn tiny_meshes_are_as_smooth_as_others() {
 #[test]
 fn loosened_triangles_share_their_vertices() {
     let mut apart = ball(8);
-    apart.loosen();
+    apart.separate_and_enlarge();
     for rule in [MeshNormals::SmoothByArea, MeshNormals::SmoothByFace] {
         let whole = Mesh::new(ball(8), rule, true);
         let flat = Mesh::new(apart.clone(), MeshNormals::Flat, true);
@@ -182,17 +182,17 @@ fn normals_and_coordinates_of_files_are_interpolated() {
         let crossing = ShapeHit { t: 1.0, uv: Vec2::new(0.25, 0.5) };
         Mesh::new(data.clone(), rule, file_normals).surface(0, &crossing)
     };
-    let seen = surface(&data, MeshNormals::Flat, true);
-    assert_eq!(seen.barycentric, Vec3::new(0.25, 0.25, 0.5));
-    assert_eq!(seen.position, Vec3::new(0.25, 0.5, 0.0));
-    assert_eq!(seen.uv.get(), Some(Vec2::new(0.5, 1.5)));
-    assert!((seen.n_shade - Vec3::new(0.25, 2.5, 0.5).normalize()).length() < 1e-6);
+    let point = surface(&data, MeshNormals::Flat, true);
+    assert_eq!(point.barycentric, Vec3::new(0.25, 0.25, 0.5));
+    assert_eq!(point.position, Vec3::new(0.25, 0.5, 0.0));
+    assert_eq!(point.uv.get(), Some(Vec2::new(0.5, 1.5)));
+    assert!((point.n_shade - Vec3::new(0.25, 2.5, 0.5).normalize()).length() < 1e-6);
     assert_eq!(surface(&data, MeshNormals::Flat, false).n_shade, Vec3::Z);
     // A triangle without all its normals gets computed ones, and has no texture coordinates.
     data.triangle_normals[0][1] = NO_INDEX;
     data.triangle_uvs[0][1] = NO_INDEX;
-    let seen = surface(&data, MeshNormals::SmoothByArea, true);
-    assert_eq!((seen.n_shade, seen.uv.get()), (Vec3::Z, None));
+    let point = surface(&data, MeshNormals::SmoothByArea, true);
+    assert_eq!((point.n_shade, point.uv.get()), (Vec3::Z, None));
     assert_eq!(surface(&data, MeshNormals::Flat, true).n_shade, Vec3::Z);
 }
 

@@ -42,7 +42,7 @@ fn terrain_equals_its_mesh_as_lists() {
                 }
                 let other = mesh.with_normals(MeshNormals::SmoothByFace);
                 assert_eq!(other.normals(), listed.with_normals(MeshNormals::SmoothByFace).normals());
-                assert_eq!(mesh.parallelograms().to_data(), listed.parallelograms().to_data());
+                assert_eq!(mesh.with_parallelograms().to_data(), listed.with_parallelograms().to_data());
             }
         }
     }
@@ -52,7 +52,7 @@ fn terrain_equals_its_mesh_as_lists() {
 fn corners_around_a_vertex_are_found_in_order() {
     let terrain = field(Vec3::ZERO, 5, 4, &mut Random(4));
     for vertex in 0..terrain.vertices() as u32 {
-        let corners = (0..terrain.ordered()).flat_map(|i| terrain.triangle(i)).enumerate();
+        let corners = (0..terrain.ordered_count()).flat_map(|i| terrain.triangle(i)).enumerate();
         let expected: Vec<u32> = corners.filter(|(_, other)| *other == vertex).map(|(i, _)| i as u32).collect();
         let mut found = Vec::new();
         terrain.ordered_around(vertex, |corner| found.push(corner));
@@ -66,7 +66,7 @@ fn different_terrains_have_different_hashes() {
     let terrain = field(Vec3::ZERO, 4, 3, &mut random);
     assert_eq!(terrain.digest(), field(Vec3::ZERO, 4, 3, &mut again).digest());
     assert_ne!(terrain.digest(), field(Vec3::ZERO, 4, 3, &mut random).digest());
-    assert_ne!(terrain.digest(), terrain.moved(Vec3::Y).digest());
+    assert_ne!(terrain.digest(), terrain.translated(Vec3::Y).digest());
 }
 
 #[test]

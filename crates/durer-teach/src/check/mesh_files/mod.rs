@@ -11,7 +11,7 @@ use durer_render::world::{Material, Object as Placed};
 use durer_scene::camera::Projection;
 use durer_scene::describe::FileName;
 use durer_scene::math::Aabb;
-use durer_scene::scene::{Group, Node, Object};
+use durer_scene::scene::{Group, Object, ObjectKind};
 use durer_scene::shape::MeshData;
 use normals::OddNormals;
 use topology::Topology;
@@ -71,21 +71,21 @@ fn collect<'s>(group: &'s Group, uses: &mut Uses<'s>) {
 
 fn collect_object<'s>(object: &'s Object, uses: &mut Uses<'s>) {
     match &object.node {
-        Node::Group(group) => collect(group, uses),
-        Node::Transform(_, inner) => collect_object(inner, uses),
-        Node::Solid(_, parts) => parts.iter().for_each(|part| collect_object(part, uses)),
-        Node::Mesh(mesh) => match uses.iter_mut().find(|(name, _)| name.path == mesh.obj_file.path) {
+        ObjectKind::Group(group) => collect(group, uses),
+        ObjectKind::Transform(_, inner) => collect_object(inner, uses),
+        ObjectKind::Solid(_, parts) => parts.iter().for_each(|part| collect_object(part, uses)),
+        ObjectKind::Mesh(mesh) => match uses.iter_mut().find(|(name, _)| name.path == mesh.obj_file.path) {
             Some((_, objects)) => objects.push(object),
             None => uses.push((&mesh.obj_file, vec![object])),
         },
-        Node::Primitive(_) | Node::HeightField(_) | Node::Voxels(..) => {}
+        ObjectKind::Primitive(_) | ObjectKind::HeightField(_) | ObjectKind::Voxels(..) => {}
     }
 }
 
 fn read<'s>(grid: &ProbeGrid<'s>, name: &'s FileName, objects: Vec<&'s Object>) -> Option<MeshFile<'s>> {
     let files = grid.subject.files;
     let file = (0..).take_while(|&i| files.name(i).is_some()).find(|&i| files.name(i) == Some(&name.path))?;
-    let bytes = files.whole(file).filter(|bytes| bytes.len() <= MAX_BYTES)?;
+    let bytes = files.complete_bytes(file).filter(|bytes| bytes.len() <= MAX_BYTES)?;
     // The loader has already reported the file's errors.
     let data = read_mesh(bytes, file, &name.path, &mut Diagnostics::default())?;
     Some(MeshFile::new(grid, name, file, objects, data))
@@ -163,13 +163,13 @@ impl MeshFile<'_> {
     /// inwards.
     pub(super) fn is_room(&self, grid: &ProbeGrid) -> bool {
         let eye = grid.world().camera().pose().center;
-        self.placed(grid).filter_map(Placed::bounds).any(|bounds| bounds.holds(eye))
+        self.placed(grid).filter_map(Placed::bounds).any(|bounds| bounds.contains(eye))
     }
 
     /// Returns true if the mesh is the inner wall of a hollow glass object and so faces inwards.
     pub(super) fn is_hollow(&self, grid: &ProbeGrid) -> bool {
         let objects = grid.world().objects();
-        let holds = |outer: &Aabb, inner: &Aabb| outer.holds(inner.min) && outer.holds(inner.max);
+        let holds = |outer: &Aabb, inner: &Aabb| outer.contains(inner.min) && outer.contains(inner.max);
         self.placed(grid).filter_map(|object| Some((object, object.bounds()?))).any(|(inner, bounds)| {
             let around = |other: &Placed| {
                 other.span.start != inner.span.start && other.bounds().is_some_and(|outer| holds(&outer, &bounds))

@@ -1,7 +1,7 @@
 //! Connectivity of triangles: edges, orientation, volume.
 
 use durer_scene::math::{Aabb, Vec3};
-use durer_scene::shape::mesh::place_key;
+use durer_scene::shape::mesh::position_key;
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -92,7 +92,7 @@ impl Topology {
 /// Returns for each vertex the index of the first vertex at the same position.
 fn same_places(positions: &[Vec3]) -> Vec<u32> {
     let mut first: HashMap<[u32; 3], u32> = HashMap::with_capacity(positions.len());
-    positions.iter().enumerate().map(|(i, p)| *first.entry(place_key(*p)).or_insert(i as u32)).collect()
+    positions.iter().enumerate().map(|(i, p)| *first.entry(position_key(*p)).or_insert(i as u32)).collect()
 }
 
 /// Returns the reversed triangles. Flood-fills across edges with two triangles: if both run along

@@ -100,7 +100,7 @@ impl<'w> Walker<'w> {
             }
             let n = if shading.bsdf.passes_light() { Vec3::ZERO } else { shading.frame.normal };
             let receiver = Receiver { point: at.surface.point(), n, far: Receiver::FAR };
-            if shading.bsdf.is_broad() {
+            if shading.bsdf.has_non_delta() {
                 sum += throughput * self.direct(&at, &shading, &receiver, numbers);
             }
             let Some((wi, weight, pdf)) = self.scattered(&shading, numbers) else { return sum };

@@ -11,7 +11,7 @@ mod shadows;
 
 use super::SceneVariant;
 use super::variant::three_factors;
-use durer_scene::dialect::{Falloff, Highlight, Rules};
+use durer_scene::dialect::{DialectRules, Falloff, Highlight};
 use durer_scene::scene::Scene;
 
 /// A mistake that is common in student programs, with its description, its code, and a function
@@ -130,11 +130,11 @@ impl Default for Formulas {
 
 impl Formulas {
     /// Returns the formulas that apply to a scene.
-    pub fn of(scene: &Scene, rules: &Rules) -> Self {
+    pub fn of(scene: &Scene, rules: &DialectRules) -> Self {
         let fading = match rules.falloff {
             _ if three_factors(scene) => ATTENUATION,
-            Falloff::OnePlus => "1 + f d^2",
-            Falloff::Bare(_) => "f d^2",
+            Falloff::Polynomial => "1 + f d^2",
+            Falloff::InverseSquare(_) => "f d^2",
             Falloff::None => ATTENUATION,
         };
         Formulas { fading, highlight: if rules.highlight == Highlight::Phong { "R.L" } else { "N.H" } }

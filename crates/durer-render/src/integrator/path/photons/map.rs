@@ -3,7 +3,7 @@
 use crate::world::Shading;
 use durer_scene::math::Vec3;
 use durer_scene::medium::HenyeyGreenstein;
-use durer_scene::shape::Surface;
+use durer_scene::shape::SurfacePoint;
 use durer_scene::spectrum::{Lanes, Spectrum};
 use glam::DVec3;
 use std::f32::consts::PI;
@@ -140,7 +140,7 @@ impl PhotonMap {
 
     /// Estimates the radiance that a surface point scatters from nearby photons. Ignores photons
     /// with more than `max_bounces` bounces.
-    pub fn on_surface(&self, surface: &Surface, shading: &Shading, max_bounces: u32) -> DensityEstimate {
+    pub fn on_surface(&self, surface: &SurfacePoint, shading: &Shading, max_bounces: u32) -> DensityEstimate {
         let cells = &self.on_surfaces;
         cells.gather(surface.position, max_bounces, |photon, way, distance| {
             let beside = way.dot(surface.n_geo);

@@ -183,12 +183,12 @@ impl Photons {
             let shading = path.world.shading(&at, eta, &lanes);
             path.select_hero(&at, &mut state, &context, &mut ());
             // Black surfaces reflect nothing, but their irradiance can be measured.
-            if !is_first && (shading.bsdf.is_broad() || shading.bsdf.is_black()) {
+            if !is_first && (shading.bsdf.has_non_delta() || shading.bsdf.is_black()) {
                 let wi = -state.ray.dir().normalize();
                 return Photon::new(at.surface.position, wi, state.throughput, state.depth, Absorber::Surface);
             }
             let vertex = VertexKind::Surface(&at.surface, &shading, passage.as_ref());
-            let numbers = id.at(FIRST_DIMENSION + state.depth * DIMENSIONS as u32);
+            let numbers = id.with_first_dimension(FIRST_DIMENSION + state.depth * DIMENSIONS as u32);
             let sample = vertex.sample(numbers.pair(0).x, numbers.pair(1))?;
             if sample.pdf != 0.0 || state.depth > path.max_depth() {
                 return None;

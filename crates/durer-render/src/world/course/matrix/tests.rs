@@ -24,8 +24,8 @@ fn products_and_shear_removal_match_double_precision() {
     let mut random = Random(59);
     for _ in 0..500 {
         let ops = random_ops(&mut random);
-        for dropped_shear in [false, true] {
-            let rules = MatrixRules { dropped_shear, ..MatrixRules::default() };
+        for drop_shear in [false, true] {
+            let rules = MatrixRules { drop_shear, ..MatrixRules::default() };
             close(&Matrix::of(&ops, rules, Vectors::Glm), &Matrix::from(MatrixOp::product(&ops, rules)), 2e-4);
         }
     }
@@ -52,7 +52,7 @@ fn inverse_of_both_libraries_undoes_the_matrix() {
 fn singular_matrix_is_detected_and_tiny_one_is_skipped() {
     let flat = [MatrixOp::Scale(Vec3::new(1.0, 0.0, 1.0))];
     assert!(!Matrix::of(&flat, MatrixRules::default(), Vectors::Vecmath).is_regular());
-    let tiny = MatrixRules { dropped_tiny: true, ..MatrixRules::default() };
+    let tiny = MatrixRules { ignore_tiny: true, ..MatrixRules::default() };
     assert_eq!(Matrix::of(&flat, tiny, Vectors::Glm), Matrix::IDENTITY);
     // 0.004^3 is smaller than the rounding of 1, and 0.006^3 is not.
     let scale = |s: f32| [MatrixOp::Translate(Vec3::X), MatrixOp::UniformScale(s)];

@@ -1,6 +1,6 @@
 //! Explanations of a pixel and of a ray.
 
-use super::scene::Place;
+use super::scene::TextPosition;
 use serde::{Deserialize, Serialize};
 #[cfg(test)]
 use ts_rs::TS;
@@ -8,7 +8,7 @@ use ts_rs::TS;
 /// A line of an explanation: a formula in symbols and in numbers, with its result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Row {
+pub struct FormulaRow {
     /// Name of the result.
     pub name: String,
     /// Formula in symbols.
@@ -26,7 +26,7 @@ pub struct Row {
 #[cfg_attr(test, derive(TS))]
 pub struct Segment {
     /// Kind of the ray.
-    pub role: Role,
+    pub role: SegmentKind,
     /// Start in world space.
     pub from: [f32; 3],
     /// End in world space.
@@ -39,7 +39,7 @@ pub struct Segment {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
-pub enum Role {
+pub enum SegmentKind {
     /// Camera ray.
     Camera,
     /// Mirrored ray.
@@ -62,7 +62,7 @@ pub struct Term {
     /// Title.
     pub title: String,
     /// Formulas of the term.
-    pub rows: Vec<Row>,
+    pub rows: Vec<FormulaRow>,
     /// Value of the term, as linear RGB.
     pub value: [f32; 3],
     /// Contribution to the pixel, as linear RGB.
@@ -72,7 +72,7 @@ pub struct Term {
     /// Value as 8-bit sRGB.
     pub swatch: [u8; 3],
     /// Place of the object or light in the text.
-    pub place: Option<Place>,
+    pub place: Option<TextPosition>,
     /// Segment to draw.
     pub segment: Option<Segment>,
     /// Position and normal of the hit, in world space.
@@ -90,7 +90,7 @@ pub struct Term {
 /// Explanation of a pixel's colour, as a tree of terms for one of its samples.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct PixelAccount {
+pub struct PixelExplanation {
     /// Column from the left.
     pub x: u32,
     /// Row from the top.
@@ -137,7 +137,7 @@ pub struct ObjectTest {
     /// Keyword and line of the object.
     pub name: String,
     /// Place of the object in the text.
-    pub place: Option<Place>,
+    pub place: Option<TextPosition>,
     /// Result of the test.
     pub verdict: Verdict,
     /// Result in words.
@@ -145,13 +145,13 @@ pub struct ObjectTest {
     /// First crossing along the line, in lengths of the direction.
     pub t: Option<f32>,
     /// Formulas with numbers.
-    pub rows: Vec<Row>,
+    pub rows: Vec<FormulaRow>,
 }
 
 /// Result of [`Request::Cast`](super::Request::Cast): intersection tests of a ray with each object.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct CastAccount {
+pub struct CastResult {
     /// Origin of the ray in world space.
     pub origin: [f32; 3],
     /// Direction of the ray.
@@ -161,13 +161,13 @@ pub struct CastAccount {
     /// Number of objects beyond the limit.
     pub left_out: u32,
     /// The closest hit.
-    pub hit: Option<HitAccount>,
+    pub hit: Option<CastHit>,
 }
 
 /// Closest hit of a ray that was cast, with its position, normals, and texture coordinates.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct HitAccount {
+pub struct CastHit {
     /// Number of the object.
     pub object: u32,
     /// Index of the triangle in a mesh, else 0.
@@ -199,7 +199,7 @@ pub struct Outline {
 /// Position and name of a light, for a page's line drawing of the scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct Lamp {
+pub struct LightMarker {
     /// Position in world space; for a directional light, a point in the direction from which its
     /// light comes.
     pub at: [f32; 3],

@@ -9,7 +9,7 @@
 use super::rows::TAG;
 use super::tree::TriangleBvh;
 use crate::LoadError;
-use crate::lanes::{ROOM_OF_ROWS, ROWS, WIDTH};
+use crate::lanes::{ROWS, ROWS_LEN, WIDTH};
 use crate::node::{self, IS_LEAF, LEAF, MAX_DEPTH, UNITS, WideNode};
 
 const NAME: &[u8; 8] = b"durerbvh";
@@ -44,10 +44,10 @@ impl TriangleBvh {
         for count in [self.count, self.nodes.len(), items] {
             to.extend((count as u64).to_le_bytes());
         }
-        to.extend(self.least_volume.to_le_bytes());
-        for WideNode { planes, children, from_last, first, child_tags } in &self.nodes {
+        to.extend(self.min_volume.to_le_bytes());
+        for WideNode { planes, children, reversed_octants, first, child_tags } in &self.nodes {
             planes.as_flattened().as_flattened().iter().for_each(|x| to.extend(x.to_le_bytes()));
-            children.iter().chain(from_last).chain([first]).for_each(|x| to.extend(x.to_le_bytes()));
+            children.iter().chain(reversed_octants).chain([first]).for_each(|x| to.extend(x.to_le_bytes()));
             to.extend(child_tags);
         }
         self.leaves[..ROWS * items].iter().for_each(|x| to.extend(x.to_bits().to_le_bytes()));
@@ -71,10 +71,10 @@ impl TriangleBvh {
         let mut head = Reader(&head[NAME.len()..]);
         let version = head.u32();
         if version != VERSION {
-            return Err(LoadError::Version(version));
+            return Err(LoadError::UnsupportedVersion(version));
         }
         let [count, nodes, items] = [(); 3].map(|()| head.u64());
-        let least_volume = f64::from_bits(head.u64());
+        let min_volume = f64::from_bits(head.u64());
         if count > node::MAX_ITEMS as u64 || items > node::MAX_ITEMS as u64 || nodes > node::MAX_NODES as u64 {
             return Err(LoadError::Invalid("it is too large"));
         }
@@ -82,22 +82,22 @@ impl TriangleBvh {
         let expected = (HEAD + CHECKSUM) as u64 + NODE as u64 * nodes + (4 * ROWS) as u64 * items;
         let [count, nodes, items] = [count, nodes, items].map(|count| count as usize);
         if expected != bytes.len() as u64 {
-            return Err(LoadError::Length { expected, found: bytes.len() });
+            return Err(LoadError::WrongLength { expected, actual: bytes.len() });
         }
         let (all, sum) = bytes.split_at(bytes.len() - CHECKSUM);
         if Reader(sum).u64() != checksum(all) {
             return Err(LoadError::Damaged);
         }
-        if !(0.0..f64::INFINITY).contains(&least_volume) {
+        if !(0.0..f64::INFINITY).contains(&min_volume) {
             return Err(LoadError::Invalid("its least volume is out of range"));
         }
         let mut from = Reader(rest);
         let nodes: Vec<WideNode> = (0..nodes).map(|_| from.node()).collect();
         let mut leaves: Vec<f32> = (0..ROWS * items).map(|_| f32::from_bits(from.u32())).collect();
-        leaves.resize(ROWS * items + ROOM_OF_ROWS, 0.0);
+        leaves.resize(ROWS * items + ROWS_LEN, 0.0);
         check(&nodes, &leaves, items, count).map_err(LoadError::Invalid)?;
         let bounds = node::bounds(&nodes);
-        Ok(TriangleBvh::of(nodes, leaves, bounds, count).least_volume(least_volume))
+        Ok(TriangleBvh::of(nodes, leaves, bounds, count).min_volume(min_volume))
     }
 }
 
@@ -123,7 +123,7 @@ impl Reader<'_> {
         WideNode {
             planes: [(); 3].map(|()| [(); 2].map(|()| [(); WIDTH].map(|()| f32::from_bits(self.u32())))),
             children: [(); WIDTH].map(|()| self.u32()),
-            from_last: [(); 2].map(|()| self.u32()),
+            reversed_octants: [(); 2].map(|()| self.u32()),
             first: self.u32(),
             child_tags: self.take(),
         }
@@ -154,11 +154,11 @@ fn check(nodes: &[WideNode], leaves: &[f32], items: usize, count: usize) -> Resu
                 return Err("a box is invalid");
             }
             let rest = if child & LEAF == 0 { child.wrapping_sub(node.first) } else { IS_LEAF };
-            if rest != IS_LEAF && rest & !node::BEHIND != 0 || u32::from(tag) != place as u32 | rest {
+            if rest != IS_LEAF && rest & !node::OFFSET_BITS != 0 || u32::from(tag) != place as u32 | rest {
                 return Err("the child tags of a node are wrong");
             }
             if child & LEAF == 0 {
-                let number = node::number(child);
+                let number = node::node_index(child);
                 if !(child as usize).is_multiple_of(UNITS) || number <= i || number >= nodes.len() {
                     return Err("a child does not follow its parent");
                 }
@@ -303,11 +303,11 @@ mod tests {
         let error = |bytes: &[u8]| TriangleBvh::from_bytes(bytes).unwrap_err();
         assert_eq!(error(b""), LoadError::NotATree);
         assert_eq!(error(&with(0, b'D')), LoadError::NotATree);
-        assert_eq!(error(&with(8, 9)), LoadError::Version(9));
+        assert_eq!(error(&with(8, 9)), LoadError::UnsupportedVersion(9));
         assert_eq!(error(&with(HEAD + 3, 0x55)), LoadError::Damaged);
         let expected = bytes.len() as u64;
         for len in HEAD..bytes.len() {
-            assert_eq!(error(&bytes[..len]), LoadError::Length { expected, found: len });
+            assert_eq!(error(&bytes[..len]), LoadError::WrongLength { expected, actual: len });
         }
         assert!(matches!(error(&summed(with(12 + 7, 1))), LoadError::Invalid(_)));
         // Numbers of nodes and items whose size is too large by a multiple of 2^32.
@@ -316,7 +316,7 @@ mod tests {
         let mut wraps = bytes.clone();
         wraps[20..28].copy_from_slice(&nodes.to_le_bytes());
         wraps[28..36].copy_from_slice(&items.to_le_bytes());
-        assert!(matches!(error(&summed(wraps)), LoadError::Length { .. }));
+        assert!(matches!(error(&summed(wraps)), LoadError::WrongLength { .. }));
         assert!((0..bytes.len()).all(|at| TriangleBvh::from_bytes(&with(at, !bytes[at])).is_err()));
     }
 }

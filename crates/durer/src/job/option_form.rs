@@ -66,7 +66,7 @@ pub(crate) fn unknown_option<'a>(name: &str, known: impl IntoIterator<Item = &'a
 /// Type of an option's value, which is parsed from text and printed as text.
 pub(super) trait OptionValue: Sized {
     fn parse(text: &str) -> Result<Self, String>;
-    fn shown(&self) -> String;
+    fn to_text(&self) -> String;
 }
 
 impl OptionValue for bool {
@@ -77,7 +77,7 @@ impl OptionValue for bool {
             _ => Err("expected `on` or `off`".into()),
         }
     }
-    fn shown(&self) -> String {
+    fn to_text(&self) -> String {
         if *self { "on".into() } else { "off".into() }
     }
 }
@@ -88,7 +88,7 @@ macro_rules! numbers {
             fn parse(text: &str) -> Result<Self, String> {
                 text.parse().map_err(|_| concat!("expected ", $what).into())
             }
-            fn shown(&self) -> String {
+            fn to_text(&self) -> String {
                 self.to_string()
             }
         })+
@@ -106,7 +106,7 @@ impl OptionValue for (u32, u32) {
             size => Ok(size),
         }
     }
-    fn shown(&self) -> String {
+    fn to_text(&self) -> String {
         format!("{}x{}", self.0, self.1)
     }
 }
@@ -117,7 +117,7 @@ impl OptionValue for [f32; 2] {
         let numbers: Option<Vec<f32>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
         numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| "expected two numbers".into())
     }
-    fn shown(&self) -> String {
+    fn to_text(&self) -> String {
         format!("{} {}", self[0], self[1])
     }
 }

@@ -2,7 +2,7 @@
 //! hit.
 
 use crate::document::CompiledDocument;
-use crate::protocol::{CastAccount, HitAccount, ObjectTest, Row, Verdict};
+use crate::protocol::{CastHit, CastResult, FormulaRow, ObjectTest, Verdict};
 use crate::rows::{factor, number, row, vector, vector_row};
 use durer::math::{Line, Ray, Ray64, Vec2, Vec3};
 use durer::shape::{Plane, Primitive, Shape, Sphere};
@@ -13,7 +13,7 @@ use glam::DVec3;
 const MAX_TESTS: usize = 200;
 
 /// Intersects a ray in world space with every object, and reports the result for each object.
-pub(crate) fn cast(compiled: &CompiledDocument, ray: &Ray) -> CastAccount {
+pub(crate) fn cast(compiled: &CompiledDocument, ray: &Ray) -> CastResult {
     let world = &compiled.world;
     let ray64 = Ray64::from(*ray);
     let first = world.closest(&ray64, &mut ());
@@ -29,7 +29,7 @@ pub(crate) fn cast(compiled: &CompiledDocument, ray: &Ray) -> CastAccount {
     }
     let hit = first.map(|hit| {
         let at = world.interaction(&ray64, hit);
-        HitAccount {
+        CastHit {
             object: hit.object,
             part: world.triangle(&hit),
             t: hit.t,
@@ -41,7 +41,7 @@ pub(crate) fn cast(compiled: &CompiledDocument, ray: &Ray) -> CastAccount {
         }
     });
     let left_out = objects.len().saturating_sub(tests.len()) as u32;
-    CastAccount { origin: ray.origin.into(), direction: ray.dir.into(), tests, left_out, hit }
+    CastResult { origin: ray.origin.into(), direction: ray.dir.into(), tests, left_out, hit }
 }
 
 fn test(compiled: &CompiledDocument, number: u32, object: &Object, ray: &Ray64, first: Option<&Hit>) -> ObjectTest {
@@ -99,7 +99,7 @@ fn text(t: f32) -> String {
 }
 
 /// Returns the formulas of the intersection with their numbers, in object space.
-fn formulas(object: &Object, ray: &Ray, hit: Option<&Hit>) -> Vec<Row> {
+fn formulas(object: &Object, ray: &Ray, hit: Option<&Hit>) -> Vec<FormulaRow> {
     let line = Line { origin: ray.origin.as_dvec3(), dir: ray.dir.as_dvec3() };
     let back = object.center;
     match &object.geometry {
@@ -121,7 +121,7 @@ fn formulas(object: &Object, ray: &Ray, hit: Option<&Hit>) -> Vec<Row> {
             }
             None => vec![
                 row("triangles", "in the mesh", "", tree.mesh.len() as f64),
-                so("the line misses every triangle of the mesh"),
+                conclusion("the line misses every triangle of the mesh"),
             ],
         },
         Geometry::Solid(_) => Vec::new(),
@@ -129,11 +129,11 @@ fn formulas(object: &Object, ray: &Ray, hit: Option<&Hit>) -> Vec<Row> {
 }
 
 /// Returns a row that states a conclusion.
-fn so(words: &str) -> Row {
-    Row { name: "so".into(), formula: String::new(), numbers: String::new(), result: words.into(), value: None }
+fn conclusion(words: &str) -> FormulaRow {
+    FormulaRow { name: "so".into(), formula: String::new(), numbers: String::new(), result: words.into(), value: None }
 }
 
-fn sphere(ball: &Sphere, line: &Line) -> Vec<Row> {
+fn sphere(ball: &Sphere, line: &Line) -> Vec<FormulaRow> {
     let (o, d, r) = (line.origin - ball.center.as_dvec3(), line.dir, f64::from(ball.radius));
     let (a, b, c) = (d.dot(d), 2.0 * o.dot(d), o.dot(o) - r * r);
     let discriminant = b * b - 4.0 * a * c;
@@ -144,7 +144,7 @@ fn sphere(ball: &Sphere, line: &Line) -> Vec<Row> {
         row("Δ", "b² − 4 a c", format!("{}² − 4 · {} · {}", factor(b), number(a), factor(c)), discriminant),
     ];
     if discriminant < 0.0 {
-        rows.push(so("Δ < 0: the line misses the sphere"));
+        rows.push(conclusion("Δ < 0: the line misses the sphere"));
         return rows;
     }
     let root = discriminant.sqrt();
@@ -156,7 +156,7 @@ fn sphere(ball: &Sphere, line: &Line) -> Vec<Row> {
     rows
 }
 
-fn plane(it: &Plane, line: &Line) -> Vec<Row> {
+fn plane(it: &Plane, line: &Line) -> Vec<FormulaRow> {
     let (n, offset) = (it.normal.as_dvec3(), f64::from(it.offset));
     let (no, nd) = (n.dot(line.origin), n.dot(line.dir));
     let mut rows = vec![
@@ -164,7 +164,7 @@ fn plane(it: &Plane, line: &Line) -> Vec<Row> {
         row("n · d", "", format!("{} · {}", vector(n), vector(line.dir)), nd),
     ];
     match nd == 0.0 {
-        true => rows.push(so("n · d = 0: the line is parallel to the plane")),
+        true => rows.push(conclusion("n · d = 0: the line is parallel to the plane")),
         false => rows.push(row(
             "t",
             "(offset − n · o) / (n · d)",
@@ -176,14 +176,14 @@ fn plane(it: &Plane, line: &Line) -> Vec<Row> {
 }
 
 /// Returns the rows that solve o + t d = a + β (b − a) + γ (c − a) by Cramer's rule.
-fn triangle(corners: [Vec3; 3], line: &Line) -> Vec<Row> {
+fn triangle(corners: [Vec3; 3], line: &Line) -> Vec<FormulaRow> {
     let [a, b, c] = corners.map(|corner| corner.as_dvec3());
     let (e1, e2, s, d) = (b - a, c - a, line.origin - a, line.dir);
     let det = |x: DVec3, y: DVec3, z: DVec3| x.dot(y.cross(z));
     let whole = det(-d, e1, e2);
     let mut rows = vec![row("D", "|−d, b − a, c − a|", "", whole)];
     if whole == 0.0 {
-        rows.push(so("D = 0: the line is parallel to the triangle"));
+        rows.push(conclusion("D = 0: the line is parallel to the triangle"));
         return rows;
     }
     let parts = [det(-d, s, e2), det(-d, e1, s), det(s, e1, e2)];
@@ -199,19 +199,19 @@ fn triangle(corners: [Vec3; 3], line: &Line) -> Vec<Row> {
         .map(|(name, _)| name)
         .collect();
     if !negative.is_empty() {
-        rows.push(so(&format!("{} < 0: the line meets the plane outside the triangle", negative.join(", "))));
+        rows.push(conclusion(&format!("{} < 0: the line meets the plane outside the triangle", negative.join(", "))));
     }
     rows
 }
 
 /// Returns the values of t at which a line crosses any other shape, without formulas.
-fn crossings(shape: &Primitive, back: Vec3, line: &Line) -> Vec<Row> {
+fn crossings(shape: &Primitive, back: Vec3, line: &Line) -> Vec<FormulaRow> {
     let moved = Line { origin: line.origin - back.as_dvec3(), dir: line.dir };
     let mut found: Vec<f64> = Vec::new();
     shape.crossings(&moved, &mut |t, _: Vec2| found.push(t));
     found.sort_by(f64::total_cmp);
     if found.is_empty() {
-        return vec![so("the line misses it")];
+        return vec![conclusion("the line misses it")];
     }
     let one = |(i, t): (usize, &f64)| row(&format!("t{}", subscript(i + 1)), "where the line meets it", "", *t);
     found.iter().enumerate().map(one).collect()
@@ -226,7 +226,7 @@ fn subscript(n: usize) -> String {
 mod tests {
     use super::*;
 
-    fn value(rows: &[Row], name: &str) -> f64 {
+    fn value(rows: &[FormulaRow], name: &str) -> f64 {
         rows.iter().find(|row| row.name == name).and_then(|row| row.value).unwrap()
     }
 

@@ -5,7 +5,7 @@
 //! compute, in double precision and in the same order, so hits have the same bits.
 
 use super::TraversalCounter;
-use super::lanes::{Available, Kernel, Lanes, WIDTH, numbers_of};
+use super::lanes::{AvailableLevel, Kernel, Lanes, WIDTH, as_floats};
 use crate::math::{Doubles, Ray, Triple, Vec3};
 use glam::DVec3;
 
@@ -20,7 +20,7 @@ pub struct PrimitivePacks {
     boxes: Vec<Pack<BOX>>,
     /// Number of primitives of all kinds.
     count: usize,
-    level: Available,
+    level: AvailableLevel,
 }
 
 /// Closest intersection of a ray with a primitive of [`PrimitivePacks`].
@@ -36,7 +36,7 @@ pub struct PackHit {
 /// lanes these are NaN, which no ray hits.
 #[derive(Clone, Copy, Debug)]
 struct Pack<const N: usize> {
-    of: [[f64; WIDTH]; N],
+    parameters: [[f64; WIDTH]; N],
     numbers: [u32; WIDTH],
 }
 
@@ -54,21 +54,21 @@ impl<const N: usize> Pack<N> {
     /// Loads a different primitive into each lane.
     #[inline(always)]
     fn eight<L: Lanes>(&self, lanes: L) -> [L::Doubles; N] {
-        let mut of = [lanes.splat_double(0.0); N];
-        for (to, from) in of.iter_mut().zip(&self.of) {
+        let mut parameters = [lanes.splat_double(0.0); N];
+        for (to, from) in parameters.iter_mut().zip(&self.parameters) {
             *to = lanes.load_doubles(from);
         }
-        of
+        parameters
     }
 
     /// Loads one primitive into all lanes.
     #[inline(always)]
     fn one<L: Lanes>(&self, lanes: L, primitive: usize) -> [L::Doubles; N] {
-        let mut of = [lanes.splat_double(0.0); N];
-        for (to, from) in of.iter_mut().zip(&self.of) {
+        let mut parameters = [lanes.splat_double(0.0); N];
+        for (to, from) in parameters.iter_mut().zip(&self.parameters) {
             *to = lanes.splat_double(from[primitive]);
         }
-        of
+        parameters
     }
 }
 
@@ -81,7 +81,7 @@ impl Default for PrimitivePacks {
             rectangles: Vec::new(),
             boxes: Vec::new(),
             count: 0,
-            level: Available::chosen(),
+            level: AvailableLevel::chosen(),
         }
     }
 }
@@ -113,8 +113,8 @@ impl PrimitivePacks {
     pub fn push_rectangle(&mut self, number: u32, corner: Vec3, edges: [Vec3; 2]) {
         let (c, [e, f]) = (corner.as_dvec3(), edges.map(|edge| edge.as_dvec3()));
         let n = e.cross(f);
-        let of = [c.x, c.y, c.z, e.x, e.y, e.z, f.x, f.y, f.z, n.x, n.y, n.z, n.length_squared()];
-        push(&mut self.rectangles, number, of);
+        let parameters = [c.x, c.y, c.z, e.x, e.y, e.z, f.x, f.y, f.z, n.x, n.y, n.z, n.length_squared()];
+        push(&mut self.rectangles, number, parameters);
         self.count += 1;
     }
 
@@ -142,17 +142,17 @@ impl PrimitivePacks {
         if self.is_empty() {
             return None;
         }
-        counter.work(0, self.count as u64);
-        let found = self.level.run(Query::<false> { packs: self, ray });
-        (found.number != u32::MAX).then_some(found)
+        counter.count_work(0, self.count as u64);
+        let hit = self.level.run(Query::<false> { packs: self, ray });
+        (hit.number != u32::MAX).then_some(hit)
     }
 
     /// Closest hits of eight rays, equal to those of [`PrimitivePacks::closest`]. The rays are
     /// tested side by side, one primitive after the other, which is faster if there are few
     /// primitives. Rays that are not finite or have no direction hit nothing.
     pub fn closest_of_eight(&self, rays: [&Ray; WIDTH]) -> [Option<PackHit>; WIDTH] {
-        let found = self.level.run(BatchQuery { packs: self, rays });
-        found.map(|hit| (hit.number != u32::MAX).then_some(hit))
+        let hits = self.level.run(BatchQuery { packs: self, rays });
+        hits.map(|hit| (hit.number != u32::MAX).then_some(hit))
     }
 
     /// Returns true if the ray hits anything in its interval. The ray must be finite and have a
@@ -162,18 +162,18 @@ impl PrimitivePacks {
         if self.is_empty() {
             return false;
         }
-        counter.work(0, self.count as u64);
+        counter.count_work(0, self.count as u64);
         self.level.run(Query::<true> { packs: self, ray }).number != u32::MAX
     }
 }
 
 /// Adds a primitive in the first free lane of the last pack, or in a new pack.
-fn push<const N: usize>(packs: &mut Vec<Pack<N>>, number: u32, of: [f64; N]) {
-    let nothing = Pack { of: [[f64::NAN; WIDTH]; N], numbers: [u32::MAX; WIDTH] };
+fn push<const N: usize>(packs: &mut Vec<Pack<N>>, number: u32, parameters: [f64; N]) {
+    let nothing = Pack { parameters: [[f64::NAN; WIDTH]; N], numbers: [u32::MAX; WIDTH] };
     let mut pack = packs.pop_if(|pack| pack.indices().end < WIDTH).unwrap_or(nothing);
     let lane = pack.indices().end;
     pack.numbers[lane] = number;
-    (0..N).for_each(|i| pack.of[i][lane] = of[i]);
+    (0..N).for_each(|i| pack.parameters[i][lane] = parameters[i]);
     packs.push(pack);
 }
 
@@ -200,16 +200,16 @@ impl<L: Lanes> Rays<L> {
 
 /// Intersection test of one kind of primitive, which is described by `N` numbers. Implemented by
 /// [`Planes`], [`Spheres`], [`Discs`], [`Rectangles`], and [`Boxes`].
-trait Form<const N: usize> {
+trait PackedShape<const N: usize> {
     /// First hits in the rays' intervals: a mask of lanes, and `t`.
-    fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; N]) -> (u32, L::Floats);
+    fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, parameters: &[L::Doubles; N]) -> (u32, L::Floats);
 }
 
 /// Ray test of planes, normal · p = offset.
 struct Planes;
 const PLANE: usize = 4;
 
-impl Form<PLANE> for Planes {
+impl PackedShape<PLANE> for Planes {
     #[inline(always)]
     fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, &[x, y, z, offset]: &[L::Doubles; PLANE]) -> (u32, L::Floats) {
         let normal = [x, y, z];
@@ -223,7 +223,7 @@ impl Form<PLANE> for Planes {
 struct Spheres;
 const SPHERE: usize = 4;
 
-impl Form<SPHERE> for Spheres {
+impl PackedShape<SPHERE> for Spheres {
     #[inline(always)]
     fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, &[x, y, z, square]: &[L::Doubles; SPHERE]) -> (u32, L::Floats) {
         // The discriminant is computed at the point of the ray nearest to the centre, which keeps
@@ -250,16 +250,16 @@ impl Form<SPHERE> for Spheres {
 struct Discs;
 const DISC: usize = 8;
 
-impl Form<DISC> for Discs {
+impl PackedShape<DISC> for Discs {
     #[inline(always)]
-    fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; DISC]) -> (u32, L::Floats) {
-        let &[nx, ny, nz, x, y, z, inner, outer] = of;
+    fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, parameters: &[L::Doubles; DISC]) -> (u32, L::Floats) {
+        let &[nx, ny, nz, x, y, z, inner, outer] = parameters;
         let (normal, center) = ([nx, ny, nz], [x, y, z]);
         let t = normal.dot(center.sub(rays.origin)).div(normal.dot(rays.dir));
-        let (way, found) = (rays.at(t).sub(center), lanes.singles(t));
-        let distance = way.dot(way).sqrt();
+        let (offset, hit_t) = (rays.at(t).sub(center), lanes.singles(t));
+        let distance = offset.dot(offset).sqrt();
         let on = lanes.le_doubles(inner, distance) & lanes.le_doubles(distance, outer);
-        (rays.contain(lanes, found) & on, found)
+        (rays.contain(lanes, hit_t) & on, hit_t)
     }
 }
 
@@ -267,24 +267,24 @@ impl Form<DISC> for Discs {
 struct Rectangles;
 const RECTANGLE: usize = 13;
 
-impl Form<RECTANGLE> for Rectangles {
+impl PackedShape<RECTANGLE> for Rectangles {
     #[inline(always)]
-    fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; RECTANGLE]) -> (u32, L::Floats) {
-        let &[x, y, z, ex, ey, ez, fx, fy, fz, nx, ny, nz, square] = of;
+    fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, parameters: &[L::Doubles; RECTANGLE]) -> (u32, L::Floats) {
+        let &[x, y, z, ex, ey, ez, fx, fy, fz, nx, ny, nz, square] = parameters;
         let (corner, e, f, n) = ([x, y, z], [ex, ey, ez], [fx, fy, fz], [nx, ny, nz]);
         let t = n.dot(corner.sub(rays.origin)).div(n.dot(rays.dir));
-        let found = lanes.singles(t);
-        let hits = rays.contain(lanes, found);
+        let hit_t = lanes.singles(t);
+        let hits = rays.contain(lanes, hit_t);
         // Most rays do not hit the plane in their interval.
         if hits == 0 {
-            return (0, found);
+            return (0, hit_t);
         }
         // Cramer's rule.
         let q = rays.at(t).sub(corner);
         let (u, v) = (q.cross(f).dot(n).div(square), e.cross(q).dot(n).div(square));
         let (zero, one) = (lanes.splat_double(0.0), lanes.splat_double(1.0));
         let on = lanes.le_doubles(zero, u) & lanes.le_doubles(u, one);
-        (hits & on & lanes.le_doubles(zero, v) & lanes.le_doubles(v, one), found)
+        (hits & on & lanes.le_doubles(zero, v) & lanes.le_doubles(v, one), hit_t)
     }
 }
 
@@ -293,9 +293,9 @@ impl Form<RECTANGLE> for Rectangles {
 struct Boxes;
 const BOX: usize = 6;
 
-impl Form<BOX> for Boxes {
+impl PackedShape<BOX> for Boxes {
     #[inline(always)]
-    fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; BOX]) -> (u32, L::Floats) {
+    fn intersect<L: Lanes>(lanes: L, rays: &Rays<L>, parameters: &[L::Doubles; BOX]) -> (u32, L::Floats) {
         let infinity = lanes.splat_double(f64::INFINITY);
         let (mut enter, mut leave) = (lanes.splat_double(f64::NEG_INFINITY), infinity);
         for axis in 0..3 {
@@ -303,7 +303,7 @@ impl Form<BOX> for Boxes {
             // inside and with equal signs outside. On a face, one is NaN. Adding 0 avoids a zero
             // with a negative sign.
             let (o, d) = (rays.origin[axis], rays.dir[axis].add(lanes.splat_double(0.0)));
-            let (a, b) = (of[axis].sub(o).div(d), of[axis + 3].sub(o).div(d));
+            let (a, b) = (parameters[axis].sub(o).div(d), parameters[axis + 3].sub(o).div(d));
             // min and max drop a NaN operand, so only the other plane bounds the interval.
             enter = b.min(a).max(enter);
             leave = a.max(b).min(leave);
@@ -333,7 +333,7 @@ struct Query<'a, const ANY: bool> {
 impl<const ANY: bool> Query<'_, ANY> {
     /// Tests packs of one kind. Returns true if the query is finished.
     #[inline(always)]
-    fn among<L: Lanes, F: Form<N>, const N: usize>(
+    fn test_packs<L: Lanes, F: PackedShape<N>, const N: usize>(
         lanes: L,
         ray: &Rays<L>,
         packs: &[Pack<N>],
@@ -364,11 +364,11 @@ impl<const ANY: bool> Kernel for Query<'_, ANY> {
             t_min: lanes.splat(ray.t_min),
             t_max: lanes.splat(ray.t_max),
         };
-        let _found = Self::among::<_, Planes, _>(lanes, &rays, &packs.planes, &mut best)
-            || Self::among::<_, Rectangles, _>(lanes, &rays, &packs.rectangles, &mut best)
-            || Self::among::<_, Discs, _>(lanes, &rays, &packs.discs, &mut best)
-            || Self::among::<_, Boxes, _>(lanes, &rays, &packs.boxes, &mut best)
-            || Self::among::<_, Spheres, _>(lanes, &rays, &packs.spheres, &mut best);
+        let _found = Self::test_packs::<_, Planes, _>(lanes, &rays, &packs.planes, &mut best)
+            || Self::test_packs::<_, Rectangles, _>(lanes, &rays, &packs.rectangles, &mut best)
+            || Self::test_packs::<_, Discs, _>(lanes, &rays, &packs.discs, &mut best)
+            || Self::test_packs::<_, Boxes, _>(lanes, &rays, &packs.boxes, &mut best)
+            || Self::test_packs::<_, Spheres, _>(lanes, &rays, &packs.spheres, &mut best);
         best
     }
 }
@@ -382,16 +382,16 @@ struct BatchQuery<'a> {
 impl BatchQuery<'_> {
     /// Tests packs of one kind.
     #[inline(always)]
-    fn among<L: Lanes, F: Form<N>, const N: usize>(
-        (lanes, rays, sound): (L, &Rays<L>, u32),
+    fn test_packs<L: Lanes, F: PackedShape<N>, const N: usize>(
+        (lanes, rays, finite): (L, &Rays<L>, u32),
         packs: &[Pack<N>],
         best: &mut [PackHit; WIDTH],
     ) {
         for pack in packs {
             for primitive in pack.indices() {
                 let (hits, t) = F::intersect(lanes, rays, &pack.one(lanes, primitive));
-                if hits & sound != 0 {
-                    nearer(lanes.store(t), hits & sound, pack.numbers[primitive], best);
+                if hits & finite != 0 {
+                    update_closest(lanes.store(t), hits & finite, pack.numbers[primitive], best);
                 }
             }
         }
@@ -408,23 +408,23 @@ impl Kernel for BatchQuery<'_> {
         let mut rows = [lanes.splat(0.0); WIDTH];
         for lane in 0..WIDTH {
             best[lane].t = rays[lane].t_max;
-            rows[lane] = lanes.load(numbers_of(rays[lane]));
+            rows[lane] = lanes.load(as_floats(rays[lane]));
         }
         let [x, y, z, dx, dy, dz, t_min, t_max] = lanes.transpose(rows);
-        let sound = sound(lanes, [x, y, z, dx, dy, dz]);
+        let finite = finite_rays(lanes, [x, y, z, dx, dy, dz]);
         let rays = &Rays { origin: lanes.doubles3([x, y, z]), dir: lanes.doubles3([dx, dy, dz]), t_min, t_max };
-        Self::among::<_, Planes, _>((lanes, rays, sound), &packs.planes, &mut best);
-        Self::among::<_, Rectangles, _>((lanes, rays, sound), &packs.rectangles, &mut best);
-        Self::among::<_, Discs, _>((lanes, rays, sound), &packs.discs, &mut best);
-        Self::among::<_, Boxes, _>((lanes, rays, sound), &packs.boxes, &mut best);
-        Self::among::<_, Spheres, _>((lanes, rays, sound), &packs.spheres, &mut best);
+        Self::test_packs::<_, Planes, _>((lanes, rays, finite), &packs.planes, &mut best);
+        Self::test_packs::<_, Rectangles, _>((lanes, rays, finite), &packs.rectangles, &mut best);
+        Self::test_packs::<_, Discs, _>((lanes, rays, finite), &packs.discs, &mut best);
+        Self::test_packs::<_, Boxes, _>((lanes, rays, finite), &packs.boxes, &mut best);
+        Self::test_packs::<_, Spheres, _>((lanes, rays, finite), &packs.spheres, &mut best);
         best
     }
 }
 
 /// Mask of the rays that are finite and have a direction. `numbers` holds origins and directions.
 #[inline(always)]
-fn sound<L: Lanes>(lanes: L, numbers: [L::Floats; 6]) -> u32 {
+fn finite_rays<L: Lanes>(lanes: L, numbers: [L::Floats; 6]) -> u32 {
     let (zero, infinity) = (lanes.splat(0.0), lanes.splat(f32::INFINITY));
     // Closures would not be inlined here.
     let [x, y, z, dx, dy, dz] = numbers;
@@ -439,7 +439,7 @@ fn sound<L: Lanes>(lanes: L, numbers: [L::Floats; 6]) -> u32 {
 
 /// Updates the best hits of the rays in the mask `hits` with a hit at `t` of primitive `number`.
 #[inline(always)]
-fn nearer(t: [f32; WIDTH], mut hits: u32, number: u32, best: &mut [PackHit; WIDTH]) {
+fn update_closest(t: [f32; WIDTH], mut hits: u32, number: u32, best: &mut [PackHit; WIDTH]) {
     while hits != 0 {
         let lane = hits.trailing_zeros() as usize % WIDTH;
         if (t[lane], number) < (best[lane].t, best[lane].number) {

@@ -6,36 +6,36 @@
 //! Stich, Friedrich, Dietrich, *Spatial Splits in Bounding Volume Hierarchies*, HPG 2009.
 
 use super::builder::{Bin, Builder, half_area};
-use super::cut::Cut;
+use super::object_split::ObjectSplit;
 use super::reference::Reference;
 use super::settings::BINS;
 use crate::math::Vec3;
 use glam::{BVec4A, Vec4};
 
 /// Minimum overlap for which planes are tried, as a share of the node's area.
-const OVERLAP: f32 = 0.226;
+const MIN_OVERLAP: f32 = 0.226;
 /// Minimum overlap for which planes are tried, as a share of the root's area.
-const MIN_SIZE: f32 = 1e-5;
+const MIN_ROOT_OVERLAP: f32 = 1e-5;
 /// Minimum extent of the node along the normal of a plane, as a share of its longest extent.
-const LENGTH: f32 = 0.3;
+const MIN_EXTENT: f32 = 0.3;
 /// Maximum cost of a plane, as a share of the cost of the best partition.
-const GAIN: f32 = 0.95;
+const MAX_RELATIVE_COST: f32 = 0.95;
 /// Number of references up to which splits save less than they cost.
 pub const MIN_REFERENCES: usize = 330;
 /// Number of failed searches on the path from the root after which levels are skipped: first one,
 /// then two, up to four.
-const IN_VAIN: u32 = 3;
+const MAX_FAILURES: u32 = 3;
 
 /// Counters of the failed searches for split planes above a node, which make the build skip levels.
 #[derive(Clone, Copy, Default)]
-pub struct Searches {
-    in_vain: u32,
+pub struct SearchHistory {
+    failures: u32,
     pause: u32,
 }
 
 /// A candidate plane for a spatial split. The cost is the sum of area times number of references
 /// over both sides.
-struct Plane {
+struct SplitPlane {
     cost: f32,
     axis: usize,
     at: f32,
@@ -44,13 +44,13 @@ struct Plane {
 impl Builder<'_> {
     /// References on both sides of the best plane, if that is better than `cut` and adds at most
     /// `spare` references.
-    pub fn parts(
+    pub fn spatial_split(
         &self,
         references: &[Reference],
         spare: usize,
         all: &Bin,
-        cut: &Cut,
-        searches: &mut Searches,
+        cut: &ObjectSplit,
+        searches: &mut SearchHistory,
     ) -> Option<[Vec<Reference>; 2]> {
         let count = references.len();
         if count <= MIN_REFERENCES || spare == 0 {
@@ -59,7 +59,7 @@ impl Builder<'_> {
         let [l, r] = cut.sides;
         let overlap = half_area(l.min.max(r.min), l.max.min(r.max), self.scale);
         let area = half_area(all.min, all.max, self.scale);
-        if overlap < (OVERLAP * area).max(MIN_SIZE * self.area) {
+        if overlap < (MIN_OVERLAP * area).max(MIN_ROOT_OVERLAP * self.area) {
             return None;
         }
         if searches.pause > 0 {
@@ -67,19 +67,19 @@ impl Builder<'_> {
             return None;
         }
         let plane = self.plane(references, all)?;
-        if plane.cost >= GAIN * cut.cost {
-            searches.in_vain += 1;
-            searches.pause = searches.in_vain.saturating_sub(IN_VAIN).min(4);
+        if plane.cost >= MAX_RELATIVE_COST * cut.cost {
+            searches.failures += 1;
+            searches.pause = searches.failures.saturating_sub(MAX_FAILURES).min(4);
             return None;
         }
-        searches.in_vain = 0;
+        searches.failures = 0;
         let parts = self.halves(references, &plane);
         let lens = [parts[0].len(), parts[1].len()];
         (lens.iter().all(|&len| 0 < len && len < count) && lens[0] + lens[1] <= count + spare).then_some(parts)
     }
 
     /// Finds the cheapest plane between bins of equal width.
-    fn plane(&self, references: &[Reference], bounds: &Bin) -> Option<Plane> {
+    fn plane(&self, references: &[Reference], bounds: &Bin) -> Option<SplitPlane> {
         if !(bounds.max - bounds.min).truncate().is_finite() {
             return None;
         }
@@ -91,11 +91,11 @@ impl Builder<'_> {
         planes.into_iter().flatten().reduce(|a, b| if b.cost < a.cost { b } else { a })
     }
 
-    fn plane_across<const AXIS: usize>(&self, references: &[Reference], bounds: &Bin) -> Option<Plane> {
+    fn plane_across<const AXIS: usize>(&self, references: &[Reference], bounds: &Bin) -> Option<SplitPlane> {
         // A few references need only a few bins.
         let count = if references.len() > 256 { BINS } else { BINS / 2 };
         let (low, high) = (bounds.min[AXIS], bounds.max[AXIS]);
-        if high - low < LENGTH * (bounds.max - bounds.min).truncate().max_element() {
+        if high - low < MIN_EXTENT * (bounds.max - bounds.min).truncate().max_element() {
             return None;
         }
         let width = (high - low) / count as f32;
@@ -116,7 +116,7 @@ impl Builder<'_> {
                 bins[first] = bins[first].around(r);
                 continue;
             }
-            let triangle = Sorted::<AXIS>::new(self.corners[r.number() as usize]);
+            let triangle = SortedTriangle::<AXIS>::new(self.corners[r.number() as usize]);
             let mut from = triangle.section(r.min[AXIS]);
             for (bin, number) in bins[first..=last].iter_mut().zip(first..) {
                 let to = triangle.section(if number < last { at(number + 1) } else { r.max[AXIS] });
@@ -124,7 +124,7 @@ impl Builder<'_> {
                 from = to;
             }
         }
-        let mut best = None::<Plane>;
+        let mut best = None::<SplitPlane>;
         let mut right = [(0.0, 0_u32); BINS];
         let mut sum = Bin::EMPTY;
         for bin in (1..count).rev() {
@@ -137,7 +137,7 @@ impl Builder<'_> {
             let (right_cost, right_count) = right[bin];
             let cost = left.cost(self.scale) + right_cost;
             if left.count > 0 && right_count > 0 && best.as_ref().is_none_or(|best| cost < best.cost) {
-                best = Some(Plane { cost, axis: AXIS, at: at(bin) });
+                best = Some(SplitPlane { cost, axis: AXIS, at: at(bin) });
             }
         }
         best
@@ -145,7 +145,7 @@ impl Builder<'_> {
 
     /// References on both sides of a plane. References that intersect the plane are split, unless
     /// enlarging the box of one side costs less.
-    fn halves(&self, references: &[Reference], &Plane { axis, at, .. }: &Plane) -> [Vec<Reference>; 2] {
+    fn halves(&self, references: &[Reference], &SplitPlane { axis, at, .. }: &SplitPlane) -> [Vec<Reference>; 2] {
         let (mut left, mut right, mut through) = (Vec::new(), Vec::new(), Vec::new());
         for r in references {
             if r.max[axis] <= at {
@@ -157,9 +157,9 @@ impl Builder<'_> {
             }
             let corners = self.corners[r.number() as usize];
             let [a, b] = match axis {
-                0 => Sorted::<0>::new(corners).halves(at, r),
-                1 => Sorted::<1>::new(corners).halves(at, r),
-                _ => Sorted::<2>::new(corners).halves(at, r),
+                0 => SortedTriangle::<0>::new(corners).halves(at, r),
+                1 => SortedTriangle::<1>::new(corners).halves(at, r),
+                _ => SortedTriangle::<2>::new(corners).halves(at, r),
             };
             match [a, b].map(|half| half.bounds().is_empty()) {
                 [false, false] => through.push((*r, [a, b])),
@@ -195,7 +195,7 @@ impl Builder<'_> {
 }
 
 /// A triangle with its corners sorted along an axis, prepared to be cut by split planes.
-struct Sorted<const AXIS: usize> {
+struct SortedTriangle<const AXIS: usize> {
     corners: [Vec4; 3],
     /// Upper bound on the rounding error of a section.
     slack: Vec4,
@@ -208,7 +208,7 @@ struct Section {
     max: Vec4,
 }
 
-impl<const AXIS: usize> Sorted<AXIS> {
+impl<const AXIS: usize> SortedTriangle<AXIS> {
     #[inline(always)]
     fn new(corners: [Vec3; 3]) -> Self {
         let [a, b, c] = corners.map(|p| p.extend(0.0));
@@ -220,7 +220,7 @@ impl<const AXIS: usize> Sorted<AXIS> {
         // A section is p + (q - p) t with t = (x - p) / (q - p) along the axis. Its error is at
         // most 5 units in the last place of q - p, which is at most twice the largest coordinate,
         // and one of the sum; a unit is half of epsilon. The rest covers underflow.
-        Sorted { corners: [a, b, c], slack: 8.0 * f32::EPSILON * most + f32::MIN_POSITIVE }
+        SortedTriangle { corners: [a, b, c], slack: 8.0 * f32::EPSILON * most + f32::MIN_POSITIVE }
     }
 
     /// Section at a coordinate along the axis. Outside the triangle, it is the first or last
@@ -278,7 +278,7 @@ mod tests {
         if !(low < at && at < high) {
             return 0;
         }
-        let halves = Sorted::<AXIS>::new(corners).halves(at, &r);
+        let halves = SortedTriangle::<AXIS>::new(corners).halves(at, &r);
         let mut inside = 0;
         for _ in 0..50 {
             let [u, v] = [random.unit(), random.unit()].map(f64::from);

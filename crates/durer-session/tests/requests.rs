@@ -2,8 +2,8 @@
 
 mod page;
 
-use durer_session::Start;
-use durer_session::protocol::{Event, PictureHead, Structure, TreeNode, WalkAccount};
+use durer_session::SessionFiles;
+use durer_session::protocol::{Event, PictureInfo, SceneNode, Structure, Traversal};
 use page::{Page, scene};
 use serde_json::json;
 
@@ -31,7 +31,7 @@ fn one(page: &mut Page, request: serde_json::Value) -> Event {
     answers.remove(0).0
 }
 
-fn walk(page: &mut Page, structure: Structure, origin: [f32; 3], direction: [f32; 3]) -> WalkAccount {
+fn walk(page: &mut Page, structure: Structure, origin: [f32; 3], direction: [f32; 3]) -> Traversal {
     let ask = json!({ "kind": "walk", "structure": structure, "origin": origin, "direction": direction });
     let Event::Walk { walk } = one(page, ask) else { panic!() };
     walk
@@ -101,7 +101,7 @@ fn rays_of_the_camera_are_those_of_its_pixels() {
     }
 }
 
-fn last(page: &mut Page) -> (PictureHead, Vec<u8>) {
+fn last(page: &mut Page) -> (PictureInfo, Vec<u8>) {
     page.pictures().pop().unwrap()
 }
 
@@ -193,7 +193,7 @@ fn an_epsilon_is_a_rule_of_the_scene_until_it_is_taken_back() {
     assert!(matches!(refused, Event::Refused { .. }));
 }
 
-fn count(nodes: &[TreeNode]) -> usize {
+fn count(nodes: &[SceneNode]) -> usize {
     nodes.iter().map(|node| 1 + count(&node.nodes)).sum()
 }
 
@@ -253,7 +253,7 @@ fn a_lesson_and_scenes_beside_it_are_read_from_its_folder_alone() {
     std::fs::write(folder.path().join("secret.txt"), balls()).unwrap();
     std::fs::write(inner.join("balls.txt"), balls()).unwrap();
     std::fs::write(inner.join("monday.md"), "# Balls\n\n![Sixty](balls.txt)\n").unwrap();
-    let mut page = Page::begin(Start { file: None, lesson: Some(inner.join("monday.md")) });
+    let mut page = Page::begin(SessionFiles { file: None, lesson: Some(inner.join("monday.md")) });
     let Event::Lesson { text: Some(text) } = one(&mut page, json!({ "kind": "lesson" })) else { panic!() };
     assert!(text.starts_with("# Balls"));
     let opened = page.ask(r#"{"kind":"open","name":"balls.txt","text":null}"#);

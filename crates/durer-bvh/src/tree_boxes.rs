@@ -22,7 +22,7 @@ pub(super) fn boxes(nodes: &[WideNode]) -> impl Iterator<Item = (u32, TreeBox)> 
     let mut waiting: VecDeque<(u32, TreeBox)> = (!nodes.is_empty()).then_some((0, root)).into_iter().collect();
     std::iter::from_fn(move || {
         let (code, found) = waiting.pop_front()?;
-        let children = (code & LEAF == 0).then(|| nodes[node::number(code)].children()).into_iter().flatten();
+        let children = (code & LEAF == 0).then(|| nodes[node::node_index(code)].children()).into_iter().flatten();
         waiting.extend(children.map(|(_, bounds, child)| {
             let (first, count) = if child & LEAF == 0 { (0, 0) } else { node::items(child) };
             (child, TreeBox { bounds, level: found.level + 1, items: first..first + count })

@@ -1,6 +1,6 @@
 //! Camera rays, and the steps in which rays traverse acceleration structures over the objects.
 
-use crate::protocol::{BoxState, RayAccount, Structure, WalkAccount, WalkStep, WalkTest};
+use crate::protocol::{CameraRay, Structure, Traversal, TraversalStep, TraversalTest, TreeBox};
 use durer::bvh::{Bvh, Grid};
 use durer::math::{Aabb, Ray, Ray64, Vec3};
 use durer::render::{center_ray, raster};
@@ -18,7 +18,7 @@ pub(crate) fn rays(
     world: &World,
     [columns, rows]: [u32; 2],
     row: Option<u32>,
-) -> Result<Vec<Option<RayAccount>>, String> {
+) -> Result<Vec<Option<CameraRay>>, String> {
     let wanted = row.map_or(0..rows, |row| row..row + 1);
     let is_sound = (1..=MAX_RAYS).contains(&columns) && (1..=MAX_RAYS).contains(&rows) && wanted.end <= rows;
     if !is_sound || u64::from(columns) * wanted.len() as u64 > MAX_RAYS.into() {
@@ -29,24 +29,24 @@ pub(crate) fn rays(
         let ray = center_ray(world, &raster, (x, y))?;
         let hit = world.closest(ray, &mut ());
         let (t, object) = (hit.map(|hit| hit.t), hit.map(|hit| hit.object));
-        Some(RayAccount { origin: ray.origin.into(), direction: ray.dir.into(), t, object })
+        Some(CameraRay { origin: ray.origin.into(), direction: ray.dir.into(), t, object })
     };
     Ok(wanted.flat_map(|y| (0..columns).map(move |x| (x, y))).map(one).collect())
 }
 
 /// Tests objects against a ray during a traversal, and keeps the closest hit.
-struct Walker<'a> {
+struct TraversalRecorder<'a> {
     world: &'a World,
     ray: Ray64,
-    closest: Option<WalkTest>,
+    closest: Option<TraversalTest>,
 }
 
-impl Walker<'_> {
+impl TraversalRecorder<'_> {
     /// Tests an object, and records the hit if it is the closest so far.
-    fn test(&mut self, object: u32) -> WalkTest {
+    fn test(&mut self, object: u32) -> TraversalTest {
         let t = self.world.hit_of(object, &self.ray).map(|hit| hit.t);
-        let test = WalkTest { object, t };
-        let is_closer = |closest: WalkTest| (t, object) < (closest.t, closest.object);
+        let test = TraversalTest { object, t };
+        let is_closer = |closest: TraversalTest| (t, object) < (closest.t, closest.object);
         if t.is_some() && self.closest.is_none_or(is_closer) {
             self.closest = Some(test);
         }
@@ -58,20 +58,20 @@ impl Walker<'_> {
         self.closest.and_then(|closest| closest.t).map_or(self.ray.rounded.t_max, f32::next_up)
     }
 
-    fn step(&self, bounds: Option<Aabb>, level: u32, tests: Vec<WalkTest>) -> WalkStep {
+    fn step(&self, bounds: Option<Aabb>, level: u32, tests: Vec<TraversalTest>) -> TraversalStep {
         let bounds = bounds.map(|bounds| [bounds.min.into(), bounds.max.into()]);
-        WalkStep { bounds, level, tests, closest: self.closest.and_then(|closest| closest.t) }
+        TraversalStep { bounds, level, tests, closest: self.closest.and_then(|closest| closest.t) }
     }
 }
 
 /// Builds a structure over all bounded objects, and records how a ray traverses it. Unbounded
 /// objects such as planes are tested first.
-pub(crate) fn walk(world: &World, structure: Structure, ray: &Ray) -> Result<WalkAccount, String> {
+pub(crate) fn traverse(world: &World, structure: Structure, ray: &Ray) -> Result<Traversal, String> {
     let objects = world.objects();
     if objects.len() > MAX_OBJECTS {
         return Err(format!("the scene has more than {MAX_OBJECTS} objects"));
     }
-    let mut walker = Walker { world, ray: Ray64::from(*ray), closest: None };
+    let mut walker = TraversalRecorder { world, ray: Ray64::from(*ray), closest: None };
     let (bounded, endless): (Vec<u32>, Vec<u32>) =
         (0..objects.len() as u32).partition(|&i| objects[i as usize].bounds().is_some());
     let boxes: Vec<Aabb> = bounded.iter().filter_map(|&i| objects[i as usize].bounds()).collect();
@@ -96,28 +96,29 @@ pub(crate) fn walk(world: &World, structure: Structure, ray: &Ray) -> Result<Wal
                 walker.end()
             });
             visits = visited.iter().filter(|visit| visit.items.is_empty()).count();
-            let (mut tested, mut closest) = (tested.into_iter(), steps.last().and_then(|step: &WalkStep| step.closest));
+            let (mut tested, mut closest) =
+                (tested.into_iter(), steps.last().and_then(|step: &TraversalStep| step.closest));
             for visit in visited {
                 let tests: Vec<_> = tested.by_ref().take(visit.items.len()).collect();
                 closest = tests.last().map_or(closest, |(_, closest)| closest.and_then(|closest| closest.t));
                 let tests = tests.into_iter().map(|(test, _)| test).collect();
-                steps.push(WalkStep { closest, ..walker.step(Some(visit.bounds), visit.level, tests) });
+                steps.push(TraversalStep { closest, ..walker.step(Some(visit.bounds), visit.level, tests) });
             }
             shown.extend(tree.boxes().take(MAX_BOXES).map(|found| state(found.level, &found.bounds, |corner| corner)));
         }
         Structure::Grid => {
             let bounds = boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(*one));
             let overlaps = |i: usize, cell: Aabb| objects[bounded[i] as usize].overlaps(&cell);
-            let grid = Grid::build(bounds, Grid::suitable(bounds, boxes.len()), &boxes, overlaps)
+            let grid = Grid::build(bounds, Grid::suggested_resolution(bounds, boxes.len()), &boxes, overlaps)
                 .filter(|_| !boxes.is_empty())
                 .ok_or("no grid can be built over these objects")?;
-            grid.walk_cells(ray, |grid, cell, _| {
+            grid.traverse_cells(ray, |grid, cell, _| {
                 visits += 1;
                 let tests = grid.primitives(cell).iter().map(|&i| walker.test(bounded[i as usize])).collect();
                 steps.push(walker.step(Some(grid.cell_bounds(cell)), 0, tests));
                 walker.end()
             });
-            let [nx, ny, nz] = grid.counts();
+            let [nx, ny, nz] = grid.resolution();
             let cells = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
             let full = cells.filter(|&cell| grid.occupancy(cell) > 0).take(MAX_BOXES);
             shown.extend(full.map(|cell| state(1, &grid.cell_bounds(cell), |corner| corner)));
@@ -125,12 +126,12 @@ pub(crate) fn walk(world: &World, structure: Structure, ray: &Ray) -> Result<Wal
     }
     let tests = steps.iter().map(|step| step.tests.len() as u32).sum();
     let (visits, count) = (visits as u32, objects.len() as u32);
-    Ok(WalkAccount { steps, visits, tests, objects: count, hit: walker.closest, boxes: shown })
+    Ok(Traversal { steps, visits, tests, objects: count, hit: walker.closest, boxes: shown })
 }
 
 /// Returns the boxes of the BVH over the objects and, at deeper levels, of the BVHs over the
 /// triangles of meshes. A world with few objects has no BVH, so one is built here.
-pub(crate) fn boxes(world: &World) -> Vec<BoxState> {
+pub(crate) fn boxes(world: &World) -> Vec<TreeBox> {
     let bounds: Vec<Aabb> = world.objects().iter().filter_map(Object::bounds).collect();
     let built;
     let tree = match world.accel() {
@@ -140,10 +141,10 @@ pub(crate) fn boxes(world: &World) -> Vec<BoxState> {
             &built
         }
     };
-    let mut all: Vec<BoxState> =
+    let mut all: Vec<TreeBox> =
         tree.boxes().take(MAX_BOXES).map(|found| state(found.level, &found.bounds, |corner| corner)).collect();
     let below = all.last().map_or(0, |last| last.level);
-    let mut meshes: Vec<BoxState> = Vec::new();
+    let mut meshes: Vec<TreeBox> = Vec::new();
     for object in world.objects() {
         let Geometry::Mesh(mesh) = &object.geometry else { continue };
         let place = |corner| object.world_point(corner);
@@ -160,8 +161,8 @@ pub(crate) fn boxes(world: &World) -> Vec<BoxState> {
     all
 }
 
-fn state(level: u32, bounds: &Aabb, place: impl Fn(Vec3) -> Vec3) -> BoxState {
+fn state(level: u32, bounds: &Aabb, place: impl Fn(Vec3) -> Vec3) -> TreeBox {
     let ends = [bounds.min, bounds.max];
     let corner = |i: usize| place(Vec3::new(ends[i & 1].x, ends[i >> 1 & 1].y, ends[i >> 2].z));
-    BoxState { level, corners: (0..8).flat_map(|i| corner(i).to_array()).collect() }
+    TreeBox { level, corners: (0..8).flat_map(|i| corner(i).to_array()).collect() }
 }

@@ -1,6 +1,6 @@
 //! Answers to requests about rays, structures and models.
 
-use super::scene::{FieldState, Place};
+use super::scene::{FieldState, TextPosition};
 use serde::{Deserialize, Serialize};
 #[cfg(test)]
 use ts_rs::TS;
@@ -21,7 +21,7 @@ pub enum Structure {
 /// A camera ray through a pixel centre, and its first hit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct RayAccount {
+pub struct CameraRay {
     /// Origin.
     pub origin: [f32; 3],
     /// Direction, of length 1.
@@ -35,7 +35,7 @@ pub struct RayAccount {
 /// Test of an object during a traversal, with the `t` of its first hit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct WalkTest {
+pub struct TraversalTest {
     /// Number of the object.
     pub object: u32,
     /// Ray parameter of the first hit on the object.
@@ -46,13 +46,13 @@ pub struct WalkTest {
 /// there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct WalkStep {
+pub struct TraversalStep {
     /// Two opposite corners; `None` for objects outside the structure.
     pub bounds: Option<[[f32; 3]; 2]>,
     /// Depth of the box in its tree.
     pub level: u32,
     /// Tests of the objects in it.
-    pub tests: Vec<WalkTest>,
+    pub tests: Vec<TraversalTest>,
     /// Ray parameter of the nearest hit after this step.
     pub closest: Option<f32>,
 }
@@ -60,9 +60,9 @@ pub struct WalkStep {
 /// Traversal of an acceleration structure by a ray, step by step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct WalkAccount {
+pub struct Traversal {
     /// Visited boxes or cells, in visiting order.
-    pub steps: Vec<WalkStep>,
+    pub steps: Vec<TraversalStep>,
     /// Number of visited nodes or cells.
     pub visits: u32,
     /// Number of object tests.
@@ -70,15 +70,15 @@ pub struct WalkAccount {
     /// Number of objects.
     pub objects: u32,
     /// The first hit.
-    pub hit: Option<WalkTest>,
+    pub hit: Option<TraversalTest>,
     /// Boxes of the tree, or cells that contain objects, up to a limit.
-    pub boxes: Vec<BoxState>,
+    pub boxes: Vec<TreeBox>,
 }
 
 /// Bounding box of a BVH node or grid cell, for drawing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct BoxState {
+pub struct TreeBox {
     /// Depth; 0 for the root's box.
     pub level: u32,
     /// The eight corners, three coordinates each: bits 0, 1 and 2 of a corner's number select x, y
@@ -89,15 +89,15 @@ pub struct BoxState {
 /// Node of the tree of groups and objects that a scene consists of.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
-pub struct TreeNode {
+pub struct SceneNode {
     /// Keyword or file name of the node.
     pub name: String,
     /// Position in the scene's text.
-    pub place: Option<Place>,
+    pub place: Option<TextPosition>,
     /// Number of the node's material.
     pub material: Option<u32>,
     /// Child nodes.
-    pub nodes: Vec<TreeNode>,
+    pub nodes: Vec<SceneNode>,
 }
 
 /// A material of a scene, with the fields that a page can show and edit.
@@ -107,7 +107,7 @@ pub struct MaterialState {
     /// Keyword of the material.
     pub name: String,
     /// Position in the scene's text.
-    pub place: Option<Place>,
+    pub place: Option<TextPosition>,
     /// Fields of the material.
     pub fields: Vec<FieldState>,
 }

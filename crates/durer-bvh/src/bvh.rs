@@ -1,10 +1,10 @@
 //! A BVH over bounding boxes. The caller stores and intersects the primitives.
 
 use super::build::{self, BuildSettings};
-use super::lanes::{Available, Kernel, Lanes};
+use super::lanes::{AvailableLevel, Kernel, Lanes};
 use super::node::{self, LEAF, WideNode};
-use super::shown::{self, TreeBox};
 use super::traverse::{NodeHits, TraversalRay, Visitor, traverse};
+use super::tree_boxes::{self, TreeBox};
 use super::{TraversalCounter, TraversalStats};
 use crate::math::{Aabb, Ray};
 use std::collections::BTreeMap;
@@ -18,7 +18,7 @@ pub struct Bvh {
     /// Numbers of the primitives, in the order of the leaves.
     order: Vec<u32>,
     bounds: Aabb,
-    level: Available,
+    level: AvailableLevel,
 }
 
 impl Bvh {
@@ -28,8 +28,8 @@ impl Bvh {
     ///
     /// The tree depends only on the boxes, not on the number of threads.
     pub fn build(boxes: &[Aabb]) -> Self {
-        let tree = build::build(build::references(boxes), &BuildSettings::THINGS);
-        Bvh { nodes: tree.nodes, order: tree.order, bounds: tree.bounds, level: Available::chosen() }
+        let tree = build::build(build::references(boxes), &BuildSettings::PRIMITIVES);
+        Bvh { nodes: tree.nodes, order: tree.order, bounds: tree.bounds, level: AvailableLevel::chosen() }
     }
 
     /// Fits the tree to changed boxes of the same primitives. Refitting is much faster than
@@ -94,23 +94,27 @@ impl Bvh {
         };
         match T::COUNTS_WORK {
             true => {
-                let nodes = self.walk_counting(ray, &mut leaf);
-                counter.work(nodes, 0);
+                let nodes = self.traverse_counting(ray, &mut leaf);
+                counter.count_work(nodes, 0);
             }
-            false => self.walk_leaves(ray, &mut leaf),
+            false => self.traverse_leaves(ray, &mut leaf),
         }
     }
 
     /// Calls `leaf` for each leaf that the ray may hit; see [`Bvh::traverse`]. `leaf` is a trait
     /// object, so that the traversal is compiled only once and not for each caller.
-    fn walk_leaves(&self, ray: &Ray, leaf: Leaf) {
-        self.level.run(Walk { bvh: self, ray, visitor: LeafVisitor { nodes: &self.nodes, counter: (), leaf } });
+    fn traverse_leaves(&self, ray: &Ray, leaf: Leaf) {
+        self.level.run(TraversalKernel {
+            bvh: self,
+            ray,
+            visitor: LeafVisitor { nodes: &self.nodes, counter: (), leaf },
+        });
     }
 
     /// Traverses as [`Bvh::walk_leaves`] does and returns the number of visited nodes.
-    fn walk_counting(&self, ray: &Ray, leaf: Leaf) -> u64 {
+    fn traverse_counting(&self, ray: &Ray, leaf: Leaf) -> u64 {
         let mut counts = TraversalStats::default();
-        self.level.run(Walk {
+        self.level.run(TraversalKernel {
             bvh: self,
             ray,
             visitor: LeafVisitor { nodes: &self.nodes, counter: &mut counts, leaf },
@@ -120,17 +124,21 @@ impl Bvh {
 
     /// Iterates over the boxes of the tree, level by level.
     pub fn boxes(&self) -> impl Iterator<Item = TreeBox> {
-        shown::boxes(&self.nodes).map(|(_, found)| found)
+        tree_boxes::boxes(&self.nodes).map(|(_, bounds)| bounds)
     }
 
     /// Traverses the tree as [`Bvh::traverse`] does, and returns the boxes of the visited nodes and
     /// leaves in visiting order. Meant for drawing and slow, since it lists all boxes of the tree
     /// first.
     pub fn visits(&self, ray: &Ray, mut test: impl FnMut(usize, f32) -> f32) -> Vec<TreeBox> {
-        let boxes: BTreeMap<u32, TreeBox> = shown::boxes(&self.nodes).collect();
+        let boxes: BTreeMap<u32, TreeBox> = tree_boxes::boxes(&self.nodes).collect();
         let mut codes = Vec::new();
         let leaf: Leaf = &mut |primitives, t_max| primitives.fold(t_max, |t_max, primitive| test(primitive, t_max));
-        self.level.run(Walk { bvh: self, ray, visitor: Recorder { codes: &mut codes, counter: (), leaf } });
+        self.level.run(TraversalKernel {
+            bvh: self,
+            ray,
+            visitor: VisitRecorder { codes: &mut codes, counter: (), leaf },
+        });
         codes.iter().filter_map(|code| boxes.get(code).cloned()).collect()
     }
 }
@@ -140,13 +148,13 @@ impl Bvh {
 type Leaf<'a> = &'a mut dyn FnMut(Range<usize>, f32) -> f32;
 
 /// Traversal of a [`Bvh`] by one ray, as a kernel that runs at the chosen SIMD level.
-struct Walk<'a, V> {
+struct TraversalKernel<'a, V> {
     bvh: &'a Bvh,
     ray: &'a Ray,
     visitor: V,
 }
 
-impl<V: Visitor> Kernel for Walk<'_, V> {
+impl<V: Visitor> Kernel for TraversalKernel<'_, V> {
     type Output = ();
 
     #[inline(always)]
@@ -154,7 +162,7 @@ impl<V: Visitor> Kernel for Walk<'_, V> {
         if self.bvh.nodes.is_empty() {
             return;
         }
-        let (nodes, reach, t_max) = (&self.bvh.nodes, self.bvh.bounds.reach(), self.ray.t_max);
+        let (nodes, reach, t_max) = (&self.bvh.nodes, self.bvh.bounds.max_abs_coordinate(), self.ray.t_max);
         if let Some(boxes) = TraversalRay::new(self.ray, reach) {
             traverse::<L, _, true>(lanes, nodes, &boxes, t_max, &mut self.visitor);
         } else if let Some(boxes) = TraversalRay::robust(self.ray, reach) {
@@ -202,13 +210,13 @@ impl<T: TraversalCounter> Visitor for LeafVisitor<'_, T> {
 }
 
 /// Visitor that records the codes of visited nodes and leaves, for [`Bvh::visits`].
-struct Recorder<'a> {
+struct VisitRecorder<'a> {
     codes: &'a mut Vec<u32>,
     counter: (),
     leaf: Leaf<'a>,
 }
 
-impl Visitor for Recorder<'_> {
+impl Visitor for VisitRecorder<'_> {
     type TraversalCounter = ();
 
     const ANY: bool = false;

@@ -20,25 +20,25 @@ const MIN_FOR_MORE_BINS: usize = 64;
 
 /// Intervals of equal width along each axis into which the centres of references are binned.
 #[derive(Clone, Copy)]
-struct Grid {
+struct BinGrid {
     low: Vec4,
     scale: Vec4,
     bins: usize,
 }
 
-impl Grid {
-    fn new(references: &[Reference], bins: usize) -> Grid {
+impl BinGrid {
+    fn new(references: &[Reference], bins: usize) -> BinGrid {
         let [low, high] = middles(references);
         // If an extent is zero or out of range, everything falls into the first bin.
         let scale = bins as f32 * (1.0 - 1e-6) / (high - low);
         let scale = Vec4::select(scale.cmplt(Vec4::INFINITY), scale, Vec4::ZERO);
-        Grid { low, scale, bins }
+        BinGrid { low, scale, bins }
     }
 
     /// Bins of a reference along each axis, added to 2^23, so that the lowest bit counts 1.
     #[inline(always)]
     fn at(&self, r: &Reference) -> Vec4 {
-        let at = (r.middle() - self.low) * self.scale - 0.5;
+        let at = (r.double_center() - self.low) * self.scale - 0.5;
         // Replaces NaN, too.
         let at = Vec4::select(at.cmpgt(Vec4::ZERO), at, Vec4::ZERO);
         at.min(Vec4::splat((self.bins - 1) as f32)) + FIRST
@@ -49,7 +49,7 @@ const FIRST: f32 = (1 << 23) as f32;
 
 /// Bounds of all [`Reference::middle`].
 fn middles(references: &[Reference]) -> [Vec4; 2] {
-    around_all(references, &|r| [r.middle(); 2])
+    around_all(references, &|r| [r.double_center(); 2])
 }
 
 /// Bin of an object split along all three axes at once: a box and a number of references per axis.
@@ -86,10 +86,10 @@ impl Bins {
 }
 
 /// Puts references into bins.
-fn filled<const N: usize>(references: &[Reference], grid: &Grid) -> [Bins; N] {
+fn fill_bins<const N: usize>(references: &[Reference], grid: &BinGrid) -> [Bins; N] {
     if references.len() > MIN_PARALLEL {
         let (a, b) = references.split_at(references.len() / 2);
-        let (mut a, b) = parallel::join(|| filled::<N>(a, grid), || filled::<N>(b, grid));
+        let (mut a, b) = parallel::join(|| fill_bins::<N>(a, grid), || fill_bins::<N>(b, grid));
         a.iter_mut().zip(&b).for_each(|(a, b)| a.join(b));
         return a;
     }
@@ -127,16 +127,16 @@ fn filled<const N: usize>(references: &[Reference], grid: &Grid) -> [Bins; N] {
 
 /// An object split: a partition of references into two sets, with its cost and the boxes of both
 /// sets.
-pub struct Cut {
+pub struct ObjectSplit {
     pub cost: f32,
     pub sides: [Bin; 2],
-    way: Split,
+    rule: SplitRule,
 }
 
 /// Rule by which an object split assigns references to the left or right set.
-enum Split {
+enum SplitRule {
     /// The left set has the references in bins before a border along an axis.
-    Bins { grid: Grid, axis: usize, border: usize },
+    Bins { grid: BinGrid, axis: usize, border: usize },
     /// The left set has the references whose bits are set in the mask.
     Mask(usize),
     /// The left set has the first half of the references, sorted along the longest axis.
@@ -145,14 +145,14 @@ enum Split {
 
 impl Builder<'_> {
     /// Finds the cheapest partition of the references.
-    pub fn cut(&self, references: &[Reference], all: &Bin, depth: usize) -> Cut {
+    pub fn object_split(&self, references: &[Reference], all: &Bin, depth: usize) -> ObjectSplit {
         // The boxes of both sides are not known yet, but lie within `all`.
-        let half = Cut { cost: all.cost(self.scale), sides: [*all; 2], way: Split::Half };
+        let half = ObjectSplit { cost: all.cost(self.scale), sides: [*all; 2], rule: SplitRule::Half };
         let count = references.len();
         if depth >= HALVING_DEPTH {
             half
         } else if count <= MAX_EXHAUSTIVE {
-            self.few(references)
+            self.exhaustive(references)
         } else if count <= 64 {
             self.binned::<8>(references).unwrap_or(half)
         } else {
@@ -161,9 +161,9 @@ impl Builder<'_> {
     }
 
     /// Finds the cheapest border between bins; `None` if all centres are in one bin.
-    fn binned<const N: usize>(&self, references: &[Reference]) -> Option<Cut> {
-        let grid = Grid::new(references, (self.bins)(references.len()).min(N));
-        let bins = filled::<N>(references, &grid);
+    fn binned<const N: usize>(&self, references: &[Reference]) -> Option<ObjectSplit> {
+        let grid = BinGrid::new(references, (self.bins)(references.len()).min(N));
+        let bins = fill_bins::<N>(references, &grid);
         // Compute the costs to the right of each border, then the costs to the left, for all axes
         // at once.
         let mut right_costs = [Vec4::ZERO; N];
@@ -186,11 +186,11 @@ impl Builder<'_> {
         let (cost, border) = (costs[axis], borders[axis] as usize);
         let side = |bins: &[Bins]| bins.iter().fold(Bin::EMPTY, |all, bins| all.union(bins.get(axis)));
         let sides = [side(&bins[..border]), side(&bins[border..])];
-        (cost < f32::INFINITY).then_some(Cut { cost, sides, way: Split::Bins { grid, axis, border } })
+        (cost < f32::INFINITY).then_some(ObjectSplit { cost, sides, rule: SplitRule::Bins { grid, axis, border } })
     }
 
     /// Compares all partitions of a few references.
-    fn few(&self, references: &[Reference]) -> Cut {
+    fn exhaustive(&self, references: &[Reference]) -> ObjectSplit {
         let count = references.len();
         let full = (1 << count) - 1;
         let mut sets = [Bin::EMPTY; 1 << MAX_EXHAUSTIVE];
@@ -207,21 +207,21 @@ impl Builder<'_> {
             }
         }
         let (cost, mask) = best;
-        Cut { cost, sides: [sets[mask], sets[full - mask]], way: Split::Mask(mask) }
+        ObjectSplit { cost, sides: [sets[mask], sets[full - mask]], rule: SplitRule::Mask(mask) }
     }
 
     /// Partitions the references in place. Returns the boxes of both sets and the size of the
     /// first.
-    pub fn divide(&self, references: &mut [Reference], cut: &Cut) -> ([Bin; 2], usize) {
+    pub fn divide(&self, references: &mut [Reference], cut: &ObjectSplit) -> ([Bin; 2], usize) {
         let [left, right] = cut.sides;
-        match cut.way {
-            Split::Bins { grid, axis, border } => {
+        match cut.rule {
+            SplitRule::Bins { grid, axis, border } => {
                 // Along the other axes, no bin is before the border.
                 let mut borders = Vec4::NEG_INFINITY;
                 borders[axis] = FIRST + border as f32;
                 partition(references, |r| grid.at(r).cmplt(borders).any());
             }
-            Split::Mask(mask) => {
+            SplitRule::Mask(mask) => {
                 let mut places = [0, left.count as usize];
                 let mut sorted = [references[0]; MAX_EXHAUSTIVE];
                 for (i, r) in references.iter().enumerate() {
@@ -231,7 +231,7 @@ impl Builder<'_> {
                 }
                 references.copy_from_slice(&sorted[..references.len()]);
             }
-            Split::Half => {
+            SplitRule::Half => {
                 let (left, right) = halve(references);
                 return ([Bin::of(left), Bin::of(right)], left.len());
             }
@@ -256,8 +256,8 @@ fn halve(references: &mut [Reference]) -> (&mut [Reference], &mut [Reference]) {
     let [low, high] = middles(references);
     let axis = (high - low).truncate().max_position();
     references.sort_unstable_by(|a, b| {
-        a.middle()[axis]
-            .total_cmp(&b.middle()[axis])
+        a.double_center()[axis]
+            .total_cmp(&b.double_center()[axis])
             .then(a.number().cmp(&b.number()))
             .then(a.min[axis].total_cmp(&b.min[axis]))
     });

@@ -2,14 +2,14 @@
 
 use super::bundle::Packet;
 use super::rays::PacketRays;
-use crate::lanes::{Lanes, Numbers, WIDE, Wide};
-use crate::node::{self, LEAF, PLACE, WideNode};
-use crate::traverse::end_of;
-use crate::triangles::fetch::{AND_SIBLINGS, Places};
+use crate::lanes::{FloatLanes, Lanes, WIDE, WideLanes};
+use crate::node::{self, LEAF, SLOT_BITS, WideNode};
+use crate::traverse::extreme_bit;
+use crate::triangles::fetch::{PrefetchAddresses, SIBLING_LINES};
 
 /// Entry of the stack in a packet traversal: a node or leaf to visit, and the rays to test.
 #[derive(Clone, Copy)]
-pub struct Entry {
+pub struct StackEntry {
     /// Mask of the rays that hit the parent.
     rays: u64,
     child: u32,
@@ -68,9 +68,9 @@ impl<L: Lanes> IntervalRay<L> {
 #[inline(always)]
 fn nearest<L: Lanes>(lanes: L, node: &WideNode, hits: u32, enter: L::Floats, start: f32) -> u32 {
     let nothing = lanes.splat(0.0);
-    let since = lanes.later(lanes.sub(enter, lanes.splat(start)), nothing);
+    let since = lanes.max_as_int(lanes.sub(enter, lanes.splat(start)), nothing);
     let which = lanes.select(hits, lanes.splat(f32::from_bits(u32::MAX)), nothing);
-    lanes.nearest(since, which, &node.child_tags) & PLACE
+    lanes.nearest(since, which, &node.child_tags) & SLOT_BITS
 }
 
 impl Packet<'_> {
@@ -97,7 +97,7 @@ impl Packet<'_> {
         };
         for axis in 0..3 {
             intervals.inverse[axis] = [least!(inverse[axis]), greatest!(inverse[axis])];
-            if self.is_point {
+            if self.has_common_origin {
                 let PacketRays { near_from, far_from, .. } = &self.sixteens[0];
                 (intervals.near_from[axis], intervals.far_from[axis]) =
                     (lanes.splat(near_from[axis][0]), lanes.splat(far_from[axis][0]));
@@ -122,9 +122,9 @@ impl Packet<'_> {
     /// far: first the nearest child of each node, then the others in node order. With `ANY`,
     /// children are visited in the order for any-hit rays.
     #[inline(always)]
-    pub(super) fn traverse<L: Lanes, const ANY: bool>(&mut self, lanes: L, stack: &mut Vec<Entry>) {
+    pub(super) fn traverse<L: Lanes, const ANY: bool>(&mut self, lanes: L, stack: &mut Vec<StackEntry>) {
         let bvh = self.bvh;
-        let (intervals, places) = (self.interval_ray(lanes), Places::new(bvh));
+        let (intervals, places) = (self.interval_ray(lanes), PrefetchAddresses::new(bvh));
         let [x, y, z] = self.axes.negative;
         let octant = (x | y << 1 | z << 2) as u32;
         self.limit = self.last(lanes);
@@ -133,23 +133,23 @@ impl Packet<'_> {
         let (mut child, mut rays) = (0, self.alive);
         loop {
             if child & LEAF == 0 {
-                let node = &bvh.nodes[node::number(child)];
+                let node = &bvh.nodes[node::node_index(child)];
                 let (hits, enter) = intervals.intersect_node(lanes, node, lanes.splat(self.limit));
                 if hits != 0 {
                     let box_at = child;
                     let from_last = node.order(ANY, octant) != 0;
                     let next = match ANY {
-                        true => end_of(hits, from_last),
+                        true => extreme_bit(hits, from_last),
                         false => nearest(lanes, node, hits, enter, start),
                     };
                     // Push the child that is visited last first.
                     let (mut others, enter) = (hits ^ 1 << next, lanes.store(enter));
                     while others != 0 {
-                        let place = end_of(others, !from_last);
+                        let place = extreme_bit(others, !from_last);
                         others ^= 1 << place;
                         let (child, near) = (node.children[place as usize], enter[place as usize]);
-                        places.fetch::<L, AND_SIBLINGS>(lanes, child);
-                        stack.push(Entry { rays, child, box_at: box_at + place, near });
+                        places.fetch::<L, SIBLING_LINES>(lanes, child);
+                        stack.push(StackEntry { rays, child, box_at: box_at + place, near });
                     }
                     let inside = self.inside(lanes, node, next as usize & 7, rays);
                     if inside != 0 {
@@ -170,7 +170,7 @@ impl Packet<'_> {
                     continue;
                 }
                 rays = if ANY { entry.rays & self.alive } else { entry.rays };
-                rays = self.inside(lanes, &bvh.nodes[node::number(entry.box_at)], entry.box_at as usize & 7, rays);
+                rays = self.inside(lanes, &bvh.nodes[node::node_index(entry.box_at)], entry.box_at as usize & 7, rays);
                 if rays != 0 {
                     child = entry.child;
                     break;
@@ -214,7 +214,7 @@ impl Packet<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::{Available, Kernel, SimdLevel, WIDTH};
+    use crate::lanes::{AvailableLevel, Kernel, SimdLevel, WIDTH};
     use crate::math::{Aabb, Vec3};
 
     /// Kernel that calls [`nearest`] for a node, the entry distances of its children, a mask of the
@@ -246,7 +246,7 @@ mod tests {
         ];
         for (level, (hits, start, expected)) in SimdLevel::available().flat_map(|level| cases.map(|case| (level, case)))
         {
-            let place = Available::or_scalar(level).run(Nearest(&node, enter, hits, start));
+            let place = AvailableLevel::or_scalar(level).run(Nearest(&node, enter, hits, start));
             assert_eq!(place, expected, "{level:?} {hits:b}");
         }
     }

@@ -5,7 +5,7 @@ use super::lobe::blinn::Blinn;
 use super::lobe::diffuse::{Diffuse, DiffuseTransmission};
 use super::lobe::fuzz::Fuzz;
 use super::lobe::hair::Fibre;
-use super::lobe::rough::{Facet, Rough};
+use super::lobe::rough::{Facet, RoughReflection};
 use super::lobe::rough_glass::RoughGlass;
 use super::microfacet::Ggx;
 use super::{Bsdf, BsdfSample, Lobe, Scatter, Tables, fresnel, layers, warp};
@@ -20,7 +20,7 @@ use std::sync::LazyLock;
 /// Grid of cells of equal solid angle on the sphere, in which samples are counted to compare them
 /// with a pdf.
 #[derive(Clone, Copy, Debug)]
-pub struct Cells {
+pub struct DirectionGrid {
     /// Number of bands from pole to pole.
     pub rows: usize,
     /// Number of cells around each band.
@@ -33,14 +33,14 @@ pub struct Cells {
 
 /// Result of comparing samples with their pdf: a chi-square test and the integral of the pdf.
 #[derive(Clone, Copy, Debug)]
-pub struct Verdict {
+pub struct PdfComparison {
     /// Chi-square statistic, converted to a standard normal deviate.
     pub deviate: f64,
     /// Integral of the pdf over all directions: 1 minus the probability of failed samples.
     pub density: f64,
 }
 
-impl Cells {
+impl DirectionGrid {
     fn cell(&self, wi: Vec3) -> usize {
         let turn = (fp::atan2_f64(f64::from(wi.y), f64::from(wi.x)) / TAU).rem_euclid(1.0);
         let row = ((0.5 * (1.0 - f64::from(wi.z)) * self.rows as f64) as usize).min(self.rows - 1);
@@ -61,7 +61,12 @@ impl Cells {
 
     /// Compares samples with their pdf. `sample` draws a sample from three numbers in [0, 1];
     /// `seed` selects the numbers.
-    pub fn compare(&self, seed: u64, sample: impl Fn(f32, Vec2) -> Option<Vec3>, pdf: impl Fn(Vec3) -> f32) -> Verdict {
+    pub fn compare(
+        &self,
+        seed: u64,
+        sample: impl Fn(f32, Vec2) -> Option<Vec3>,
+        pdf: impl Fn(Vec3) -> f32,
+    ) -> PdfComparison {
         let all = self.rows * self.columns;
         let mut counts = vec![0.0_f64; all + 1];
         for i in 0..self.samples {
@@ -83,11 +88,11 @@ impl Cells {
                 pooled = (0.0, 0.0);
             }
         }
-        Verdict { deviate: deviate(chi2, freedom), density }
+        PdfComparison { deviate: deviate(chi2, freedom), density }
     }
 
     /// Compares the samples of a lobe with its pdf, for one view direction.
-    pub fn lobe(&self, seed: u64, lobe: Lobe, wo: Vec3) -> Verdict {
+    pub fn lobe(&self, seed: u64, lobe: Lobe, wo: Vec3) -> PdfComparison {
         let sample = |choice, u| lobe.sample(wo, choice, u).map(|scattered| scattered.wi);
         self.compare(seed, sample, |wi| lobe.eval(wo, wi).1)
     }
@@ -103,9 +108,9 @@ fn deviate(chi2: f64, freedom: f64) -> f64 {
 }
 
 /// Returns named examples of every kind of lobe that is not a delta lobe.
-pub fn broad() -> Vec<(&'static str, Lobe<'static>)> {
-    let rough = |roughness, anisotropy, facet, behind| {
-        Lobe::from(Rough { ggx: Ggx::new(roughness, anisotropy).clamped(), facet, behind })
+pub fn non_delta_lobes() -> Vec<(&'static str, Lobe<'static>)> {
+    let rough = |roughness, anisotropy, facet, transmits| {
+        Lobe::from(RoughReflection { ggx: Ggx::new(roughness, anisotropy).clamped(), facet, transmits })
     };
     let glass = |roughness, eta| {
         Lobe::from(RoughGlass {
@@ -120,7 +125,7 @@ pub fn broad() -> Vec<(&'static str, Lobe<'static>)> {
             Fibre::new(&HairMaterial { eumelanin, longitudinal_roughness, azimuthal_roughness, ..Default::default() })
         })
     });
-    let hair = |i: usize| Lobe::from(FIBRES[i].seen(&Lanes::Rgb));
+    let hair = |i: usize| Lobe::from(FIBRES[i].lobe(&Lanes::Rgb));
     let leaning = Vec3::new(0.6, 0.0, 0.8);
     vec![
         ("Lambert", Diffuse::lambert(Spectrum::ONE).into()),
@@ -139,7 +144,12 @@ pub fn broad() -> Vec<(&'static str, Lobe<'static>)> {
         ("rough pane, front", rough(0.6, 0.0, Facet::Sheet(fresnel::Sheet { eta: 1.5, inside: None }), false)),
         (
             "rough pane, back",
-            rough(0.6, 0.0, Facet::BehindSheet(fresnel::Sheet { eta: 1.5, inside: Some(Spectrum::splat(0.5)) }), true),
+            rough(
+                0.6,
+                0.0,
+                Facet::SheetTransmission(fresnel::Sheet { eta: 1.5, inside: Some(Spectrum::splat(0.5)) }),
+                true,
+            ),
         ),
         ("rough glass", glass(0.5, 1.5)),
         ("rough glass from inside", glass(0.6, 1.0 / 1.5)),
@@ -188,7 +198,7 @@ pub fn brushed() -> Vec<(String, PrincipledMaterial)> {
 
 /// Returns named examples of lossless materials with films. The albedo of rough ones is
 /// approximate.
-pub fn filmed() -> Vec<(&'static str, PrincipledMaterial)> {
+pub fn with_films() -> Vec<(&'static str, PrincipledMaterial)> {
     let film = || PrincipledMaterial { base_color: Vec3::ONE, thin_film_weight: 1.0, ..Default::default() };
     let bubble = PrincipledMaterial { specular_ior: 1.0, transmission_weight: 1.0, walls: Walls::Thin, ..film() };
     let glass = PrincipledMaterial { thin_film_weight: 0.8, thin_film_ior: 1.9, transmission_weight: 1.0, ..film() };
@@ -209,12 +219,12 @@ impl<'a> Furnace<'a> {
 
     /// Returns the albedo for a roughness and a view cosine, and its standard error. Light that
     /// enters glass is measured as flux, since its radiance grows with the square of the index.
-    pub fn gives(&self, roughness: f32, cosine: f32, samples: u32) -> (f64, f64) {
-        self.gives_to(FurnaceView { roughness, cosine, ..FurnaceView::default() }, samples)
+    pub fn albedo(&self, roughness: f32, cosine: f32, samples: u32) -> (f64, f64) {
+        self.albedo_for(FurnaceView { roughness, cosine, ..FurnaceView::default() }, samples)
     }
 
     /// Returns the albedo for any view, and its standard error.
-    pub fn gives_to(&self, from: FurnaceView, samples: u32) -> (f64, f64) {
+    pub fn albedo_for(&self, from: FurnaceView, samples: u32) -> (f64, f64) {
         let here = Parameters {
             specular_roughness: from.roughness,
             specular_anisotropy: from.anisotropy,
@@ -222,7 +232,7 @@ impl<'a> Furnace<'a> {
         };
         let wo = warp::polar(from.cosine, from.turn);
         let eta = from.eta.unwrap_or(if from.inside { 1.0 / here.specular_ior } else { here.specular_ior });
-        reflectance(&seen_through(&here, &self.tables, wo, from.inside, eta), wo, samples)
+        reflectance(&bsdf_for(&here, &self.tables, wo, from.inside, eta), wo, samples)
     }
 }
 
@@ -246,14 +256,14 @@ pub struct FurnaceView {
 
 /// BSDF of a material seen from outside.
 #[cfg(test)]
-pub(super) fn seen<'a>(here: &Parameters, tables: &'a Tables, wo: Vec3) -> Bsdf<'a> {
-    seen_through(here, tables, wo, false, here.specular_ior)
+pub(super) fn bsdf_from_outside<'a>(here: &Parameters, tables: &'a Tables, wo: Vec3) -> Bsdf<'a> {
+    bsdf_for(here, tables, wo, false, here.specular_ior)
 }
 
-fn seen_through<'a>(here: &Parameters, tables: &'a Tables, wo: Vec3, inside: bool, eta: f32) -> Bsdf<'a> {
+fn bsdf_for<'a>(here: &Parameters, tables: &'a Tables, wo: Vec3, inside: bool, eta: f32) -> Bsdf<'a> {
     let view = layers::View { lanes: &Lanes::Rgb, wo, normal: Vec3::Z, inside, eta };
     let mut bsdf = Bsdf::default();
-    layers::scattering(&mut bsdf, 1.0, here, tables, view);
+    layers::push_lobes(&mut bsdf, 1.0, here, tables, view);
     bsdf
 }
 
