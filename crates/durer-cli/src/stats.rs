@@ -39,7 +39,9 @@ impl Stages {
         complain("rays");
         complain(&format!("  {:>12}  in total, for {} samples", statistics.rays, statistics.samples));
         complain(&format!("  {:>12.2}  million per second", statistics.rays as f64 / rendering.max(1e-9) / 1e6));
-        if let Some(Profile { samples, rays, time, kernel }) = profile(world, part.job(), SAMPLES).map_err(failed)? {
+        if let Some(Profile { samples, rays, time, intersection_time: kernel }) =
+            profile(world, part.job(), SAMPLES).map_err(failed)?
+        {
             complain(&format!("{samples} samples repeated on one thread"));
             for (name, count) in rays.iter().filter(|(_, count)| *count > 0) {
                 complain(&format!("  {count:>12}  {name} rays"));

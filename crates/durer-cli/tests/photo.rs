@@ -6,7 +6,7 @@ mod common;
 use common::{TestFolder, browser, corpus};
 use durer::image::read8;
 use durer_photo::format::{projective_camera, read};
-use durer_photo::geometry::align::cameras as aligned;
+use durer_photo::geometry::align::align_cameras as aligned;
 use durer_photo::model::axis_angle_of;
 use durer_photo::{Lens, Pose, Reconstruction};
 use nalgebra::Vector3;
@@ -118,7 +118,7 @@ fn photographs_of_a_known_scene_give_its_cameras() {
     browser::sees(&place, "tour.html", include_str!("common/walk.js"), &walked);
     place.refused(2, "photo explain solved --camera 77.png", &["no photograph `77.png`; known photographs: 00.png"]);
     let all = read(&place.path("solved")).unwrap();
-    assert_eq!(all.registered(), 20);
+    assert_eq!(all.registered_count(), 20);
     let (far, angle) = differences(&all, &cameras());
     let focal = (all.lenses[0].focal / FOCAL - 1.0).abs();
     println!("{far} {angle} {focal}");

@@ -34,7 +34,7 @@ pub(super) fn compile(
                 Solid::Mix(mix) => mix.share_texture.as_ref().and_then(|name| loader.number_map(name, diagnostics)),
                 _ => None,
             };
-            Material::Solid(solid.clone(), to_pattern, picture)
+            Material::Mix(solid.clone(), to_pattern, picture)
         }
         scene::Material::Principled(layers) => {
             let maps = loader.maps(layers, diagnostics);
@@ -54,7 +54,7 @@ pub(super) fn compile(
                 tinted: true,
                 emission: (radiance.max_element() > 0.0).then_some(emission),
                 principled: Some(Arc::new(Principled {
-                    written: layers.clone(),
+                    definition: layers.clone(),
                     maps,
                     parameters: Parameters::of(layers),
                     tables,
