@@ -6,7 +6,7 @@ mod common;
 use common::{TestFolder, browser, corpus};
 use durer::image::read8;
 use durer_photo::format::{projective_camera, read};
-use durer_photo::geometry::align::align_cameras as aligned;
+use durer_photo::geometry::align::align_cameras;
 use durer_photo::model::axis_angle_of;
 use durer_photo::{Lens, Pose, Reconstruction};
 use nalgebra::Vector3;
@@ -53,7 +53,7 @@ fn cameras() -> Vec<Pose> {
 /// a camera, and largest angle in degrees.
 fn differences(all: &Reconstruction, truth: &[Pose]) -> (f64, f64) {
     let found: Vec<Pose> = all.views.iter().map(|view| view.pose.unwrap()).collect();
-    let there = aligned(&found, truth).unwrap();
+    let there = align_cameras(&found, truth).unwrap();
     let (mut place, mut angle) = (0.0_f64, 0.0_f64);
     for (found, truth) in found.iter().zip(truth) {
         place = place.max((there.apply(&found.center()) - truth.center()).norm());

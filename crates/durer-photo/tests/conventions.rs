@@ -353,7 +353,7 @@ fn compressed_files_are_decompressed() {
 }
 
 #[test]
-fn row_errors_have_their_place() {
+fn row_errors_have_their_position() {
     let reread = |text: &str| read_control("c", text.as_bytes(), &["a.jpg", "b.jpg"]).err().unwrap().to_string();
     for (text, wanted) in [
         ("0 0 0 a.jpg 1 2\n0 0 nan b.jpg 1 2\n", "c:2:5: expected one of X Y Z, found `nan`"),

@@ -7,7 +7,7 @@ use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::aov::Aov;
 use durer::image::Layer;
 use durer::options::RenderOptions;
-use durer::render::explain::Names;
+use durer::render::explain::SceneNames;
 use durer::render::{self, RenderOutcome};
 use durer::report;
 use durer::source::SourceError;
@@ -179,7 +179,7 @@ impl World {
                 let mut result = Ok(());
                 while wait.recv_timeout(POLL_INTERVAL) == Err(mpsc::RecvTimeoutError::Timeout) {
                     if result.is_ok() {
-                        result = poll(watch.as_ref(), control.done.load(Relaxed), control.all.load(Relaxed));
+                        result = poll(watch.as_ref(), control.done_work.load(Relaxed), control.total_work.load(Relaxed));
                         control.cancel.store(result.is_err(), Relaxed);
                     }
                 }
@@ -258,7 +258,7 @@ impl World {
         let job = options(&pairs)?.resolve(&self.loaded).map_err(PyValueError::new_err)?;
         let explain = || render::explain::explain(&self.world, &job, pixel.0, pixel.1);
         let found = install(py, None, explain).map_err(|error| PyValueError::new_err(error.to_string()))?;
-        let names = Names { scene: &self.loaded.scene, world: &self.world, files: &self.files };
+        let names = SceneNames { scene: &self.loaded.scene, world: &self.world, files: &self.files };
         Ok(report::explanation(&report::Subject::Pixel(found), &names).to_string())
     }
 

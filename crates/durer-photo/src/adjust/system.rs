@@ -38,7 +38,8 @@ struct SystemObservation {
 pub struct AdjustmentProblem {
     options: Options,
     observations: Vec<SystemObservation>,
-    /// Index of each point's first observation in `observations`, followed by the number of observations.
+    /// Index of each point's first observation in `observations`, followed by the number of
+    /// observations.
     starts: Vec<usize>,
     /// Consecutive points that are summed by one task, with similar numbers of observations. The
     /// division depends only on the problem, so the order of summation does too.

@@ -13,7 +13,7 @@ use super::polynomial::real_roots;
 use crate::Pose;
 use nalgebra::Vector3;
 
-/// Returns the poses from which three world points are in_camera in three directions. The directions
+/// Returns the poses from which three world points are seen in three directions. The directions
 /// need not have length 1.
 pub fn p3p(points: &[Vector3<f64>; 3], directions: &[Vector3<f64>; 3]) -> Vec<Pose> {
     let [j1, j2, j3] = directions.map(|direction| direction.normalize());

@@ -249,7 +249,7 @@ fn tables_of_a_material_are_computed_before_rays_are_traced() {
 }
 
 #[test]
-fn what_reaches_far_beyond_the_others_is_no_part_of_a_grid() {
+fn outlying_objects_are_excluded_from_the_grid() {
     let balls: String = (0..500).map(|i| format!("Sphere {{ center {} {} 0 radius 0.4 }} ", i % 25, i / 25)).collect();
     for far in ["Cylinder { base 0 0 -3 top 0 0.1 -1.2e15 radius 1 }", "Sphere { center 0 1e12 -9 radius 7e11 }"] {
         let text = format!("{CAMERA}Group {{ {far} {balls} }}");

@@ -58,8 +58,8 @@ impl CompactPixel {
     }
 }
 
-/// Sums of one pixel in [`PackedFilm::UnitWeights`], where the weight equals the number of samples. Stored
-/// as 32-bit words to avoid padding.
+/// Sums of one pixel in [`PackedFilm::UnitWeights`], where the weight equals the number of samples.
+/// Stored as 32-bit words to avoid padding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EqualWeights {
     color: [[u32; 2]; 3],

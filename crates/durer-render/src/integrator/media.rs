@@ -144,8 +144,8 @@ impl MediumStack {
         MediumStack(inside)
     }
 
-    /// Returns the transition of a ray through the surface it hit, with nested and overlapping glass,
-    /// as in Dürer's own dialect.
+    /// Returns the transition of a ray through the surface it hit, with nested and overlapping
+    /// glass, as in Dürer's own dialect.
     pub(crate) fn nested_transition(
         &self,
         world: &World,

@@ -152,9 +152,9 @@ impl Tree {
     /// Computes the ray's colour from the terms. It equals the pixel's colour bit for bit.
     ///
     /// For a path, adds throughput · value of each light source in the order in which the path
-    /// finds them; see [`TraceNode::path_contribution`]. The values of rays in such a tree have rounding
-    /// errors. Other integrators report no throughput; for them, sums the terms of each node, see
-    /// [`TraceNode::sum`].
+    /// finds them; see [`TraceNode::path_contribution`]. The values of rays in such a tree have
+    /// rounding errors. Other integrators report no throughput; for them, sums the terms of each
+    /// node, see [`TraceNode::sum`].
     pub fn sum(&self) -> Color {
         self.color(self.root.path_contribution().unwrap_or_else(|| self.root.sum()))
     }

@@ -2,8 +2,8 @@
 //!
 //! The mean of n samples has a standard error. Photon mapping also has a bias, since it averages
 //! over a neighbourhood. The bias is estimated from the same photons with a second-order kernel
-//! (see [`crate::integrator::PhotonTracer::corrected`]). Let M be the mean, C the corrected mean and s
-//! the standard error of C. At some confidence, the true value is within t s of C, where t is
+//! (see [`crate::integrator::PhotonTracer::corrected`]). Let M be the mean, C the corrected mean
+//! and s the standard error of C. At some confidence, the true value is within t s of C, where t is
 //! Student's quantile with n - 1 degrees of freedom. It is therefore within |M - C| + t s of M.
 //!
 //! Source: Hachisuka, Jarosz and Jensen, *A Progressive Error Estimation Framework for Photon

@@ -28,7 +28,8 @@ pub struct Control {
     pub done_work: AtomicU64,
     /// Number of rays traced so far.
     pub rays: AtomicU64,
-    /// True if `total_work` is the total for several renders, whose work accumulates in `done_work`.
+    /// True if `total_work` is the total for several renders, whose work accumulates in
+    /// `done_work`.
     pub accumulates: bool,
 }
 

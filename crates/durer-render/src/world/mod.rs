@@ -53,7 +53,8 @@ pub struct World {
     has_sheets: bool,
     /// Indices of objects with an interior medium, in which a camera could be.
     bodies: Vec<u32>,
-    /// [`Object::half_area`] of each object, computed at first use. Empty if light enters no object.
+    /// [`Object::half_area`] of each object, computed at first use. Empty if light enters no
+    /// object.
     half_areas: Vec<OnceLock<Option<f32>>>,
     /// Simple shapes outside the acceleration structure, tested eight at a time.
     pub(crate) packs: PrimitivePacks,

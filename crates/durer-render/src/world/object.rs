@@ -313,8 +313,8 @@ impl Object {
         }
     }
 
-    /// Returns [`Object::packing_cost`] for packs that are tested with a single ray. Excludes boxes: they
-    /// need six divisions each, so a tree is faster for them.
+    /// Returns [`Object::packing_cost`] for packs that are tested with a single ray. Excludes
+    /// boxes: they need six divisions each, so a tree is faster for them.
     pub(crate) fn single_ray_packing_cost(&self) -> Option<usize> {
         self.packing_cost().filter(|_| !matches!(&self.geometry, Geometry::Primitive(Primitive::Cuboid(_))))
     }

@@ -133,8 +133,8 @@ pub enum DirectSampling {
     Lights,
     /// BSDF sampling alone. Light samples count only for lights that BSDF sampling cannot hit.
     Bsdf,
-    /// [`DirectSampling::Lights`] with a fixed point on each emitter: the centre of a sphere, disc or
-    /// rectangle. Shadows become hard. Biased; for teaching only.
+    /// [`DirectSampling::Lights`] with a fixed point on each emitter: the centre of a sphere, disc
+    /// or rectangle. Shadows become hard. Biased; for teaching only.
     #[serde(rename = "middle")]
     Center,
 }

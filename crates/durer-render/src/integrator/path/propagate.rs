@@ -141,7 +141,8 @@ impl Path<'_> {
         self.cancel.is_some_and(|cancel| cancel.load(Relaxed))
     }
 
-    /// Returns the transition of a ray through a surface, or `None` if light cannot enter the object.
+    /// Returns the transition of a ray through a surface, or `None` if light cannot enter the
+    /// object.
     pub(super) fn transition(
         &self,
         at: &SurfaceInteraction,

@@ -164,10 +164,11 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// Value of [`Receiver::uniform_threshold`] for points that the camera sees, also through delta lobes.
+    /// Value of [`Receiver::uniform_threshold`] for points that the camera sees, also through delta
+    /// lobes.
     pub const UNIFORM_THRESHOLD: f32 = 0.1;
-    /// Value of [`Receiver::uniform_threshold`] for later bounces. Many of them are averaged, so each choice of a
-    /// light matters less.
+    /// Value of [`Receiver::uniform_threshold`] for later bounces. Many of them are averaged, so
+    /// each choice of a light matters less.
     pub const INDIRECT_UNIFORM_THRESHOLD: f32 = 0.3;
 }
 
