@@ -124,8 +124,8 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         say(&serde_json::to_string_pretty(&report::explanation(&subject, &names))?);
         return Ok(());
     }
-    let deepest = args.depth.map_or(usize::MAX, |depth| depth as usize);
-    let detail = ExplainOptions { min_share: (args.min / 100.0) as f32, max_depth: deepest, transfer };
+    let max_depth = args.depth.map_or(usize::MAX, |depth| depth as usize);
+    let detail = ExplainOptions { min_share: (args.min / 100.0) as f32, max_depth, transfer };
     let lines = match &subject {
         Subject::Ray(light) => ray_text(light, &names, &detail),
         Subject::Pixel(pixel) => pixel.lines(&names, sample, &detail),

@@ -15,7 +15,7 @@ pub const MODELS: [(&str, i32, usize); 5] =
 
 /// Creates a lens from the parameters of a model.
 pub fn lens(model: usize, size: [u32; 2], p: &[f64]) -> Result<Lens, String> {
-    let (focal, vertical, center, radial) = match model {
+    let (focal, vertical, principal_point, distortion) = match model {
         0 => (p[0], p[0], [p[1], p[2]], [0.0; 2]),
         1 => (p[0], p[1], [p[2], p[3]], [0.0; 2]),
         2 => (p[0], p[0], [p[1], p[2]], [p[3], 0.0]),
@@ -28,7 +28,7 @@ pub fn lens(model: usize, size: [u32; 2], p: &[f64]) -> Result<Lens, String> {
     if focal <= 0.0 || vertical <= 0.0 {
         return Err("focal lengths must be positive".into());
     }
-    Ok(Lens { size, focal, aspect: vertical / focal, principal_point: center, distortion: radial })
+    Ok(Lens { size, focal, aspect: vertical / focal, principal_point, distortion })
 }
 
 /// Converts a lens to an index into [`MODELS`] and the parameters of that model.

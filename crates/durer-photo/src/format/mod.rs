@@ -50,8 +50,8 @@ pub struct Convention {
 /// Coordinate conventions of all formats, as shown in docs/photographs.md.
 pub const CONVENTIONS: [Convention; 9] = {
     const fn row(f: [&'static str; 8]) -> Convention {
-        let [name, files, way, frame, rotation, translation, pixels, lens] = f;
-        Convention { name, files, direction: way, frame, rotation, translation, pixels, lens }
+        let [name, files, direction, frame, rotation, translation, pixels, lens] = f;
+        Convention { name, files, direction, frame, rotation, translation, pixels, lens }
     }
     const T: &str = "P = R X + t";
     const CORNER: &str = "pixels from the upper left corner, y down";

@@ -50,13 +50,13 @@ pub fn solve_dlt(points: &[Vector3<f64>], pixels: &[Vector2<f64>]) -> Option<Dlt
             _ => 0.0,
         }
     });
-    let (v, singular) = null_vector(&rows);
+    let (v, singular_values) = null_vector(&rows);
     let back = Matrix3::new(1.0 / s, 0.0, m.x, 0.0, 1.0 / s, m.y, 0.0, 0.0, 1.0);
     let mut normal = Matrix4::identity() * scale;
     normal.fixed_view_mut::<3, 1>(0, 3).copy_from(&(-scale * mean));
     normal[(3, 3)] = 1.0;
     let matrix = back * Matrix3x4::from_row_slice(v.as_slice()) * normal;
-    matrix.iter().all(|c| c.is_finite()).then_some(DltSolution { matrix, singular_values: singular })
+    matrix.iter().all(|c| c.is_finite()).then_some(DltSolution { matrix, singular_values })
 }
 
 /// Decomposes P into K, R, and t. The last element of K is 1, and signs are chosen so that depths

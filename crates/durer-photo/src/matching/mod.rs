@@ -142,11 +142,11 @@ pub fn describe(photo: &Photo, options: &Options) -> ImageFeatures {
     let [width, height] = photo.size();
     let guess = f64::from(width) / (2.0 * libm::tan(options.field_of_view.to_radians() / 2.0));
     let guessed = || (guess, format!("{GUESS}: {} degrees across", options.field_of_view));
-    let (focal, focal_from) = photo.exif.focal.clone().filter(|_| !options.ignore_exif).unwrap_or_else(guessed);
+    let (focal, focal_source) = photo.exif.focal.clone().filter(|_| !options.ignore_exif).unwrap_or_else(guessed);
     let colors = detected.iter().map(|(f, _)| photo.color(f64::from(f.x), f64::from(f.y))).collect();
     let (name, size) = (photo.name.clone(), [width, height]);
     ImageFeatures {
-        picture: MatchedPhoto { name, size, focal, focal_source: focal_from, lens: 0, features: detected.len() },
+        picture: MatchedPhoto { name, size, focal, focal_source, lens: 0, features: detected.len() },
         camera: photo.exif.camera.clone(),
         descriptors: Descriptors::new(detected.iter().map(|(_, descriptor)| descriptor)),
         features: detected.into_iter().map(|(feature, _)| feature).collect(),

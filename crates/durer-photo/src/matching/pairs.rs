@@ -86,9 +86,9 @@ pub fn verify_matches(places: &[Correspondence], threshold: f64, least: usize, s
     let pairs: Vec<Correspondence> = inliers.iter().map(|i| places[*i]).collect();
     let plane = ransac(&HomographyProblem(&pairs), &RansacOptions { samples: 500, ..search });
     let near = |h: &Matrix3<f64>| pairs.iter().filter(|(a, b)| (map_pixel(h, a) - b).norm() < threshold).count();
-    let planar = plane.map_or(0.0, |(h, _)| near(&h) as f64 / pairs.len() as f64);
+    let planar_fraction = plane.map_or(0.0, |(h, _)| near(&h) as f64 / pairs.len() as f64);
     let mut distances: Vec<f64> = pairs.iter().map(|(a, b): &(Vector2<f64>, Vector2<f64>)| (a - b).norm()).collect();
     distances.sort_by(f64::total_cmp);
-    let moved = distances[distances.len() / 2];
-    Some(VerifiedMatches { inliers, planar_fraction: planar, median_shift: moved })
+    let median_shift = distances[distances.len() / 2];
+    Some(VerifiedMatches { inliers, planar_fraction, median_shift })
 }

@@ -24,8 +24,8 @@ impl MediumTransition {
 
     /// Returns the transition without surrounding media: the index is `ior` inside and 1 outside.
     pub(crate) fn without_surroundings(self, ior: f32, leaving: bool) -> MediumTransition {
-        let (here, there) = if leaving { (ior, 1.0) } else { (1.0, ior) };
-        MediumTransition { ior_front: here, ior_behind: there, displaced: false, ..self }
+        let (ior_front, ior_behind) = if leaving { (ior, 1.0) } else { (1.0, ior) };
+        MediumTransition { ior_front, ior_behind, displaced: false, ..self }
     }
 }
 
@@ -168,8 +168,8 @@ impl MediumStack {
         let entry = MediumEntry::new(world, object, ior);
         if !leaving {
             let behind = self.with_object(entry);
-            let hidden = !self.is_air() && behind.object() == self.object() && self.object() != Some(object);
-            return MediumTransition { ior_front: self.ior(), ior_behind: behind.ior(), behind, displaced: hidden };
+            let displaced = !self.is_air() && behind.object() == self.object() && self.object() != Some(object);
+            return MediumTransition { ior_front: self.ior(), ior_behind: behind.ior(), behind, displaced };
         }
         let stack = if self.contains(object) {
             self.clone()
@@ -191,8 +191,8 @@ impl MediumStack {
             };
         };
         let behind = stack.without_object(object);
-        let hidden = stack.object() != Some(object);
-        MediumTransition { ior_front: stack.ior(), ior_behind: behind.ior(), behind, displaced: hidden }
+        let displaced = stack.object() != Some(object);
+        MediumTransition { ior_front: stack.ior(), ior_behind: behind.ior(), behind, displaced }
     }
 }
 

@@ -128,12 +128,12 @@ pub(super) struct CameraRays<'a> {
 
 impl<'a> CameraRays<'a> {
     pub(super) fn new(world: &'a World, job: &'a Job) -> Self {
-        let warp = match job.sampling {
+        let filter_sampler = match job.sampling {
             Sampling::Filtered { filter, .. } => Some(filter.sampler()),
             _ => None,
         };
         let raster = raster(world, job.width, job.height);
-        CameraRays { world, job, raster, filter_sampler: warp, has_aperture: world.camera().has_aperture() }
+        CameraRays { world, job, raster, filter_sampler, has_aperture: world.camera().has_aperture() }
     }
 
     /// Returns the magnitude of the sample weights.
@@ -150,9 +150,9 @@ impl<'a> CameraRays<'a> {
     /// Generates a sample. Only for sampling methods whose samples affect their own pixel alone.
     pub(super) fn sample(&self, pixel: &Pixel, sample: u32) -> PixelSample {
         let middle = Vec2::splat(0.5);
-        let (place, lens, weight) = match (self.job.sampling, &self.filter_sampler) {
-            (Sampling::Filtered { .. }, Some(warp)) => {
-                let (offset, weight) = warp.sample(pixel.positions.point(sample));
+        let (film_position, lens, weight) = match (self.job.sampling, &self.filter_sampler) {
+            (Sampling::Filtered { .. }, Some(filter_sampler)) => {
+                let (offset, weight) = filter_sampler.sample(pixel.positions.point(sample));
                 let lens = if self.has_aperture { pixel.id.sequence(LENS_DIMENSION).point(sample) } else { middle };
                 (pixel.center + offset, lens, weight)
             }
@@ -162,8 +162,8 @@ impl<'a> CameraRays<'a> {
             // One ray through the centres of the pixel and the lens.
             _ => (pixel.center, middle, 1.0),
         };
-        let at = CameraSample { point: self.raster.point(place), pixel: pixel.point, lens };
-        PixelSample { film_position: place, lens, weight, ray: self.world.camera().ray(self.world.camera_frame(), &at) }
+        let at = CameraSample { point: self.raster.point(film_position), pixel: pixel.point, lens };
+        PixelSample { film_position, lens, weight, ray: self.world.camera().ray(self.world.camera_frame(), &at) }
     }
 
     /// Generates the rays and weights of a group of samples. The results equal those of
@@ -175,7 +175,7 @@ impl<'a> CameraRays<'a> {
             }
         };
         match (&self.filter_sampler, self.job.sampling) {
-            (Some(warp), _) => run_plain(AimKernel { aim: self, warp, of, take }),
+            (Some(filter_sampler), _) => run_plain(AimKernel { aim: self, filter_sampler, of, take }),
             (None, Sampling::Center) => {
                 let points = [0, 1].map(|axis| from_fn(|i| of.pixel(i).point[axis]));
                 self.rays(of, points, [[0.5; BATCH]; 2], |i, ray| take(i, ray, 1.0));
@@ -212,9 +212,9 @@ impl<'a> CameraRays<'a> {
         sample: u32,
     ) -> (PixelSample, Vec2) {
         let position = sampler.pixel_position(self.job.seed, x, y, sample, samples);
-        let (place, lens) = (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample));
-        let ray = camera_ray(self.world, &self.raster, (x, y), place, lens);
-        (PixelSample { film_position: place, lens, weight: 1.0, ray }, position)
+        let (film_position, lens) = (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample));
+        let ray = camera_ray(self.world, &self.raster, (x, y), film_position, lens);
+        (PixelSample { film_position, lens, weight: 1.0, ray }, position)
     }
 
     /// Generates the sample of a sub-pixel, for the course of 2012.
@@ -236,7 +236,7 @@ impl<'a> CameraRays<'a> {
 /// SIMD kernel that generates the samples of a group for sampling with a reconstruction filter.
 struct AimKernel<'a, S, F> {
     aim: &'a CameraRays<'a>,
-    warp: &'a FilterSampler,
+    filter_sampler: &'a FilterSampler,
     of: &'a S,
     take: F,
 }
@@ -246,12 +246,12 @@ impl<S: SampleGroup, F: FnMut(usize, Option<Ray>, f32)> PlainKernel for AimKerne
 
     #[inline(always)]
     fn run(self) {
-        let AimKernel { aim, warp, of, mut take } = self;
+        let AimKernel { aim, filter_sampler, of, mut take } = self;
         let (mut numbers, mut sequences) = ([0; BATCH], [of.pixel(0).positions; BATCH]);
         for i in 0..BATCH {
             (numbers[i], sequences[i]) = (of.number(i), of.pixel(i).positions);
         }
-        let (offsets, weights) = warp.samples(&Sequence::points(&sequences, &numbers));
+        let (offsets, weights) = filter_sampler.samples(&Sequence::points(&sequences, &numbers));
         let mut places = [[0.0; BATCH]; 2];
         for axis in 0..2 {
             for i in 0..BATCH {

@@ -200,12 +200,12 @@ impl Job {
                 return refuse(format!("the filter's radius {size} must be from 0 to {}", Job::MAX_FILTER_RADIUS));
             }
         }
-        let RenderSettings { bounces, min_weight: least_weight, .. } = self.settings;
+        let RenderSettings { bounces, min_weight, .. } = self.settings;
         if bounces > RenderSettings::MAX_BOUNCES {
             return refuse(format!("bounces {bounces} must be at most {}", RenderSettings::MAX_BOUNCES));
         }
-        if !(least_weight >= 0.0 && least_weight.is_finite()) {
-            return refuse(format!("the minimum throughput {least_weight} must not be less than 0"));
+        if !(min_weight >= 0.0 && min_weight.is_finite()) {
+            return refuse(format!("the minimum throughput {min_weight} must not be less than 0"));
         }
         if let Some(noise) = self.noise.filter(|noise| !(*noise > 0.0 && noise.is_finite())) {
             return refuse(format!("the noise threshold {noise} must be more than 0"));

@@ -231,15 +231,15 @@ impl<'a> SampleSource<'a> {
         rays: &mut RayCount,
     ) -> Result<(), Cancelled> {
         self.check()?;
-        let SampleRays { runs, count, weights, ray_count: seen, rays: aims, of, colors } = &mut *buffer;
-        let (of, colors) = (&of[..*seen], &mut colors[..*seen]);
+        let SampleRays { runs, count, weights, ray_count, rays: aims, of, colors } = &mut *buffer;
+        let (of, colors) = (&of[..*ray_count], &mut colors[..*ray_count]);
         let begin = |ray: usize| {
             let (run, sample) = of[ray];
             let Run { x, y, id, .. } = runs[run as usize];
             at.set((x, y, Some(sample)));
             id.of_sample(sample)
         };
-        self.integrator.radiances(&aims[..*seen], begin, rays, colors);
+        self.integrator.radiances(&aims[..*ray_count], begin, rays, colors);
         let mut next = 0;
         for (number, run) in runs.iter().enumerate() {
             let end = runs.get(number + 1).map_or(*count, |next| next.start);

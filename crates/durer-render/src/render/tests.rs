@@ -481,7 +481,7 @@ fn writing_row_by_row_gives_the_same_file() {
     let fisheye = TEXT.replace("PerspectiveCamera", "FisheyeCamera").replace("angle 40", "angle 180");
     let crop = Some(PixelRect { left: 5, top: 3, width: 20, height: 24 });
     let tall = Job { width: 5, height: 200, ..Job::default() };
-    for (text, job, most_tiles) in [
+    for (text, job, max_tiles) in [
         (TEXT, small(), None),
         (TEXT, Job { sampling: filtered(3), crop, ..small() }, None),
         (TEXT, tall, None),
@@ -491,11 +491,11 @@ fn writing_row_by_row_gives_the_same_file() {
     ] {
         let world = testing::read(text);
         let part = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
-        let control = Control { max_tiles: most_tiles, threads: Some(1), ..Control::default() };
+        let control = Control { max_tiles, threads: Some(1), ..Control::default() };
         part.render(&world, &control, &mut |_, _| {}).unwrap();
         let layers = part.pictures().unwrap().pictures;
         let is_open = layers[0].coverage.is_some();
-        assert_eq!(is_open, most_tiles.is_some() || text == fisheye);
+        assert_eq!(is_open, max_tiles.is_some() || text == fisheye);
         for format in FORMATS.iter().filter(|format| format.rows.is_some()) {
             let (mut by_rows, mut at_once, mut seen) = (Vec::new(), Vec::new(), Vec::new());
             part.write_colors(format, Default::default(), &mut by_rows, |colors| seen.extend_from_slice(colors))

@@ -422,8 +422,8 @@ impl Csg {
     fn adds(&self, leaf: u32, state: &State) -> bool {
         let mut adds = state.inside[leaf as usize];
         let mut edge = Some(self.leaves[leaf as usize].edge);
-        while let Some(ParentLink { join, is_subtracted: cut }) = edge {
-            adds ^= cut;
+        while let Some(ParentLink { join, is_subtracted }) = edge {
+            adds ^= is_subtracted;
             edge = self.joins[join as usize].edge;
         }
         adds

@@ -62,9 +62,9 @@ impl CsgTree {
         let (mut flat, mut flat_cut) = (Vec::new(), Vec::new());
         for part in parts {
             match part {
-                CsgTree::Operation { op: BoolOp::Intersection, parts, subtracted: cut } => {
+                CsgTree::Operation { op: BoolOp::Intersection, parts, subtracted } => {
                     flat.extend(parts);
-                    flat_cut.extend(cut);
+                    flat_cut.extend(subtracted);
                 }
                 other => flat.push(other),
             }
@@ -114,8 +114,8 @@ impl CsgTree {
     pub fn parts(&self) -> Vec<&Object> {
         match self {
             CsgTree::Operand(object) => vec![object],
-            CsgTree::Operation { parts, subtracted: cut, .. } => {
-                parts.iter().chain(cut).flat_map(CsgTree::parts).collect()
+            CsgTree::Operation { parts, subtracted, .. } => {
+                parts.iter().chain(subtracted).flat_map(CsgTree::parts).collect()
             }
         }
     }
@@ -130,8 +130,8 @@ impl CsgTree {
     fn boxed_pieces(self) -> Vec<Piece> {
         match self {
             CsgTree::Operand(_) => vec![boxed(self)],
-            CsgTree::Operation { op: BoolOp::Intersection, parts, subtracted: cut } => intersected(parts, cut),
-            CsgTree::Operation { op: rule, parts, .. } => {
+            CsgTree::Operation { op: BoolOp::Intersection, parts, subtracted } => intersected(parts, subtracted),
+            CsgTree::Operation { op, parts, .. } => {
                 // Keep the index of the part with each of its pieces.
                 let pieces: Vec<(usize, Piece)> = parts
                     .into_iter()
@@ -144,7 +144,7 @@ impl CsgTree {
                     clusters.resize_with(clusters.len().max(cluster + 1), Vec::new);
                     clusters[cluster].push((part, solid));
                 }
-                clusters.into_iter().map(|cluster| boxed(rejoined(rule, cluster))).collect()
+                clusters.into_iter().map(|cluster| boxed(rejoined(op, cluster))).collect()
             }
         }
     }
@@ -157,7 +157,7 @@ fn boxed(solid: CsgTree) -> Piece {
 }
 
 /// Combines pieces of several parts into one solid. Pieces of the same part are disjoint.
-fn rejoined(rule: BoolOp, cluster: Vec<(usize, CsgTree)>) -> CsgTree {
+fn rejoined(op: BoolOp, cluster: Vec<(usize, CsgTree)>) -> CsgTree {
     let mut parts: Vec<(usize, Vec<CsgTree>)> = Vec::new();
     for (part, solid) in cluster {
         match parts.last_mut().filter(|last| last.0 == part) {
@@ -165,12 +165,12 @@ fn rejoined(rule: BoolOp, cluster: Vec<(usize, CsgTree)>) -> CsgTree {
             None => parts.push((part, vec![solid])),
         }
     }
-    CsgTree::join(rule, parts.into_iter().map(|(_, pieces)| CsgTree::union(pieces)).collect())
+    CsgTree::join(op, parts.into_iter().map(|(_, pieces)| CsgTree::union(pieces)).collect())
 }
 
 /// Intersects each piece of the first part with the pieces of the other parts that it touches, and
 /// subtracts the pieces of `cut`.
-fn intersected(parts: Vec<CsgTree>, cut: Vec<CsgTree>) -> Vec<Piece> {
+fn intersected(parts: Vec<CsgTree>, subtracted: Vec<CsgTree>) -> Vec<Piece> {
     let mut parts = parts.into_iter();
     let first = parts.next().map_or(Vec::new(), CsgTree::boxed_pieces);
     // Build the operations at the end, because adding part by part would take quadratic time.
@@ -196,7 +196,7 @@ fn intersected(parts: Vec<CsgTree>, cut: Vec<CsgTree>) -> Vec<Piece> {
     let mut found: Vec<Piece> = found.into_iter().map(joined).collect();
     found.retain(|(_, bounds)| bounds.is_none_or(|b| !b.is_empty()));
     let boxes: Vec<Option<Aabb>> = found.iter().map(|piece| piece.1).collect();
-    let cut: Vec<Piece> = cut.into_iter().flat_map(CsgTree::boxed_pieces).collect();
+    let cut: Vec<Piece> = subtracted.into_iter().flat_map(CsgTree::boxed_pieces).collect();
     let Some(near) = touching(&boxes, &cut) else {
         return vec![boxed(CsgTree::intersection(vec![whole(found)], vec![whole(cut)]))];
     };

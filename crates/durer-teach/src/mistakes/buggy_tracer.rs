@@ -454,7 +454,7 @@ impl<'w> BuggyTracer<'w> {
         let leaving = self.right.sees_back(at);
         let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if leaving { -n } else { n });
         let n = if ray.dir().dot(n) < 0.0 { n } else { n_geo };
-        let MediumTransition { ior_front: here, ior_behind: there, behind, .. } = transition;
+        let MediumTransition { ior_front, ior_behind, behind, .. } = transition;
         let eta = match bugs.glass {
             Glass::Right
             | Glass::Straight
@@ -462,8 +462,8 @@ impl<'w> BuggyTracer<'w> {
             | Glass::RootAdded
             | Glass::SignChanged
             | Glass::NoRoot
-            | Glass::Unsquared => here / there,
-            Glass::Inverted | Glass::Exchanged => there / here,
+            | Glass::Unsquared => ior_front / ior_behind,
+            Glass::Inverted | Glass::Exchanged => ior_behind / ior_front,
             Glass::NotSwapped => 1.0 / ior,
         };
         let mirrored = mirrored(ray.dir(), n, bugs.mirror);
@@ -492,12 +492,12 @@ impl<'w> BuggyTracer<'w> {
         };
         let divided = fresnel && self.settings.reflection && self.settings.refraction;
         if divided && bugs.fresnel != Fresnel::None {
-            let ratio = (there - here) / (there + here);
+            let ratio = (ior_behind - ior_front) / (ior_behind + ior_front);
             let schlick = |t| match bugs.fresnel {
                 Fresnel::Constant => ratio * ratio,
                 Fresnel::Share(share) => share,
                 Fresnel::Unsquared | Fresnel::Power(_) => {
-                    let slow = if there < here { t } else { ray.dir() };
+                    let slow = if ior_behind < ior_front { t } else { ray.dir() };
                     let rest = 1.0 - slow.dot(n).abs();
                     let r0 = if bugs.fresnel == Fresnel::Unsquared { ratio.abs() } else { ratio * ratio };
                     let power = if let Fresnel::Power(power) = bugs.fresnel { power } else { 5.0 };
@@ -509,7 +509,8 @@ impl<'w> BuggyTracer<'w> {
                     r0 + (1.0 - r0) * rest * rest * rest * rest * rest
                 }
                 _ => {
-                    let indices = if bugs.glass == Glass::Exchanged { (there, here) } else { (here, there) };
+                    let indices =
+                        if bugs.glass == Glass::Exchanged { (ior_behind, ior_front) } else { (ior_front, ior_behind) };
                     let before = if rules.exit_r0 { 1.0 } else { indices.0 };
                     fresnel_share(ray.dir(), n, t, indices, before)
                 }

@@ -66,8 +66,8 @@ impl TestFolder {
     }
 
     fn reuse(&self) -> (usize, usize) {
-        let CacheStatistics { built: made, reused } = self.cache.as_ref().unwrap().statistics();
-        (made, reused)
+        let CacheStatistics { built, reused } = self.cache.as_ref().unwrap().statistics();
+        (built, reused)
     }
 }
 

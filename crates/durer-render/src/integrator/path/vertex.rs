@@ -73,13 +73,14 @@ impl<'w> Path<'w> {
             (false, _) => (1, 1),
         };
         let is_seen = state.depth == 0 || state.camera_distance.is_some();
-        let far = if is_seen { Receiver::UNIFORM_THRESHOLD } else { Receiver::INDIRECT_UNIFORM_THRESHOLD };
+        let uniform_threshold =
+            if is_seen { Receiver::UNIFORM_THRESHOLD } else { Receiver::INDIRECT_UNIFORM_THRESHOLD };
         Vertex {
             kind,
             random: state.vertex_sample().pairs(),
             candidates: tries as f32,
             directions,
-            receiver: Receiver { point: kind.point(), n: kind.normal(), uniform_threshold: far },
+            receiver: Receiver { point: kind.point(), n: kind.normal(), uniform_threshold },
         }
     }
 }

@@ -48,9 +48,13 @@ impl Whitted<'_> {
         }
         let secondary_rays = self.secondary_rays(&point.at, blend, &point.transition);
         let total = blend.transparent != Color::ZERO && secondary_rays.transmitted.is_none();
-        let MediumTransition { ior_front: here, ior_behind: there, .. } = point.transition;
-        let secondary =
-            listener.begin(node, || TermKind::Secondary { here, there, fresnel: secondary_rays.fresnel, total });
+        let MediumTransition { ior_front, ior_behind, .. } = point.transition;
+        let secondary = listener.begin(node, || TermKind::Secondary {
+            here: ior_front,
+            there: ior_behind,
+            fresnel: secondary_rays.fresnel,
+            total,
+        });
         let segment = queue.segment(number);
         (segment.local, segment.branches, segment.pending) = (point.color, [Color::ZERO; 2], 0);
         segment.secondary = secondary;
@@ -83,7 +87,7 @@ impl Whitted<'_> {
         &self,
         at: &SurfaceInteraction,
         blend: SpecularBlend,
-        &MediumTransition { ior_front: here, ior_behind: there, .. }: &MediumTransition,
+        &MediumTransition { ior_front, ior_behind, .. }: &MediumTransition,
     ) -> SecondaryRays {
         let SpecularBlend { mut reflective, mut transparent, fresnel, .. } = blend;
         let (rules, leaving, dir) = (self.world.shading_rules(), self.sees_back(at), at.ray.dir());
@@ -101,15 +105,17 @@ impl Whitted<'_> {
         let transmitted = match transparent == Color::ZERO {
             true => None,
             // If the normal is not of unit length, the transmitted direction is not either.
-            false if rules.raw_refraction => refract_raw(dir, n, here / there).map(|through| through.normalize_or(dir)),
-            false => refract(dir, n, here / there),
+            false if rules.raw_refraction => {
+                refract_raw(dir, n, ior_front / ior_behind).map(|through| through.normalize_or(dir))
+            }
+            false => refract(dir, n, ior_front / ior_behind),
         };
         // If reflection or refraction is switched off, the other one gets all the light.
         let divides = fresnel && self.settings.reflection && self.settings.refraction;
         let share = divides.then(|| {
             // Total internal reflection has weight 1.
-            let before = if rules.exit_r0 { 1.0 } else { here };
-            transmitted.map_or(1.0, |through| fresnel_share(dir, n, through, (here, there), before))
+            let before = if rules.exit_r0 { 1.0 } else { ior_front };
+            transmitted.map_or(1.0, |through| fresnel_share(dir, n, through, (ior_front, ior_behind), before))
         });
         if let Some(share) = share {
             reflective *= share;
@@ -148,16 +154,16 @@ impl Whitted<'_> {
         media: &MediumStack,
     ) -> MediumTransition {
         let (known, ior) = (media.ior(), blend.ior);
-        let (here, there) = match (leaving, blend.fresnel) {
+        let (ior_front, ior_behind) = match (leaving, blend.fresnel) {
             (true, true) if known != 1.0 || self.world.shading_rules().air_at_eye => (known, 1.0),
             (true, _) => (ior, 1.0),
             (false, true) => (known, ior),
             (false, false) => (1.0, ior),
         };
         MediumTransition {
-            ior_front: here,
-            ior_behind: there,
-            behind: MediumStack::single(MediumEntry { object, ior: there, size: None }),
+            ior_front,
+            ior_behind,
+            behind: MediumStack::single(MediumEntry { object, ior: ior_behind, size: None }),
             displaced: false,
         }
     }

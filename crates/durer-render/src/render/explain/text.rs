@@ -259,19 +259,19 @@ impl Explanation {
     }
 }
 
-/// Appends the line of a sample and, if `total` is given, its tree.
+/// Appends the line of a sample and, if `tree_options` is given, its tree.
 fn sample_lines(
     sample: &ExplainedSample,
     name: String,
     names: &SceneNames,
-    whole: Option<&ExplainOptions>,
+    tree_options: Option<&ExplainOptions>,
     lines: &mut Vec<TextLine>,
 ) {
     let ExplainedSample { place, weight, light, .. } = sample;
     let color_text = light.as_ref().map_or("the camera sees nothing here".into(), |light| rgb(light.sum()));
     let text = format!("{name} at {}, {}, weight {}: {color_text}", place.x, place.y, number(*weight));
     lines.push(TextLine::plain(1, text));
-    if let (Some(light), Some(options)) = (light, whole) {
+    if let (Some(light), Some(options)) = (light, tree_options) {
         tree_lines(light, names, 2, options, lines);
     }
 }
@@ -299,9 +299,9 @@ fn tree_lines(tree: &Tree, names: &SceneNames, depth: usize, options: &ExplainOp
 impl<'a> Context<'a> {
     fn of(tree: &'a Tree) -> Self {
         let (dir, n, to_light) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
-        let whole = brightness(tree.sum()).max(f32::MIN_POSITIVE);
+        let total = brightness(tree.sum()).max(f32::MIN_POSITIVE);
         let gain = TermValue::Color(Color::ONE);
-        Context { tree, gain, total: whole, dir, n, to_light, material: None, fresnel: None }
+        Context { tree, gain, total, dir, n, to_light, material: None, fresnel: None }
     }
 }
 
