@@ -9,12 +9,12 @@ import "./style/figures.css";
 import { render } from "preact";
 import { App } from "./app";
 import { connect, hasServer } from "./engine/connect";
-import { level } from "./engine/level";
+import { libraryBuild } from "./engine/level";
 
 const root = document.getElementById("app");
 if (root) render(<App engine={connect()} />, root);
 
 // Cache static files, so that the page works offline after the first visit.
 if (!hasServer() && "serviceWorker" in navigator && location.protocol.startsWith("http")) {
-  navigator.serviceWorker.register(`./offline.js?level=${level()}`).catch(() => {});
+  navigator.serviceWorker.register(`./offline.js?level=${libraryBuild()}`).catch(() => {});
 }

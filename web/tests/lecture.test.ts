@@ -103,7 +103,7 @@ describe("step by step", () => {
 
   it("follows each ray into the next, by lines of the code", () => {
     expect(all.every((step) => code[step.line] !== undefined)).toBe(true);
-    expect(all.filter((step) => step.line === 3).map((step) => step.words)).toEqual([
+    expect(all.filter((step) => step.line === 3).map((step) => step.description)).toEqual([
       "Camera ray",
       "Mirrored ray",
     ]);

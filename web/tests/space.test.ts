@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { eyeAround, frame, length, orbit, projector, sub, type Vec } from "../src/explain/space";
-import { joined } from "../src/viewer/store";
+import { frame, frameEye, length, orbit, projector, sub, type Vec } from "../src/explain/space";
+import { mergeMotions } from "../src/viewer/store";
 
 describe("an eye", () => {
   const eye = { target: [0.3, -0.2, 1] as Vec, distance: 6, yaw: 0.7, pitch: 0.4, angle: 40 };
@@ -45,7 +45,7 @@ describe("an eye", () => {
       [4, 1, -2],
       [0, 5, 2],
     ];
-    const around = projector(frame(eyeAround(points, 0.5, 0.3)), 600, 600);
+    const around = projector(frame(frameEye(points, 0.5, 0.3)), 600, 600);
     for (const point of points) {
       const seen = around.point(point);
       expect(seen && seen.x > 0 && seen.x < 600 && seen.y > 0 && seen.y < 600).toBe(true);
@@ -55,7 +55,7 @@ describe("an eye", () => {
 
 describe("motions", () => {
   it("of one kind are joined, in order", () => {
-    const all = joined([
+    const all = mergeMotions([
       { kind: "orbit", right: 1, up: 2 },
       { kind: "orbit", right: 0.5, up: -1 },
       { kind: "dolly", factor: 2 },

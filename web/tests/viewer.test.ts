@@ -1,37 +1,37 @@
 import { describe, expect, it } from "vitest";
 import { edges, lines } from "../src/explain/edges";
-import { rowWords } from "../src/explain/scan";
+import { describeRow } from "../src/explain/scan";
 import { hex, linear } from "../src/viewer/model";
-import { told } from "../src/viewer/pixel-numbers";
+import { formatValues } from "../src/viewer/pixel-numbers";
 import { crc, zip } from "../src/viewer/zip";
-import { cropOf, kept, nearer, partOf, whole } from "../src/viewer/zoom";
+import { clampZoom, cropForZoom, partOf, whole, zoomBy } from "../src/viewer/zoom";
 
 describe("a zoom", () => {
   it("keeps the point below the pointer, and never leaves the picture", () => {
     const at = { x: 0.3, y: 0.6 };
-    const once = nearer(whole, 4, at, 100);
-    expect(once.times).toBe(4);
+    const once = zoomBy(whole, 4, at, 100);
+    expect(once.magnification).toBe(4);
     // The point below the pointer keeps its position in the frame.
-    expect((at.x - once.x) * once.times).toBeCloseTo(at.x - 0.5, 12);
-    expect((at.y - once.y) * once.times).toBeCloseTo(at.y - 0.5, 12);
-    expect(nearer(once, 0.01, { x: 0, y: 0 }, 100)).toEqual(whole);
-    expect(nearer(whole, 1000, at, 32).times).toBe(32);
-    expect(kept({ x: -3, y: 9, times: 4 }, 100)).toEqual({ x: 0.125, y: 0.875, times: 4 });
+    expect((at.x - once.x) * once.magnification).toBeCloseTo(at.x - 0.5, 12);
+    expect((at.y - once.y) * once.magnification).toBeCloseTo(at.y - 0.5, 12);
+    expect(zoomBy(once, 0.01, { x: 0, y: 0 }, 100)).toEqual(whole);
+    expect(zoomBy(whole, 1000, at, 32).magnification).toBe(32);
+    expect(clampZoom({ x: -3, y: 9, magnification: 4 }, 100)).toEqual({ x: 0.125, y: 0.875, times: 4 });
   });
 
   it("renders what is seen, and all of it until much less is seen", () => {
-    expect(cropOf(whole, 640, 480)).toBeNull();
-    expect(cropOf({ x: 0.5, y: 0.5, times: 4 }, 640, 480)).toEqual([240, 180, 160, 120]);
-    expect(partOf({ x: 0.998, y: 0.002, times: 64 }, 100, 50)).toEqual([99, 0, 1, 1]);
+    expect(cropForZoom(whole, 640, 480)).toBeNull();
+    expect(cropForZoom({ x: 0.5, y: 0.5, magnification: 4 }, 640, 480)).toEqual([240, 180, 160, 120]);
+    expect(partOf({ x: 0.998, y: 0.002, magnification: 64 }, 100, 50)).toEqual([99, 0, 1, 1]);
     expect(partOf(whole, 1, 1)).toEqual([0, 0, 1, 1]);
   });
 });
 
 describe("numbers of pixels", () => {
   it("are one where all three are the same", () => {
-    expect(told([0.5, 0.25, 1])).toEqual(["0.5", "0.25", "1"]);
-    expect(told([4.2567, 4.2567, 4.2567])).toEqual(["4.26"]);
-    expect(told([null, null, null])).toEqual(["∞"]);
+    expect(formatValues([0.5, 0.25, 1])).toEqual(["0.5", "0.25", "1"]);
+    expect(formatValues([4.2567, 4.2567, 4.2567])).toEqual(["4.26"]);
+    expect(formatValues([null, null, null])).toEqual(["∞"]);
   });
 });
 
@@ -79,6 +79,6 @@ describe("a row of the picture", () => {
   it("counts its rays and hits", () => {
     const hit = { origin: [0, 0, 0], direction: [0, 0, -1], t: 2, object: 0 } as const;
     const rays = [null, { ...hit, t: null, object: null }, hit, hit] as never;
-    expect(rowWords(7, rays)).toBe("row 7: 3 rays, 2 hit something, 1 the background");
+    expect(describeRow(7, rays)).toBe("row 7: 3 rays, 2 hit something, 1 the background");
   });
 });

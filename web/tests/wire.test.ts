@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { Engine, type LineEvents } from "../src/engine/engine";
-import { level } from "../src/engine/level";
+import { Engine, type TransportEvents } from "../src/engine/engine";
+import { libraryBuild } from "../src/engine/level";
 import { decode } from "../src/engine/wire";
 import type { EventMessage, RequestMessage } from "../src/protocol";
 
@@ -29,7 +29,7 @@ describe("messages", () => {
 
 describe("an engine", () => {
   it("gives each answer to who asked, and refusals as errors", async () => {
-    let events: LineEvents | undefined;
+    let events: TransportEvents | undefined;
     const sent: RequestMessage[] = [];
     const engine = new Engine("test", (given) => {
       events = given;
@@ -46,7 +46,7 @@ describe("an engine", () => {
   });
 
   it("fails all who wait once it is lost", async () => {
-    let events: LineEvents | undefined;
+    let events: TransportEvents | undefined;
     const engine = new Engine("test", (given) => {
       events = given;
       return { send: () => {}, close: () => {} };
@@ -59,6 +59,6 @@ describe("an engine", () => {
 
 describe("the level of the library", () => {
   it("is SIMD where vectors are known", () => {
-    expect(level()).toBe("simd128");
+    expect(libraryBuild()).toBe("simd128");
   });
 });

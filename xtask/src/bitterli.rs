@@ -130,7 +130,7 @@ fn compared(folder: &Path, samples: u32, keep: Option<&Path>) -> Result<Row> {
         height: whole.height,
         sampling: Sampling::Filtered { samples, filter: Filter::Box { radius: 0.5 } },
         method,
-        settings: durer::integrator::WhittedOptions { bounces, ..usual.settings },
+        settings: durer::integrator::RenderSettings { bounces, ..usual.settings },
         ..usual
     };
     let part = PartialRender::new(&world, &job, Shard::WHOLE)?;

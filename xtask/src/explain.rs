@@ -3,7 +3,7 @@
 
 use anyhow::{Context, Result};
 use durer::diag::{Diagnostics, Files};
-use durer::integrator::WhittedOptions;
+use durer::integrator::RenderSettings;
 use durer::render::explain::check::{SAMPLINGS, check};
 use durer::render::explain::explain;
 use durer::render::{Job, Sampling};
@@ -22,7 +22,7 @@ const SLOWEST: usize = 5;
 struct DialectScene {
     name: String,
     world: World,
-    settings: WhittedOptions,
+    settings: RenderSettings,
 }
 
 /// Result of checking the explanations of one scene.
@@ -111,8 +111,8 @@ impl DialectScene {
 }
 
 /// Returns the options of a scene, with shadows and at least some levels of secondary rays.
-fn settings(loaded: &LoadedScene) -> WhittedOptions {
-    WhittedOptions {
+fn settings(loaded: &LoadedScene) -> RenderSettings {
+    RenderSettings {
         bounces: loaded.rules.bounces.max(4),
         shade_back: loaded.rules.shade_back,
         transparent_shadows: loaded.rules.transparent_shadows,

@@ -7,9 +7,9 @@
 use anyhow::{Context, Result};
 use durer::film::Filter;
 use durer::image::Image;
-use durer::integrator::{IntegratorKind, WhittedOptions};
+use durer::integrator::{IntegratorKind, RenderSettings};
 use durer::math::Color;
-use durer::render::{Control, Crop, Job, Sampling, render};
+use durer::render::{Control, Job, PixelRect, Sampling, render};
 use durer::sampler::random_2d;
 use durer::world::World;
 use std::fmt::Write as _;
@@ -76,9 +76,9 @@ impl RoomResult {
     }
 
     fn picture(&self, seed: u64, samples: u32) -> Result<Image> {
-        let settings = WhittedOptions { bounces: 8, ..Job::default().settings };
+        let settings = RenderSettings { bounces: 8, ..Job::default().settings };
         let sampling = Sampling::Filtered { samples, filter: Filter::Box { radius: 0.5 } };
-        let crop = Some(Crop { left: 0, top: 70, width: 128, height: 58 });
+        let crop = Some(PixelRect { left: 0, top: 70, width: 128, height: 58 });
         let job = Job {
             width: 128,
             height: 128,

@@ -21,7 +21,7 @@ use durer::dialect::{Dialect, Quirk};
 use durer::film::aov::Aov;
 use durer::film::course::{CourseFilter, average_3x3};
 use durer::image::{Destination, Format, Image, Layer, Transfer, format_for};
-use durer::integrator::WhittedOptions;
+use durer::integrator::RenderSettings;
 use durer::options::memory::Memory;
 use durer::render::{Control, Job, RenderError, Sampling};
 use durer::sampler::Sampler;
@@ -203,8 +203,8 @@ fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> 
     // depths were beyond the range.
     let depth_range = depth_range.map(|range| if range.0 == range.1 { (-2.0, -1.0) } else { range });
     let bounces = arguments.number("-bounces")?.unwrap_or(rules.bounces);
-    if bounces > WhittedOptions::MAX_BOUNCES {
-        return Err(bad(format!("-bounces: must be at most {}", WhittedOptions::MAX_BOUNCES)));
+    if bounces > RenderSettings::MAX_BOUNCES {
+        return Err(bad(format!("-bounces: must be at most {}", RenderSettings::MAX_BOUNCES)));
     }
     let weight = arguments.text("-weight").map(weight).transpose().map_err(|error| bad(format!("-weight: {error}")))?;
     let wanted = [("-depth", "depth"), ("-normals", "normals")];
@@ -216,14 +216,14 @@ fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> 
             Some(OddSize::Threefold) => Sampling::Course2004 { sampler: Sampler::Random, samples: 1, filter: None },
             _ => sampling(arguments, compiled.loaded.dialect)?,
         },
-        settings: WhittedOptions {
+        settings: RenderSettings {
             bounces,
             shadows: arguments.has("-shadows") || rules.shadows,
             shade_back: arguments.has("-shade_back") || rules.shade_back,
             transparent_shadows: arguments.has("-transparent_shadows"),
             reflection: !arguments.has("-reflection_off"),
             refraction: !arguments.has("-refraction_off"),
-            least_weight: weight.unwrap_or(0.0),
+            min_weight: weight.unwrap_or(0.0),
         },
         color: arguments.has("-output"),
         aovs: wanted.iter().filter(|w| arguments.has(w.0)).filter_map(|w| Aov::from_name(w.1)).collect(),

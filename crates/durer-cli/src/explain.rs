@@ -15,7 +15,9 @@ use durer::film::aov::Aov;
 use durer::film::luminance_of;
 use durer::image::{Image, Transfer};
 use durer::math::{Color, Ray, Vec3};
-use durer::render::explain::{ExplainOptions, Explanation, Names, TextLine, explain_of, explain_ray, number, ray_text};
+use durer::render::explain::{
+    ExplainOptions, Explanation, SceneNames, TextLine, explain_ray, explain_samples, number, ray_text,
+};
 use durer::render::{Control, Job};
 use durer::report::{self, Explained};
 use durer::sampler::SampleId;
@@ -102,13 +104,13 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         false => (None, None),
     };
     let subject = subject(args, &compiled, &job, picture.as_ref(), counts.as_ref())?;
-    let names = Names { files: &compiled.files, scene: &compiled.loaded.scene, world: &compiled.world };
+    let names = SceneNames { files: &compiled.files, scene: &compiled.loaded.scene, world: &compiled.world };
     // Show a single tree: the rays of all samples of a pixel would hide each other.
     let sample = match &subject {
         Explained::Pixel(pixel) => match (args.sample, args.worst) {
             (Some(sample), _) => sample as usize,
-            (None, true) => pixel.brightest().map_or_else(|| pixel.heaviest(), |(sample, _)| sample),
-            (None, false) => pixel.heaviest(),
+            (None, true) => pixel.brightest().map_or_else(|| pixel.max_weight_index(), |(sample, _)| sample),
+            (None, false) => pixel.max_weight_index(),
         },
         Explained::Ray(_) => 0,
     };
@@ -122,8 +124,8 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         say(&serde_json::to_string_pretty(&report::explanation(&subject, &names))?);
         return Ok(());
     }
-    let deepest = args.depth.map_or(usize::MAX, |depth| depth as usize);
-    let detail = ExplainOptions { least: (args.min / 100.0) as f32, deepest, transfer };
+    let max_depth = args.depth.map_or(usize::MAX, |depth| depth as usize);
+    let detail = ExplainOptions { min_share: (args.min / 100.0) as f32, max_depth, transfer };
     let lines = match &subject {
         Explained::Ray(light) => ray_text(light, &names, &detail),
         Explained::Pixel(pixel) => pixel.lines(&names, sample, &detail),
@@ -131,7 +133,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     let colored = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     lines.iter().for_each(|line| say(&shown(line, colored, transfer)));
     if let Explained::Pixel(pixel) = &subject
-        && job.method.is_random()
+        && job.method.is_stochastic()
     {
         pixel.firefly().iter().for_each(|sentence| say(&format!("  {sentence}")));
     }
@@ -169,7 +171,7 @@ fn subject(
         }
         (None, Some(pixel), _) => pixel,
         (None, None, Some(picture)) if args.brightest => most(picture, |x, y| luminance_of(at(picture, x, y))),
-        (None, None, Some(picture)) if job.method.is_random() => {
+        (None, None, Some(picture)) if job.method.is_stochastic() => {
             return worst(compiled, job, picture, counts).map(Explained::Pixel);
         }
         (None, None, Some(picture)) => most(picture, |x, y| oddness(picture, x, y)),
@@ -182,7 +184,7 @@ fn subject(
     let world = &compiled.world;
     // With adaptive sampling, a crop has different sample counts from the whole picture.
     let samples = counted(counts.filter(|_| job.crop.is_none()), pixel);
-    let explanation = explain_of(world, job, pixel, samples).map_err(failed)?;
+    let explanation = explain_samples(world, job, pixel, samples).map_err(failed)?;
     if let Some(sample) = args.sample.filter(|&sample| sample as usize >= explanation.samples.len()) {
         let last = explanation.samples.len() - 1;
         return Err(bad(format!("no sample {sample}: the pixel's samples are numbered from 0 to {last}")));
@@ -206,7 +208,7 @@ fn worst(compiled: &CompiledInput, job: &Job, picture: &Image, counts: Option<&I
     let mut best: Option<(f64, Explanation)> = None;
     for (_, (x, y)) in odd {
         let samples = counted(counts, (x, y));
-        let explanation = explain_of(&compiled.world, job, (x, y), samples).map_err(failed)?;
+        let explanation = explain_samples(&compiled.world, job, (x, y), samples).map_err(failed)?;
         // Pixels at the edge of a visible light are bright too, but not fireflies.
         let standing_out = if explanation.outlier().is_some() { 1.0 } else { 1e-6 };
         let adds = explanation.brightest().map_or(0.0, |(_, adds)| standing_out * adds);
@@ -270,7 +272,7 @@ pub fn shown(line: &TextLine, colored: bool, transfer: Transfer) -> String {
     match (colored, line.adds) {
         (false, _) => format!("{indent}{text}"),
         // Dim remarks and terms that contribute nothing.
-        (true, adds) if line.depth > 0 && adds.is_none_or(|adds| adds.is(0.0)) => {
+        (true, adds) if line.depth > 0 && adds.is_none_or(|adds| adds.equals(0.0)) => {
             format!("{indent}\x1b[2m{text}\x1b[0m")
         }
         (true, _) => format!("{indent}\x1b[1m{text}\x1b[0m"),

@@ -7,7 +7,7 @@ use crate::progress;
 use crate::report::rejected;
 use crate::terminal::say;
 use durer::image::{Content, FORMATS, Format, MAX_PIXELS, WriteOptions, save_all};
-use durer::render::{Bands, BandsError, Control, Job, RenderError, Statistics};
+use durer::render::{BandedRender, BandsError, Control, Job, RenderError, Statistics};
 use durer::source::Digest;
 use durer::world::World;
 use std::cell::RefCell;
@@ -20,7 +20,7 @@ pub fn is_large(job: &Job, needed: u64, memory: Option<u64>) -> bool {
 }
 
 /// Divides a large picture into bands. Fails with the reason if that is not possible.
-pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>) -> Result<Bands, Failure> {
+pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>) -> Result<BandedRender, Failure> {
     let refuse = |why: &str| Err(failed(RenderError::Bands(why.into())));
     let (work, window) = (&args.work, job.window());
     let Some((_, format)) = target.single() else {
@@ -43,7 +43,7 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
         }
     }
     // The scene's size is not known yet, so reserve half of the memory for it.
-    Bands::new(job, memory.map_or(u64::MAX, |memory| memory / 2)).map_err(|error| match (error, memory) {
+    BandedRender::new(job, memory.map_or(u64::MAX, |memory| memory / 2)).map_err(|error| match (error, memory) {
         (RenderError::Memory { needed, .. }, Some(allowed)) => {
             failed(RenderError::Memory { needed: needed.saturating_mul(2), allowed })
         }
@@ -56,7 +56,7 @@ type WriteResult = Result<(Statistics, Option<Digest>), BandsError>;
 
 /// Source of a large picture's file content: renders the picture in bands while it is written.
 struct Large<'a> {
-    bands: &'a Bands,
+    bands: &'a BandedRender,
     world: &'a World,
     control: &'a Control,
     format: &'a Format,
@@ -78,7 +78,7 @@ impl Content for &Large<'_> {
 
 /// Renders and writes a large picture.
 pub fn render(
-    bands: &Bands,
+    bands: &BandedRender,
     world: &World,
     control: &Arc<Control>,
     target: &Target,

@@ -8,7 +8,7 @@ use crate::report;
 use crate::terminal::say;
 use clap::Args;
 use durer::diag::Diagnostic;
-use durer::integrator::{Integrate, Integrator, IntegratorContext, IntegratorKind, WhittedOptions};
+use durer::integrator::{Integrate, Integrator, IntegratorContext, IntegratorKind, RenderSettings};
 use durer::math::{Color, LUMINANCE, Ray64, Vec3};
 use durer::render::Job;
 use durer::sampler::SampleId;
@@ -166,10 +166,10 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         let Some(normal) = normal.try_normalize() else { return Err(bad("--normal must not be 0,0,0")) };
         places.iter_mut().for_each(|place| place.1 = normal);
     }
-    let settings = WhittedOptions { bounces: args.bounces, ..Job::default().settings };
+    let settings = RenderSettings { bounces: args.bounces, ..Job::default().settings };
     let method = args.method.0.resolve_integrator(IntegratorKind::PATH).map_err(bad)?;
-    let setup = IntegratorContext { world: &compiled.world, settings, cone: None, seed: args.seed, cancel: None };
-    let (Integrator::Path(path) | Integrator::Photons(path)) = method.over(setup) else {
+    let context = IntegratorContext { world: &compiled.world, settings, cone: None, seed: args.seed, cancel: None };
+    let (Integrator::Path(path) | Integrator::Photons(path)) = method.create(context) else {
         return Err(bad("only path tracing can measure illuminance: set --integrator path or photons"));
     };
     if path.photons.is_some()
@@ -195,7 +195,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
             });
         }
     });
-    let rare = f64::from(path.most_by_chance(|color| color.dot(lumens)));
+    let rare = f64::from(path.max_rare_contribution(|color| color.dot(lumens)));
     say("x,y,z,nx,ny,nz,illuminance,illuminance_error,irradiance_r,irradiance_g,irradiance_b");
     let mut missed = false;
     for ((point, normal), sums) in places.iter().zip(sums) {

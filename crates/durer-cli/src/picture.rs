@@ -13,7 +13,7 @@ use crate::{check, diagrams, job, large, output, progress};
 use durer::compile::AssetCache;
 use durer::image::checked_count;
 use durer::render::{
-    Bands, Control, Job, Panicked, PartialRender, RenderError, RenderOutcome, Rendered, Shard, ShardBy, replay,
+    BandedRender, Control, Job, Panicked, PartialRender, RenderError, RenderOutcome, Rendered, Shard, ShardBy, replay,
 };
 use durer::world::World;
 use std::path::{Path, PathBuf};
@@ -109,7 +109,7 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Re
         }
     };
     // Memory used by the film is not available to the scene.
-    needed = bands.as_ref().map_or(needed, Bands::bytes_needed);
+    needed = bands.as_ref().map_or(needed, BandedRender::bytes_needed);
     options.memory = memory.map(|memory| memory.saturating_sub(needed));
     if let Some(allowed) = memory.filter(|&memory| needed > memory) {
         return Err(failed(RenderError::Memory { needed, allowed }));
@@ -125,11 +125,11 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Re
     }
     let control = Arc::new(Control {
         threads,
-        tile: args.work.tile,
-        time: args.work.time,
+        tile_size: args.work.tile,
+        time_limit: args.work.time,
         save_every: Some(args.work.checkpoint_every),
         memory,
-        goes_on: bands.is_some(),
+        accumulates: bands.is_some(),
         ..Control::default()
     });
     watched.begins(&control);
@@ -141,7 +141,7 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Re
         (pixel, _) => return print_pixel(&compiled.world, &job, &control, pixel.unwrap_or_default()),
     };
     let shows_error = args.view.show.iter().any(|show| show == ERROR);
-    if shows_error && (target.is_none() || job.method.transport().is_none()) {
+    if shows_error && (target.is_none() || job.method.path_options().is_none()) {
         return Err(bad(
             "--show error needs the full picture and the integrator path or photons: remove --shard, or set \
              --integrator",

@@ -168,8 +168,8 @@ fn with_bar<T>(control: &Control, render: impl FnOnce() -> T) -> T {
                 }
                 let rays = control.rays.load(Relaxed) as f64 / start.elapsed().as_secs_f64();
                 bar.set_message(format!("{:.2} M rays/s", rays / 1e6));
-                bar.set_length(control.all.load(Relaxed));
-                bar.set_position(control.done.load(Relaxed));
+                bar.set_length(control.total_work.load(Relaxed));
+                bar.set_position(control.done_work.load(Relaxed));
             }
             bar.finish_and_clear();
         };

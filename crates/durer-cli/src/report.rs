@@ -87,7 +87,7 @@ fn cause(world: &World) -> Option<String> {
     }
     let below = |material: &Material| match material {
         Material::Phong(phong) => phong.highlight.is_some_and(|highlight| highlight.1 < 0.0),
-        Material::Solid(..) => false,
+        Material::Mix(..) => false,
     };
     if let Some(number) = world.materials().iter().position(below) {
         return Some(format!("the shininess of material {number} is below 0, so its highlight has no upper bound"));

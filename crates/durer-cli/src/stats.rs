@@ -39,14 +39,16 @@ impl Stages {
         complain("rays");
         complain(&format!("  {:>12}  in total, for {} samples", statistics.rays, statistics.samples));
         complain(&format!("  {:>12.2}  million per second", statistics.rays as f64 / rendering.max(1e-9) / 1e6));
-        if let Some(Profile { samples, rays, time, kernel }) = profile(world, part.job(), SAMPLES).map_err(failed)? {
+        if let Some(Profile { samples, rays, time, intersection_time }) =
+            profile(world, part.job(), SAMPLES).map_err(failed)?
+        {
             complain(&format!("{samples} samples repeated on one thread"));
             for (name, count) in rays.iter().filter(|(_, count)| *count > 0) {
                 complain(&format!("  {count:>12}  {name} rays"));
             }
             let per_sample = time.as_secs_f64() * 1e9 / samples.max(1) as f64;
             complain(&format!("  {per_sample:>12.0}  ns per sample"));
-            let share = 100.0 * kernel.as_secs_f64() / time.as_secs_f64().max(1e-9);
+            let share = 100.0 * intersection_time.as_secs_f64() / time.as_secs_f64().max(1e-9);
             complain(&format!("  {share:>12.0}  % of that in ray traversal"));
         }
         Ok(())

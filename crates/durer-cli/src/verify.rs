@@ -11,7 +11,7 @@ use clap::Args;
 use durer::bvh::SimdLevel;
 use durer::compile::AccelKind;
 use durer::render::verify::{RenderVariant, VariantError, compare};
-use durer::render::{Control, LEAST_ADAPTIVE, PartialRender, RenderError};
+use durer::render::{Control, MIN_ADAPTIVE_SAMPLES, PartialRender, RenderError};
 use durer::world::World;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -75,32 +75,32 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
         // The cost picture depends on the acceleration structure.
         job.aovs.retain(|aov| aov.name != "cost");
         if ["samples", "noise-threshold"].iter().all(|name| args.job.options.get(name).is_none()) {
-            job.sampling = job.sampling.with_samples(if job.adaptive { LEAST_ADAPTIVE } else { 8 });
+            job.sampling = job.sampling.with_samples(if job.adaptive { MIN_ADAPTIVE_SAMPLES } else { 8 });
         }
         wanted = Some(job);
         worlds.push((name, compiled.world));
     }
     let Some(job) = wanted else { return Ok(()) };
     let control = Control::default();
-    control.all.store(args.trials.into(), Relaxed);
+    control.total_work.store(args.trials.into(), Relaxed);
     let never = AtomicBool::new(false);
     let made = progress::show(&control, args.quiet, || {
-        let plain = RenderVariant::PLAIN.make(&worlds[0].1, &job, &never).map_err(cancelled)?;
+        let plain = RenderVariant::PLAIN.render_job(&worlds[0].1, &job, &never).map_err(cancelled)?;
         for number in 0..u64::from(args.trials) {
             let way = RenderVariant::numbered(number, &job, worlds.len());
             let (structure, world) = &worlds[way.world];
             let way_name = format!("{structure}, {way}");
-            match way.make(world, &job, &never) {
+            match way.render_job(world, &job, &never) {
                 Err(VariantError::Cancelled) => return Err(RenderError::Cancelled),
                 Err(error) => return Ok(Err(format!("way {number} ({way_name}) failed: {error}"))),
                 Ok(other) => {
                     if let Some(different) = compare(&plain, &other) {
-                        let (expected, found, place) = (different.expected, different.found, different.place);
+                        let (expected, found, place) = (different.expected, different.actual, different.place);
                         return Ok(Err(format!("way {number} ({way_name}) differs: {place}\n{expected}\n{found}")));
                     }
                 }
             }
-            control.done.fetch_add(1, Relaxed);
+            control.done_work.fetch_add(1, Relaxed);
         }
         Ok(Ok(plain))
     });

@@ -61,7 +61,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         };
         if !args.quiet {
             let count = report::counted(files.len(), "file");
-            let reused = match kept.reuse().reused {
+            let reused = match kept.statistics().reused {
                 0 => String::new(),
                 n => format!(" ({n} meshes and pictures reused)"),
             };

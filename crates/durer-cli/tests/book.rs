@@ -118,7 +118,7 @@ fn links_of_the_pages_are_valid() {
 fn table_of_conventions_matches_the_code() {
     let text = std::fs::read_to_string(root().join("docs/photographs.md")).unwrap();
     for c in durer_photo::format::CONVENTIONS {
-        let cells = [c.name, c.files, c.way, c.frame, c.rotation, c.translation, c.pixels, c.lens];
+        let cells = [c.name, c.files, c.direction, c.frame, c.rotation, c.translation, c.pixels, c.lens];
         let row = format!("| {} |", cells.join(" | "));
         assert!(text.contains(&row), "docs/photographs.md lacks\n{row}");
     }

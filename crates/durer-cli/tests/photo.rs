@@ -6,7 +6,7 @@ mod common;
 use common::{TestFolder, browser, corpus};
 use durer::image::read8;
 use durer_photo::format::{projective_camera, read};
-use durer_photo::geometry::align::cameras as aligned;
+use durer_photo::geometry::align::align_cameras;
 use durer_photo::model::axis_angle_of;
 use durer_photo::{Lens, Pose, Reconstruction};
 use nalgebra::Vector3;
@@ -53,7 +53,7 @@ fn cameras() -> Vec<Pose> {
 /// a camera, and largest angle in degrees.
 fn differences(all: &Reconstruction, truth: &[Pose]) -> (f64, f64) {
     let found: Vec<Pose> = all.views.iter().map(|view| view.pose.unwrap()).collect();
-    let there = aligned(&found, truth).unwrap();
+    let there = align_cameras(&found, truth).unwrap();
     let (mut place, mut angle) = (0.0_f64, 0.0_f64);
     for (found, truth) in found.iter().zip(truth) {
         place = place.max((there.apply(&found.center()) - truth.center()).norm());
@@ -118,7 +118,7 @@ fn photographs_of_a_known_scene_give_its_cameras() {
     browser::sees(&place, "tour.html", include_str!("common/walk.js"), &walked);
     place.refused(2, "photo explain solved --camera 77.png", &["no photograph `77.png`; known photographs: 00.png"]);
     let all = read(&place.path("solved")).unwrap();
-    assert_eq!(all.registered(), 20);
+    assert_eq!(all.registered_count(), 20);
     let (far, angle) = differences(&all, &cameras());
     let focal = (all.lenses[0].focal / FOCAL - 1.0).abs();
     println!("{far} {angle} {focal}");

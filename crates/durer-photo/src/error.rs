@@ -11,29 +11,29 @@ pub struct Error {
     /// File as named by the user; empty if the error concerns no file.
     pub file: String,
     /// Line and column in a text file, counted from 1.
-    pub place: Option<(usize, usize)>,
+    pub position: Option<(usize, usize)>,
 }
 
 impl Error {
     /// Creates an error without a file.
     pub fn new(message: impl Into<String>) -> Self {
-        Error { message: message.into(), file: String::new(), place: None }
+        Error { message: message.into(), file: String::new(), position: None }
     }
 
     /// Creates an error that concerns an entire file.
-    pub fn of(file: &str, message: impl Into<String>) -> Self {
-        Error { message: message.into(), file: file.into(), place: None }
+    pub fn in_file(file: &str, message: impl Into<String>) -> Self {
+        Error { message: message.into(), file: file.into(), position: None }
     }
 
     /// Creates an error at a position in a text file.
     pub fn at(file: &str, place: (usize, usize), message: impl Into<String>) -> Self {
-        Error { message: message.into(), file: file.into(), place: Some(place) }
+        Error { message: message.into(), file: file.into(), position: Some(place) }
     }
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (self.file.is_empty(), self.place) {
+        match (self.file.is_empty(), self.position) {
             (true, _) => write!(f, "{}", self.message),
             (false, None) => write!(f, "{}: {}", self.file, self.message),
             (false, Some((line, column))) => write!(f, "{}:{line}:{column}: {}", self.file, self.message),

@@ -6,13 +6,13 @@ use std::fmt::Write;
 
 /// Returns an explanation of a point: for each photograph that observes it, the ray and the
 /// residual.
-pub fn point(all: &Reconstruction, number: usize) -> Result<String, Error> {
-    let count = all.points.len();
-    let point = all.points.get(number).ok_or_else(|| {
+pub fn point(reconstruction: &Reconstruction, number: usize) -> Result<String, Error> {
+    let count = reconstruction.points.len();
+    let point = reconstruction.points.get(number).ok_or_else(|| {
         Error::new(format!("point {number} does not exist: the file has {count} points, numbered from 0"))
     })?;
     let p = point.position;
-    let angle = all.angle(point).to_degrees();
+    let angle = reconstruction.max_ray_angle(point).to_degrees();
     let mut text = format!("point {number} at ({:.6}, {:.6}, {:.6}), colour {:?}\n", p.x, p.y, p.z, point.color);
     match point.track.len() {
         0 => text.push_str("the file has no observations of it\n"),
@@ -24,9 +24,9 @@ pub fn point(all: &Reconstruction, number: usize) -> Result<String, Error> {
             }
         }
     }
-    for seen in &point.track {
-        let view = &all.views[seen.view];
-        let (Some(pose), Some(residual)) = (&view.pose, all.residual(&p, seen)) else { continue };
+    for observation in &point.track {
+        let view = &reconstruction.views[observation.view];
+        let (Some(pose), Some(residual)) = (&view.pose, reconstruction.residual(&p, observation)) else { continue };
         let (c, d) = (pose.center(), (p - pose.center()).normalize());
         let _ = writeln!(text, "\n{}", view.name);
         let _ = writeln!(
@@ -35,29 +35,29 @@ pub fn point(all: &Reconstruction, number: usize) -> Result<String, Error> {
             c.x, c.y, c.z, d.x, d.y, d.z
         );
         let _ = writeln!(text, "  distance   {:.6}, {:.6} of it along the view", (p - c).norm(), pose.depth(&p));
-        let pixel = seen.pixel + residual;
+        let pixel = observation.pixel + residual;
         let _ = writeln!(text, "  should be  ({:.3}, {:.3})", pixel.x, pixel.y);
-        let _ = writeln!(text, "  is         ({:.3}, {:.3})", seen.pixel.x, seen.pixel.y);
+        let _ = writeln!(text, "  is         ({:.3}, {:.3})", observation.pixel.x, observation.pixel.y);
         let _ = writeln!(text, "  residual   ({:.3}, {:.3}), {:.3} pixels", residual.x, residual.y, residual.norm());
     }
     Ok(text)
 }
 
 /// Returns the index of the photograph with a name or number.
-pub fn view_of(all: &Reconstruction, name: &str) -> Result<usize, Error> {
-    let number = all.views.iter().position(|view| view.name == name).or_else(|| name.parse().ok());
-    number.filter(|number| *number < all.views.len()).ok_or_else(|| {
-        let names: Vec<&str> = all.views.iter().take(8).map(|view| &*view.name).collect();
+pub fn find_view(reconstruction: &Reconstruction, name: &str) -> Result<usize, Error> {
+    let number = reconstruction.views.iter().position(|view| view.name == name).or_else(|| name.parse().ok());
+    number.filter(|number| *number < reconstruction.views.len()).ok_or_else(|| {
+        let names: Vec<&str> = reconstruction.views.iter().take(8).map(|view| &*view.name).collect();
         Error::new(format!("no photograph `{name}`; known photographs: {}", names.join(", ")))
     })
 }
 
 /// Returns an explanation of a camera: the projection equations of its first points, their
 /// residuals, and how well the camera is determined.
-pub fn camera(all: &Reconstruction, view: usize) -> Result<String, Error> {
-    let name = &all.views[view].name;
-    let pose = all.views[view].pose.ok_or_else(|| Error::new(format!("the pose of {name} is unknown")))?;
-    let lens = all.lenses[all.views[view].lens];
+pub fn camera(reconstruction: &Reconstruction, view: usize) -> Result<String, Error> {
+    let name = &reconstruction.views[view].name;
+    let pose = reconstruction.views[view].pose.ok_or_else(|| Error::new(format!("the pose of {name} is unknown")))?;
+    let lens = reconstruction.lenses[reconstruction.views[view].lens];
     let (c, r, t) = (pose.center(), pose.rotation, pose.translation);
     let mut text = format!("{name}\n\nP = R X + t, from the world to the camera (x right, y down, z forward):\n\n");
     for i in 0..3 {
@@ -72,33 +72,35 @@ pub fn camera(all: &Reconstruction, view: usize) -> Result<String, Error> {
         );
     }
     let _ = writeln!(text, "\ntaken at -Rᵀ t = ({:.6}, {:.6}, {:.6})", c.x, c.y, c.z);
-    let ([k1, k2], [cx, cy]) = (lens.radial, lens.center);
+    let ([k1, k2], [cx, cy]) = (lens.distortion, lens.principal_point);
     let _ = writeln!(text, "\npixel = ({cx}, {cy}) + {:.3} r (P.x / P.z, {} P.y / P.z)", lens.focal, lens.aspect);
     let _ = writeln!(text, "r = 1 {k1:+.6} s {k2:+.6} s², where s = (P.x² + P.y²) / P.z²\n");
     let mut squares: Vec<(f64, usize)> = Vec::new();
-    for (i, point) in all.points.iter().enumerate() {
-        let seen = point.track.iter().find(|seen| seen.view == view);
-        let Some((seen, residual)) = seen.and_then(|seen| Some((seen, all.residual(&point.position, seen)?))) else {
+    for (i, point) in reconstruction.points.iter().enumerate() {
+        let observation = point.track.iter().find(|other| other.view == view);
+        let Some((observation, residual)) =
+            observation.and_then(|other| Some((other, reconstruction.residual(&point.position, other)?)))
+        else {
             continue;
         };
         if squares.len() < 4 {
             let (x, p) = (point.position, pose.apply(&point.position));
             let s = (p.x * p.x + p.y * p.y) / (p.z * p.z);
-            let at = seen.pixel + residual;
+            let at = observation.pixel + residual;
             let _ = writeln!(
                 text,
                 "point {i}, X = ({:.4}, {:.4}, {:.4}): P = ({:.4}, {:.4}, {:.4})",
                 x.x, x.y, x.z, p.x, p.y, p.z
             );
-            for (axis, middle, along, focal, at, seen) in [
-                ("x", cx, p.x, lens.focal, at.x, seen.pixel.x),
-                ("y", cy, p.y, lens.focal * lens.aspect, at.y, seen.pixel.y),
+            for (axis, middle, along, focal, at, observed) in [
+                ("x", cx, p.x, lens.focal, at.x, observation.pixel.x),
+                ("y", cy, p.y, lens.focal * lens.aspect, at.y, observation.pixel.y),
             ] {
-                let r = lens.factor(s);
-                let (z, off) = (p.z, at - seen);
+                let r = lens.distortion_factor(s);
+                let (z, off) = (p.z, at - observed);
                 let _ = writeln!(
                     text,
-                    "  {axis}: {middle:.1} + {focal:.3} * {r:.6} * {along:.4} / {z:.4} = {at:.3}, seen at {seen:.3}: {off:+.3}"
+                    "  {axis}: {middle:.1} + {focal:.3} * {r:.6} * {along:.4} / {z:.4} = {at:.3}, seen at {observed:.3}: {off:+.3}"
                 );
             }
         }
@@ -115,25 +117,27 @@ pub fn camera(all: &Reconstruction, view: usize) -> Result<String, Error> {
     for (square, i) in squares.iter().take(3) {
         let _ = writeln!(text, "  worst: point {i}, {:.3} pixels", square.sqrt());
     }
-    let points: Vec<_> = squares.iter().map(|(_, i)| all.points[*i].position).collect();
-    let [first, second, third] = crate::geometry::camera::spread(&points);
+    let points: Vec<_> = squares.iter().map(|(_, i)| reconstruction.points[*i].position).collect();
+    let [first, second, third] = crate::geometry::camera::principal_deviations(&points);
     let _ = writeln!(text, "the points spread {first:.4}, {second:.4}, {third:.4} along their principal axes");
     if count < 6 {
         text.push_str("fewer than six points do not determine the camera (DLT has eleven unknowns)\n");
     } else if third <= 1e-3 * first {
         text.push_str("these points lie in a plane, so DLT has no unique solution\n");
     }
-    match covariance(all, &Options::default()) {
+    match covariance(reconstruction, &Options::default()) {
         Err(error) => {
             let _ = writeln!(text, "its uncertainty cannot be computed: {error}");
         }
-        Ok(found) => {
-            if let (Some(place), Some(covariance)) = (found.place(all, view), found.pose(view)) {
-                let turn = covariance.fixed_view::<3, 3>(0, 0).trace().max(0.0).sqrt().to_degrees();
+        Ok(covariance) => {
+            if let (Some(deviation), Some(pose_covariance)) =
+                (covariance.position_deviation(reconstruction, view), covariance.pose(view))
+            {
+                let turn = pose_covariance.fixed_view::<3, 3>(0, 0).trace().max(0.0).sqrt().to_degrees();
                 let _ = writeln!(
                     text,
-                    "standard deviations, for {:.3} pixels: position {place:.6}, direction {turn:.4} degrees (the first photograph is fixed)",
-                    found.sigma
+                    "standard deviations, for {:.3} pixels: position {deviation:.6}, direction {turn:.4} degrees (the first photograph is fixed)",
+                    covariance.sigma
                 );
             }
         }

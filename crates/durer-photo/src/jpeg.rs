@@ -4,7 +4,7 @@
 /// thumbnail in its header.
 ///
 /// Source: ITU-T T.81, *Digital Compression and Coding of Continuous-Tone Still Images*, annex B.
-pub fn is_whole(bytes: &[u8]) -> bool {
+pub fn is_complete(bytes: &[u8]) -> bool {
     const START: u8 = 0xd8;
     const END: u8 = 0xd9;
     let mut at = 0;
@@ -28,17 +28,17 @@ pub fn is_whole(bytes: &[u8]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::is_whole;
+    use super::is_complete;
 
     #[test]
     fn end_marker_of_the_picture_is_found() {
         let head: &[u8] = &[0xff, 0xd8, 0xff, 0xe1, 0, 6, 0xff, 0xd8, 0xff, 0xd9, 0xff, 0xda, 0, 2];
         let with = |data: &[u8]| [head, data].concat();
-        assert!(is_whole(&with(&[1, 0xff, 0, 0xff, 0xd0, 7, 0xff, 0xff, 0xd9])));
-        assert!(is_whole(&with(&[1, 0xff, 0xd9, 4, 4])));
+        assert!(is_complete(&with(&[1, 0xff, 0, 0xff, 0xd0, 7, 0xff, 0xff, 0xd9])));
+        assert!(is_complete(&with(&[1, 0xff, 0xd9, 4, 4])));
         for cut in [&[][..], &[1, 2, 0xff], &[1, 0xff, 0, 0xd9], &[0xff, 0xc4], &[0xff, 0xc4, 0, 9, 0xff, 0xd9]] {
-            assert!(!is_whole(&with(cut)), "{cut:?}");
+            assert!(!is_complete(&with(cut)), "{cut:?}");
         }
-        assert!(!is_whole(&[]));
+        assert!(!is_complete(&[]));
     }
 }

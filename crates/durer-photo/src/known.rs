@@ -4,10 +4,10 @@ use crate::Observation;
 use nalgebra::{Vector2, Vector3};
 
 /// World point and the pixel at which a photograph shows it.
-pub type Pair = (Vector3<f64>, Vector2<f64>);
+pub type PointPixelPair = (Vector3<f64>, Vector2<f64>);
 
 /// Control point: a known position in the world and its observations.
-pub type Control = (Vector3<f64>, Vec<Observation>);
+pub type ControlPoint = (Vector3<f64>, Vec<Observation>);
 
 /// Signed world axis, such as x or -y, towards which a set of vanishing lines leads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -12,7 +12,7 @@
 //! + k2 |p|⁴,
 //!
 //! ```text
-//! pixel = center + focal r (p.x, aspect p.y)
+//! pixel = principal_point + focal r (p.x, aspect p.y)
 //! ```
 //!
 //! in pixels from the upper left corner of the image. The centre of the first pixel is at (0.5,

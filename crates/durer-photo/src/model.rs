@@ -13,15 +13,15 @@ pub struct Lens {
     /// Ratio of the vertical to the horizontal focal length: 1 for square pixels.
     pub aspect: f64,
     /// Principal point in pixels from the upper left corner.
-    pub center: [f64; 2],
+    pub principal_point: [f64; 2],
     /// Radial distortion: coefficients of |p|² and |p|⁴.
-    pub radial: [f64; 2],
+    pub distortion: [f64; 2],
 }
 
 impl Lens {
     /// Creates a lens without distortion whose principal point is the image centre.
     pub fn new(size: [u32; 2], focal: f64) -> Self {
-        Lens { size, focal, aspect: 1.0, center: size.map(|side| f64::from(side) / 2.0), radial: [0.0; 2] }
+        Lens { size, focal, aspect: 1.0, principal_point: size.map(|side| f64::from(side) / 2.0), distortion: [0.0; 2] }
     }
 
     /// Returns the length of the longer side in pixels; twice the focal length if the size is
@@ -37,36 +37,36 @@ impl Lens {
     /// see [`Pose::depth`].
     pub fn project(&self, p: &Vector3<f64>) -> Vector2<f64> {
         let (x, y) = (p.x / p.z, p.y / p.z);
-        let factor = self.focal * self.factor(x * x + y * y);
-        Vector2::new(self.center[0] + factor * x, self.center[1] + factor * self.aspect * y)
+        let factor = self.focal * self.distortion_factor(x * x + y * y);
+        Vector2::new(self.principal_point[0] + factor * x, self.principal_point[1] + factor * self.aspect * y)
     }
 
     /// Returns the distortion factor 1 + k1 s + k2 s² for the squared radius s.
-    pub fn factor(&self, s: f64) -> f64 {
-        1.0 + s * (self.radial[0] + s * self.radial[1])
+    pub fn distortion_factor(&self, s: f64) -> f64 {
+        1.0 + s * (self.distortion[0] + s * self.distortion[1])
     }
 
     /// Computes the point (x, y, 1) that projects to a pixel, by Newton's method; `None` if the
     /// distortion is not invertible there.
     pub fn unproject(&self, pixel: &Vector2<f64>) -> Option<Vector3<f64>> {
-        let x = (pixel.x - self.center[0]) / self.focal;
-        let y = (pixel.y - self.center[1]) / (self.focal * self.aspect);
+        let x = (pixel.x - self.principal_point[0]) / self.focal;
+        let y = (pixel.y - self.principal_point[1]) / (self.focal * self.aspect);
         let wanted = (x * x + y * y).sqrt();
         let mut radius = wanted;
         for _ in 0..30 {
             let s = radius * radius;
             // Derivative of r (1 + k1 r² + k2 r⁴) with respect to r.
-            let slope = 1.0 + s * (3.0 * self.radial[0] + 5.0 * s * self.radial[1]);
+            let slope = 1.0 + s * (3.0 * self.distortion[0] + 5.0 * s * self.distortion[1]);
             if slope <= 1e-6 {
                 return None;
             }
-            let step = (wanted - radius * self.factor(s)) / slope;
+            let step = (wanted - radius * self.distortion_factor(s)) / slope;
             radius += step;
             if step.abs() <= 1e-15 * (1.0 + radius.abs()) {
                 break;
             }
         }
-        let exact = (radius * self.factor(radius * radius) - wanted).abs() <= 1e-9 * (1.0 + wanted);
+        let exact = (radius * self.distortion_factor(radius * radius) - wanted).abs() <= 1e-9 * (1.0 + wanted);
         let scale = if wanted > 0.0 { radius / wanted } else { 1.0 };
         exact.then(|| Vector3::new(x * scale, y * scale, 1.0))
     }
@@ -118,7 +118,7 @@ impl Pose {
     }
 
     /// Transforms a direction from the camera frame to the world.
-    pub fn outwards(&self, direction: &Vector3<f64>) -> Vector3<f64> {
+    pub fn direction_to_world(&self, direction: &Vector3<f64>) -> Vector3<f64> {
         self.rotation.transpose() * direction
     }
 }
@@ -228,7 +228,7 @@ pub struct Reconstruction {
 
 /// Reprojection error of a [`Reconstruction`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Fit {
+pub struct ReprojectionError {
     /// Number of observations by photographs with a known pose.
     pub observations: usize,
     /// Half the sum of the squared residuals, in square pixels.
@@ -242,20 +242,22 @@ pub struct Fit {
 impl Reconstruction {
     /// Returns the projection of a point minus its observed pixel; `None` if the pose of the
     /// photograph is unknown.
-    pub fn residual(&self, position: &Vector3<f64>, seen: &Observation) -> Option<Vector2<f64>> {
-        let view = &self.views[seen.view];
+    pub fn residual(&self, position: &Vector3<f64>, observation: &Observation) -> Option<Vector2<f64>> {
+        let view = &self.views[observation.view];
         let pose = view.pose.as_ref()?;
-        Some(self.lenses[view.lens].project(&pose.apply(position)) - seen.pixel)
+        Some(self.lenses[view.lens].project(&pose.apply(position)) - observation.pixel)
     }
 
     /// Returns the residuals of all observations in photographs with a known pose.
     pub fn residuals(&self) -> impl Iterator<Item = Vector2<f64>> {
-        self.points.iter().flat_map(|point| point.track.iter().filter_map(|seen| self.residual(&point.position, seen)))
+        self.points
+            .iter()
+            .flat_map(|point| point.track.iter().filter_map(|observation| self.residual(&point.position, observation)))
     }
 
     /// Computes the reprojection error.
-    pub fn fit(&self) -> Fit {
-        let mut fit = Fit::default();
+    pub fn reprojection_error(&self) -> ReprojectionError {
+        let mut fit = ReprojectionError::default();
         for square in self.residuals().map(|residual| residual.norm_squared()) {
             fit.observations += 1;
             fit.cost += square / 2.0;
@@ -275,7 +277,7 @@ impl Reconstruction {
     }
 
     /// Returns the number of photographs with a known pose.
-    pub fn registered(&self) -> usize {
+    pub fn registered_count(&self) -> usize {
         self.views.iter().filter(|view| view.pose.is_some()).count()
     }
 
@@ -285,9 +287,9 @@ impl Reconstruction {
     }
 
     /// Returns the largest angle in radians between two rays to a point.
-    pub fn angle(&self, point: &Point) -> f64 {
-        let toward = |seen: &Observation| {
-            let center = self.views[seen.view].pose.as_ref()?.center();
+    pub fn max_ray_angle(&self, point: &Point) -> f64 {
+        let toward = |observation: &Observation| {
+            let center = self.views[observation.view].pose.as_ref()?.center();
             Some((point.position - center).normalize())
         };
         let rays: Vec<Vector3<f64>> = point.track.iter().filter_map(toward).collect();

@@ -1,13 +1,13 @@
 //! Photographs read from files: pixels and EXIF metadata.
 
 use crate::Error;
-use crate::feature::Gray;
-use crate::jpeg::is_whole;
+use crate::feature::GrayImage;
+use crate::jpeg::is_complete;
 use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Limits, RgbImage};
 use std::io::Cursor;
 
 /// Maximum length in pixels of the longer side of a photograph that is read.
-const LONGEST: u32 = 20_000;
+const MAX_SIDE: u32 = 20_000;
 
 /// Photograph read from a JPEG or PNG file: its pixels and EXIF metadata.
 pub struct Photo {
@@ -27,43 +27,43 @@ pub struct Exif {
     /// Focal length in pixels, and a description of its source.
     pub focal: Option<(f64, String)>,
     /// Message about an implausible focal length, if any.
-    pub doubt: Option<String>,
+    pub warning: Option<String>,
 }
 
 fn reader<'b>(file: &str, bytes: &'b [u8]) -> Result<ImageReader<Cursor<&'b [u8]>>, Error> {
     let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
-    let mut reader = reader.map_err(|error| Error::of(file, error.to_string()))?;
+    let mut reader = reader.map_err(|error| Error::in_file(file, error.to_string()))?;
     if reader.format().is_none() {
-        return Err(Error::of(file, "this is neither a JPEG nor a PNG"));
+        return Err(Error::in_file(file, "this is neither a JPEG nor a PNG"));
     }
     let mut limits = Limits::default();
     limits.max_alloc = Some(2 << 30);
-    (limits.max_image_width, limits.max_image_height) = (Some(LONGEST), Some(LONGEST));
+    (limits.max_image_width, limits.max_image_height) = (Some(MAX_SIDE), Some(MAX_SIDE));
     reader.limits(limits);
     Ok(reader)
 }
 
-fn broken(file: &str, error: &ImageError) -> Error {
-    Error::of(file, format!("cannot be read as a picture: {}", error.to_string().trim_end()))
+fn unreadable(file: &str, error: &ImageError) -> Error {
+    Error::in_file(file, format!("cannot be read as a picture: {}", error.to_string().trim_end()))
 }
 
 /// Reads the width and height of a photograph in pixels from its header.
 pub fn size(file: &str, bytes: &[u8]) -> Result<[u32; 2], Error> {
     let size = reader(file, bytes)?.into_dimensions();
-    let (width, height) = size.map_err(|error| broken(file, &error))?;
+    let (width, height) = size.map_err(|error| unreadable(file, &error))?;
     Ok([width, height])
 }
 
 /// Decodes a photograph.
 pub fn read(name: &str, bytes: &[u8]) -> Result<Photo, Error> {
     let reader = reader(name, bytes)?;
-    if reader.format() == Some(ImageFormat::Jpeg) && !is_whole(bytes) {
-        return Err(Error::of(name, "cannot be read as a picture: the JPEG is truncated"));
+    if reader.format() == Some(ImageFormat::Jpeg) && !is_complete(bytes) {
+        return Err(Error::in_file(name, "cannot be read as a picture: the JPEG is truncated"));
     }
-    let decoded: DynamicImage = reader.decode().map_err(|error| broken(name, &error))?;
+    let decoded: DynamicImage = reader.decode().map_err(|error| unreadable(name, &error))?;
     let pixels = decoded.into_rgb8();
     if pixels.width().min(pixels.height()) < 16 {
-        return Err(Error::of(name, "the picture is too small: both sides need at least 16 pixels"));
+        return Err(Error::in_file(name, "the picture is too small: both sides need at least 16 pixels"));
     }
     let exif = exif(bytes, [pixels.width(), pixels.height()]);
     Ok(Photo { name: name.to_string(), pixels, exif })
@@ -77,7 +77,7 @@ impl Photo {
 
     /// Returns a greyscale image with values from 0 to 1, reduced to a longer side of at most
     /// `side` pixels, and the number of original pixels per reduced pixel along x and y.
-    pub fn gray(&self, side: u32) -> (Gray, [f64; 2]) {
+    pub fn gray(&self, side: u32) -> (GrayImage, [f64; 2]) {
         let [width, height] = self.size();
         let scale = f64::from(side) / f64::from(width.max(height));
         let smaller;
@@ -93,7 +93,7 @@ impl Photo {
             (0.299 * f32::from(p.0[0]) + 0.587 * f32::from(p.0[1]) + 0.114 * f32::from(p.0[2])) / 255.0
         };
         let (w, h) = pixels.dimensions();
-        let gray = Gray { width: w as usize, height: h as usize, values: pixels.pixels().map(luma).collect() };
+        let gray = GrayImage { width: w as usize, height: h as usize, values: pixels.pixels().map(luma).collect() };
         (gray, [f64::from(width) / f64::from(w), f64::from(height) / f64::from(h)])
     }
 
@@ -107,8 +107,8 @@ impl Photo {
 /// Reads the EXIF metadata. Invalid metadata is common, and is treated as missing.
 fn exif(bytes: &[u8], size: [u32; 2]) -> Exif {
     use exif::Tag;
-    let mut found = Exif::default();
-    let Ok(exif) = exif::Reader::new().read_from_container(&mut Cursor::new(bytes)) else { return found };
+    let mut metadata = Exif::default();
+    let Ok(exif) = exif::Reader::new().read_from_container(&mut Cursor::new(bytes)) else { return metadata };
     let field = |tag: Tag| exif.get_field(tag, exif::In::PRIMARY);
     let text = |tag: Tag| match field(tag).map(|field| &field.value) {
         Some(exif::Value::Ascii(parts)) => {
@@ -116,7 +116,7 @@ fn exif(bytes: &[u8], size: [u32; 2]) -> Exif {
         }
         _ => String::new(),
     };
-    found.camera = format!("{} {}", text(Tag::Make), text(Tag::Model)).trim().to_string();
+    metadata.camera = format!("{} {}", text(Tag::Make), text(Tag::Model)).trim().to_string();
     let number = |tag: Tag| -> Option<f64> {
         let value = match &field(tag)?.value {
             exif::Value::Rational(values) => values.first()?.to_f64(),
@@ -145,16 +145,16 @@ fn exif(bytes: &[u8], size: [u32; 2]) -> Exif {
     };
     let plausible = |(focal, _): &(f64, String)| (0.25..=20.0).contains(&(focal / longer));
     let all: Vec<_> = [from_sensor(), from_film()].into_iter().flatten().collect();
-    found.focal = all.iter().find(|focal| plausible(focal)).cloned();
-    if let (None, Some((focal, how))) = (&found.focal, all.first()) {
-        found.doubt = Some(format!("EXIF's focal length, {focal:.0} pixels from {how}, is implausible"));
+    metadata.focal = all.iter().find(|focal| plausible(focal)).cloned();
+    if let (None, Some((focal, how))) = (&metadata.focal, all.first()) {
+        metadata.warning = Some(format!("EXIF's focal length, {focal:.0} pixels from {how}, is implausible"));
     }
-    found
+    metadata
 }
 
 impl Photo {
     /// Encodes the photograph as a JPEG whose longer side has at most `side` pixels.
-    pub fn small(&self, side: u32) -> Result<Vec<u8>, Error> {
+    pub fn to_jpeg(&self, side: u32) -> Result<Vec<u8>, Error> {
         let longer = self.pixels.width().max(self.pixels.height());
         let to = |pixels: u32| (pixels * side).div_ceil(longer).max(1);
         let filter = image::imageops::FilterType::Triangle;
@@ -163,7 +163,7 @@ impl Photo {
         let mut bytes = Vec::new();
         let encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, 80);
         let pixels = smaller.as_ref().unwrap_or(&self.pixels);
-        pixels.write_with_encoder(encoder).map_err(|error| Error::of(&self.name, error.to_string()))?;
+        pixels.write_with_encoder(encoder).map_err(|error| Error::in_file(&self.name, error.to_string()))?;
         Ok(bytes)
     }
 }

@@ -2,9 +2,9 @@
 //! parallel in the world.
 
 use crate::adjust::{Loss, Options};
-use crate::geometry::camera::{linear, spread, take_apart};
-pub use crate::known::{Axis, Pair, VanishingLines};
-use crate::solve::{pose_of, refined_pose};
+use crate::geometry::camera::{decompose, principal_deviations, solve_dlt};
+pub use crate::known::{Axis, PointPixelPair, VanishingLines};
+use crate::solve::{estimate_pose, refine_pose};
 use crate::{Error, Lens, Pose};
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 
@@ -40,9 +40,9 @@ pub struct Resection {
 
 /// Minimum spread of the points along the third principal axis, relative to the first. Flatter
 /// points count as lying in a plane.
-const FLAT: f64 = 1e-3;
+const MIN_THICKNESS: f64 = 1e-3;
 /// Minimum of [`Resection::conditioning`] for a camera to count as determined.
-const CONDITIONED: f64 = 1e-6;
+const MIN_CONDITIONING: f64 = 1e-6;
 
 /// Estimates the camera from world points and their pixels. The principal point is assumed to be
 /// the image centre, and pixels to be square.
@@ -51,25 +51,25 @@ const CONDITIONED: f64 = 1e-6;
 ///
 /// If the points do not determine a camera: too few points, points on a line, points in a plane
 /// without a known focal length, or points that do not agree on any camera.
-pub fn camera(pairs: &[Pair], known: &LensPriors) -> Result<Resection, Error> {
+pub fn camera(pairs: &[PointPixelPair], known: &LensPriors) -> Result<Resection, Error> {
     let points: Vec<Vector3<f64>> = pairs.iter().map(|pair| pair.0).collect();
     let least = if known.focal.is_some() { 4 } else { 6 };
     if pairs.len() < least {
-        let found = pairs.len();
+        let count = pairs.len();
         let why = match known.focal {
             Some(_) => "three points fit up to four cameras; the fourth point selects one",
             None => "the direct linear transform has eleven unknowns, and a point gives two equations",
         };
         let what = if known.focal.is_some() { "known" } else { "unknown" };
         return Err(Error::new(format!(
-            "at least {least} points are needed if the focal length is {what}, but there are {found}: {why}"
+            "at least {least} points are needed if the focal length is {what}, but there are {count}: {why}"
         )));
     }
-    let [first, second, third] = spread(&points);
-    if second <= FLAT * first {
+    let [first, second, third] = principal_deviations(&points);
+    if second <= MIN_THICKNESS * first {
         return Err(Error::new("these points lie on a line: the camera could be anywhere around it"));
     }
-    let flat = third <= FLAT * first;
+    let flat = third <= MIN_THICKNESS * first;
     if flat && known.focal.is_none() {
         return Err(Error::new(
             "these points lie in a plane, so DLT has no unique solution: pass the focal length, or points outside the plane",
@@ -80,7 +80,7 @@ pub fn camera(pairs: &[Pair], known: &LensPriors) -> Result<Resection, Error> {
         Some(focal) => vec![focal],
         None => {
             let pixels: Vec<Vector2<f64>> = pairs.iter().map(|pair| pair.1).collect();
-            let transform = linear(&points, &pixels).and_then(|found| take_apart(&found.matrix));
+            let transform = solve_dlt(&points, &pixels).and_then(|solution| decompose(&solution.matrix));
             let focal = transform.map(|(k, ..)| (k[(0, 0)] + k[(1, 1)]) / 2.0);
             let usual = [0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0].map(|factor| factor * side);
             focal.filter(|f| (0.2..20.0).contains(&(f / side))).into_iter().chain(usual).collect()
@@ -90,11 +90,11 @@ pub fn camera(pairs: &[Pair], known: &LensPriors) -> Result<Resection, Error> {
     for focal in candidates {
         let lens = Lens::new(known.size, focal);
         // A wrong initial focal length enlarges all residuals.
-        let wide = if known.focal.is_some() { known.threshold } else { known.threshold.max(0.02 * side) };
-        let Some(found) = from_lens(pairs, lens, known, wide) else { continue };
-        let better = |best: &Resection| (found.inliers.len(), -found.rms) > (best.inliers.len(), -best.rms);
+        let initial_threshold = if known.focal.is_some() { known.threshold } else { known.threshold.max(0.02 * side) };
+        let Some(resection) = from_lens(pairs, lens, known, initial_threshold) else { continue };
+        let better = |best: &Resection| (resection.inliers.len(), -resection.rms) > (best.inliers.len(), -best.rms);
         if best.as_ref().is_none_or(better) {
-            best = Some(found);
+            best = Some(resection);
         }
     }
     // A few points always agree with some camera by chance, so two thirds must agree.
@@ -106,7 +106,7 @@ pub fn camera(pairs: &[Pair], known: &LensPriors) -> Result<Resection, Error> {
              u counts from the left, and v from the top"
         ))
     })?;
-    if best.conditioning < CONDITIONED {
+    if best.conditioning < MIN_CONDITIONING {
         return Err(Error::new(
             "these points do not determine the camera: another focal length and distance fit nearly as well",
         ));
@@ -115,8 +115,8 @@ pub fn camera(pairs: &[Pair], known: &LensPriors) -> Result<Resection, Error> {
 }
 
 /// Estimates the camera from an initial focal length.
-fn from_lens(pairs: &[Pair], lens: Lens, known: &LensPriors, wide: f64) -> Option<Resection> {
-    let (pose, inliers) = pose_of(pairs, &lens, wide, 0).or_else(|| {
+fn from_lens(pairs: &[PointPixelPair], lens: Lens, known: &LensPriors, initial_threshold: f64) -> Option<Resection> {
+    let (pose, inliers) = estimate_pose(pairs, &lens, initial_threshold, 0).or_else(|| {
         // RANSAC needs more points than its sample, so exactly four points are handled separately.
         let all: Vec<usize> = (0..pairs.len()).collect();
         let directions: Option<Vec<_>> = pairs[..3].iter().map(|pair| lens.unproject(&pair.1)).collect();
@@ -135,9 +135,9 @@ fn from_lens(pairs: &[Pair], lens: Lens, known: &LensPriors, wide: f64) -> Optio
     };
     let (mut pose, mut lens, mut inliers) = (pose, lens, inliers);
     for round in 0..4 {
-        let good: Vec<Pair> = inliers.iter().map(|i| pairs[*i]).collect();
+        let good: Vec<PointPixelPair> = inliers.iter().map(|i| pairs[*i]).collect();
         let radial = known.distortion && round > 0 && good.len() >= 8;
-        (pose, lens) = refined_pose(&good, &lens, &pose, &Options { radial, ..options })?;
+        (pose, lens) = refine_pose(&good, &lens, &pose, &Options { radial, ..options })?;
         inliers = (0..pairs.len()).filter(|i| residual(&lens, &pose, &pairs[*i]) <= known.threshold).collect();
         if inliers.len() < 4 {
             return None;
@@ -153,13 +153,13 @@ fn from_lens(pairs: &[Pair], lens: Lens, known: &LensPriors, wide: f64) -> Optio
     Some(Resection { lens, pose, inliers, rms, conditioning })
 }
 
-fn residual(lens: &Lens, pose: &Pose, (point, pixel): &Pair) -> f64 {
+fn residual(lens: &Lens, pose: &Pose, (point, pixel): &PointPixelPair) -> f64 {
     let p = pose.apply(point);
     if p.z > 0.0 { (lens.project(&p) - pixel).norm() } else { f64::INFINITY }
 }
 
 /// Computes [`Resection::conditioning`].
-fn conditioning(lens: &Lens, pose: &Pose, pairs: &[Pair], inliers: &[usize], focal: bool) -> f64 {
+fn conditioning(lens: &Lens, pose: &Pose, pairs: &[PointPixelPair], inliers: &[usize], focal: bool) -> f64 {
     let columns = if focal { 7 } else { 6 };
     let mut rows = DMatrix::zeros(2 * inliers.len().max(4), columns);
     for (k, i) in inliers.iter().enumerate() {
@@ -175,7 +175,7 @@ fn conditioning(lens: &Lens, pose: &Pose, pairs: &[Pair], inliers: &[usize], foc
 }
 
 /// Returns the vanishing point of lines: the homogeneous point closest to all of them.
-fn meeting(lines: &[[Vector2<f64>; 2]], size: f64) -> Option<Vector3<f64>> {
+fn vanishing_point(lines: &[[Vector2<f64>; 2]], size: f64) -> Option<Vector3<f64>> {
     let homogeneous = |p: &Vector2<f64>| Vector3::new(p.x / size, p.y / size, 1.0);
     let line = |ends: &[Vector2<f64>; 2]| homogeneous(&ends[0]).cross(&homogeneous(&ends[1])).try_normalize(1e-12);
     let rows: Vec<Vector3<f64>> = lines.iter().map(line).collect::<Option<_>>()?;
@@ -205,7 +205,7 @@ pub fn from_vanishing_lines(known: &VanishingLines, distance: f64) -> Result<(Le
     }
     let mut points = Vec::new();
     for lines in &known.lines {
-        let v = meeting(lines, size).ok_or_else(|| {
+        let v = vanishing_point(lines, size).ok_or_else(|| {
             Error::new("a vanishing point needs at least two distinct lines, each through two different pixels")
         })?;
         if v.z.abs() * 1e4 * size < v.xy().norm() {
@@ -223,9 +223,9 @@ pub fn from_vanishing_lines(known: &VanishingLines, distance: f64) -> Result<(Le
         ));
     }
     let focal = square.sqrt();
-    let lens = Lens { center: known.center.into(), ..Lens::new(known.size, focal) };
-    let seen = |p: &Vector2<f64>| Vector3::new(p.x, p.y, focal).normalize();
-    let (d1, d2) = (seen(&points[0]), seen(&points[1]));
+    let lens = Lens { principal_point: known.center.into(), ..Lens::new(known.size, focal) };
+    let direction = |p: &Vector2<f64>| Vector3::new(p.x, p.y, focal).normalize();
+    let (d1, d2) = (direction(&points[0]), direction(&points[1]));
     let (e1, e2) = (one.direction(), two.direction());
     let camera = Matrix3::from_columns(&[d1, d2, d1.cross(&d2)]);
     let world = Matrix3::from_columns(&[e1, e2, e1.cross(&e2)]);

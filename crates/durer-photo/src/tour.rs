@@ -1,7 +1,7 @@
 //! Data for the web page that shows the photographs and points of a reconstruction in 3D.
 
 use crate::Reconstruction;
-use crate::geometry::camera::spread;
+use crate::geometry::camera::principal_deviations;
 use nalgebra::{Matrix3, Vector2, Vector3};
 use serde::Serialize;
 
@@ -29,25 +29,28 @@ pub struct TourView {
 
 /// Returns the photographs with a known pose. Each is projected onto the plane that fits its points
 /// or, if that plane is too oblique, onto a plane perpendicular to the view direction.
-pub fn shown(all: &Reconstruction) -> Vec<TourView> {
-    let mut seen = vec![Vec::new(); all.views.len()];
-    for (i, point) in all.points.iter().enumerate() {
-        point.track.iter().for_each(|observation| seen[observation.view].push(i));
+pub fn tour_views(reconstruction: &Reconstruction) -> Vec<TourView> {
+    let mut points_of_view = vec![Vec::new(); reconstruction.views.len()];
+    for (i, point) in reconstruction.points.iter().enumerate() {
+        point.track.iter().for_each(|observation| points_of_view[observation.view].push(i));
     }
     let mut list = Vec::new();
-    for (view, points) in seen.into_iter().enumerate() {
-        let Some(pose) = all.views[view].pose else { continue };
-        let lens = all.lenses[all.views[view].lens];
-        let positions: Vec<Vector3<f64>> = points.iter().map(|i| all.points[*i].position).collect();
+    for (view, points) in points_of_view.into_iter().enumerate() {
+        let Some(pose) = reconstruction.views[view].pose else { continue };
+        let lens = reconstruction.lenses[reconstruction.views[view].lens];
+        let positions: Vec<Vector3<f64>> = points.iter().map(|i| reconstruction.points[*i].position).collect();
         let mut depths: Vec<f64> = positions.iter().map(|p| pose.depth(p)).filter(|d| *d > 0.0).collect();
         depths.sort_by(f64::total_cmp);
         let depth = depths.get(depths.len() / 2).copied().unwrap_or(1.0);
-        let forward = pose.outwards(&Vector3::z());
+        let forward = pose.direction_to_world(&Vector3::z());
         let (center, across) = (pose.center(), pose.center() + depth * forward);
         let [width, height] = lens.size.map(f64::from);
         let ray = |x: f64, y: f64| {
-            let p = Vector2::new((x - lens.center[0]) / lens.focal, (y - lens.center[1]) / (lens.focal * lens.aspect));
-            pose.outwards(&Vector3::new(p.x, p.y, 1.0))
+            let p = Vector2::new(
+                (x - lens.principal_point[0]) / lens.focal,
+                (y - lens.principal_point[1]) / (lens.focal * lens.aspect),
+            );
+            pose.direction_to_world(&Vector3::new(p.x, p.y, 1.0))
         };
         let rays = [ray(0.0, 0.0), ray(width, 0.0), ray(width, height), ray(0.0, height)];
         let on = |(origin, normal): (Vector3<f64>, Vector3<f64>)| {
@@ -61,7 +64,7 @@ pub fn shown(all: &Reconstruction) -> Vec<TourView> {
         let row = |i: usize| [pose.rotation[(i, 0)], pose.rotation[(i, 1)], pose.rotation[(i, 2)]];
         list.push(TourView {
             view,
-            name: all.views[view].name.clone(),
+            name: reconstruction.views[view].name.clone(),
             size: lens.size,
             focal: lens.focal,
             center: center.into(),
@@ -76,7 +79,7 @@ pub fn shown(all: &Reconstruction) -> Vec<TourView> {
 /// Returns the plane that fits points best, as a point and a normal; `None` if the points are not
 /// nearly in a plane.
 fn plane(points: &[Vector3<f64>]) -> Option<(Vector3<f64>, Vector3<f64>)> {
-    let [_, second, third] = spread(points);
+    let [_, second, third] = principal_deviations(points);
     if points.len() < 8 || third > 0.7 * second {
         return None;
     }

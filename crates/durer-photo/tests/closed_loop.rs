@@ -2,8 +2,8 @@
 //! and errors match the computed covariance.
 
 use durer_photo::adjust::{Options as Adjust, adjust, covariance};
-use durer_photo::geometry::align::{Similarity, cameras as aligned};
-use durer_photo::matching::{FORMAT, Link, Matches, Picture, Sighting, Track};
+use durer_photo::geometry::align::{Similarity, align_cameras as aligned};
+use durer_photo::matching::{FORMAT, MatchedPhoto, Matches, PhotoPair, Track, TrackObservation};
 use durer_photo::model::axis_angle_of;
 use durer_photo::random::Random;
 use durer_photo::solve::{Options, solve};
@@ -26,7 +26,7 @@ fn cameras(count: u32) -> Vec<Pose> {
 /// pixels.
 fn scene(views: u32, points: usize, noise: f64, seed: u64) -> Reconstruction {
     let random = &mut Random::new(seed);
-    let lens = Lens { radial: [-0.08, 0.03], ..Lens::new(SIZE, FOCAL) };
+    let lens = Lens { distortion: [-0.08, 0.03], ..Lens::new(SIZE, FOCAL) };
     let poses = cameras(views);
     let point = |_| {
         let position = Vector3::from_fn(|_, _| 3.0 * random.unit() - 1.5);
@@ -53,26 +53,31 @@ fn matches(all: &Reconstruction, focal: f64, outliers: f64) -> Matches {
         let sighting = |seen: &Observation| {
             let random_pixel = Vector2::new(1000.0 * random.unit(), 750.0 * random.unit());
             let pixel = if random.unit() < outliers { random_pixel } else { seen.pixel };
-            Sighting(seen.view, 0, pixel.x, pixel.y)
+            TrackObservation(seen.view, 0, pixel.x, pixel.y)
         };
-        Track { color: [0; 3], seen: point.track.iter().map(sighting).collect() }
+        Track { color: [0; 3], observations: point.track.iter().map(sighting).collect() }
     };
     let tracks: Vec<Track> = all.points.iter().map(track).collect();
-    let picture = |view: &View| Picture {
+    let picture = |view: &View| MatchedPhoto {
         name: view.name.clone(),
         size: SIZE,
         focal,
-        focal_from: "a guess".into(),
+        focal_source: "a guess".into(),
         lens: 0,
         features: 0,
     };
     let count = all.views.len();
     let common = |a: usize, b: usize| {
-        let has = |track: &&Track| [a, b].iter().all(|view| track.seen.iter().any(|seen| seen.0 == *view));
+        let has = |track: &&Track| [a, b].iter().all(|view| track.observations.iter().any(|seen| seen.0 == *view));
         tracks.iter().filter(has).count()
     };
-    let link =
-        |(a, b): (usize, usize)| Link { pictures: [a, b], alike: 0, matches: common(a, b), planar: 0.3, moved: 50.0 };
+    let link = |(a, b): (usize, usize)| PhotoPair {
+        pictures: [a, b],
+        candidates: 0,
+        matches: common(a, b),
+        planar_fraction: 0.3,
+        median_shift: 50.0,
+    };
     let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
     let links = pairs.map(link).collect();
     Matches { format: FORMAT.into(), pictures: all.views.iter().map(picture).collect(), links, tracks }
@@ -96,9 +101,9 @@ fn cameras_are_found_from_correspondences() {
     let truth = scene(20, 400, 0.2, 1);
     for (focal, outliers) in [(1000.0, 0.0), (1000.0, 0.3), (4000.0, 0.0)] {
         let solved = solve(&matches(&truth, focal, outliers), &Options::default(), &|_| {}).unwrap();
-        assert_eq!(solved.all.registered(), 20, "{:?}", solved.notes);
-        let (far, angle) = differences(&solved.all, &truth);
-        let wrong = (solved.all.lenses[0].focal / FOCAL - 1.0).abs();
+        assert_eq!(solved.reconstruction.registered_count(), 20, "{:?}", solved.notes);
+        let (far, angle) = differences(&solved.reconstruction, &truth);
+        let wrong = (solved.reconstruction.lenses[0].focal / FOCAL - 1.0).abs();
         println!("{focal} {outliers}: {far} {angle} {wrong}");
         // The scene is 3 units wide.
         assert!(far < 0.003 && angle < 0.05 && wrong < 0.002, "{far} {angle} {wrong}");
@@ -110,7 +115,7 @@ fn solution_is_independent_of_threads() {
     let given = matches(&scene(8, 200, 0.5, 2), 1000.0, 0.1);
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| solve(&given, &Options::default(), &|_| {}).unwrap().all)
+        pool.install(|| solve(&given, &Options::default(), &|_| {}).unwrap().reconstruction)
     };
     let one = on(1);
     assert!(one == on(2) && one == on(5));
@@ -144,12 +149,12 @@ fn in_frame(found: &mut Reconstruction, truth: &Reconstruction, far: usize, comp
     let pose = |all: &Reconstruction, i: usize| all.views[i].pose.unwrap();
     let rotation = pose(truth, 0).rotation.transpose() * pose(found, 0).rotation;
     let (from, to) = (pose(found, 0).center(), pose(truth, 0).center());
-    Similarity { scale: 1.0, rotation, shift: to - rotation * from }.apply_to(found);
+    Similarity { scale: 1.0, rotation, translation: to - rotation * from }.apply_to(found);
     // Scaling by s about the first camera changes the other's translation from a + b to a + s b.
     let there = pose(found, far);
     let a = -(there.rotation * to)[component];
     let scale = (pose(truth, far).translation[component] - a) / (there.translation[component] - a);
-    Similarity { scale, rotation: nalgebra::Matrix3::identity(), shift: to - scale * to }.apply_to(found);
+    Similarity { scale, rotation: nalgebra::Matrix3::identity(), translation: to - scale * to }.apply_to(found);
 }
 
 #[test]

@@ -115,7 +115,7 @@ fn view_is_as_meant(all: &Reconstruction, view: &View, name: &str) {
     assert!((pose.rotation - rotation).norm() < 1e-12, "{name}: {}", pose.rotation);
     let radial = if name == "fSpy" { 0.0 } else { 0.1 };
     assert!((lens.focal - 500.0).abs() < 1e-9, "{name}: {}", lens.focal);
-    assert_eq!((lens.aspect, lens.center, lens.radial), (1.0, [320.0, 240.0], [radial, 0.0]), "{name}");
+    assert_eq!((lens.aspect, lens.principal_point, lens.distortion), (1.0, [320.0, 240.0], [radial, 0.0]), "{name}");
     // In every format, the camera sees the point at the pixel computed by hand.
     let pixel = lens.project(&pose.apply(&Vector3::new(1.0, 2.0, 3.0)));
     assert!(name == "fSpy" || (pixel - Vector2::from(PIXEL)).norm() < 1e-9, "{name}: {pixel}");
@@ -130,7 +130,7 @@ fn put(folder: &Path, name: &str, bytes: &[u8]) {
 fn reread(path: &Path) -> Reconstruction {
     let mut all = read(path).unwrap();
     if !all.views.is_empty() {
-        all.set_picture(0, "a.jpg", [640, 480]);
+        all.set_image(0, "a.jpg", [640, 480]);
     }
     all
 }
@@ -139,7 +139,7 @@ fn reread(path: &Path) -> Reconstruction {
 fn every_format_follows_the_table() {
     let place = TempDir::new().unwrap();
     let cases = files();
-    let rows = CONVENTIONS.iter().filter(|row| row.way.starts_with("in")).map(|row| row.name);
+    let rows = CONVENTIONS.iter().filter(|row| row.direction.starts_with("in")).map(|row| row.name);
     assert_eq!(rows.collect::<Vec<_>>(), cases.iter().map(|case| case.0).collect::<Vec<_>>());
     for (name, path, files) in cases {
         files.iter().for_each(|(file, bytes)| put(place.path(), file, bytes));
@@ -147,7 +147,7 @@ fn every_format_follows_the_table() {
         is_as_meant(&all, name);
         // Written files are read back as the same.
         let row = CONVENTIONS.iter().find(|row| row.name == name).unwrap();
-        if row.way.contains("out") {
+        if row.direction.contains("out") {
             let again = place.path().join("again").join(path);
             let output = Output::of(&again, name.ends_with("binary")).unwrap();
             for (file, bytes) in output.files(&again).iter().zip(output.write(&all).unwrap()) {
@@ -353,7 +353,7 @@ fn compressed_files_are_decompressed() {
 }
 
 #[test]
-fn row_errors_have_their_place() {
+fn row_errors_have_their_position() {
     let reread = |text: &str| read_control("c", text.as_bytes(), &["a.jpg", "b.jpg"]).err().unwrap().to_string();
     for (text, wanted) in [
         ("0 0 0 a.jpg 1 2\n0 0 nan b.jpg 1 2\n", "c:2:5: expected one of X Y Z, found `nan`"),

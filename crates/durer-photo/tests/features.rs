@@ -1,15 +1,15 @@
 //! Tests of feature detection: keypoints are found at the right positions, and rotate and scale
 //! with the image.
 
-use durer_photo::feature::{Gray, features};
+use durer_photo::feature::{GrayImage, features};
 
 /// Returns an image of a Gaussian blob, centred at a position in pixels from the upper left corner.
-fn blot(side: usize, x: f32, y: f32, sigma: f32) -> Gray {
+fn blob(side: usize, x: f32, y: f32, sigma: f32) -> GrayImage {
     let value = |i: usize| {
         let (dx, dy) = ((i % side) as f32 + 0.5 - x, (i / side) as f32 + 0.5 - y);
         0.2 + 0.6 * libm::expf(-(dx * dx + dy * dy) / (2.0 * sigma * sigma))
     };
-    Gray { width: side, height: side, values: (0..side * side).map(value).collect() }
+    GrayImage { width: side, height: side, values: (0..side * side).map(value).collect() }
 }
 
 #[test]
@@ -24,7 +24,7 @@ fn blobs_are_found_at_their_positions() {
         (1010, 500.25, 333.6, 4.0),
         (1010, 700.7, 401.1, 14.0),
     ] {
-        let found = features(&blot(side, x, y, sigma), 100);
+        let found = features(&blob(side, x, y, sigma), 100);
         let best =
             found.iter().min_by(|a, b| (a.0.scale - sigma).abs().total_cmp(&(b.0.scale - sigma).abs())).unwrap().0;
         println!("{side} {x} {y} {sigma}: {best:?}");

@@ -1,14 +1,14 @@
 //! Tests of the geometric solvers: they recover the true model, and report degenerate data.
 
-use durer_photo::geometry::align::{Similarity, cameras, similarity};
-use durer_photo::geometry::camera::{linear, take_apart};
-use durer_photo::geometry::essential::{five_point, pose_before};
-use durer_photo::geometry::fundamental::{Pairs, eight_point, sampson, seven_point};
+use durer_photo::geometry::align::{Similarity, align_cameras, align_points};
+use durer_photo::geometry::camera::{decompose, solve_dlt};
+use durer_photo::geometry::essential::{five_point, pose_in_front};
+use durer_photo::geometry::fundamental::{FundamentalProblem, eight_point, sampson, seven_point};
 use durer_photo::geometry::p3p::p3p;
-use durer_photo::geometry::ransac::{Search, ransac};
+use durer_photo::geometry::ransac::{RansacOptions, ransac};
 use durer_photo::model::{axis_angle_of, rotation_of};
 use durer_photo::random::Random;
-use durer_photo::resect::{Axis, LensPriors, Pair, VanishingLines, camera, from_vanishing_lines};
+use durer_photo::resect::{Axis, LensPriors, PointPixelPair, VanishingLines, camera, from_vanishing_lines};
 use durer_photo::{Lens, Pose, Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
 
@@ -52,7 +52,7 @@ fn two_views_are_found_from_five_seven_and_eight_points() {
         let eight = eight_point(&pairs).unwrap();
         assert!(same(&eight, &truth));
         assert!(pairs.iter().all(|pair| sampson(&eight, pair) < 1e-18));
-        let (found, count) = pose_before(&truth, &pairs).unwrap();
+        let (found, count) = pose_in_front(&truth, &pairs).unwrap();
         assert_eq!(count, 12);
         assert!((found.rotation - second.rotation).norm() < 1e-9);
         assert!((found.translation - second.translation.normalize()).norm() < 1e-9);
@@ -89,12 +89,12 @@ fn outliers_are_separated_from_inliers() {
     };
     // More than half of the pairs are outliers.
     let pairs: Vec<_> = (0..300).map(|i| pair(random, i % 5 < 2)).collect();
-    let search = Search { threshold: 0.5, samples: 20000, seed: 7 };
-    let (f, inliers) = ransac(&Pairs(&pairs), &search).unwrap();
+    let search = RansacOptions { threshold: 0.5, samples: 20000, seed: 7 };
+    let (f, inliers) = ransac(&FundamentalProblem(&pairs), &search).unwrap();
     assert!((0..300).filter(|i| i % 5 < 2).all(|i| inliers.contains(&i)));
     // Some outliers lie on their epipolar lines by chance.
     assert!(inliers.len() < 130, "{}", inliers.len());
-    assert_eq!(ransac(&Pairs(&pairs), &search).unwrap(), (f, inliers));
+    assert_eq!(ransac(&FundamentalProblem(&pairs), &search).unwrap(), (f, inliers));
 }
 
 #[test]
@@ -103,21 +103,21 @@ fn similarity_is_recovered() {
     let points: Vec<_> = (0..5).map(|_| vector(random, 3.0)).collect();
     let rotation = rotation_of(&vector(random, 2.0));
     let moved: Vec<_> = points.iter().map(|p| 2.5 * (rotation * p) + Vector3::new(1.0, 2.0, 3.0)).collect();
-    let found = similarity(&points, &moved).unwrap();
+    let found = align_points(&points, &moved).unwrap();
     assert!((found.scale - 2.5).abs() < 1e-12 && (found.rotation - rotation).norm() < 1e-12);
     let line: Vec<_> = (0..5).map(|i| Vector3::new(f64::from(i), 0.0, 0.0)).collect();
-    assert_eq!(similarity(&line, &line), None);
+    assert_eq!(align_points(&line, &line), None);
     // For cameras on a line, only their rotations determine the rotation about that line.
     let mut turned = |center: &Vector3<f64>| Pose::at(center, rotation_of(&vector(random, 2.0)));
     let there: Vec<Pose> = line.iter().map(&mut turned).collect();
     let mut all = Reconstruction::default();
     all.views.extend(there.iter().map(|pose| View { name: String::new(), lens: 0, pose: Some(*pose) }));
-    Similarity { scale: 0.4, rotation, shift: vector(random, 5.0) }.apply_to(&mut all);
+    Similarity { scale: 0.4, rotation, translation: vector(random, 5.0) }.apply_to(&mut all);
     let moved: Vec<Pose> = all.views.iter().filter_map(|view| view.pose).collect();
-    let found = cameras(&there, &moved).unwrap();
+    let found = align_cameras(&there, &moved).unwrap();
     assert!((found.scale - 0.4).abs() < 1e-12 && (found.rotation - rotation).norm() < 1e-12);
     assert!(there.iter().zip(&moved).all(|(a, b)| (found.apply(&a.center()) - b.center()).norm() < 1e-12));
-    assert_eq!(cameras(&there[..1], &moved[..1]), None);
+    assert_eq!(align_cameras(&there[..1], &moved[..1]), None);
 }
 
 #[test]
@@ -132,9 +132,9 @@ fn rotations_survive_conversion_to_axis_and_angle() {
 }
 
 /// Returns a random camera, and points with the pixels at which it sees them.
-fn photographed(count: usize, flat: bool) -> (Lens, Pose, Vec<Pair>) {
+fn photographed(count: usize, flat: bool) -> (Lens, Pose, Vec<PointPixelPair>) {
     let random = &mut Random::new(6);
-    let lens = Lens { radial: [-0.1, 0.02], ..Lens::new([800, 600], 750.0) };
+    let lens = Lens { distortion: [-0.1, 0.02], ..Lens::new([800, 600], 750.0) };
     let truth = pose(random);
     let pairs = (0..count).map(|_| {
         let p = point(random);
@@ -166,7 +166,7 @@ fn one_photograph_of_known_points_gives_its_camera() {
     let plain = Lens::new([800, 600], 750.0);
     let points: Vec<_> = photographed(8, false).2.into_iter().map(|pair| pair.0).collect();
     let pixels: Vec<_> = points.iter().map(|p| plain.project(&truth.apply(p))).collect();
-    let (k, rotation, translation) = take_apart(&linear(&points, &pixels).unwrap().matrix).unwrap();
+    let (k, rotation, translation) = decompose(&solve_dlt(&points, &pixels).unwrap().matrix).unwrap();
     assert!((k - Matrix3::new(750.0, 0.0, 400.0, 0.0, 750.0, 300.0, 0.0, 0.0, 1.0)).norm() < 1e-5);
     assert!((rotation - truth.rotation).norm() + (translation - truth.translation).norm() < 1e-7);
 }
@@ -197,8 +197,13 @@ fn vanishing_lines_give_the_camera() {
         vec![[pixel(0.0, 0.0, 1.0), pixel(0.0, 0.0, -2.0)], [pixel(1.0, 0.5, 1.0), pixel(1.0, 0.5, -2.0)]],
     ];
     let axes = ["-x", "zNegative"].map(|name| Axis::parse(name).unwrap());
-    let known =
-        VanishingLines { size: lens.size, center: lens.center.into(), origin: pixel(0.0, 0.0, 0.0), axes, lines };
+    let known = VanishingLines {
+        size: lens.size,
+        center: lens.principal_point.into(),
+        origin: pixel(0.0, 0.0, 0.0),
+        axes,
+        lines,
+    };
     let (found, pose) = from_vanishing_lines(&known, truth.center().norm()).unwrap();
     assert!((found.focal - 900.0).abs() < 1e-6);
     assert!((pose.rotation - truth.rotation).norm() < 1e-9 && (pose.center() - truth.center()).norm() < 1e-8);

@@ -3,9 +3,9 @@
 
 use durer_photo::adjust::{Loss, Options, adjust, covariance};
 use durer_photo::format::{Output, read, read_project};
-use durer_photo::geometry::align::similarity;
+use durer_photo::geometry::align::align_points;
 use durer_photo::geometry::triangulate::nearest_to_rays;
-use durer_photo::model::{Fit, Reconstruction, rotation_of};
+use durer_photo::model::{Reconstruction, ReprojectionError, rotation_of};
 use durer_photo::random::Random;
 use durer_photo::resect::from_vanishing_lines;
 use durer_photo::solve::solve;
@@ -25,15 +25,21 @@ fn samples() -> Option<PathBuf> {
 }
 
 /// Reads a file and checks its numbers of views, points, and observations.
-fn sample(folder: &Path, name: &str, views: usize, points: usize, observations: usize) -> (Reconstruction, Fit) {
+fn sample(
+    folder: &Path,
+    name: &str,
+    views: usize,
+    points: usize,
+    observations: usize,
+) -> (Reconstruction, ReprojectionError) {
     let all = read(&folder.join(name)).unwrap();
-    let fit = all.fit();
+    let fit = all.reprojection_error();
     assert_eq!((all.views.len(), all.points.len(), fit.observations), (views, points, observations), "{name}");
     (all, fit)
 }
 
 #[track_caller]
-fn near(value: f64, expected: f64, tolerance: f64) {
+fn assert_near(value: f64, expected: f64, tolerance: f64) {
     assert!((value - expected).abs() <= tolerance, "{value} instead of {expected}");
 }
 
@@ -41,23 +47,23 @@ fn near(value: f64, expected: f64, tolerance: f64) {
 fn stored_solutions_reproject_as_published() {
     let Some(folder) = samples() else { return };
     let (bal, fit) = sample(&folder, "bal/problem-16-22106-pre.txt", 16, 22106, 83718);
-    near(fit.cost, 4.185660e6, 0.5);
-    near(fit.rms, 10.0, 0.005);
+    assert_near(fit.cost, 4.185660e6, 0.5);
+    assert_near(fit.rms, 10.0, 0.005);
     assert_eq!(bal.lenses.len(), 16);
     let (_, fit) = sample(&folder, "gtsam/dubrovnik-3-7-pre.txt", 3, 7, 19);
-    near(fit.cost, 2.764220e3, 5e-4);
+    assert_near(fit.cost, 2.764220e3, 5e-4);
     let (kermit, fit) = sample(&folder, "bundler-kermit/results.example/bundle.out", 11, 634, 2039);
-    assert_eq!(kermit.registered(), 9);
-    near(fit.rms, 0.493, 5e-4);
-    near(fit.max, 7.46, 5e-3);
+    assert_eq!(kermit.registered_count(), 9);
+    assert_near(fit.rms, 0.493, 5e-4);
+    assert_near(fit.max, 7.46, 5e-3);
     let before = kermit.points.iter().flat_map(|point| point.track.iter().map(|seen| (point.position, seen.view)));
     assert!(before.into_iter().all(|(point, view)| kermit.views[view].pose.unwrap().depth(&point) > 0.0));
     let (_, fit) = sample(&folder, "gtsam/Balbianello.out", 5, 544, 1417);
-    near(fit.rms, 0.423, 5e-4);
-    near(fit.max, 6.94, 5e-3);
+    assert_near(fit.rms, 0.423, 5e-4);
+    assert_near(fit.max, 6.94, 5e-3);
     let (_, fit) = sample(&folder, "opensfm-berlin/reconstruction_example.json", 3, 1430, 3082);
-    near(fit.rms / 3264.0, 0.000755, 1e-6);
-    near(fit.rms, 2.47, 0.01);
+    assert_near(fit.rms / 3264.0, 0.000755, 1e-6);
+    assert_near(fit.rms, 2.47, 0.01);
 }
 
 #[test]
@@ -65,18 +71,18 @@ fn adjustment_reaches_the_published_costs() {
     let Some(folder) = samples() else { return };
     let mut bal = read(&folder.join("bal/problem-16-22106-pre.txt")).unwrap();
     let report = adjust(&mut bal, &Options::default());
-    assert!(report.converged && bal.fit().cost <= 1.80340e4, "{:?}", report.costs);
+    assert!(report.converged && bal.reprojection_error().cost <= 1.80340e4, "{:?}", report.costs);
     for name in ["gtsam/dubrovnik-3-7-pre.txt", "bundler-kermit/results.example/bundle.out", "gtsam/Balbianello.out"] {
         let mut all = read(&folder.join(name)).unwrap();
-        let before = all.fit().cost;
+        let before = all.reprojection_error().cost;
         let report = adjust(&mut all, &Options::default());
-        assert!(report.converged && all.fit().cost <= before, "{name}");
+        assert!(report.converged && all.reprojection_error().cost <= before, "{name}");
     }
     // This solution has many outliers, to which OpenSfM gives less weight.
     let mut berlin = read(&folder.join("opensfm-berlin/reconstruction_example.json")).unwrap();
-    let before = berlin.fit().cost;
+    let before = berlin.reprojection_error().cost;
     adjust(&mut berlin, &Options { loss: Loss::Huber(3.0), ..Options::default() });
-    assert!(berlin.fit().cost <= before);
+    assert!(berlin.reprojection_error().cost <= before);
 }
 
 #[test]
@@ -95,9 +101,14 @@ fn every_format_reads_back_what_it_writes() {
         }
         let mut back = read(&path).unwrap();
         for (i, view) in berlin.views.iter().enumerate() {
-            back.set_picture(i, &view.name, berlin.lenses[view.lens].size);
+            back.set_image(i, &view.name, berlin.lenses[view.lens].size);
         }
-        assert!((back.fit().cost - berlin.fit().cost).abs() < 1e-6 * berlin.fit().cost, "{name}: {:?}", back.fit());
+        assert!(
+            (back.reprojection_error().cost - berlin.reprojection_error().cost).abs()
+                < 1e-6 * berlin.reprojection_error().cost,
+            "{name}: {:?}",
+            back.reprojection_error()
+        );
         assert_eq!(back.track_length(), berlin.track_length(), "{name}");
         for (ours, theirs) in back.views.iter().zip(&berlin.views) {
             let distance = (ours.pose.unwrap().center() - theirs.pose.unwrap().center()).norm();
@@ -118,7 +129,10 @@ fn gltf_keeps_cameras_and_ply_keeps_points() {
         read(&path).unwrap()
     };
     let (gltf, ply) = (again("a.gltf"), again("a.ply"));
-    assert_eq!((gltf.views.len(), gltf.registered(), gltf.lenses[0].size, ply.views.len()), (3, 3, [3264, 2448], 0));
+    assert_eq!(
+        (gltf.views.len(), gltf.registered_count(), gltf.lenses[0].size, ply.views.len()),
+        (3, 3, [3264, 2448], 0)
+    );
     for all in [&gltf, &ply] {
         assert_eq!(all.points.len(), berlin.points.len());
         for (ours, theirs) in all.points.iter().zip(&berlin.points) {
@@ -129,7 +143,7 @@ fn gltf_keeps_cameras_and_ply_keeps_points() {
     // With the lens and pose of the glTF file, the projections stay the same.
     let mut seen = berlin.clone();
     (seen.lenses, seen.views) = (gltf.lenses, gltf.views);
-    near(seen.fit().cost, berlin.fit().cost, 1e-6);
+    assert_near(seen.reprojection_error().cost, berlin.reprojection_error().cost, 1e-6);
 }
 
 /// Reconstructs the photographs of a folder.
@@ -140,15 +154,15 @@ fn solved(folder: &Path, names: &[String]) -> Reconstruction {
         matching::describe(&photo, &options)
     });
     let matches = matching::match_all(described.collect(), &options, &|_| {}).unwrap();
-    solve(&matches, &Default::default(), &|_| {}).unwrap().all
+    solve(&matches, &Default::default(), &|_| {}).unwrap().reconstruction
 }
 
 /// Returns the maximum distance between corresponding camera centres, as a fraction of the largest
 /// distance between two centres of `theirs`.
-fn apart(ours: &Reconstruction, theirs: &Reconstruction) -> f64 {
+fn max_center_distance(ours: &Reconstruction, theirs: &Reconstruction) -> f64 {
     let both = ours.views.iter().zip(&theirs.views);
     let (ours, theirs): (Vec<_>, Vec<_>) = both.filter_map(|(a, b)| Some((a.pose?.center(), b.pose?.center()))).unzip();
-    let there = similarity(&ours, &theirs).unwrap();
+    let there = align_points(&ours, &theirs).unwrap();
     let extent = theirs.iter().flat_map(|a| theirs.iter().map(move |b| (a - b).norm())).fold(0.0, f64::max);
     ours.iter().zip(&theirs).map(|(a, b)| (there.apply(a) - b).norm()).fold(0.0, f64::max) / extent
 }
@@ -165,14 +179,14 @@ fn photographs_become_cameras() {
             (&*photo.exif.camera, photo.exif.focal.as_ref().unwrap().0.round()),
             ("Canon Canon PowerShot A10", 661.0)
         );
-        bundler.set_picture(i, name, photo.size());
+        bundler.set_image(i, name, photo.size());
     }
     let solved = solved(&folder, &names);
-    assert_eq!(solved.registered(), 11);
-    let fit = solved.fit();
+    assert_eq!(solved.registered_count(), 11);
+    let fit = solved.reprojection_error();
     assert!(fit.rms <= 0.6 && fit.observations > 3000, "{fit:?}");
     assert!((solved.lenses[0].focal - 695.0).abs() < 5.0, "{:?}", solved.lenses[0]);
-    assert!(apart(&solved, &bundler) < 0.03, "{}", apart(&solved, &bundler));
+    assert!(max_center_distance(&solved, &bundler) < 0.03, "{}", max_center_distance(&solved, &bundler));
     stored_places_are_off(&solved, &bundler);
 }
 
@@ -187,10 +201,10 @@ fn stored_places_are_off(solved: &Reconstruction, bundler: &Reconstruction) {
     assert!(ours < 0.85 * theirs, "{ours} {theirs}");
     // Bundler's observations, with a single lens, reproduce our cameras.
     let mut one = bundler.clone();
-    one.lenses = vec![durer_photo::Lens { radial: [0.0; 2], ..bundler.lenses[0] }];
+    one.lenses = vec![durer_photo::Lens { distortion: [0.0; 2], ..bundler.lenses[0] }];
     one.views.iter_mut().for_each(|view| view.lens = 0);
     adjust(&mut one, &Options { loss: Loss::Cauchy(1.0), ..Options::default() });
-    assert!(apart(solved, &one) < 0.005, "{}", apart(solved, &one));
+    assert!(max_center_distance(solved, &one) < 0.005, "{}", max_center_distance(solved, &one));
     // Bundler's lenses and least squares also reproduce our cameras, if the few observations that
     // are off by more than two pixels are dropped.
     let mut clean = bundler.clone();
@@ -202,7 +216,7 @@ fn stored_places_are_off(solved: &Reconstruction, bundler: &Reconstruction) {
     }
     clean.points.retain(|point| point.track.len() > 1);
     adjust(&mut clean, &Options::default());
-    let (from_ours, from_stored) = (apart(solved, &clean), apart(&clean, bundler));
+    let (from_ours, from_stored) = (max_center_distance(solved, &clean), max_center_distance(&clean, bundler));
     println!("without {dropped} of 2039 observations: {from_ours} from ours, {from_stored} from what is stored");
     assert!(dropped < 25 && from_ours < 0.01 && from_stored > 0.015, "{dropped} {from_ours} {from_stored}");
 }
@@ -216,7 +230,7 @@ fn median_residual(cameras: &Reconstruction, seen: &Reconstruction) -> f64 {
             let view = &cameras.views[seen.view];
             let pose = view.pose.unwrap();
             let direction = cameras.lenses[view.lens].unproject(&seen.pixel).unwrap();
-            (pose.center(), pose.outwards(&direction).normalize())
+            (pose.center(), pose.direction_to_world(&direction).normalize())
         };
         let position = nearest_to_rays(&point.track.iter().map(ray).collect::<Vec<_>>()).unwrap();
         all.extend(point.track.iter().map(|seen| cameras.residual(&position, seen).unwrap().norm()));
@@ -247,7 +261,7 @@ fn bundler_observations_do_not_determine_positions_to_1_percent() {
             pose.rotation = rotation_of(&three(0)) * pose.rotation;
             pose.translation += three(3);
         }
-        apart(&moved, &bundler)
+        max_center_distance(&moved, &bundler)
     };
     let mut draws: Vec<f64> = (0..400).map(|_| draw()).collect();
     draws.sort_by(f64::total_cmp);
@@ -262,9 +276,13 @@ fn wrong_exif_focal_length_is_corrected() {
     let names: Vec<String> = (1..6).map(|i| format!("BalbianelloMedium-{i}.jpg")).collect();
     // The photographs were scaled down, but EXIF still gives 3767 pixels.
     let solved = solved(&folder.join("gtsam"), &names);
-    assert_eq!(solved.registered(), 5);
-    assert!(solved.fit().rms <= 0.6 && (solved.lenses[0].focal - 520.0).abs() < 15.0, "{:?}", solved.lenses[0]);
-    assert!(apart(&solved, &bundler) < 0.01, "{}", apart(&solved, &bundler));
+    assert_eq!(solved.registered_count(), 5);
+    assert!(
+        solved.reprojection_error().rms <= 0.6 && (solved.lenses[0].focal - 520.0).abs() < 15.0,
+        "{:?}",
+        solved.lenses[0]
+    );
+    assert!(max_center_distance(&solved, &bundler) < 0.01, "{}", max_center_distance(&solved, &bundler));
 }
 
 #[test]
@@ -274,12 +292,12 @@ fn three_photographs_of_a_phone_become_cameras() {
     let opensfm = read(&folder.join("reconstruction_example.json")).unwrap();
     let names: Vec<String> = (1..4).map(|i| format!("0{i}.jpg")).collect();
     let solved = solved(&folder.join("images"), &names);
-    assert_eq!(solved.registered(), 3);
-    let (ours, theirs) = (solved.fit(), opensfm.fit());
+    assert_eq!(solved.registered_count(), 3);
+    let (ours, theirs) = (solved.reprojection_error(), opensfm.reprojection_error());
     // Features are detected in photographs reduced by a factor of 3264 / 1600.
-    println!("{ours:?} {}", apart(&solved, &opensfm));
+    println!("{ours:?} {}", max_center_distance(&solved, &opensfm));
     assert!(ours.rms <= 0.6 * 3264.0 / 1600.0 && ours.rms < 0.5 * theirs.rms, "{ours:?}");
-    assert!(apart(&solved, &opensfm) < 0.01, "{}", apart(&solved, &opensfm));
+    assert!(max_center_distance(&solved, &opensfm) < 0.01, "{}", max_center_distance(&solved, &opensfm));
 }
 
 #[test]
@@ -295,7 +313,7 @@ fn fspy_cameras_see_their_vanishing_points() {
         (nalgebra::Vector3::y(), -0.3747357368992343, -436.0110710388304),
     ] {
         let pixel = lens.project(&(pose.rotation * axis));
-        let (u, v) = ((pixel.x - lens.center[0]) / 719.5, (lens.center[1] - pixel.y) / 719.5);
+        let (u, v) = ((pixel.x - lens.principal_point[0]) / 719.5, (lens.principal_point[1] - pixel.y) / 719.5);
         // The y axis is almost perpendicular to the view, so its vanishing point is far away and
         // less accurate.
         assert!((u - x).abs() < 1e-3 * (1.0 + y.abs()) && (v - y).abs() < 1e-3 * (1.0 + y.abs()), "{u} {v}");

@@ -87,7 +87,7 @@ def counters(v: np.ndarray, f: np.ndarray) -> dict[str, Rays]:
     return found
 
 
-def rivals(v: np.ndarray, f: np.ndarray) -> dict[str, Rays]:
+def libraries(v: np.ndarray, f: np.ndarray) -> dict[str, Rays]:
     """Returns, for each installed library, a function that returns which rays hit something."""
     mesh = durer.Mesh(v, f)
     found: dict[str, Rays] = {"durer": lambda o, d: mesh.closest(o, d, progress=False).hit}
@@ -145,7 +145,7 @@ def main() -> None:
         o, d = rays(v, f, count, rng)
         print(f"{name} of {len(f)} triangles: of {count} rays to its edges and vertices, so many are lost or counted twice")
         counts = counters(v, f)
-        for rival, hits in rivals(v, f).items():
+        for rival, hits in libraries(v, f).items():
             # trimesh's own ray caster is slow.
             some = slice(0, 20_000 if rival.startswith("trimesh") else count)
             lost = int((~np.asarray(hits(o[some], d[some]))).sum())

@@ -28,7 +28,7 @@ def ball(cuts: int) -> tuple[np.ndarray, np.ndarray]:
     return v.astype("f4"), np.concatenate([np.stack([i, i + n, i + n + 1], 1), np.stack([i, i + n + 1, i + 1], 1)]).astype("i4")
 
 
-def ways(count: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+def ray_sets(count: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     side, rng = int(count**0.5), np.random.default_rng(1)
     # Order the pixels in tiles of 8 x 8, as renderers do.
     tiles = np.arange(side // 8 * 8).reshape(-1, 8)
@@ -45,7 +45,7 @@ def ways(count: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     }
 
 
-def rivals(v: np.ndarray, f: np.ndarray) -> dict:
+def libraries(v: np.ndarray, f: np.ndarray) -> dict:
     found = {}
     mesh = durer.Mesh(v, f, "best")
     found["durer, 1 thread"] = lambda o, d: mesh.closest(o, d, threads=1, progress=False).t
@@ -107,7 +107,7 @@ def rust(v: np.ndarray, f: np.ndarray, o: np.ndarray, d: np.ndarray, threads: in
         return float(done.stdout)
 
 
-def clock(ask, o: np.ndarray, d: np.ndarray) -> float:
+def rays_per_second(ask, o: np.ndarray, d: np.ndarray) -> float:
     start = time.perf_counter()
     ask(o, d)
     return time.perf_counter() - start
@@ -124,12 +124,12 @@ def main() -> None:
     else:
         v, f = ball(200)
     print(f"{len(f)} triangles, {count} rays; millions of rays a second, medians of 5 rounds in turn")
-    everyone = rivals(v, f)
-    for kind, (o, d) in ways(count).items():
+    everyone = libraries(v, f)
+    for kind, (o, d) in ray_sets(count).items():
         times: dict[str, list[float]] = {name: [] for name in everyone}
         for _ in range(5):
             for name, ask in everyone.items():
-                times[name].append(clock(ask, o, d))
+                times[name].append(rays_per_second(ask, o, d))
         ours = np.median(times["durer, 1 thread"])
         for name, taken in times.items():
             print(f"{kind:8} {name:22} {len(o) / np.median(taken) / 1e6:8.2f}   ours, 1 thread: {np.median(taken) / ours:.2f} times")
@@ -140,7 +140,7 @@ def main() -> None:
             # libraries.
             for _ in range(3):
                 rates.append(rust(v, f, o, d, threads))
-                python.append(len(o) / np.median([clock(everyone[name], o, d) for _ in range(9)]) / 1e6)
+                python.append(len(o) / np.median([rays_per_second(everyone[name], o, d) for _ in range(9)]) / 1e6)
             rate, own = np.median(rates), np.median(python)
             print(f"{kind:8} from Rust, {threads} threads    {rate:8.2f}   from Python, likewise: {own:.2f}, {own / rate:.2f} of it")
 

@@ -21,9 +21,9 @@ fn _durer(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<tree::Tree>()?;
     module.add_class::<world::World>()?;
     module.add_class::<world::Part>()?;
-    module.add_function(wrap_pyfunction!(surface::met_points, module)?)?;
-    module.add_function(wrap_pyfunction!(surface::met_normals, module)?)?;
-    module.add_function(wrap_pyfunction!(surface::met_leave, module)?)?;
+    module.add_function(wrap_pyfunction!(surface::hit_points, module)?)?;
+    module.add_function(wrap_pyfunction!(surface::hit_normals, module)?)?;
+    module.add_function(wrap_pyfunction!(surface::secondary_origins, module)?)?;
     module.add_function(wrap_pyfunction!(world::merge, module)?)?;
     module.add_function(wrap_pyfunction!(pictures::compare, module)?)?;
     module.add_function(wrap_pyfunction!(pictures::encode, module)?)?;

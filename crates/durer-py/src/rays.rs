@@ -11,7 +11,7 @@ pub const JOB: usize = 2048;
 
 /// Numpy array of points or directions, in single or double precision.
 #[derive(FromPyObject)]
-pub enum Array<'py> {
+pub enum PointArray<'py> {
     Single(PyReadonlyArray2<'py, f32>),
     Double(PyReadonlyArray2<'py, f64>),
 }
@@ -19,7 +19,7 @@ pub enum Array<'py> {
 /// Rays as passed from Python: their number, origins, directions, `t_min` and `t_max`. Each array
 /// has one row per ray, or one row for all.
 pub type RayArrays<'py> =
-    (usize, Array<'py>, PyReadonlyArray2<'py, f32>, PyReadonlyArray1<'py, f32>, PyReadonlyArray1<'py, f32>);
+    (usize, PointArray<'py>, PyReadonlyArray2<'py, f32>, PyReadonlyArray1<'py, f32>, PyReadonlyArray1<'py, f32>);
 
 /// Points borrowed from a contiguous array, in either precision: one per element, or one for all.
 #[derive(Clone, Copy)]
@@ -30,11 +30,11 @@ pub enum Points<'a> {
 
 impl<'a> Points<'a> {
     /// Borrows the points of an array.
-    pub fn new(array: &'a Array<'_>) -> PyResult<Self> {
+    pub fn new(array: &'a PointArray<'_>) -> PyResult<Self> {
         let wrong = || PyValueError::new_err("points are rows of three numbers, one after the other");
         match array {
-            Array::Single(array) => Ok(Points::Single(points(array)?)),
-            Array::Double(array) => {
+            PointArray::Single(array) => Ok(Points::Single(points(array)?)),
+            PointArray::Double(array) => {
                 let rows = array.as_slice().ok().filter(|slice| slice.len().is_multiple_of(3)).ok_or_else(wrong)?;
                 Ok(Points::Double(rows))
             }
@@ -59,7 +59,7 @@ impl<'a> Points<'a> {
     }
 
     /// Returns point `i` relative to `center`, rounded once.
-    pub fn seen_from(&self, center: DVec3, i: usize) -> Vec3 {
+    pub fn relative_to(&self, center: DVec3, i: usize) -> Vec3 {
         (self.at(i) - center).as_vec3()
     }
 }
@@ -98,7 +98,7 @@ impl<'a> Rays<'a> {
         match self.origins {
             Points::Single(rows) if center == DVec3::ZERO => {
                 let step = if rows.len() == 3 { 0 } else { 3 };
-                self.each(first, |i, dir, t_min, t_max| Ray {
+                self.map_job(first, |i, dir, t_min, t_max| Ray {
                     origin: Vec3::from_slice(&rows[i * step..]),
                     dir,
                     t_min,
@@ -106,19 +106,19 @@ impl<'a> Rays<'a> {
                 })
             }
             origins => {
-                self.each(first, |i, dir, t_min, t_max| Ray { origin: origins.seen_from(center, i), dir, t_min, t_max })
+                self.map_job(first, |i, dir, t_min, t_max| Ray { origin: origins.relative_to(center, i), dir, t_min, t_max })
             }
         }
     }
 
     /// Returns the rays of the job that begins with ray `first`, with origins in double precision.
     pub fn exact_job(&self, first: usize) -> Vec<Ray64> {
-        self.each(first, |i, dir, t_min, t_max| Ray64::new(self.origins.at(i), dir, t_min, t_max))
+        self.map_job(first, |i, dir, t_min, t_max| Ray64::new(self.origins.at(i), dir, t_min, t_max))
     }
 
     /// Calls `ray` for each ray of a job, and collects the results.
     #[inline(always)]
-    fn each<R>(&self, first: usize, ray: impl Fn(usize, Vec3, f32, f32) -> R) -> Vec<R> {
+    fn map_job<R>(&self, first: usize, ray: impl Fn(usize, Vec3, f32, f32) -> R) -> Vec<R> {
         let step = |list: &[f32], each: usize| if list.len() == each { 0 } else { each };
         let (direction, t_min, t_max) = (step(self.directions, 3), step(self.t_min, 1), step(self.t_max, 1));
         let one = |i| {

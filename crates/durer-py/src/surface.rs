@@ -43,7 +43,7 @@ impl<'a> Hits<'a> {
         let triangle = u32::try_from(self.triangles[i]).ok()?;
         let (tree, to_world) = match &self.tree.target {
             Target::Mesh(tree) => (tree, None),
-            Target::Placed(scene) => {
+            Target::Instances(scene) => {
                 let object = usize::try_from(self.objects.map_or(0, |objects| objects[i])).ok()?;
                 let instance = scene.instances().get(object)?;
                 (&instance.bvh, Some(&instance.to_world))
@@ -61,7 +61,7 @@ impl Face<'_> {
     }
 
     /// Transforms a point from object space to world space.
-    fn placed(&self, point: DVec3) -> DVec3 {
+    fn to_world(&self, point: DVec3) -> DVec3 {
         self.to_world.map_or(point + self.center, |map| map.forward().transform_point3(point))
     }
 
@@ -107,7 +107,7 @@ impl Face<'_> {
         let error = f64::from(gamma(2)) * point.abs() + f64::from(gamma(7)) * DVec3::splat(reach) + back;
         let offset = 2.0 * normal.abs().dot(error);
         let side = if normal.dot(local.as_dvec3()) < 0.0 { -offset } else { offset };
-        self.placed(inset(self.corners, normal, point, 8.0 * error.length()) + side * normal)
+        self.to_world(inset(self.corners, normal, point, 8.0 * error.length()) + side * normal)
     }
 }
 
@@ -149,7 +149,7 @@ fn rows<T: numpy::Element + Copy + Default + Send + Sync>(
     let mut values = zeros::<T>(py, threads, 3 * hits.triangles.len());
     let jobs = values.as_chunks_mut().0.chunks_mut(JOB).enumerate().collect();
     each(py, threads, None, jobs, |(job, rows): (usize, &mut [[T; 3]]), pace| {
-        for (i, row) in rows.iter_mut().enumerate().take_while(|_| pace.goes_on()) {
+        for (i, row) in rows.iter_mut().enumerate().take_while(|_| pace.should_continue()) {
             let i = JOB * job + i;
             *row = hits.face(i).map_or([missing; 3], |face| of(&face, i));
         }
@@ -160,7 +160,7 @@ fn rows<T: numpy::Element + Copy + Default + Send + Sync>(
 /// Returns the hit points, in double precision if `double` is true, otherwise in single precision;
 /// NaN for misses.
 #[pyfunction]
-pub fn met_points<'py>(
+pub fn hit_points<'py>(
     py: Python<'py>,
     tree: PyRef<'py, Tree>,
     met: HitInput<'py>,
@@ -168,7 +168,7 @@ pub fn met_points<'py>(
     threads: Option<usize>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let hits = Hits::new(&tree, &met)?;
-    let point = |face: &Face, i: usize| face.placed(face.point(hits.uv[i]));
+    let point = |face: &Face, i: usize| face.to_world(face.point(hits.uv[i]));
     Ok(match double {
         true => rows(py, &hits, threads, f64::NAN, |face, i| point(face, i).to_array())?.into_pyarray(py).into_any(),
         false => {
@@ -181,7 +181,7 @@ pub fn met_points<'py>(
 /// Returns the unit normals of the triangles that were hit, pointing outwards also for mirrored
 /// instances; zero for misses.
 #[pyfunction]
-pub fn met_normals<'py>(
+pub fn hit_normals<'py>(
     py: Python<'py>,
     tree: PyRef<'py, Tree>,
     met: HitInput<'py>,
@@ -197,7 +197,7 @@ pub fn met_normals<'py>(
 
 /// Returns the origins of secondary rays at hits, one per direction.
 #[pyfunction]
-pub fn met_leave<'py>(
+pub fn secondary_origins<'py>(
     py: Python<'py>,
     tree: PyRef<'py, Tree>,
     met: HitInput<'py>,

@@ -1,6 +1,6 @@
 //! Ray and point queries on meshes and on scenes of instances.
 
-use crate::rays::{Array, JOB, Points, RayArrays, Rays, points};
+use crate::rays::{PointArray, JOB, Points, RayArrays, Rays, points};
 use crate::work::{Pace, each, install};
 use durer::bvh::{BuildQuality, Instance, InstanceBvh, InstanceHit, TriangleBvh, TriangleHit};
 use durer::math::{Affine, Ray, Ray64, Vec3};
@@ -24,7 +24,7 @@ pub struct Tree {
 /// The BVH of a [`Tree`], by kind.
 pub enum Target {
     Mesh(Arc<TriangleBvh>),
-    Placed(InstanceBvh),
+    Instances(InstanceBvh),
 }
 
 /// Arrays of all hits for Python: t, triangle, object, u and v.
@@ -68,8 +68,8 @@ impl Tree {
                     put(i, hit.map_or(MISS, Row::from));
                 }
             }
-            Target::Placed(scene) => {
-                for (i, ray) in rays.exact_job(first).iter().enumerate().take_while(|_| pace.goes_on()) {
+            Target::Instances(scene) => {
+                for (i, ray) in rays.exact_job(first).iter().enumerate().take_while(|_| pace.should_continue()) {
                     put(i, scene.closest(ray).map_or(MISS, Row::from));
                 }
             }
@@ -82,9 +82,9 @@ impl Tree {
                 let rays = rays.job(first, self.center);
                 pace.ranges(rays.len(), |range| tree.occluded_batch(&rays[range.clone()], &mut answers[range]));
             }
-            Target::Placed(scene) => {
+            Target::Instances(scene) => {
                 let rays = rays.exact_job(first);
-                let pairs = answers.iter_mut().zip(&rays).take_while(|_| pace.goes_on());
+                let pairs = answers.iter_mut().zip(&rays).take_while(|_| pace.should_continue());
                 pairs.for_each(|(answer, ray)| *answer = scene.occluded(ray));
             }
         }
@@ -93,12 +93,12 @@ impl Tree {
     fn all_hits_of(&self, rays: &Rays, first: usize, pace: &Pace, mut take: impl FnMut(usize, Vec<Row>)) {
         match &self.target {
             Target::Mesh(tree) => {
-                for (i, ray) in rays.job(first, self.center).iter().enumerate().take_while(|_| pace.goes_on()) {
+                for (i, ray) in rays.job(first, self.center).iter().enumerate().take_while(|_| pace.should_continue()) {
                     take(i, tree.all_hits(ray).into_iter().map(Row::from).collect());
                 }
             }
-            Target::Placed(scene) => {
-                for (i, ray) in rays.exact_job(first).iter().enumerate().take_while(|_| pace.goes_on()) {
+            Target::Instances(scene) => {
+                for (i, ray) in rays.exact_job(first).iter().enumerate().take_while(|_| pace.should_continue()) {
                     take(i, scene.all_hits(ray).into_iter().map(Row::from).collect());
                 }
             }
@@ -108,7 +108,7 @@ impl Tree {
     fn contains_point(&self, point: DVec3) -> bool {
         match &self.target {
             Target::Mesh(tree) => tree.hit_count(&outward(tree, (point - self.center).as_vec3())) % 2 == 1,
-            Target::Placed(scene) => scene.instances().iter().any(|instance| {
+            Target::Instances(scene) => scene.instances().iter().any(|instance| {
                 let ray = instance.to_world.inverse_ray(Ray64::new(point, Vec3::Z, 0.0, f32::INFINITY));
                 instance.bvh.hit_count(&ray) % 2 == 1
             }),
@@ -148,7 +148,7 @@ pub fn zeros<T: Clone + Default + Send>(py: Python, threads: Option<usize>, coun
 impl Tree {
     /// Builds a tree of triangles from vertices relative to `center`.
     #[staticmethod]
-    fn mesh(
+    fn from_mesh(
         py: Python,
         vertices: PyReadonlyArray2<f32>,
         faces: PyReadonlyArray2<u32>,
@@ -191,7 +191,7 @@ impl Tree {
 
     /// Builds a tree of instances. `matrices` contains three rows of four numbers per instance.
     #[staticmethod]
-    fn placed(trees: Vec<PyRef<Tree>>, matrices: PyReadonlyArray2<f64>) -> PyResult<Self> {
+    fn from_instances(trees: Vec<PyRef<Tree>>, matrices: PyReadonlyArray2<f64>) -> PyResult<Self> {
         let rows = matrices.as_slice()?.as_chunks::<12>().0;
         let mut placed = Vec::with_capacity(trees.len());
         for (i, (tree, m)) in trees.iter().zip(rows).enumerate() {
@@ -205,7 +205,7 @@ impl Tree {
             let to_world = Affine::new(DAffine3 { matrix3, translation }).ok_or_else(singular)?;
             placed.push(Instance::new(mesh.clone(), to_world));
         }
-        Ok(Tree { target: Target::Placed(InstanceBvh::new(placed)), center: DVec3::ZERO })
+        Ok(Tree { target: Target::Instances(InstanceBvh::new(placed)), center: DVec3::ZERO })
     }
 
     /// Returns the first hit of each ray.
@@ -221,7 +221,7 @@ impl Tree {
         let (mut t, mut uv) = (zeros(py, threads, count), zeros::<f32>(py, threads, 2 * count));
         let mut triangle = zeros(py, threads, count);
         // A mesh is a single object, so it needs no array of object indices.
-        let mut object = zeros(py, threads, if matches!(self.target, Target::Placed(_)) { count } else { 0 });
+        let mut object = zeros(py, threads, if matches!(self.target, Target::Instances(_)) { count } else { 0 });
         let objects = object.chunks_mut(JOB).map(Some).chain(std::iter::repeat_with(|| None));
         let found = t.chunks_mut(JOB).zip(uv.as_chunks_mut().0.chunks_mut(JOB)).zip(triangle.chunks_mut(JOB));
         let jobs = found.zip(objects).enumerate().collect();
@@ -301,7 +301,7 @@ impl Tree {
     fn contains<'py>(
         &self,
         py: Python<'py>,
-        places: Array<'py>,
+        places: PointArray<'py>,
         threads: Option<usize>,
         watch: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
@@ -309,7 +309,7 @@ impl Tree {
         let mut answers = vec![false; places.count()];
         let jobs = answers.chunks_mut(JOB).enumerate().collect();
         each(py, threads, watch, jobs, |(job, to): (usize, &mut [bool]), pace| {
-            let own = to.iter_mut().enumerate().take_while(|_| pace.goes_on());
+            let own = to.iter_mut().enumerate().take_while(|_| pace.should_continue());
             own.for_each(|(i, to)| *to = self.contains_point(places.at(JOB * job + i)));
         })?;
         Ok(answers.into_pyarray(py))
@@ -321,7 +321,7 @@ impl Tree {
     fn nearest<'py>(
         &self,
         py: Python<'py>,
-        places: Array<'py>,
+        places: PointArray<'py>,
         within: f64,
         threads: Option<usize>,
         watch: Option<Py<PyAny>>,
@@ -341,8 +341,8 @@ impl Tree {
         let numbers = distance.chunks_mut(JOB).zip(triangle.chunks_mut(JOB));
         let jobs = numbers.zip(near.chunks_mut(3 * JOB)).zip(uv.chunks_mut(2 * JOB)).enumerate();
         each(py, threads, watch, jobs.collect(), |(job, (((distance, triangle), near), uv)), pace| {
-            for i in (0..distance.len()).take_while(|_| pace.goes_on()) {
-                if let Some(found) = tree.nearest_point(places.seen_from(self.center, JOB * job + i), within) {
+            for i in (0..distance.len()).take_while(|_| pace.should_continue()) {
+                if let Some(found) = tree.nearest_point(places.relative_to(self.center, JOB * job + i), within) {
                     (distance[i], triangle[i]) = (found.distance, found.triangle as i32);
                     near[3 * i..3 * i + 3].copy_from_slice(&(found.point + self.center).to_array());
                     uv[2 * i..2 * i + 2].copy_from_slice(&found.uv);
@@ -356,7 +356,7 @@ impl Tree {
     fn bounds(&self) -> ([f32; 3], [f32; 3]) {
         let bounds = match &self.target {
             Target::Mesh(tree) => tree.bounds(),
-            Target::Placed(scene) => scene.bounds(),
+            Target::Instances(scene) => scene.bounds(),
         };
         (bounds.min.to_array(), bounds.max.to_array())
     }
@@ -365,7 +365,7 @@ impl Tree {
     fn bytes(&self) -> usize {
         match &self.target {
             Target::Mesh(tree) => tree.memory_usage(),
-            Target::Placed(scene) => scene.memory_usage(),
+            Target::Instances(scene) => scene.memory_usage(),
         }
     }
 }

@@ -5,11 +5,11 @@ use pyo3::prelude::*;
 
 /// Render option as passed to Python: its name, help, name of its value, allowed values, and group:
 /// `reading`, `picture` or `work`.
-type Statement = (&'static str, String, Option<String>, Vec<&'static str>, &'static str);
+type OptionInfo = (&'static str, String, Option<String>, Vec<&'static str>, &'static str);
 
 /// Returns all render options.
 #[pyfunction]
-pub fn options() -> Vec<Statement> {
+pub fn options() -> Vec<OptionInfo> {
     let group = |group| match group {
         OptionGroup::Loading => "reading",
         OptionGroup::Picture => "picture",

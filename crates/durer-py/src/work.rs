@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Interval between checks for signals and progress reports.
-pub const LOOK: Duration = Duration::from_millis(50);
+pub const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Entry of the cache of thread pools: the process id, the requested number of threads, and the
 /// pool.
@@ -47,7 +47,7 @@ pub fn install<R: Send>(py: Python, asked: Option<usize>, work: impl FnOnce() ->
 }
 
 /// Checks for signals such as Ctrl-C, and reports progress to the Python function `watch`.
-pub fn look(watch: Option<&Py<PyAny>>, done: u64, all: u64) -> PyResult<()> {
+pub fn poll(watch: Option<&Py<PyAny>>, done: u64, all: u64) -> PyResult<()> {
     Python::attach(|py| {
         py.check_signals()?;
         watch.map_or(Ok(()), |watch| watch.call1(py, (done, all)).map(|_| ()))
@@ -65,11 +65,11 @@ pub struct Pace<'a> {
 
 impl Pace<'_> {
     /// Returns true if the work should continue.
-    pub fn goes_on(&self) -> bool {
+    pub fn should_continue(&self) -> bool {
         if let Some(own) = &self.own {
             let mut own = own.borrow_mut();
-            if own.0.elapsed() > LOOK && own.1.is_ok() {
-                *own = (Instant::now(), look(None, 0, 0));
+            if own.0.elapsed() > POLL_INTERVAL && own.1.is_ok() {
+                *own = (Instant::now(), poll(None, 0, 0));
                 // The check itself can take time.
                 own.0 = Instant::now();
                 self.stop.store(own.1.is_err(), Relaxed);
@@ -83,10 +83,10 @@ impl Pace<'_> {
     pub fn ranges(&self, count: usize, mut work: impl FnMut(Range<usize>)) {
         const MOST: usize = 128;
         let (mut from, mut step) = (0, 8);
-        while from < count && self.goes_on() {
+        while from < count && self.should_continue() {
             let (to, start) = ((from + step).min(count), Instant::now());
             work(from..to);
-            step = if start.elapsed() < LOOK / 10 { MOST.min(4 * step) } else { 1.max(step / 4) };
+            step = if start.elapsed() < POLL_INTERVAL / 10 { MOST.min(4 * step) } else { 1.max(step / 4) };
             from = to;
         }
     }
@@ -101,26 +101,26 @@ pub fn each<J: Send>(
     work: impl Fn(J, &Pace) + Sync + Send,
 ) -> PyResult<()> {
     let (all, done, stop) = (jobs.len() as u64, AtomicUsize::new(0), AtomicBool::new(false));
-    let alone = |jobs: Vec<J>| {
+    let run_here = |jobs: Vec<J>| {
         let pace = Pace { stop: &stop, own: Some(RefCell::new((Instant::now(), Ok(())))) };
-        jobs.into_iter().take_while(|_| pace.goes_on()).for_each(|job| work(job, &pace));
+        jobs.into_iter().take_while(|_| pace.should_continue()).for_each(|job| work(job, &pace));
         pace.own.map_or(Ok(()), |own| own.into_inner().1)
     };
     // A single job is not worth a thread pool.
     if jobs.len() <= 1 {
-        py.detach(|| alone(std::mem::take(&mut jobs)))?;
+        py.detach(|| run_here(std::mem::take(&mut jobs)))?;
         return py.check_signals();
     }
     let one = |job| {
         let pace = Pace { stop: &stop, own: None };
-        if pace.goes_on() {
+        if pace.should_continue() {
             work(job, &pace);
             done.fetch_add(1, Relaxed);
         }
     };
     let result = py.detach(|| {
         let Some(pool) = pool(asked) else {
-            return alone(jobs);
+            return run_here(jobs);
         };
         let mut result = Ok(());
         pool.in_place_scope(|scope| {
@@ -130,9 +130,9 @@ pub fn each<J: Send>(
                 jobs.into_par_iter().with_max_len(1).for_each(one);
                 drop(end);
             });
-            while wait.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
+            while wait.recv_timeout(POLL_INTERVAL) == Err(RecvTimeoutError::Timeout) {
                 if result.is_ok() {
-                    result = look(watch.as_ref(), done.load(Relaxed) as u64, all);
+                    result = poll(watch.as_ref(), done.load(Relaxed) as u64, all);
                     stop.store(result.is_err(), Relaxed);
                 }
             }

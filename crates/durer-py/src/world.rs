@@ -1,13 +1,13 @@
 //! Scenes and partial renders, behind `durer.World` and `durer.Part`.
 
 use crate::rays::{self, JOB, Rays};
-use crate::work::{LOOK, each, install, look, pool};
+use crate::work::{POLL_INTERVAL, each, install, poll, pool};
 use durer::check::{Subject, check};
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::aov::Aov;
 use durer::image::Layer;
 use durer::options::RenderOptions;
-use durer::render::explain::Names;
+use durer::render::explain::SceneNames;
 use durer::render::{self, RenderOutcome};
 use durer::report;
 use durer::source::SourceError;
@@ -177,9 +177,9 @@ impl World {
                     stop
                 });
                 let mut result = Ok(());
-                while wait.recv_timeout(LOOK) == Err(mpsc::RecvTimeoutError::Timeout) {
+                while wait.recv_timeout(POLL_INTERVAL) == Err(mpsc::RecvTimeoutError::Timeout) {
                     if result.is_ok() {
-                        result = look(watch.as_ref(), control.done.load(Relaxed), control.all.load(Relaxed));
+                        result = poll(watch.as_ref(), control.done_work.load(Relaxed), control.total_work.load(Relaxed));
                         control.cancel.store(result.is_err(), Relaxed);
                     }
                 }
@@ -214,7 +214,7 @@ impl World {
             let rows = ids.as_chunks_mut::<NUMBERS>().0.iter_mut().zip(values.as_chunks_mut::<VALUES>().0);
             let rows = rows.zip(places.as_chunks_mut::<PLACES>().0);
             for (ray, ((ids, values), place)) in
-                rays.exact_job(JOB * job).iter().zip(rows).take_while(|_| pace.goes_on())
+                rays.exact_job(JOB * job).iter().zip(rows).take_while(|_| pace.should_continue())
             {
                 values[0] = f32::INFINITY;
                 let Some(SurfaceInteraction { hit, surface, material, .. }) = self.world.intersect(ray, &mut ()) else {
@@ -247,7 +247,7 @@ impl World {
         let jobs = answers.chunks_mut(JOB).enumerate().collect();
         each(py, threads, watch, jobs, |(job, to): (usize, &mut [bool]), pace| {
             let rays = rays.exact_job(JOB * job);
-            let pairs = to.iter_mut().zip(&rays).take_while(|_| pace.goes_on());
+            let pairs = to.iter_mut().zip(&rays).take_while(|_| pace.should_continue());
             pairs.for_each(|(to, ray)| *to = self.world.occluded(ray, &mut ()));
         })?;
         Ok(answers.into_pyarray(py))
@@ -258,7 +258,7 @@ impl World {
         let job = options(&pairs)?.resolve(&self.loaded).map_err(PyValueError::new_err)?;
         let explain = || render::explain::explain(&self.world, &job, pixel.0, pixel.1);
         let found = install(py, None, explain).map_err(|error| PyValueError::new_err(error.to_string()))?;
-        let names = Names { scene: &self.loaded.scene, world: &self.world, files: &self.files };
+        let names = SceneNames { scene: &self.loaded.scene, world: &self.world, files: &self.files };
         Ok(report::explanation(&report::Explained::Pixel(found), &names).to_string())
     }
 

@@ -92,7 +92,7 @@ def test_elements_are_closed_and_seen_from_outside():
         durer.embreex.ElementMesh(scene, cube, [[0, 1, 2]])
 
 
-def test_rooms_are_there_when_they_are_asked_for():
+def test_modules_are_imported_on_first_access():
     import subprocess
     import sys
 

@@ -37,7 +37,7 @@ def test_each_example_runs_as_a_program(name, small, file, tmp_path):
     assert "wrote" in ran.stdout and (tmp_path / file).exists()
 
 
-def test_every_example_is_tried():
+def test_every_example_is_tested():
     names = {path.stem for path in EXAMPLES.glob("*.py")} - {"shapes", "notebooks"}
     tried = {case[0] for case in test_each_example_runs_as_a_program.pytestmark[0].args[1]}
     assert names == tried
@@ -76,7 +76,7 @@ def test_thickness_is_the_length_of_chords():
     assert np.abs(example["thickness"](mesh, origins, [0, 0, -1]) - chord).max() < 0.005
 
 
-def test_a_scan_lies_on_what_it_met():
+def test_scan_points_lie_on_surfaces():
     shapes, example = of("shapes"), of("lidar")
     scene = durer.Scene([durer.Mesh(*shapes["grid"](-90, 90, -90, 90, 1)), durer.Mesh(*shapes["ball"](2, 48, (8, 0, 1)))])
     points, objects, power = example["scan"](scene, (0, 0, 1.5), steps=360)

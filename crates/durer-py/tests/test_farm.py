@@ -17,7 +17,7 @@ WORDS = ["--size", "160x120", "--samples", "16"]
 
 
 @pytest.mark.parametrize(("killed", "after"), [(0, 0), (2, 3), (1, 63)])
-def test_dask_makes_the_same_bits_whoever_dies(scenes, killed, after):
+def test_dask_result_survives_dead_workers(scenes, killed, after):
     distributed = pytest.importorskip("distributed")
     import durer.farm
 
@@ -54,7 +54,7 @@ def test_frames_come_in_order_with_the_bits_of_one_machine():
     assert found == [frame(i).render(size=(40, 30), samples=4).hash for i in range(5)] and len(set(found)) == 5
 
 
-def test_runs_one_after_the_other_have_nothing_to_do_with_each_other(scenes):
+def test_consecutive_runs_are_independent(scenes):
     distributed = pytest.importorskip("distributed")
     import durer.farm
 
@@ -67,7 +67,7 @@ def test_runs_one_after_the_other_have_nothing_to_do_with_each_other(scenes):
 
 
 @pytest.mark.parametrize("engine", ["slurm", "k8s", "openjd", "dask"])
-def test_templates_are_whole(engine, scenes):
+def test_templates_are_complete(engine, scenes):
     done = command("farm", scenes / "whitted.txt", "--template", engine, "--shards", 3, *WORDS)
     assert done.returncode == 0 and "@" not in done.stdout.replace("@%", ""), done.stderr
     if engine == "slurm":
@@ -96,7 +96,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}
 
 
 @pytest.mark.parametrize("engine", ["slurm", "k8s", "openjd", "dask"])
-def test_frames_are_what_the_command_makes(engine, tmp_path):
+def test_frames_equal_command_output(engine, tmp_path):
     """Runs the jobs of the templates as their engines would: each task with its index, then the
     merge."""
     for frame in (3, 5, 7):

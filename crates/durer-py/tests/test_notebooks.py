@@ -13,7 +13,7 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 MADE = runpy.run_path(str(EXAMPLES / "notebooks.py"))["all_notebooks"]()
 
 
-def test_the_notebooks_are_those_of_the_programs():
+def test_notebooks_match_their_programs():
     assert {path.stem for path in EXAMPLES.glob("*.ipynb")} == set(MADE)
     for name, text in MADE.items():
         assert (EXAMPLES / f"{name}.ipynb").read_text() == text, f"run {EXAMPLES / 'notebooks.py'}"

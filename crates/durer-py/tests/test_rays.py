@@ -58,7 +58,7 @@ def moller_trumbore(mesh: durer.Mesh, origin: np.ndarray, direction: np.ndarray)
     return t[good].min() if good.any() else np.inf
 
 
-def test_closest_is_what_brute_force_finds(ball):
+def test_closest_equals_brute_force(ball):
     o, d = 1.3 * directions(300, 2), directions(300, 3)
     hits = ball.closest(o, d)
     for i in range(300):
@@ -113,7 +113,7 @@ def test_distances_are_those_of_the_cube():
     assert np.isinf(far.distance[0]) and far.triangle[0] == far.object[0] == -1 and np.isnan(far.point).all()
 
 
-def test_scenes_are_their_moved_meshes(ball):
+def test_scene_equals_transformed_meshes(ball):
     turn = np.array([[0, -2, 0, 5], [1, 0, 0.5, -1], [0, 0, 3, 2], [0, 0, 0, 1.0]])
     cube = durer.Mesh(CUBE, CUBE_FACES)
     scene = durer.Scene([ball, (cube, turn), (cube, np.eye(4)[:3])])
@@ -167,7 +167,7 @@ def test_shapes_follow_the_rays(ball):
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
-def test_what_is_no_ray_hits_nothing(ball, bad):
+def test_invalid_rays_hit_nothing(ball, bad):
     hits = ball.closest([[bad, 0, 0], [0, 0, 0], [0, 0, 0]], [[1, 0, 0], [bad, 0, 0], [0, 0, 0]])
     assert not hits.hit.any() and np.isinf(hits.t).all()
 
@@ -198,12 +198,12 @@ def test_threads_change_no_bit(ball):
         (lambda m: durer.Scene([3]), "object 0 must be a Mesh"),
     ],
 )
-def test_errors_say_what_was_wanted(ball, wrong, said):
+def test_errors_name_expected_values(ball, wrong, said):
     with pytest.raises((ValueError, TypeError), match=said):
         wrong(ball)
 
 
-def test_progress_is_told_and_what_it_raises_stops(ball):
+def test_progress_is_reported_and_can_stop(ball):
     told = []
     ball.closest(np.zeros((200_000, 3)), [0, 0, 1], progress=lambda done, total: told.append((done, total)))
     assert told[-1][0] == told[-1][1]
@@ -215,7 +215,7 @@ def test_progress_is_told_and_what_it_raises_stops(ball):
         ball.closest(np.zeros((3_000_000, 3)), directions(3_000_000), threads=1, progress=fail)
 
 
-def test_the_lock_is_released(ball):
+def test_gil_is_released(ball):
     """Another Python thread continues to run while rays are traced."""
     ticks, stop = [], threading.Event()
     counter = threading.Thread(target=lambda: [ticks.append(1) or time.sleep(0.001) for _ in iter(stop.is_set, True)])
@@ -281,7 +281,7 @@ def _in_child(queue):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no fork")
-def test_a_fork_has_threads_of_its_own():
+def test_fork_starts_its_own_threads():
     durer.Mesh(CUBE, CUBE_FACES).count(np.full((10_000, 3), 0.5), [0, 0, 1])
     context = multiprocessing.get_context("fork")
     queue = context.Queue()

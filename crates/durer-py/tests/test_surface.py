@@ -19,7 +19,7 @@ def bumpy() -> tuple[np.ndarray, np.ndarray]:
 SHAPES = {"ball": sphere(), "cube": (2 * CUBE - 1, np.array(CUBE_FACES)), "bumpy": bumpy()}
 
 
-def goes_on(scene, middle, seed):
+def check_secondary_rays(scene, middle, seed):
     """Checks that secondary rays in any direction start on the side of their direction."""
     middle = np.asarray(middle, np.float64)
     for way in (directions(20_000, seed), None):
@@ -40,30 +40,30 @@ def goes_on(scene, middle, seed):
 
 @pytest.mark.parametrize("offset", [0, 1000, 4e6])
 @pytest.mark.parametrize("shape", SHAPES)
-def test_rays_that_leave_a_mesh_do_not_meet_where_they_start(shape, offset):
+def test_secondary_rays_do_not_hit_their_origin(shape, offset):
     vertices, faces = SHAPES[shape]
     middle = [offset, -offset / 3, 0.0]
     mesh = durer.Mesh(vertices + middle, faces)
     assert mesh.is_closed
-    goes_on(mesh, middle, 21)
+    check_secondary_rays(mesh, middle, 21)
     if offset == 1000:
         single = durer.Mesh((vertices + middle).astype("f4"), faces)
         assert single.vertices.dtype == np.float64 and (single.vertices == (vertices + middle).astype("f4")).all()
-        goes_on(single, middle, 22)
+        check_secondary_rays(single, middle, 22)
 
 
 @pytest.mark.parametrize("offset", [0, 1000, 4e6])
 @pytest.mark.parametrize("matrix", [np.eye(3), np.diag([-1, 1, 1]), [[0, -1.5, 0], [1, 0, 0.5], [0, 0.2, 0.9]]])
-def test_rays_that_leave_a_placed_mesh_do_not_either(matrix, offset):
+def test_secondary_rays_on_instances(matrix, offset):
     middle = np.array([offset, -offset / 3, 0.0])
     place = np.column_stack([matrix, middle])
-    goes_on(durer.Scene([(durer.Mesh(*SHAPES["bumpy"]), place)]), middle, 23)
+    check_secondary_rays(durer.Scene([(durer.Mesh(*SHAPES["bumpy"]), place)]), middle, 23)
     far = durer.Mesh(SHAPES["bumpy"][0] + 5000, SHAPES["bumpy"][1])
     place[:, 3] -= place[:, :3] @ [5000, 5000, 5000]
-    goes_on(durer.Scene([(far, place)]), middle, 24)
+    check_secondary_rays(durer.Scene([(far, place)]), middle, 24)
 
 
-def test_rays_leave_all_that_a_world_has():
+def test_secondary_rays_on_all_shapes():
     camera = durer.PerspectiveCamera(center=(0, 1, 8), direction=(0, -0.1, -1), up=(0, 1, 0), angle=40)
     for offset in (0, 1000, 1e5):
         middle = np.array([offset, 0, 0.0])
@@ -76,7 +76,7 @@ def test_rays_leave_all_that_a_world_has():
             assert hits.hit.all() and (world.occluded(hits.leave(ways), ways) == inside).all()
 
 
-def test_several_rays_leave_each_hit_and_none_leaves_a_miss():
+def test_secondary_rays_of_several_directions_and_of_misses():
     mesh = durer.Mesh(*SHAPES["ball"])
     hits = mesh.closest([[0, 0, 3], [0, 0, 3]], [[0, 0, -1], [0, 0, 1]])
     starts = hits[:, None].leave(directions(7))
@@ -90,7 +90,7 @@ def test_several_rays_leave_each_hit_and_none_leaves_a_miss():
     assert (mesh.count(every.leave([0, 0, -1]), [0, 0, -1]) == [1, 0]).all()
 
 
-def test_places_of_the_surface_are_left_as_hits_are():
+def test_surface_points_give_secondary_origins():
     mesh = durer.Mesh(*SHAPES["bumpy"])
     o, ways = 3 * directions(2000, 38), directions(2000, 39)
     hits, near = mesh.closest(o, -o), mesh.nearest(o)
@@ -139,7 +139,7 @@ def test_a_mesh_does_not_change_with_the_arrays_it_was_made_of():
             array[0] = 0
 
 
-def test_what_is_not_finite_or_there_twice_is_open():
+def test_non_finite_and_duplicate_triangles_are_open():
     faces = np.array(CUBE_FACES)
     for wrong in (np.nan, np.inf):
         vertices = CUBE.copy()
@@ -173,7 +173,7 @@ def test_mirrored_normals_point_outwards_as_those_of_worlds():
     assert ((placed.normal * o).sum(1) > 0).all() and np.allclose(placed.normal, world.normal, atol=1e-6)
 
 
-def test_what_rays_are_asked_of_can_be_pickled_and_copied():
+def test_meshes_scenes_and_hits_can_be_pickled():
     mesh = durer.Mesh(*SHAPES["bumpy"], preset="best")
     scene = durer.Scene([mesh, (mesh, np.diag([1, 2, -1, 1.0]))])
     o, d = 3 * directions(300, 32), -directions(300, 33)

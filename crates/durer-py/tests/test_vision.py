@@ -50,7 +50,7 @@ def test_flow_of_a_turned_camera_is_its_projection():
     assert seen[y, x] and (turn @ view.points[y, x] + shift)[2] == pytest.approx(second.view(scene).depth[there[1], there[0]], rel=0.02)
 
 
-def test_wrong_cameras_are_told():
+def test_invalid_cameras_are_refused():
     skew, nan = K.copy(), K.copy()
     skew[2, 0], nan[0, 2] = 1, np.nan
     for wrong, said in [

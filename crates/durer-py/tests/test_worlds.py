@@ -29,7 +29,7 @@ def whitted(scenes):
     return durer.load(scenes / "whitted.txt")
 
 
-def test_a_picture_has_the_commands_bits(whitted, scenes, tmp_path):
+def test_picture_equals_command_output(whitted, scenes, tmp_path):
     pictures = whitted.render(size=(48, 36), samples=3, seed=7, show=["color", "depth", "normals"])
     words = ["--size", SIZE, "--samples", 3, "--seed", 7, "--show", "color,depth,normals", "--hash"]
     done = command("render", scenes / "whitted.txt", "-o", tmp_path / "a.exr", *words)
@@ -44,7 +44,7 @@ def test_a_picture_has_the_commands_bits(whitted, scenes, tmp_path):
     assert durer.compare(tmp_path / "a.exr", tmp_path / "b.exr")["verdict"] == "identical"
 
 
-def test_eight_bits_are_the_commands_too(whitted, scenes, tmp_path):
+def test_eight_bit_picture_equals_command_output(whitted, scenes, tmp_path):
     whitted.render(size=SIZE).save(tmp_path / "a.png")
     command("render", scenes / "whitted.txt", "-o", tmp_path / "b.png", "--size", SIZE)
     assert (durer.read(tmp_path / "a.png")[0] == durer.read(tmp_path / "b.png")[0]).all()
@@ -80,7 +80,7 @@ def test_shards_merge_to_one_run(whitted, tmp_path):
     assert parts[0].shard == "1/3" and parts[0].is_finished and parts[0].job["width"] == 48
 
 
-def test_a_part_goes_on_after_an_error(whitted):
+def test_part_continues_after_an_error(whitted):
     options = {"size": (640, 480), "samples": 64}
     part, seen = whitted.part(**options), []
 
@@ -101,7 +101,7 @@ def test_progressive_pictures_end_with_the_finished_one(whitted):
     assert hashes[-1] == whitted.render(size=(64, 48), samples=8).hash
 
 
-def test_scenes_in_code_are_what_their_text_says(tmp_path):
+def test_scene_in_code_equals_text(tmp_path):
     red = durer.PhongMaterial(diffuse_color=(0.8, 0.2, 0.2))
     blue = durer.PhongMaterial(diffuse_color=(0.1, 0.2, 0.9), specular_color=(1, 1, 1), exponent=30)
     tetra = durer.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
@@ -144,7 +144,7 @@ def test_errors_of_scenes_tell_file_line_and_column(tmp_path):
                     [durer.Sphere(center=(0, 0, 0), radius=-1)])  # fmt: skip
 
 
-def test_check_finds_what_the_command_finds(tmp_path, scenes):
+def test_check_equals_command(tmp_path, scenes):
     text = (scenes / "whitted.txt").read_text()
     dark = re.sub(r"Lights \{.*?\n\}", "Lights { }", text, flags=re.S)
     (tmp_path / "dark.txt").write_text(dark)
@@ -153,7 +153,7 @@ def test_check_finds_what_the_command_finds(tmp_path, scenes):
     assert [finding["code"] for finding in durer.check(tmp_path / "dark.txt")] == wanted
 
 
-def test_wrong_options_are_told(whitted):
+def test_invalid_options_are_refused(whitted):
     with pytest.raises(TypeError, match="did you mean samples"):
         whitted.render(sample=3)
     with pytest.raises(ValueError, match="samples"):
@@ -196,12 +196,12 @@ def test_pictures_are_compared():
         durer.compare(a, b[..., 0])
 
 
-def test_the_command_speaks_for_itself():
+def test_command_prints_its_output():
     assert command("--version").stdout.startswith("durer ")
     assert command("render", "nothing.txt").returncode == 2
 
 
-def test_rays_meet_what_pictures_show() -> None:
+def test_rays_agree_with_pictures() -> None:
     ball = durer.Sphere(center=(0, 0, 0), radius=1)
     red = durer.PhongMaterial(diffuse_color=(1, 0, 0))
     camera = durer.PerspectiveCamera(center=(0, 0, 5), direction=(0, 0, -1), up=(0, 1, 0), angle=30)
@@ -235,7 +235,7 @@ def test_rays_meet_what_pictures_show() -> None:
     assert all(np.array_equal(getattr(one, n), getattr(two, n), equal_nan=True) for n in ("t", "object", "point", "shading_normal"))
 
 
-def test_how_a_model_becomes_a_scene_is_said_when_it_is_read(tmp_path):
+def test_model_conversion_is_reported(tmp_path):
     (tmp_path / "m.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
     size, usual = (32, 24), durer.load(tmp_path / "m.obj").render(size=(32, 24), samples=1).hash
     for options, words in [({}, []), ({"view": "front"}, ["--view", "front"]), ({"up": "z", "studio": "sun"}, ["--up", "z", "--studio", "sun"])]:
@@ -270,7 +270,7 @@ def test_a_fork_renders_after_its_parent_did(whitted):
         child.join()
 
 
-def test_a_part_is_gone_on_with_as_it_was_begun(whitted):
+def test_part_continues_with_its_options(whitted):
     part = whitted.part(size=(40, 30), samples=2)
     for wrong in ({"size": (20, 15)}, {"samples": 3}, {"show": "depth"}, {"shard": (1, 2)}, {"threads": 1, "seed": 4}):
         name = list(wrong)[-1]
@@ -303,7 +303,7 @@ def test_worlds_parts_and_pictures_can_be_pickled_and_copied(whitted):
     assert list(other) == list(pictures) and all((other[name] == pictures[name]).all() for name in pictures)
 
 
-def test_a_models_ground_is_left_out_where_it_is_not_wanted(tmp_path):
+def test_model_ground_can_be_omitted(tmp_path):
     mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
     (tmp_path / "a.obj").write_text(mesh)
     down = ([5, 5, 5], [0.1, -1, 0.1])
@@ -313,7 +313,7 @@ def test_a_models_ground_is_left_out_where_it_is_not_wanted(tmp_path):
         assert not world.occluded(*down) and world.closest([0.2, 0.2, 5], [0, 0, -1]).hit
 
 
-def test_depth_is_what_its_words_say_where_nothing_is_seen(whitted):
+def test_depth_of_background(whitted):
     camera = durer.PerspectiveCamera(center=(0, 0, 5), direction=(0, 0, -1), up=(0, 1, 0), angle=60)
     pictures = durer.World(camera, [durer.Sphere(center=(0, 0, 0), radius=1)], []).render(size=(16, 16), samples=1, show="depth,normals")
     assert pictures["depth"][0, 0] == 0 and pictures["depth"][8, 8] == pytest.approx(4, abs=0.1)

@@ -6,19 +6,19 @@ use std::io;
 use std::sync::{Once, mpsc};
 
 /// Maximum number of threads.
-pub const MOST: usize = 1024;
+pub const MAX_THREADS: usize = 1024;
 
 /// Returns the number of threads to start: the requested one, or else `RAYON_NUM_THREADS`, or else
 /// the number of processors.
 fn wanted(requested: Option<usize>) -> usize {
     let environment = || std::env::var("RAYON_NUM_THREADS").ok()?.parse().ok().filter(|&count: &usize| count > 0);
     let machine = || std::thread::available_parallelism().map_or(1, usize::from);
-    requested.or_else(environment).unwrap_or_else(machine).clamp(1, MOST)
+    requested.or_else(environment).unwrap_or_else(machine).clamp(1, MAX_THREADS)
 }
 
 /// Starts the threads that [`wanted`] returns, or as many as the system allows. Each waits until it
 /// is assigned to a pool.
-fn started(requested: Option<usize>) -> Vec<mpsc::Sender<ThreadBuilder>> {
+fn start_threads(requested: Option<usize>) -> Vec<mpsc::Sender<ThreadBuilder>> {
     let start = |_| {
         let (sender, receiver) = mpsc::channel::<ThreadBuilder>();
         let run = move || receiver.recv().into_iter().for_each(ThreadBuilder::run);
@@ -29,7 +29,7 @@ fn started(requested: Option<usize>) -> Vec<mpsc::Sender<ThreadBuilder>> {
 
 /// Returns a spawn handler that assigns running threads to a pool. Unlike starting new threads,
 /// this cannot fail halfway.
-fn giving(mut started: Vec<mpsc::Sender<ThreadBuilder>>) -> impl FnMut(ThreadBuilder) -> io::Result<()> {
+fn spawn_handler(mut started: Vec<mpsc::Sender<ThreadBuilder>>) -> impl FnMut(ThreadBuilder) -> io::Result<()> {
     move |thread| {
         let sent = started.pop().map(|sender| sender.send(thread));
         sent.and_then(Result::ok).ok_or_else(|| io::Error::other("a thread has ended"))
@@ -38,12 +38,12 @@ fn giving(mut started: Vec<mpsc::Sender<ThreadBuilder>>) -> impl FnMut(ThreadBui
 
 /// Returns a new thread pool, or `None` if the system allows no threads.
 pub fn pool(requested: Option<usize>) -> Option<ThreadPool> {
-    let started = started(requested);
+    let started = start_threads(requested);
     if started.is_empty() {
         prepare();
         return None;
     }
-    ThreadPoolBuilder::new().num_threads(started.len()).spawn_handler(giving(started)).build().ok()
+    ThreadPoolBuilder::new().num_threads(started.len()).spawn_handler(spawn_handler(started)).build().ok()
 }
 
 /// Runs work in a new thread pool or, if there is none, in the calling thread.
@@ -59,13 +59,13 @@ pub fn install<R: Send>(requested: Option<usize>, work: impl FnOnce() -> R + Sen
 pub fn prepare() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
-        let started = started(None);
+        let started = start_threads(None);
         // An error means that the global pool already exists.
         let _ = match started.is_empty() {
             true => ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global(),
             false => {
                 let builder = ThreadPoolBuilder::new().num_threads(started.len());
-                builder.spawn_handler(giving(started)).build_global()
+                builder.spawn_handler(spawn_handler(started)).build_global()
             }
         };
     });
@@ -78,7 +78,7 @@ mod tests {
     #[test]
     fn thread_count_is_as_requested_up_to_the_maximum() {
         assert_eq!(pool(Some(3)).unwrap().current_num_threads(), 3);
-        assert_eq!((wanted(Some(0)), wanted(Some(usize::MAX))), (1, MOST));
+        assert_eq!((wanted(Some(0)), wanted(Some(usize::MAX))), (1, MAX_THREADS));
         assert_eq!(install(Some(2), rayon::current_num_threads), 2);
     }
 }

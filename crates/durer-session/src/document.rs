@@ -13,7 +13,7 @@ use durer::format::scene::find_scene_format;
 use durer::format::{SceneFormat, mesh_format_for};
 use durer::job::JobContext;
 use durer::render::Job;
-use durer::render::explain::Names;
+use durer::render::explain::SceneNames;
 use durer::scene::Scene;
 use durer::world::World;
 use durer::{LoadOptions, LoadedScene, load_text};
@@ -90,7 +90,7 @@ impl Document {
             Ok(mut world) => {
                 // The document no longer equals the file.
                 world.edit().camera = compiled.world.camera().clone();
-                world.look_through(compiled.world.camera().clone());
+                world.set_camera(compiled.world.camera().clone());
                 compiled.world = world;
                 Ok(())
             }
@@ -150,8 +150,8 @@ impl CompiledDocument {
         JobContext { scene: &self.loaded.scene, rules: &self.loaded.rules, emulates: false, timed: false }
     }
 
-    pub fn names(&self) -> Names<'_> {
-        Names { files: &self.files, scene: &self.loaded.scene, world: &self.world }
+    pub fn names(&self) -> SceneNames<'_> {
+        SceneNames { files: &self.files, scene: &self.loaded.scene, world: &self.world }
     }
 
     /// Returns the findings of `durer check`.

@@ -3,14 +3,14 @@
 use crate::document::CompiledDocument;
 use crate::protocol::{LightMarker, Outline};
 use durer::math::Vec3;
-use durer::render::explain::Names;
+use durer::render::explain::SceneNames;
 use durer::report::{LightMark, light_marks, object_outlines};
 
 /// Maximum number of lights drawn.
 const MAX_LIGHTS: usize = 32;
 
 /// Returns the polylines of the objects.
-pub(crate) fn outlines(names: &Names) -> Vec<Outline> {
+pub(crate) fn outlines(names: &SceneNames) -> Vec<Outline> {
     let flat = |line: &Vec<Vec3>| line.iter().flat_map(Vec3::to_array).collect();
     let one =
         |(i, lines): (usize, Vec<Vec<Vec3>>)| Outline { object: i as u32, lines: lines.iter().map(flat).collect() };

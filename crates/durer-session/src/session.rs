@@ -16,7 +16,7 @@ use durer::film::aov::AOVS;
 use durer::image::Tone;
 use durer::integrator::IntegratorKind;
 use durer::math::{Ray, Vec3};
-use durer::render::explain::explain_of;
+use durer::render::explain::explain_samples;
 use durer::world::{Epsilon, Geometry};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -135,7 +135,7 @@ impl Session {
                     (&mut compiled.world, &compiled.text_camera, distance)
                 };
                 let (camera, now) = moved(world, written, far, motion);
-                world.look_through(camera);
+                world.set_camera(camera);
                 self.distance = now;
                 if matches!(motion, Motion::Home) {
                     self.distance = distance(&self.compiled()?.world);
@@ -146,7 +146,7 @@ impl Session {
                 let world = &mut self.compiled()?.world;
                 let mut camera = world.camera().clone();
                 set_field(&mut camera, &name, &values)?;
-                world.look_through(camera);
+                world.set_camera(camera);
                 send(self.looked(moving)?);
             }
             Request::Look { center, direction, up, angle, moving } => {
@@ -342,7 +342,7 @@ impl Session {
         }
         if let (Some((written, now)), Some(compiled)) = (held, &mut document.compiled) {
             if compiled.text_camera == written && now != written {
-                compiled.world.look_through(now);
+                compiled.world.set_camera(now);
             } else {
                 self.distance = distance(&compiled.world);
             }
@@ -351,7 +351,7 @@ impl Session {
         }
         if let (Some(epsilon), Some(compiled)) = (self.epsilon, &mut self.document_mut()?.compiled) {
             let rules = &mut compiled.world.edit().shading;
-            (rules.epsilon, rules.points_on_ray) = (Some(Epsilon::Least(epsilon)), true);
+            (rules.epsilon, rules.points_on_ray) = (Some(Epsilon::MinT(epsilon)), true);
         }
         self.restart();
         self.unchecked = true;
@@ -404,7 +404,7 @@ impl Session {
         }
         camera.validate()?;
         let compiled = self.compiled()?;
-        compiled.world.look_through(camera);
+        compiled.world.set_camera(camera);
         Ok(())
     }
 
@@ -432,7 +432,7 @@ impl Session {
         let document = self.document.as_ref().ok_or("no scene is open")?;
         let compiled = document.compiled.as_ref().ok_or("the scene has errors")?;
         let job = self.viewer.job_of(compiled, "color")?;
-        let explanation = explain_of(&compiled.world, &job, (x, y), None).map_err(|error| error.to_string())?;
+        let explanation = explain_samples(&compiled.world, &job, (x, y), None).map_err(|error| error.to_string())?;
         Ok(Event::Explained { pixel: terms::explain(compiled, &job, &explanation, sample) })
     }
 

@@ -9,7 +9,7 @@ use durer::integrator::trace::{HitRecord, RayKind, RayRecord, Shadow, TermKind, 
 use durer::integrator::{TraceNode, Tree};
 use durer::math::{Color, LUMINANCE, Vec2, Vec3};
 use durer::render::Job;
-use durer::render::explain::{Explanation, Names};
+use durer::render::explain::{Explanation, SceneNames};
 use durer::world::emitters::LightId;
 
 /// Explains a pixel by one of its samples. If `sample` is `None`, it is the one with the largest
@@ -20,7 +20,7 @@ pub(crate) fn explain(
     explanation: &Explanation,
     sample: Option<u32>,
 ) -> PixelExplanation {
-    let chosen = sample.map_or(explanation.heaviest(), |sample| sample as usize);
+    let chosen = sample.map_or(explanation.max_weight_index(), |sample| sample as usize);
     let chosen = chosen.min(explanation.samples.len().saturating_sub(1));
     let weights: f32 = explanation.samples.iter().map(|sample| sample.weight).sum();
     let sample = explanation.samples.get(chosen);
@@ -88,7 +88,7 @@ struct TermContext {
 /// Converter of the trace of a pixel sample to the tree of [`Term`]s for the page.
 struct TermFormatter<'a> {
     compiled: &'a CompiledDocument,
-    names: Names<'a>,
+    names: SceneNames<'a>,
     tree: &'a Tree,
     /// Luminance of the pixel.
     pixel_luminance: f32,
@@ -126,7 +126,7 @@ impl TermFormatter<'_> {
     }
 
     fn around(&self, node: &TraceNode, outer: &TermContext) -> TermContext {
-        match &node.what {
+        match &node.kind {
             TermKind::Ray { ray, hit, .. } => {
                 TermContext { dir: ray.dir, n: hit.as_ref().map_or(Vec3::ZERO, |hit| hit.n), ..TermContext::default() }
             }
@@ -136,7 +136,7 @@ impl TermFormatter<'_> {
     }
 
     fn title(&self, node: &TraceNode) -> String {
-        match &node.what {
+        match &node.kind {
             TermKind::Ray { from, hit, .. } => {
                 let ray = match from {
                     RayKind::Camera => "Camera ray",
@@ -162,8 +162,8 @@ impl TermFormatter<'_> {
             TermKind::Highlight { .. } => "Highlight".into(),
             TermKind::Secondary { total: true, .. } => "Total reflection".into(),
             TermKind::Secondary { .. } => "Mirrored and transmitted".into(),
-            TermKind::Cut { .. } => "Contribution too small to be traced".into(),
-            TermKind::Spent => "Maximum depth reached".into(),
+            TermKind::BelowMinWeight { .. } => "Contribution too small to be traced".into(),
+            TermKind::DepthLimit => "Maximum depth reached".into(),
             TermKind::Emission { .. } => "Emission".into(),
             TermKind::Direct { light, shadow, .. } => {
                 let name = match light {
@@ -177,13 +177,13 @@ impl TermFormatter<'_> {
                 }
             }
             TermKind::Photons { photons, .. } => format!("Caustic of {photons} photons"),
-            TermKind::OneWavelength { nm } => format!("At {nm:.0} nm only"),
+            TermKind::Dispersion { nm } => format!("At {nm:.0} nm only"),
         }
     }
 
     fn span(&self, node: &TraceNode) -> Option<Span> {
         let world = self.names.world;
-        match &node.what {
+        match &node.kind {
             TermKind::Ray { hit: Some(hit), .. } => world.objects().get(hit.object as usize).map(|object| object.span),
             TermKind::Light { light, .. } => self.names.scene.lights.iter().flatten().nth(*light).map(|l| l.span),
             TermKind::Direct { light: LightId::Light(light), .. } => {
@@ -200,7 +200,7 @@ impl TermFormatter<'_> {
     fn segment(&self, node: &TraceNode) -> Option<Segment> {
         let bounds = self.names.world.bounds();
         let far = if bounds.is_empty() { 10.0 } else { bounds.size().length().max(1e-3) };
-        match &node.what {
+        match &node.kind {
             TermKind::Ray { from, ray, hit, .. } => {
                 let role = match from {
                     RayKind::Camera => SegmentKind::Camera,
@@ -221,7 +221,7 @@ impl TermFormatter<'_> {
     fn rows(&self, node: &TraceNode, around: &TermContext) -> Vec<FormulaRow> {
         let color = |value: TermValue| vector(self.tree.color(value));
         let mut rows = Vec::new();
-        match &node.what {
+        match &node.kind {
             TermKind::Ray { ray, hit, weight, bounce, from } => {
                 rows.push(words("ray", &format!("o = {}, d = {}", vector(ray.origin), vector(ray.dir))));
                 if *from == RayKind::Reflected && around.n != Vec3::ZERO {
@@ -309,7 +309,9 @@ impl TermFormatter<'_> {
                     rows.push(row("R", "reflectance (Fresnel, by Schlick)", "", (*fresnel).into()));
                 }
             }
-            TermKind::Cut { weight } => rows.push(row("weight", "weight in the pixel", "", (*weight).into())),
+            TermKind::BelowMinWeight { weight } => {
+                rows.push(row("weight", "weight in the pixel", "", (*weight).into()))
+            }
             TermKind::Emission { mis } => rows.push(row("MIS", "weight of BSDF sampling", "", (*mis).into())),
             TermKind::Direct { to_light, distance, choice, pdf, bsdf, mis, shadow, .. } => {
                 rows.push(vector_row("ω", "direction to the light", "", *to_light));
@@ -330,10 +332,10 @@ impl TermFormatter<'_> {
                 rows.push(row("radius", "search radius", "", (*radius).into()));
                 rows.push(row("photons", "number within the radius", "", *photons as f64));
             }
-            TermKind::OneWavelength { .. } | TermKind::Sky | TermKind::Spent => {}
+            TermKind::Dispersion { .. } | TermKind::Sky | TermKind::DepthLimit => {}
         }
-        if !node.factor.is(1.0)
-            && !matches!(node.what, TermKind::Ambient { .. } | TermKind::Diffuse { .. } | TermKind::Highlight { .. })
+        if !node.factor.equals(1.0)
+            && !matches!(node.kind, TermKind::Ambient { .. } | TermKind::Diffuse { .. } | TermKind::Highlight { .. })
         {
             rows.push(words("factor", &color(node.factor)));
         }
@@ -349,7 +351,7 @@ impl TermFormatter<'_> {
                 let what = self.names.short_object(object);
                 words("shadow ray", &format!("hits {what} at t = {}: shadow", number(t.into())))
             }
-            None if shadow.share.is(1.0) => words("shadow ray", "reaches the light"),
+            None if shadow.share.equals(1.0) => words("shadow ray", "reaches the light"),
             None => words("shadow ray", &format!("transmits {}", vector(self.tree.color(shadow.share)))),
         }
     }
@@ -375,14 +377,14 @@ fn shadow_segment(shadow: &Shadow, distance: f32, far: f32) -> Segment {
 }
 
 fn hit_of(node: &TraceNode) -> Option<&HitRecord> {
-    match &node.what {
+    match &node.kind {
         TermKind::Ray { hit, .. } => hit.as_deref(),
         _ => None,
     }
 }
 
 fn shadow_of(node: &TraceNode) -> Option<&Shadow> {
-    match &node.what {
+    match &node.kind {
         TermKind::Light { shadow, .. } | TermKind::Direct { shadow, .. } => shadow.as_ref(),
         _ => None,
     }
@@ -393,7 +395,7 @@ fn blocker(node: &TraceNode) -> Option<u32> {
 }
 
 fn ray_of(node: &TraceNode) -> (Option<&RayRecord>, Option<f32>) {
-    let ray = match &node.what {
+    let ray = match &node.kind {
         TermKind::Ray { ray, .. } => Some(ray),
         _ => shadow_of(node).map(|shadow| &shadow.ray),
     };

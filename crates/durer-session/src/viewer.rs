@@ -7,7 +7,7 @@ use crate::protocol::{PictureInfo, Setting};
 use durer::RenderJob;
 use durer::image::Layer;
 use durer::job::OutputSelection;
-use durer::render::{Control, Crop, Job, ProgressiveRender, RenderError, Sampling};
+use durer::render::{Control, Job, PixelRect, ProgressiveRender, RenderError, Sampling};
 
 /// Time budgets for a coarse picture in milliseconds: `MOVING` while the camera moves, and
 /// `RESTING` otherwise.
@@ -131,8 +131,8 @@ impl Viewer {
     /// Returns the job of the picture that is shown.
     pub fn job(&self, compiled: &CompiledDocument) -> Result<Job, String> {
         let job = self.job_of(compiled, &self.picture)?;
-        let whole = Crop { left: 0, top: 0, width: job.width, height: job.height };
-        let crop = self.crop.map(|[left, top, width, height]| within(Crop { left, top, width, height }, whole));
+        let whole = PixelRect { left: 0, top: 0, width: job.width, height: job.height };
+        let crop = self.crop.map(|[left, top, width, height]| within(PixelRect { left, top, width, height }, whole));
         Ok(Job { crop: crop.filter(|crop| *crop != whole).or(job.crop), ..job })
     }
 
@@ -174,11 +174,11 @@ impl Viewer {
         let divisor = DIVISORS.into_iter().find(affordable).unwrap_or(16);
         let side = |side: u32| side.div_ceil(divisor).max(1);
         let (width, height) = (side(job.width), side(job.height));
-        let whole = Crop { left: 0, top: 0, width, height };
-        let part = |crop: Crop| {
+        let whole = PixelRect { left: 0, top: 0, width, height };
+        let part = |crop: PixelRect| {
             let (left, top) = (crop.left / divisor, crop.top / divisor);
             let (right, bottom) = (side(crop.left + crop.width), side(crop.top + crop.height));
-            within(Crop { left, top, width: right - left, height: bottom - top }, whole)
+            within(PixelRect { left, top, width: right - left, height: bottom - top }, whole)
         };
         let coarse = Job {
             width,
@@ -216,7 +216,7 @@ impl Viewer {
         seen: Option<u32>,
         clock: &dyn Fn() -> f64,
     ) -> Result<Option<PictureMessage>, String> {
-        let control = Control { most_tiles: Some(self.tiles), ..Control::default() };
+        let control = Control { max_tiles: Some(self.tiles), ..Control::default() };
         let start = clock();
         let passed = render.next_pass(&compiled.world, &control);
         let took = clock() - start;
@@ -285,7 +285,7 @@ impl Viewer {
             _ => self.shown.as_ref().ok_or("the picture is not finished yet")?,
         };
         let window = render.part().job().window();
-        let rect = Crop { left, top, width, height };
+        let rect = PixelRect { left, top, width, height };
         if rect.pixels() > MAX_VALUES || rect != within(rect, window) {
             return Err(format!("values can be requested for at most {MAX_VALUES} pixels of the picture"));
         }
@@ -295,7 +295,7 @@ impl Viewer {
             let index = (y - window.top) as usize * window.width as usize + (x - window.left) as usize;
             layer.image.pixels[index].to_array().map(|value| value.is_finite().then_some(value))
         };
-        Ok(rect.places().flat_map(pixel).collect())
+        Ok(rect.pixel_positions().flat_map(pixel).collect())
     }
 
     /// Encodes the finished picture as a file.
@@ -318,7 +318,7 @@ impl Viewer {
         let color = self.picture == "color";
         let clean = self.clean.as_ref().filter(|_| self.denoises && hash.is_some());
         let layer = clean.or(rendered.pictures.first()).ok_or("the job has no picture")?;
-        let Crop { left, top, width, height } = render.part().job().window();
+        let PixelRect { left, top, width, height } = render.part().job().window();
         let how = if color { display(self.stops, &self.tone) } else { durer::image::Transfer::Linear.into() };
         let head = PictureInfo {
             picture: self.picture.clone(),
@@ -346,12 +346,12 @@ impl Viewer {
 }
 
 /// Clips a crop to the picture `whole`, but keeps at least one pixel.
-fn within(crop: Crop, whole: Crop) -> Crop {
+fn within(crop: PixelRect, whole: PixelRect) -> PixelRect {
     let left = crop.left.clamp(whole.left, whole.left + whole.width - 1);
     let top = crop.top.clamp(whole.top, whole.top + whole.height - 1);
     let width = crop.width.clamp(1, whole.left + whole.width - left);
     let height = crop.height.clamp(1, whole.top + whole.height - top);
-    Crop { left, top, width, height }
+    PixelRect { left, top, width, height }
 }
 
 fn wrong(error: RenderError) -> String {

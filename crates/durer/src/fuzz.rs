@@ -13,7 +13,7 @@ use durer_formats::scene::{Input, find_scene_format, read_model};
 use durer_formats::{curve, photometry, read_mesh};
 use durer_image::{Encoded, ImageError, decode_linear};
 use durer_render::compile::AccelKind;
-use durer_render::integrator::{IntegratorKind, WhittedOptions};
+use durer_render::integrator::{IntegratorKind, RenderSettings};
 use durer_render::render::{Control, Job, PartError, PartialRender, RenderOutcome, Shard};
 use durer_scene::dialect::Dialect;
 use durer_scene::math::Vec3;
@@ -211,7 +211,7 @@ pub fn ways(data: &[u8]) {
     let scene = Random::tame(data).scene(Dialect::Durer);
     let text = random_scene(data);
     let path = folder().join("scene.txt");
-    let settings = WhittedOptions { bounces: 2, ..Job::default().settings };
+    let settings = RenderSettings { bounces: 2, ..Job::default().settings };
     // Use path tracing for physical scenes.
     let method = if scene.is_physical() { IntegratorKind::PATH } else { IntegratorKind::WHITTED };
     let job = Job { width: 12, height: 9, settings, method, ..Job::default() };

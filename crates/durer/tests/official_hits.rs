@@ -6,7 +6,7 @@
 use durer::camera::{CameraSample, Projection};
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::{Dialect, Quirk};
-use durer::integrator::{Whitted, WhittedOptions};
+use durer::integrator::{RenderSettings, Whitted};
 use durer::math::{Color, Ray, Ray64, Vec2, Vec3};
 use durer::world::{Hit, World};
 use durer::{LoadOptions, load_text};
@@ -37,14 +37,14 @@ fn hit(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Option<Hit> {
 }
 
 fn traced_color(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Color {
-    let settings = WhittedOptions {
+    let settings = RenderSettings {
         bounces: 2,
         shadows: true,
         shade_back: false,
         transparent_shadows: false,
         reflection: true,
         refraction: true,
-        least_weight: 0.0,
+        min_weight: 0.0,
     };
     let ray = Ray::new(origin.into(), Vec3::from(dir).normalize());
     Whitted { world, settings, cancel: None }.radiance(&ray, &mut ())

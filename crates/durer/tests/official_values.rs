@@ -4,7 +4,7 @@
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::dialect::{Dialect, Quirk};
 use durer::film::aov::Aov;
-use durer::integrator::{Whitted, WhittedOptions};
+use durer::integrator::{RenderSettings, Whitted};
 use durer::light::Light;
 use durer::math::{Color, Ray, Vec3};
 use durer::render::{Control, Job, render};
@@ -31,14 +31,14 @@ fn official(text: &str, dialect: Dialect) -> World {
 }
 
 fn traced_color(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Color {
-    let settings = WhittedOptions {
+    let settings = RenderSettings {
         bounces: 1,
         shadows: false,
         shade_back: false,
         transparent_shadows: false,
         reflection: true,
         refraction: true,
-        least_weight: 0.0,
+        min_weight: 0.0,
     };
     let ray = Ray::new(origin.into(), Vec3::from(dir).normalize());
     Whitted { world, settings, cancel: None }.radiance(&ray, &mut ())

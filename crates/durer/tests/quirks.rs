@@ -2,7 +2,7 @@
 
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::{Dialect, Quirk};
-use durer::integrator::{Whitted, WhittedOptions};
+use durer::integrator::{RenderSettings, Whitted};
 use durer::math::{Color, Ray, Vec3};
 use durer::world::World;
 use durer::{LoadOptions, load_text};
@@ -39,14 +39,14 @@ fn world(text: &str, dialect: Dialect, official: bool) -> World {
 
 fn traced_color(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Color {
     let rules = world.rules();
-    let settings = WhittedOptions {
+    let settings = RenderSettings {
         bounces: 4,
         shadows: false,
         shade_back: rules.shade_back,
         transparent_shadows: false,
         reflection: true,
         refraction: true,
-        least_weight: 0.0,
+        min_weight: 0.0,
     };
     let ray = Ray::new(origin.into(), Vec3::from(dir).normalize());
     Whitted { world, settings, cancel: None }.radiance(&ray, &mut ())
@@ -214,14 +214,14 @@ fn r0_is_zero_for_rays_that_leave_glass() {
         // Straight through the centre. The background for reflected rays is black, since a white
         // background would be attenuated by two passages.
         let mut world = world(&text, Dialect::F12a5, true);
-        let settings = WhittedOptions {
+        let settings = RenderSettings {
             bounces: 4,
             shadows: false,
             shade_back: false,
             transparent_shadows: false,
             reflection: true,
             refraction: true,
-            least_weight: 0.0,
+            min_weight: 0.0,
         };
         world.edit().materials.iter_mut().for_each(|material| {
             if let durer::world::Material::Phong(glass) = material {

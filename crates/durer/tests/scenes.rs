@@ -5,7 +5,7 @@ use durer::compile::AccelKind;
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::Dialect;
 use durer::format::{course, json};
-use durer::integrator::{IntegratorKind, WhittedOptions};
+use durer::integrator::{IntegratorKind, RenderSettings};
 use durer::math::Vec3;
 use durer::render::{Control, Job, PartialRender, Shard, render};
 use durer::world::World;
@@ -55,14 +55,14 @@ fn pixels(name: &str, accel: AccelKind, threads: usize) -> Vec<Vec3> {
     let job = Job {
         width: 64,
         height: 64,
-        settings: WhittedOptions {
+        settings: RenderSettings {
             bounces: loaded.rules.bounces,
             shadows: loaded.rules.shadows,
             shade_back: loaded.rules.shade_back,
             transparent_shadows: loaded.rules.transparent_shadows,
             reflection: true,
             refraction: true,
-            least_weight: 0.001,
+            min_weight: 0.001,
         },
         method: method(&loaded),
         ..Job::default()

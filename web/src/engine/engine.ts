@@ -2,13 +2,13 @@ import type { Event, EventMessage, Request, RequestMessage } from "../protocol";
 import { decode } from "./wire";
 
 /** Transport of messages to an engine, which is a server or a worker. */
-export interface Line {
+export interface Transport {
   send(ask: RequestMessage): void;
   close(): void;
 }
 
 /** Callbacks of a transport. */
-export interface LineEvents {
+export interface TransportEvents {
   message(buffer: ArrayBuffer): void;
   closed(why: string): void;
 }
@@ -19,7 +19,7 @@ export type EventOf<K extends Event["kind"]> = Extract<Event, { kind: K }>;
 type Handler = (event: Event, bytes: Uint8Array<ArrayBuffer>) => void;
 
 /** Request that waits for an event of a kind. */
-interface Waiting {
+interface PendingRequest {
   kind: Event["kind"];
   resolve(event: Event, bytes: Uint8Array<ArrayBuffer>): void;
   reject(error: Error): void;
@@ -28,18 +28,18 @@ interface Waiting {
 /** Connection to the ray tracer, native or WebAssembly, that all sessions of the page share. */
 export class Engine {
   readonly name: string;
-  #line: Line;
+  #transport: Transport;
   #sessions = new Map<number, Session>();
   #next = 1;
   #lost: ((why: string) => void)[] = [];
 
-  constructor(name: string, connect: (events: LineEvents) => Line) {
+  constructor(name: string, connect: (events: TransportEvents) => Transport) {
     this.name = name;
-    this.#line = connect({
+    this.#transport = connect({
       message: (buffer) => this.#receive(buffer),
       closed: (why) => {
         for (const session of this.#sessions.values()) session.fail(why);
-        for (const tell of this.#lost) tell(why);
+        for (const callback of this.#lost) callback(why);
       },
     });
   }
@@ -47,14 +47,14 @@ export class Engine {
   /** Opens a session with its own scene, camera and image. */
   session(): Session {
     const id = this.#next++;
-    const session = new Session(id, this.#line, () => this.#sessions.delete(id));
+    const session = new Session(id, this.#transport, () => this.#sessions.delete(id));
     this.#sessions.set(id, session);
     return session;
   }
 
   /** Registers a callback that is called if the connection to the engine is lost. */
-  onLost(tell: (why: string) => void) {
-    this.#lost.push(tell);
+  onLost(callback: (why: string) => void) {
+    this.#lost.push(callback);
   }
 
   #receive(buffer: ArrayBuffer) {
@@ -66,21 +66,21 @@ export class Engine {
 /** Session with the ray tracer: one scene with its camera and its image. */
 export class Session {
   readonly id: number;
-  #line: Line;
+  #transport: Transport;
   #forget: () => void;
   #handlers = new Set<Handler>();
-  #waiting = new Map<number, Waiting>();
+  #waiting = new Map<number, PendingRequest>();
   #next = 1;
 
-  constructor(id: number, line: Line, forget: () => void) {
+  constructor(id: number, transport: Transport, forget: () => void) {
     this.id = id;
-    this.#line = line;
+    this.#transport = transport;
     this.#forget = forget;
   }
 
   /** Sends a request without waiting for its answer. */
-  tell(request: Request) {
-    this.#line.send({ session: this.id, id: this.#next++, request });
+  send(request: Request) {
+    this.#transport.send({ session: this.id, id: this.#next++, request });
   }
 
   /** Sends a request, and resolves with the first event of a kind that answers it. */
@@ -100,7 +100,7 @@ export class Session {
         resolve: (event, bytes) => resolve([event as EventOf<K>, bytes]),
         reject,
       });
-      this.#line.send({ session: this.id, id, request });
+      this.#transport.send({ session: this.id, id, request });
     });
   }
 
@@ -129,7 +129,7 @@ export class Session {
   }
 
   close() {
-    this.tell({ kind: "close" });
+    this.send({ kind: "close" });
     this.#handlers.clear();
     this.#forget();
   }

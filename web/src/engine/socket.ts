@@ -1,8 +1,8 @@
 import type { RequestMessage } from "../protocol";
-import type { Line, LineEvents } from "./engine";
+import type { Transport, TransportEvents } from "./engine";
 
 /** WebSocket transport to the page's server. The token is part of the page's address. */
-export function socket(address: string, events: LineEvents): Line {
+export function socket(address: string, events: TransportEvents): Transport {
   const socket = new WebSocket(address);
   const early: string[] = [];
   socket.binaryType = "arraybuffer";

@@ -1,4 +1,4 @@
-import { level } from "./level";
+import { libraryBuild } from "./level";
 
 /** Code of the worker: runs the library as WebAssembly in small steps, and handles messages in between.
  */
@@ -23,7 +23,7 @@ function send(bytes: Uint8Array<ArrayBuffer>) {
 }
 
 async function start() {
-  const script = new URL(`./wasm/${level()}/durer_wasm.js`, self.location.href);
+  const script = new URL(`./wasm/${libraryBuild()}/durer_wasm.js`, self.location.href);
   const wasm = (await import(/* @vite-ignore */ script.href)) as Wasm;
   await wasm.default({ module_or_path: new URL("./durer_wasm_bg.wasm", script) });
   const engine = new wasm.Engine();

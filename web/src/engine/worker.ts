@@ -1,8 +1,8 @@
 import type { RequestMessage } from "../protocol";
-import type { Line, LineEvents } from "./engine";
+import type { Transport, TransportEvents } from "./engine";
 
 /** Transport to a worker that runs the library as WebAssembly. */
-export function worker(events: LineEvents): Line {
+export function worker(events: TransportEvents): Transport {
   const worker = new Worker(new URL("./wasm-worker.ts", import.meta.url), { type: "module", name: "durer" });
   worker.onmessage = ({ data }: MessageEvent<ArrayBuffer | string>) => {
     if (typeof data === "string") events.closed(data);

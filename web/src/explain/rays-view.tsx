@@ -5,8 +5,8 @@ import { frustum, points, roles, segments } from "./segments";
 import {
   add,
   type Eye,
-  eyeAround,
   frame,
+  frameEye,
   length,
   mul,
   orbit,
@@ -132,15 +132,15 @@ function label(store: Store): string {
 /** Returns a view from the side of the camera's view frustum. */
 function beside(store: Store): Eye {
   const { pixel, camera } = store;
-  const seen = points(pixel, camera);
-  if (!camera) return eyeAround(seen, 0.8, 0.4);
+  const projected = points(pixel, camera);
+  if (!camera) return frameEye(projected, 0.8, 0.4);
   const yaw = Math.atan2(-camera.forward[0], -camera.forward[2]) + 0.95;
   const pitch = Math.min(
     0.7,
     Math.max(0.15, Math.asin(Math.max(-1, Math.min(1, -camera.forward[1]))) + 0.28),
   );
-  if (seen.length < 2) seen.push(add(camera.eye, mul(camera.distance * 1.4, camera.forward)));
-  return eyeAround(seen, yaw, pitch);
+  if (projected.length < 2) projected.push(add(camera.eye, mul(camera.distance * 1.4, camera.forward)));
+  return frameEye(projected, yaw, pitch);
 }
 
 function toLine(x: number, y: number, a: { x: number; y: number }, b: { x: number; y: number }): number {
@@ -185,10 +185,10 @@ function paint(canvas: HTMLCanvasElement, eye: Eye, size: { width: number; heigh
     const { origin, direction, t } = scan.ray;
     const end = add(origin, mul(t ?? camera?.distance ?? 10, direction));
     stroke(context, view, [[origin, end]], color(t === null ? "--soft" : "--ray-camera"), 2.4, 1);
-    const seen = t === null ? null : view.point(end);
-    if (seen) dot(context, seen.x, seen.y, 4.5, color("--ray-lit"));
+    const projected = t === null ? null : view.point(end);
+    if (projected) dot(context, projected.x, projected.y, 4.5, color("--ray-lit"));
   } else rays(context, view, store, color);
-  for (const lamp of store.lamps) {
+  for (const lamp of store.lights) {
     const at = view.point(lamp.at);
     if (at) dot(context, at.x, at.y, 4, color("--ray-scattered"));
   }
@@ -210,10 +210,10 @@ function objects(
     context.beginPath();
     for (const line of lines) {
       for (let i = 0; i + 5 < line.length; i += 3) {
-        const seen = view.line(line.slice(i, i + 3) as Vec, line.slice(i + 3, i + 6) as Vec);
-        if (!seen) continue;
-        context.moveTo(seen[0].x, seen[0].y);
-        context.lineTo(seen[1].x, seen[1].y);
+        const projected = view.line(line.slice(i, i + 3) as Vec, line.slice(i + 3, i + 6) as Vec);
+        if (!projected) continue;
+        context.moveTo(projected[0].x, projected[0].y);
+        context.lineTo(projected[1].x, projected[1].y);
       }
     }
     context.stroke();
@@ -248,8 +248,8 @@ function rays(
       const reach = 0.16 * Math.max(1e-6, length(sub(segment.to, segment.from)));
       stroke(context, view, [[at, add(at, mul(reach, n))]], color("--normal"), 1.6, 1);
       arrow(context, view, at, add(at, mul(reach * 1.8, n)), color("--normal"), 5);
-      const seen = view.point(at);
-      if (seen) dot(context, seen.x, seen.y, strong ? 4.5 : 3, paint);
+      const projected = view.point(at);
+      if (projected) dot(context, projected.x, projected.y, strong ? 4.5 : 3, paint);
     }
   }
 }
@@ -267,10 +267,10 @@ function stroke(
   context.globalAlpha = alpha;
   context.beginPath();
   for (const [a, b] of lines) {
-    const seen = view.line(a, b);
-    if (!seen) continue;
-    context.moveTo(seen[0].x, seen[0].y);
-    context.lineTo(seen[1].x, seen[1].y);
+    const projected = view.line(a, b);
+    if (!projected) continue;
+    context.moveTo(projected[0].x, projected[0].y);
+    context.lineTo(projected[1].x, projected[1].y);
   }
   context.stroke();
   context.globalAlpha = 1;
@@ -285,9 +285,9 @@ function arrow(
   color: string,
   size: number,
 ) {
-  const seen = view.line(from, to);
-  if (!seen) return;
-  const [a, b] = seen;
+  const projected = view.line(from, to);
+  if (!projected) return;
+  const [a, b] = projected;
   const angle = Math.atan2(b.y - a.y, b.x - a.x);
   if (Math.hypot(b.x - a.x, b.y - a.y) < 3 * size) return;
   const [x, y] = [a.x + 0.56 * (b.x - a.x), a.y + 0.56 * (b.y - a.y)];

@@ -57,7 +57,7 @@ export function Scan({ store, scope }: { store: Store; scope: "row" | "picture" 
         unit={scope === "row" ? "Pixel of the row" : "Row of the image"}
       />
       <p class="sentence" aria-live={plays ? "off" : "polite"}>
-        {scope === "row" ? pixelWords(store, x, y, ray) : rowWords(y, rays)}
+        {scope === "row" ? describePixel(store, x, y, ray) : describeRow(y, rays)}
       </p>
       <p class="closest">closest = {ray ? short(ray.t ?? Number.POSITIVE_INFINITY) : "–"}</p>
       <Code line={scope === "picture" ? 0 : ray === null ? 1 : ray.t === null ? 8 : 2} />
@@ -65,7 +65,7 @@ export function Scan({ store, scope }: { store: Store; scope: "row" | "picture" 
   );
 }
 
-function pixelWords(store: Store, x: number, y: number, ray: CameraRay | null): string {
+function describePixel(store: Store, x: number, y: number, ray: CameraRay | null): string {
   if (!ray) return `pixel ${x}, ${y}: the camera has no ray for this pixel`;
   if (ray.t === null) return `pixel ${x}, ${y}: nothing is hit, so the pixel shows the background`;
   const name = store.contents?.objects[ray.object ?? -1]?.name ?? `object ${ray.object}`;
@@ -73,7 +73,7 @@ function pixelWords(store: Store, x: number, y: number, ray: CameraRay | null): 
 }
 
 /** Describes the results of the rays of a row. */
-export function rowWords(y: number, rays: (CameraRay | null)[]): string {
+export function describeRow(y: number, rays: (CameraRay | null)[]): string {
   const hits = rays.filter((ray) => ray !== null && ray.t !== null).length;
   const there = rays.filter((ray) => ray !== null).length;
   return `row ${y}: ${there} rays, ${hits} hit something, ${there - hits} the background`;

@@ -3,20 +3,20 @@ import type { Vec } from "./space";
 import { add, mul } from "./space";
 
 /** Term of a pixel's colour with its path in the tree, such as `0.2.1`. */
-export interface Place {
+export interface TermWithPath {
   path: string;
   term: Term;
 }
 
 /** Returns all terms of a tree in depth-first order. */
-export function flat(term: Term | null | undefined, path = "0"): Place[] {
+export function flatten(term: Term | null | undefined, path = "0"): TermWithPath[] {
   if (!term) return [];
-  return [{ path, term }, ...term.terms.flatMap((child, i) => flat(child, `${path}.${i}`))];
+  return [{ path, term }, ...term.terms.flatMap((child, i) => flatten(child, `${path}.${i}`))];
 }
 
 /** Returns the segments of a tree, each with the path of its term. */
 export function segments(pixel: PixelExplanation | null): { path: string; segment: Segment; term: Term }[] {
-  return flat(pixel?.tree).flatMap(({ path, term }) =>
+  return flatten(pixel?.tree).flatMap(({ path, term }) =>
     term.segment ? [{ path, segment: term.segment, term }] : [],
   );
 }

@@ -18,7 +18,7 @@ export const unit = (a: Vec): Vec => {
 export const mix = (a: Vec, b: Vec, t: number): Vec => add(a, mul(t, sub(b, a)));
 
 /** Projected point in page pixels, and its depth along the view direction. */
-export interface Seen {
+export interface ProjectedPoint {
   x: number;
   y: number;
   depth: number;
@@ -62,19 +62,19 @@ export function projector(view: Frame, width: number, height: number) {
     const d = sub(p, view.eye);
     return [dot(d, view.right), dot(d, view.up), dot(d, view.forward)];
   };
-  const page = ([x, y, z]: Vec): Seen => ({
+  const page = ([x, y, z]: Vec): ProjectedPoint => ({
     x: width / 2 + (x / (z * view.half)) * larger,
     y: height / 2 - (y / (z * view.half)) * larger,
     depth: z,
   });
   return {
     /** Projects a point; `null` if it is behind the eye. */
-    point(p: Vec): Seen | null {
+    point(p: Vec): ProjectedPoint | null {
       const at = local(p);
       return at[2] > near ? page(at) : null;
     },
     /** Projects the part of a line that is in front of the eye. */
-    line(a: Vec, b: Vec): [Seen, Seen] | null {
+    line(a: Vec, b: Vec): [ProjectedPoint, ProjectedPoint] | null {
       let [p, q] = [local(a), local(b)];
       if (p[2] <= near && q[2] <= near) return null;
       if (p[2] <= near) p = mix(q, p, (q[2] - 2 * near) / (q[2] - p[2]));
@@ -95,7 +95,7 @@ export function projector(view: Frame, width: number, height: number) {
 export type Projector = ReturnType<typeof projector>;
 
 /** Returns an eye that frames all points. */
-export function eyeAround(points: Vec[], yaw: number, pitch: number, angle = 34): Eye {
+export function frameEye(points: Vec[], yaw: number, pitch: number, angle = 34): Eye {
   if (points.length === 0) return { target: [0, 0, 0], distance: 5, yaw, pitch, angle };
   const least: Vec = [0, 1, 2].map((i) => Math.min(...points.map((p) => p[i] ?? 0))) as Vec;
   const most: Vec = [0, 1, 2].map((i) => Math.max(...points.map((p) => p[i] ?? 0))) as Vec;

@@ -5,7 +5,7 @@ import { short } from "../ui/slider";
 import type { Store } from "../viewer/store";
 import { Code, Player } from "./code";
 import { Scan } from "./scan";
-import { flat } from "./segments";
+import { flatten } from "./segments";
 import { type Step, steps } from "./steps";
 
 /** Maximum number of rays that the step-by-step view follows. */
@@ -69,7 +69,7 @@ function PixelSteps({ store }: { store: Store }) {
     <>
       <Player at={at} count={all.length} plays={plays} go={go} play={setPlays} unit="Step" />
       <p class="sentence" aria-live="polite">
-        {step.words}
+        {step.description}
       </p>
       <p class="closest">closest = {step.closest === undefined ? "–" : short(step.closest)}</p>
       <Code line={step.line} />
@@ -81,7 +81,7 @@ function PixelSteps({ store }: { store: Store }) {
 async function load(store: Store): Promise<Step[]> {
   const { pixel, session } = store;
   if (!pixel?.tree) return [];
-  const rays = flat(pixel.tree).filter(({ term }) => {
+  const rays = flatten(pixel.tree).filter(({ term }) => {
     const role = term.segment?.role;
     return role && role !== "lit" && role !== "shadowed" && term.ray;
   });

@@ -21,22 +21,22 @@ export interface OwnScene {
 export const OwnSceneContext = createContext<OwnScene>({ title: "", name: "", text: null });
 
 /** Render options of figures: few samples, so that images finish quickly. */
-const few: Setting[] = [{ name: "samples", value: "4" }];
+const figureOptions: Setting[] = [{ name: "samples", value: "4" }];
 
 /** Opens a session with the scene of a figure. If the text changes, the session gets the new text. */
-export function useScene(text: string, options: Setting[] = few): Session {
+export function useScene(text: string, options: Setting[] = figureOptions): Session {
   const engine = useContext(EngineContext);
   if (!engine) throw new Error("figures need an `EngineContext`");
   const session = useMemo(() => engine.session(), [engine]);
   const opened = useRef(false);
   const key = JSON.stringify(options);
   useEffect(() => {
-    if (opened.current) session.tell({ kind: "edit", text });
-    else session.tell({ kind: "open", name: "figure.txt", text });
+    if (opened.current) session.send({ kind: "edit", text });
+    else session.send({ kind: "open", name: "figure.txt", text });
     opened.current = true;
   }, [session, text]);
   useEffect(() => {
-    session.tell({ kind: "options", options });
+    session.send({ kind: "options", options });
   }, [session, key]);
   useEffect(
     () =>
@@ -52,7 +52,7 @@ export function useScene(text: string, options: Setting[] = few): Session {
 }
 
 /** Opens a session with a scene by name, and fits the size of its image to the figure. */
-export function useOpened(scene: OwnScene, options: Setting[], picture: string) {
+export function useSceneFile(scene: OwnScene, options: Setting[], picture: string) {
   const engine = useContext(EngineContext);
   if (!engine) throw new Error("figures need an `EngineContext`");
   const session = useMemo(() => engine.session(), [engine]);
@@ -60,23 +60,23 @@ export function useOpened(scene: OwnScene, options: Setting[], picture: string) 
   const [refused, setRefused] = useState<string | null>(null);
   const key = JSON.stringify(options);
   useEffect(() => {
-    session.tell({ kind: "open", name: scene.name, text: scene.text });
+    session.send({ kind: "open", name: scene.name, text: scene.text });
     return session.on((event) => {
       if (event.kind === "refused") setRefused(event.why);
       if (event.kind !== "scene") return;
       setRefused(event.contents ? null : (event.findings[0]?.message ?? "the scene has errors"));
-      if (event.contents) setSize(fitted(event.contents.job.size));
+      if (event.contents) setSize(fitSize(event.contents.job.size));
     });
   }, [session, scene.name, scene.text]);
   useEffect(() => {
-    session.tell({ kind: "options", options });
-    session.tell({ kind: "show", picture, stops: 0, tone: "none" });
+    session.send({ kind: "options", options });
+    session.send({ kind: "show", picture, stops: 0, tone: "none" });
   }, [session, key, picture]);
   useEffect(() => () => session.close(), [session]);
   return { session, size, refused };
 }
 
-function fitted([width, height]: [number, number]): [number, number] {
+function fitSize([width, height]: [number, number]): [number, number] {
   const scale = Math.min(1, 480 / Math.max(width, height));
   return [Math.max(1, Math.round(width * scale)), Math.max(1, Math.round(height * scale))];
 }
@@ -117,8 +117,8 @@ export function useTrace(session: Session, from: Vec, direction: Vec, key: strin
   useEffect(() => {
     const number = ++latest.current;
     const up: Vec = Math.abs(direction[1]) > 0.9 * Math.hypot(...direction) ? [0, 0, 1] : [0, 1, 0];
-    session.tell({ kind: "size", width: 1, height: 1 });
-    session.tell({ kind: "look", center: from, direction, up, angle: 1, moving: false });
+    session.send({ kind: "size", width: 1, height: 1 });
+    session.send({ kind: "look", center: from, direction, up, angle: 1, moving: false });
     session
       .ask({ kind: "explain", x: 0, y: 0, sample: null }, "explained")
       .then(({ pixel }) => number === latest.current && setPixel(pixel))
@@ -134,7 +134,7 @@ export function numberOf(cast: CastResult | null, object: number, name: string):
 }
 
 /** Returns the page's background in linear RGB, which is also the background of rendered figures. */
-export function usePaper(): string {
+export function usePageBackground(): string {
   const [dark, setDark] = useState(isDark);
   useEffect(() => {
     const look = () => setDark(isDark());

@@ -15,9 +15,9 @@ interface LineProps {
 
 /** Draws a line in world space. */
 export function Line({ view, from, to, color, width = 2.5, dashed, arrow }: LineProps) {
-  const seen = view.line(from, to);
-  if (!seen) return null;
-  const [a, b] = seen;
+  const projected = view.line(from, to);
+  if (!projected) return null;
+  const [a, b] = projected;
   return (
     <g stroke={color} fill={color} stroke-width={width} stroke-linecap="round">
       <line x1={a.x} y1={a.y} x2={b.x} y2={b.y} stroke-dasharray={dashed ? "6 6" : undefined} />
@@ -57,9 +57,9 @@ export function Path({
   opacity?: number;
   closed?: boolean;
 }) {
-  const seen = points.map((point) => view.point(point));
-  if (seen.some((point) => point === null)) return null;
-  const text = seen.map((point) => `${point?.x},${point?.y}`).join(" ");
+  const projected = points.map((point) => view.point(point));
+  if (projected.some((point) => point === null)) return null;
+  const text = projected.map((point) => `${point?.x},${point?.y}`).join(" ");
   const look = { points: text, stroke: color, "stroke-width": width, fill, "fill-opacity": opacity };
   return closed ? (
     <polygon {...look} stroke-linejoin="round" />
@@ -84,10 +84,10 @@ export function Name({
   dx?: number;
   dy?: number;
 }) {
-  const seen = view.point(at);
-  if (!seen) return null;
+  const projected = view.point(at);
+  if (!projected) return null;
   return (
-    <text class="name" x={seen.x + dx} y={seen.y + dy} fill={color ?? "var(--ink)"}>
+    <text class="name" x={projected.x + dx} y={projected.y + dy} fill={color ?? "var(--ink)"}>
       {children}
     </text>
   );
@@ -105,10 +105,17 @@ export function Dot({
   color: string;
   radius?: number;
 }) {
-  const seen = view.point(at);
+  const projected = view.point(at);
   return (
-    seen && (
-      <circle cx={seen.x} cy={seen.y} r={radius} fill={color} stroke="var(--paper)" stroke-width={1.5} />
+    projected && (
+      <circle
+        cx={projected.x}
+        cy={projected.y}
+        r={radius}
+        fill={color}
+        stroke="var(--paper)"
+        stroke-width={1.5}
+      />
     )
   );
 }

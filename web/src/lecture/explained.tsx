@@ -1,12 +1,12 @@
 import { useState } from "preact/hooks";
 import type { Session } from "../engine/engine";
 import { Rows } from "../explain/rows";
-import { flat } from "../explain/segments";
+import { flatten } from "../explain/segments";
 import type { PictureInfo } from "../protocol";
 import { short } from "../ui/slider";
 import { usePixel } from "./context";
-import { Picked } from "./picked";
-import { Rendered } from "./rendered";
+import { PixelPicker } from "./picked";
+import { RenderedImage } from "./rendered";
 
 interface Props {
   session: Session;
@@ -15,30 +15,30 @@ interface Props {
   label: string;
   /** Key of the image; a change asks for a new explanation. */
   scene: string;
-  told?(head: PictureInfo): void;
+  onResult?(head: PictureInfo): void;
 }
 
 /** Rendered image, with the terms of the last clicked pixel beside it. */
-export function Explained({ session, width, height, label, scene, told }: Props) {
+export function ExplainedImage({ session, width, height, label, scene, onResult }: Props) {
   const [place, setPlace] = useState({ x: 0.5, y: 0.5 });
   const [hash, setHash] = useState("");
   const at = { x: Math.floor(place.x * width), y: Math.floor(place.y * height) };
   const account = usePixel(session, at.x, at.y, `${scene} ${width} ${hash}`);
-  const terms = flat(account?.tree).slice(0, 12);
+  const terms = flatten(account?.tree).slice(0, 12);
   return (
     <div class="halves explained">
-      <Picked place={place} pick={setPlace}>
-        <Rendered
+      <PixelPicker place={place} pick={setPlace}>
+        <RenderedImage
           session={session}
           width={width}
           height={height}
           label={label}
-          told={(head) => {
+          onResult={(head) => {
             setHash(head.hash ?? "");
-            told?.(head);
+            onResult?.(head);
           }}
         />
-      </Picked>
+      </PixelPicker>
       <div class="stage account" tabIndex={0} role="region" aria-label="Terms of the pixel">
         <h3>
           Pixel {at.x}, {at.y}:{" "}

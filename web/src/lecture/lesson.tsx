@@ -1,15 +1,15 @@
 import type { ComponentChild } from "preact";
 import { useState } from "preact/hooks";
 import type { PictureInfo, Setting } from "../protocol";
-import { useOpened } from "./context";
-import { Explained } from "./explained";
+import { useSceneFile } from "./context";
+import { ExplainedImage } from "./explained";
 import { type Block, blocks, words } from "./markdown";
 import { Equation, Figure } from "./parts";
 import type { Topic } from "./topic";
 import { topics } from "./topics";
 
 /** Block of a lesson that shows a figure or a scene. */
-type Shown = Extract<Block, { kind: "figure" }>;
+type FigureBlock = Extract<Block, { kind: "figure" }>;
 
 /** Converts a teacher's lesson in Markdown to topics: each heading of level 1 or 2 begins a step. */
 export function lesson(text: string): Topic[] {
@@ -28,7 +28,7 @@ function topic({ title, blocks }: { title: string; blocks: Block[] }, at: number
   const [first, ...others] = blocks;
   const lead = first?.kind === "paragraph" ? words(first.text) : "";
   const rest = first?.kind === "paragraph" ? others : blocks;
-  const figures = rest.filter((block): block is Shown => block.kind === "figure");
+  const figures = rest.filter((block): block is FigureBlock => block.kind === "figure");
   return {
     id: `${at + 1}-${title.toLowerCase().replace(/[^\p{Letter}\p{Number}]+/gu, "-")}`,
     title,
@@ -37,7 +37,7 @@ function topic({ title, blocks }: { title: string; blocks: Block[] }, at: number
     Figure: () => (
       <>
         {figures.map((block, i) => (
-          <Named key={i} {...block} />
+          <LessonFigure key={i} {...block} />
         ))}
       </>
     ),
@@ -69,7 +69,7 @@ function prose(block: Block, key: number): ComponentChild {
 }
 
 /** Shows a figure by its name: a figure of the lecture, or a scene file beside the lesson. */
-function Named({ label, source, options }: Shown) {
+function LessonFigure({ label, source, options }: FigureBlock) {
   const id = /^figure:(.+)$/.exec(source)?.[1];
   if (id === undefined) return <SceneFigure label={label} name={source} options={options} />;
   const found = topics.find((known) => known.id === id);
@@ -86,19 +86,19 @@ function SceneFigure({ label, name, options }: { label: string; name: string; op
   const given = settings(options);
   const picture = given.find((option) => option.name === "show")?.value ?? "color";
   const job = given.filter((option) => option.name !== "show");
-  const { session, size, refused } = useOpened({ title: label, name, text: null }, job, picture);
+  const { session, size, refused } = useSceneFile({ title: label, name, text: null }, job, picture);
   const [head, setHead] = useState<PictureInfo | null>(null);
   const [width, height] = size;
   return (
     <Figure
       stage={
-        <Explained
+        <ExplainedImage
           session={session}
           width={width}
           height={height}
           label={label || name}
           scene={name}
-          told={setHead}
+          onResult={setHead}
         />
       }
     >

@@ -8,7 +8,7 @@ interface Place {
 }
 
 /** Wraps an image so that a point in it can be picked by a click or with the arrow keys. */
-export function Picked({
+export function PixelPicker({
   place,
   pick,
   children,

@@ -14,16 +14,25 @@ interface Props {
 
 /** Point in space that can be dragged within a plane. */
 export function Point3({ view, at, color, label, move, end, plane }: Props) {
-  const seen = view.point(at);
-  if (!seen) return null;
+  const projected = view.point(at);
+  if (!projected) return null;
   const drag = (x: number, y: number) => {
     const { origin, direction } = view.ray(x, y);
-    const middle = view.ray(seen.x, seen.y);
+    const middle = view.ray(projected.x, projected.y);
     const normal = plane ?? middle.direction;
     const slope = dot(direction, normal);
     if (Math.abs(slope) < 1e-3) return;
     const to = add(origin, mul(dot(sub(at, origin), normal) / slope, direction));
     if (to.every((c) => Math.abs(c) < 50)) move(to);
   };
-  return <Handle x={seen.x} y={seen.y} color={color} label={label} drag={drag} {...(end ? { end } : {})} />;
+  return (
+    <Handle
+      x={projected.x}
+      y={projected.y}
+      color={color}
+      label={label}
+      drag={drag}
+      {...(end ? { end } : {})}
+    />
+  );
 }

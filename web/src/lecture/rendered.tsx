@@ -10,22 +10,22 @@ interface Props {
   label: string;
   /** True to show pixels as squares. */
   squares?: boolean;
-  told?(head: PictureInfo): void;
+  onResult?(head: PictureInfo): void;
 }
 
 /** Shows the image that a session renders. */
-export function Rendered({ session, width, height, label, squares = false, told }: Props) {
+export function RenderedImage({ session, width, height, label, squares = false, onResult }: Props) {
   const canvas = useRef<HTMLCanvasElement>(null);
-  const tell = useRef(told);
-  tell.current = told;
+  const callback = useRef(onResult);
+  callback.current = onResult;
   useEffect(() => {
-    session.tell({ kind: "size", width, height });
+    session.send({ kind: "size", width, height });
     return session.on((event, bytes) => {
       if (event.kind !== "picture" || !canvas.current) return;
       // Skip coarse previews, which would only flicker at so few pixels.
       if (squares && event.head.width < width) return;
       draw(canvas.current, event.head.width, event.head.height, bytes);
-      tell.current?.(event.head);
+      callback.current?.(event.head);
     });
   }, [session, width, height, squares]);
   return (

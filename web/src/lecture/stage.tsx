@@ -46,7 +46,7 @@ export function Stage({ session, eye, setEye, label, aspect = 16 / 9, children }
   useEffect(() => {
     if (size.width < 2) return;
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
-    session.tell({
+    session.send({
       kind: "size",
       width: Math.round(size.width * ratio),
       height: Math.round(size.height * ratio),
@@ -111,5 +111,5 @@ export function Stage({ session, eye, setEye, label, aspect = 16 / 9, children }
 
 function look(session: Session, eye: Eye, moving: boolean) {
   const { eye: center, forward: direction } = frame(eye);
-  session.tell({ kind: "look", center, direction, up: [0, 1, 0], angle: eye.angle, moving });
+  session.send({ kind: "look", center, direction, up: [0, 1, 0], angle: eye.angle, moving });
 }

@@ -13,7 +13,7 @@ interface Props {
 }
 
 /** Number that is changed by dragging sideways or with the arrow keys. */
-export function Dragged({ label, value, step, decimals, min = -Infinity, max = Infinity, change }: Props) {
+export function DragNumber({ label, value, step, decimals, min = -Infinity, max = Infinity, change }: Props) {
   const from = useRef<{ x: number; value: number } | null>(null);
   const clamp = (x: number) => Math.min(max, Math.max(min, x));
   const text = decimals === undefined ? short(value) : fixed(value, decimals);

@@ -20,7 +20,7 @@ export function FileMenu({ store }: { store: Store }) {
         type="file"
         multiple
         hidden
-        onChange={(event) => giveFiles(store, [...(event.currentTarget.files ?? [])])}
+        onChange={(event) => uploadFiles(store, [...(event.currentTarget.files ?? [])])}
       />
       <select
         class="button"
@@ -59,12 +59,12 @@ export function FileMenu({ store }: { store: Store }) {
 const scenes = /\.(txt|json|gltf|glb|obj|ply|stl|pbrt|xml|3mf|rad|oct)$/i;
 
 /** Uploads files, and opens the last scene or model among them. It can refer to the other files. */
-export async function giveFiles(store: Store, files: File[]) {
+export async function uploadFiles(store: Store, files: File[]) {
   const main = files.findLast((file) => scenes.test(file.name));
   for (const file of files.filter((file) => file !== main)) {
-    store.session.tell({ kind: "give", name: file.name, base64: await base64(file), opens: false });
+    store.session.send({ kind: "give", name: file.name, base64: await base64(file), opens: false });
   }
-  if (main) store.session.tell({ kind: "give", name: main.name, base64: await base64(main), opens: true });
+  if (main) store.session.send({ kind: "give", name: main.name, base64: await base64(main), opens: true });
 }
 
 async function base64(file: File): Promise<string> {

@@ -1,5 +1,5 @@
 import type { Store } from "./store";
-import { kept, nearer } from "./zoom";
+import { clampZoom, zoomBy } from "./zoom";
 
 interface Point {
   x: number;
@@ -20,8 +20,8 @@ export function gestures(element: HTMLElement, store: Store, most: () => number)
     const { left, top, width, height } = frame();
     const { zoom } = store;
     return {
-      x: zoom.x + ((x - left) / width - 0.5) / zoom.times,
-      y: zoom.y + ((y - top) / height - 0.5) / zoom.times,
+      x: zoom.x + ((x - left) / width - 0.5) / zoom.magnification,
+      y: zoom.y + ((y - top) / height - 0.5) / zoom.magnification,
     };
   };
   /** Returns the pixel at a position on the page. */
@@ -66,11 +66,11 @@ export function gestures(element: HTMLElement, store: Store, most: () => number)
       if (!dragged) return;
       const after = spread();
       const { zoom } = store;
-      if (zoom.times > 1) {
+      if (zoom.magnification > 1) {
         const { width, height } = frame();
-        const x = zoom.x - (now.x - last.x) / width / zoom.times;
-        const y = zoom.y - (now.y - last.y) / height / zoom.times;
-        store.look(kept({ ...zoom, x, y }, most()));
+        const x = zoom.x - (now.x - last.x) / width / zoom.magnification;
+        const y = zoom.y - (now.y - last.y) / height / zoom.magnification;
+        store.setZoom(clampZoom({ ...zoom, x, y }, most()));
         return;
       }
       if (before && after) {
@@ -89,7 +89,7 @@ export function gestures(element: HTMLElement, store: Store, most: () => number)
   );
   const release = (event: PointerEvent) => {
     if (!pointers.delete(event.pointerId) || pointers.size > 0) return;
-    if (dragged && store.zoom.times === 1) store.settle();
+    if (dragged && store.zoom.magnification === 1) store.settle();
     else if (!dragged && event.type === "pointerup" && event.button === 0)
       store.explain(...pixel(event.clientX, event.clientY));
     start = null;
@@ -101,9 +101,9 @@ export function gestures(element: HTMLElement, store: Store, most: () => number)
     "wheel",
     (event) => {
       event.preventDefault();
-      if (event.altKey || store.zoom.times > 1) {
+      if (event.altKey || store.zoom.magnification > 1) {
         const at = share(event.clientX, event.clientY);
-        store.look(nearer(store.zoom, Math.exp(-event.deltaY * 0.002), at, most()));
+        store.setZoom(zoomBy(store.zoom, Math.exp(-event.deltaY * 0.002), at, most()));
         return;
       }
       store.move({ kind: "dolly", factor: Math.exp(event.deltaY * (event.ctrlKey ? 0.01 : 0.0012)) }, true);
@@ -117,7 +117,7 @@ export function gestures(element: HTMLElement, store: Store, most: () => number)
     "keydown",
     (event) => {
       if (event.key.toLowerCase() === "z" && !event.ctrlKey && !event.metaKey)
-        store.look(nearer(store.zoom, event.shiftKey ? 0.5 : 2, store.zoom, most()));
+        store.setZoom(zoomBy(store.zoom, event.shiftKey ? 0.5 : 2, store.zoom, most()));
       else key(event, store);
     },
     options,

@@ -1,8 +1,8 @@
 import { useState } from "preact/hooks";
 import type { FieldState, MaterialState, SceneNode } from "../protocol";
-import { Dragged } from "../ui/dragged";
+import { DragNumber } from "../ui/dragged";
 import { Slider } from "../ui/slider";
-import { give } from "./settings";
+import { download } from "./settings";
 import { type Store, useStore } from "./store";
 import { zip } from "./zip";
 
@@ -18,7 +18,7 @@ export function Model({ store }: { store: Store }) {
         {contents.object_count} objects, {contents.triangles.toLocaleString("en")} triangles
       </h3>
       <div class="row">
-        <button type="button" class="button strong" onClick={() => store.session.tell({ kind: "as_text" })}>
+        <button type="button" class="button strong" onClick={() => store.session.send({ kind: "as_text" })}>
           Edit as text
         </button>
         <button type="button" class="button" onClick={() => pack(store)}>
@@ -81,7 +81,7 @@ function Node({ node, choose }: { node: SceneNode; choose(material: number): voi
 
 function Fields({ store, number, material }: { store: Store; number: number; material: MaterialState }) {
   const set = (field: FieldState, values: number[]) =>
-    store.session.tell({ kind: "material", number, name: field.name, values });
+    store.session.send({ kind: "material", number, name: field.name, values });
   return (
     <div class="fields">
       {material.fields
@@ -121,7 +121,7 @@ function MaterialField({ field, set }: { field: FieldState; set(values: number[]
       <span class="label">{name}</span>
       <span class="vector">
         {values.map((value, i) => (
-          <Dragged
+          <DragNumber
             key={i}
             label={`${name} ${"xyz"[i] ?? ""}`}
             value={value}
@@ -172,9 +172,9 @@ async function pack(store: Store) {
       at += sizes[i] ?? 0;
       return { name, bytes: bytes.subarray(from, at) };
     });
-    give(`${names[0]?.replace(/\.[^.]*$/, "") ?? "scene"}.zip`, zip(files));
+    download(`${names[0]?.replace(/\.[^.]*$/, "") ?? "scene"}.zip`, zip(files));
   } catch (error) {
-    store.refused = String(error);
+    store.error = String(error);
     store.changed();
   }
 }

@@ -2,7 +2,7 @@ import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { gestures } from "./gestures";
 import { PixelNumbers } from "./pixel-numbers";
 import { type Store, useStore } from "./store";
-import { nearer, whole } from "./zoom";
+import { whole, zoomBy } from "./zoom";
 
 /** Maximum width of an image pixel, in page pixels. */
 const widest = 96;
@@ -42,7 +42,7 @@ export function Picture({ store }: { store: Store }) {
   }, [head, pixels]);
 
   // Page pixels per image pixel, and the position of the image's upper left corner.
-  const scale = (width * zoom.times) / fullWidth;
+  const scale = (width * zoom.magnification) / fullWidth;
   const corner = [width / 2 - zoom.x * fullWidth * scale, height / 2 - zoom.y * fullHeight * scale] as const;
   const place = (left: number, top: number, columns: number, rows: number) => ({
     left: `${corner[0] + left * scale}px`,
@@ -83,8 +83,8 @@ export function Picture({ store }: { store: Store }) {
         )}
       </div>
       <div class="zoom row" role="group" aria-label="Zoom into the image">
-        {zoom.times > 1 && (
-          <button type="button" class="button" onClick={() => store.look(whole)}>
+        {zoom.magnification > 1 && (
+          <button type="button" class="button" onClick={() => store.setZoom(whole)}>
             Whole
           </button>
         )}
@@ -97,14 +97,16 @@ export function Picture({ store }: { store: Store }) {
             type="button"
             class="button icon"
             aria-label={String(name)}
-            disabled={factor === 0.5 ? zoom.times <= 1 : zoom.times >= most}
-            onClick={() => store.look(nearer(zoom, Number(factor), middle(store), most))}
+            disabled={factor === 0.5 ? zoom.magnification <= 1 : zoom.magnification >= most}
+            onClick={() => store.setZoom(zoomBy(zoom, Number(factor), middle(store), most))}
           >
             {sign}
           </button>
         ))}
-        {zoom.times > 1 && (
-          <output>{zoom.times < 10 ? zoom.times.toFixed(1) : Math.round(zoom.times)} ×</output>
+        {zoom.magnification > 1 && (
+          <output>
+            {zoom.magnification < 10 ? zoom.magnification.toFixed(1) : Math.round(zoom.magnification)} ×
+          </output>
         )}
       </div>
     </div>
@@ -115,8 +117,8 @@ export function Picture({ store }: { store: Store }) {
 function middle({ pixel, head, zoom }: Store) {
   if (!pixel || !head) return zoom;
   const at = { x: (pixel.x + 0.5) / head.full_width, y: (pixel.y + 0.5) / head.full_height };
-  const seen = Math.max(Math.abs(at.x - zoom.x), Math.abs(at.y - zoom.y)) < 0.5 / zoom.times;
-  return seen ? at : zoom;
+  const isVisible = Math.max(Math.abs(at.x - zoom.x), Math.abs(at.y - zoom.y)) < 0.5 / zoom.magnification;
+  return isVisible ? at : zoom;
 }
 
 /** Draws pixels onto a canvas, which gets the size of the image. */

@@ -7,7 +7,7 @@ import { partOf } from "./zoom";
 const readable = 44;
 
 /** Values of the visible part of the image. */
-interface Numbers {
+interface PixelValues {
   part: [number, number, number, number];
   values: (number | null)[];
 }
@@ -24,7 +24,7 @@ export function PixelNumbers({
 }) {
   useStore(store);
   const { head, zoom } = store;
-  const [numbers, setNumbers] = useState<Numbers | null>(null);
+  const [numbers, setNumbers] = useState<PixelValues | null>(null);
   const wanted = head !== null && scale >= readable && head.width === head.region[2];
   const part = wanted ? partOf(zoom, head.full_width, head.full_height) : null;
   const key = JSON.stringify([part, head?.samples, head?.hash, head?.picture]);
@@ -64,7 +64,7 @@ export function PixelNumbers({
         <span>
           {x}, {y}
         </span>
-        {told(values).map((value, k) => (
+        {formatValues(values).map((value, k) => (
           <b key={k}>{value}</b>
         ))}
       </div>,
@@ -74,7 +74,7 @@ export function PixelNumbers({
 }
 
 /** Formats the values of a pixel; a single number if all three are equal, as for depth. */
-export function told(values: (number | null)[]): string[] {
+export function formatValues(values: (number | null)[]): string[] {
   const [r, g, b] = values;
   const all = r === g && g === b ? [r] : values;
   return all.map((value) => (value == null ? "∞" : short(value, 3)));

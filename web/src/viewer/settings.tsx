@@ -1,5 +1,5 @@
 import type { FieldState } from "../protocol";
-import { Dragged } from "../ui/dragged";
+import { DragNumber } from "../ui/dragged";
 import { Slider } from "../ui/slider";
 import { Switch } from "../ui/switch";
 import { type Store, useStore } from "./store";
@@ -33,7 +33,7 @@ function CameraFields({ store }: { store: Store }) {
           type="button"
           class="button"
           disabled={!camera.moved}
-          onClick={() => store.session.tell({ kind: "write_camera" })}
+          onClick={() => store.session.send({ kind: "write_camera" })}
         >
           Write into the scene
         </button>
@@ -50,7 +50,7 @@ function CameraFields({ store }: { store: Store }) {
 
 function Field({ store, field }: { store: Store; field: FieldState }) {
   const set = (values: number[], moving: boolean) =>
-    store.session.tell({ kind: "field", name: field.name, values, moving });
+    store.session.send({ kind: "field", name: field.name, values, moving });
   const [only] = field.values;
   const bounded = field.least !== null && field.most !== null;
   if (field.values.length === 1 && only !== undefined && bounded) {
@@ -74,7 +74,7 @@ function Field({ store, field }: { store: Store; field: FieldState }) {
       <span class="label">{field.name}</span>
       <span class="vector">
         {field.values.map((value, i) => (
-          <Dragged
+          <DragNumber
             key={i}
             label={`${field.name} ${"xyz"[i] ?? ""}`}
             value={value}
@@ -113,10 +113,14 @@ function Display({ store }: { store: Store }) {
           ))}
         </select>
       </div>
-      <Switch label="Denoise the finished image" on={store.denoises} change={(on) => store.denoise(on)} />
+      <Switch
+        label="Denoise the finished image"
+        on={store.denoiseEnabled}
+        change={(on) => store.denoise(on)}
+      />
       <div class="row">
         {["picture.png", "picture.exr"].map((name) => (
-          <button key={name} type="button" class="button" onClick={() => download(store, name)}>
+          <button key={name} type="button" class="button" onClick={() => exportImage(store, name)}>
             {name.slice(-3).toUpperCase()}
           </button>
         ))}
@@ -125,18 +129,18 @@ function Display({ store }: { store: Store }) {
   );
 }
 
-async function download(store: Store, name: string) {
+async function exportImage(store: Store, name: string) {
   try {
     const [, bytes] = await store.session.askBytes({ kind: "export", name }, "exported");
-    give(name, bytes);
+    download(name, bytes);
   } catch (error) {
-    store.refused = String(error);
+    store.error = String(error);
     store.changed();
   }
 }
 
 /** Lets the browser download bytes as a file. */
-export function give(name: string, bytes: Uint8Array<ArrayBuffer>) {
+export function download(name: string, bytes: Uint8Array<ArrayBuffer>) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(new Blob([bytes]));
   link.download = name;
@@ -161,8 +165,8 @@ function Job({ store }: { store: Store }) {
           value={size}
           onChange={(event) => {
             const [width = 512, height = 512] = event.currentTarget.value.split("x").map(Number);
-            store.look(whole);
-            store.session.tell({ kind: "size", width, height });
+            store.setZoom(whole);
+            store.session.send({ kind: "size", width, height });
           }}
         >
           {[...new Set([job.size.join("x"), size, ...sizes])].map((name) => (

@@ -4,7 +4,7 @@ import { type Store, useStore } from "./store";
 /** Status line: the progress of the render, and the hash of the finished image. */
 export function Status({ store }: { store: Store }) {
   useStore(store);
-  const { head, refused } = store;
+  const { head, error: refused } = store;
   if (refused) {
     return (
       <p class="status" role="alert">
@@ -44,7 +44,7 @@ export function Status({ store }: { store: Store }) {
 
 /** Shows the pixel below the pointer and its 8-bit values. */
 function Under({ store }: { store: Store }) {
-  const { under, head, pixels } = store;
+  const { hoveredPixel: under, head, pixels } = store;
   if (!under || !head || !pixels) return null;
   const [left, top, columns, rows] = head.region;
   const x = Math.floor(((under[0] + 0.5 - left) * head.width) / columns);

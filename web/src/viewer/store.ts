@@ -16,7 +16,7 @@ import type {
   Setting,
   TreeBox,
 } from "../protocol";
-import { cropOf, whole, type Zoom } from "./zoom";
+import { cropForZoom, whole, type Zoom } from "./zoom";
 
 /** Event that states which file was opened. */
 type Opened = Extract<Event, { kind: "opened" }>;
@@ -45,15 +45,15 @@ export class Store {
   unfolded = false;
   hovered: string | null = null;
   outlines: Outline[] = [];
-  lamps: LightMarker[] = [];
+  lights: LightMarker[] = [];
   words: Keyword[] = [];
-  refused: string | null = null;
+  error: string | null = null;
   /** The pixel that the step-by-step view has reached, and its ray. */
   scan: { x: number; y: number; ray: CameraRay | null } | null = null;
   /** The visible part of the image. */
   zoom: Zoom = whole;
-  denoises = false;
-  under: [number, number] | null = null;
+  denoiseEnabled = false;
+  hoveredPixel: [number, number] | null = null;
   /** Bounding boxes of the trees that are drawn. */
   boxes: TreeBox[] = [];
   boxLevel: number | null = null;
@@ -90,14 +90,14 @@ export class Store {
   open(name: string, text: string | null) {
     this.pixel = null;
     this.cast = null;
-    this.session.tell({ kind: "open", name, text });
+    this.session.send({ kind: "open", name, text });
   }
 
   edit(text: string) {
     if (text === this.text) return;
     this.text = text;
     this.edited = true;
-    this.session.tell({ kind: "edit", text });
+    this.session.send({ kind: "edit", text });
     this.changed();
   }
 
@@ -111,39 +111,39 @@ export class Store {
     this.picture = picture;
     this.stops = stops;
     this.tone = tone;
-    this.session.tell({ kind: "show", picture, stops, tone });
+    this.session.send({ kind: "show", picture, stops, tone });
     this.changed();
   }
 
   setOption(name: string, value: string | null) {
     this.options = this.options.filter((option) => option.name !== name);
     if (value !== null) this.options.push({ name, value });
-    this.session.tell({ kind: "options", options: this.options });
+    this.session.send({ kind: "options", options: this.options });
     this.changed();
   }
 
   /** Zooms to a part of the image. From a zoom of two, only that part is rendered. */
-  look(zoom: Zoom) {
+  setZoom(zoom: Zoom) {
     this.zoom = zoom;
     const { full_width, full_height } = this.head ?? { full_width: 1, full_height: 1 };
-    const crop = cropOf(zoom, full_width, full_height);
+    const crop = cropForZoom(zoom, full_width, full_height);
     if (JSON.stringify(crop) !== JSON.stringify(this.#crop)) {
       this.#crop = crop;
-      this.session.tell({ kind: "crop", crop });
+      this.session.send({ kind: "crop", crop });
     }
     this.changed();
   }
 
   /** Sets the pixel below the pointer. */
   point(pixel: [number, number] | null) {
-    if (this.under?.join() === pixel?.join()) return;
-    this.under = pixel;
+    if (this.hoveredPixel?.join() === pixel?.join()) return;
+    this.hoveredPixel = pixel;
     this.changed();
   }
 
   denoise(on: boolean) {
-    this.denoises = on;
-    this.session.tell({ kind: "denoise", on });
+    this.denoiseEnabled = on;
+    this.session.send({ kind: "denoise", on });
     this.changed();
   }
 
@@ -163,7 +163,7 @@ export class Store {
   /** Moves the camera; motions within a frame are merged. */
   move(motion: Motion, moving: boolean) {
     if (!moving) {
-      this.session.tell({ kind: "move", motion, moving });
+      this.session.send({ kind: "move", motion, moving });
       return;
     }
     this.#waiting.push(motion);
@@ -173,14 +173,14 @@ export class Store {
       this.#due = false;
       const motions = this.#waiting;
       this.#waiting = [];
-      for (const motion of joined(motions)) this.session.tell({ kind: "move", motion, moving: true });
+      for (const motion of mergeMotions(motions)) this.session.send({ kind: "move", motion, moving: true });
     });
   }
 
   /** Ends a motion, so that the image is rendered with all samples. */
   settle() {
     requestAnimationFrame(() =>
-      this.session.tell({
+      this.session.send({
         kind: "move",
         motion: { kind: "walk", forward: 0, right: 0, up: 0 },
         moving: false,
@@ -198,7 +198,7 @@ export class Store {
       this.unfolded = false;
       this.choose("0");
     } catch (error) {
-      this.refused = String(error);
+      this.error = String(error);
     }
     this.changed();
   }
@@ -231,7 +231,7 @@ export class Store {
     this.changed();
   }
 
-  keepMine() {
+  keepEdits() {
     this.diskText = null;
     this.changed();
   }
@@ -244,9 +244,9 @@ export class Store {
 
   async save(force: boolean) {
     try {
-      this.session.tell({ kind: "save", force });
+      this.session.send({ kind: "save", force });
     } catch (error) {
-      this.refused = String(error);
+      this.error = String(error);
     }
   }
 
@@ -267,7 +267,7 @@ export class Store {
       case "scene":
         this.findings = event.findings;
         this.valid = event.contents !== null;
-        this.refused = null;
+        this.error = null;
         if (event.contents) {
           const first = this.contents === null;
           this.contents = event.contents;
@@ -296,7 +296,7 @@ export class Store {
           this.text = event.text;
           this.textVersion++;
           this.edited = !event.from_disk;
-          if (event.from_disk) this.session.tell({ kind: "edit", text: event.text });
+          if (event.from_disk) this.session.send({ kind: "edit", text: event.text });
         }
         break;
       case "saved":
@@ -308,7 +308,7 @@ export class Store {
         this.conflict = true;
         break;
       case "refused":
-        this.refused = event.why;
+        this.error = event.why;
         break;
     }
     this.changed();
@@ -320,19 +320,19 @@ export class Store {
   }
 
   #frame([width, height]: [number, number]) {
-    this.session.tell({ kind: "size", width, height });
+    this.session.send({ kind: "size", width, height });
   }
 
   async #outlines() {
     const { outlines, lamps } = await this.session.ask({ kind: "outlines" }, "outlines");
     this.outlines = outlines;
-    this.lamps = lamps;
+    this.lights = lamps;
     this.changed();
   }
 }
 
 /** Merges consecutive motions of the same kind. */
-export function joined(motions: Motion[]): Motion[] {
+export function mergeMotions(motions: Motion[]): Motion[] {
   const all: Motion[] = [];
   for (const motion of motions) {
     const last = all.at(-1);

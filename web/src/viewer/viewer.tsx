@@ -2,7 +2,7 @@ import { useEffect, useState } from "preact/hooks";
 import { Editor } from "../editor/editor";
 import { Findings } from "../editor/findings";
 import { Explain } from "../explain/panel";
-import { giveFiles } from "./file-menu";
+import { uploadFiles } from "./file-menu";
 import { Model } from "./model";
 import { Picture } from "./picture";
 import { Settings } from "./settings";
@@ -21,7 +21,7 @@ export function Viewer({ store }: { store: Store }) {
     const over = (event: DragEvent) => event.preventDefault();
     const drop = (event: DragEvent) => {
       event.preventDefault();
-      giveFiles(store, [...(event.dataTransfer?.files ?? [])]);
+      uploadFiles(store, [...(event.dataTransfer?.files ?? [])]);
     };
     window.addEventListener("dragover", over);
     window.addEventListener("drop", drop);
@@ -32,8 +32,8 @@ export function Viewer({ store }: { store: Store }) {
   }, [store]);
 
   useEffect(() => {
-    store.session.tell({ kind: "pause", pause: false });
-    return () => store.session.tell({ kind: "pause", pause: true });
+    store.session.send({ kind: "pause", pause: false });
+    return () => store.session.send({ kind: "pause", pause: true });
   }, [store]);
 
   useEffect(() => {
@@ -126,7 +126,7 @@ function DiskNotice({ store }: { store: Store }) {
         <button type="button" class="button" onClick={() => store.takeDisk(text)}>
           Reload
         </button>
-        <button type="button" class="button plain" onClick={() => store.keepMine()}>
+        <button type="button" class="button plain" onClick={() => store.keepEdits()}>
           Keep this text
         </button>
       </div>

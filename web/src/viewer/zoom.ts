@@ -2,29 +2,32 @@
 export interface Zoom {
   x: number;
   y: number;
-  times: number;
+  magnification: number;
 }
 
-export const whole: Zoom = { x: 0.5, y: 0.5, times: 1 };
+export const whole: Zoom = { x: 0.5, y: 0.5, magnification: 1 };
 
 /** Returns the zoom, limited to `most` and shifted so that the visible part lies within the image. */
-export function kept({ x, y, times }: Zoom, most: number): Zoom {
+export function clampZoom({ x, y, magnification: times }: Zoom, most: number): Zoom {
   const size = Math.min(most, Math.max(1, times));
   const half = 0.5 / size;
   const within = (c: number) => Math.min(1 - half, Math.max(half, c));
-  return { x: within(x), y: within(y), times: size };
+  return { x: within(x), y: within(y), magnification: size };
 }
 
 /** Returns the zoom changed by a factor, such that a point of the image stays in place. */
-export function nearer(zoom: Zoom, factor: number, at: { x: number; y: number }, most: number): Zoom {
-  const times = Math.min(most, Math.max(1, zoom.times * factor));
-  const stays = zoom.times / times;
-  return kept({ x: at.x + (zoom.x - at.x) * stays, y: at.y + (zoom.y - at.y) * stays, times }, most);
+export function zoomBy(zoom: Zoom, factor: number, at: { x: number; y: number }, most: number): Zoom {
+  const times = Math.min(most, Math.max(1, zoom.magnification * factor));
+  const stays = zoom.magnification / times;
+  return clampZoom(
+    { x: at.x + (zoom.x - at.x) * stays, y: at.y + (zoom.y - at.y) * stays, magnification: times },
+    most,
+  );
 }
 
 /** Returns the visible part in pixels, rounded outwards: first column, first row, width and height. */
 export function partOf(
-  { x, y, times }: Zoom,
+  { x, y, magnification: times }: Zoom,
   width: number,
   height: number,
 ): [number, number, number, number] {
@@ -38,6 +41,10 @@ export function partOf(
 }
 
 /** Returns the part of the image to render; `null` for the entire image, below a zoom of two. */
-export function cropOf(zoom: Zoom, width: number, height: number): [number, number, number, number] | null {
-  return zoom.times < 2 ? null : partOf(zoom, width, height);
+export function cropForZoom(
+  zoom: Zoom,
+  width: number,
+  height: number,
+): [number, number, number, number] | null {
+  return zoom.magnification < 2 ? null : partOf(zoom, width, height);
 }

@@ -1,6 +1,6 @@
 //! Example of an integrator: white for hits within a distance, black elsewhere.
 
-use super::{Integrate, Parameters, IntegratorContext, TraceListener};
+use super::{Integrate, IntegratorContext, IntegratorOptions, TraceListener};
 use durer_scene::describe::{Constraint, described};
 use durer_scene::dialect::set;
 use durer_scene::math::{Color, Ray, Ray64};
@@ -17,13 +17,13 @@ described! {
 
 impl Copy for HitsParameters {}
 
-impl Parameters for HitsParameters {
+impl IntegratorOptions for HitsParameters {
     type Integrator<'w> = Hits<'w>;
 
-    const IS_RANDOM: bool = false;
+    const IS_STOCHASTIC: bool = false;
 
-    fn over(self, setup: IntegratorContext<'_>) -> Hits<'_> {
-        Hits { world: setup.world, depth: self.depth.unwrap_or(f32::INFINITY) }
+    fn create(self, context: IntegratorContext<'_>) -> Hits<'_> {
+        Hits { world: context.world, depth: self.depth.unwrap_or(f32::INFINITY) }
     }
 }
 
@@ -35,8 +35,8 @@ pub struct Hits<'w> {
 }
 
 impl Integrate for Hits<'_> {
-    fn radiance<T: TraceListener>(&self, ray: &Ray, _: SampleId, tally: &mut T) -> Color {
-        let hit = self.world.closest(&Ray64::from(ray), tally);
+    fn radiance<T: TraceListener>(&self, ray: &Ray, _: SampleId, listener: &mut T) -> Color {
+        let hit = self.world.closest(&Ray64::from(ray), listener);
         if hit.is_some_and(|hit| hit.t * ray.dir.length() < self.depth) { Color::ONE } else { Color::ZERO }
     }
 }

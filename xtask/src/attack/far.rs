@@ -51,7 +51,7 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
             width: SIDE,
             height: SIDE,
             sampling: Sampling::Center,
-            settings: durer::integrator::WhittedOptions { shadows: true, ..usual.settings },
+            settings: durer::integrator::RenderSettings { shadows: true, ..usual.settings },
             ..usual
         };
         let rendered = render(&world, &job, &Arc::new(Control::default()))?;

@@ -135,8 +135,12 @@ fn tried(path: &Path, ending: &str, bytes: Vec<u8>) {
     let Some(world) = loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics)) else { return };
     let usual = Job::default();
     let job = Job { width: 16, height: 16, sampling: usual.sampling.with_samples(1), ..usual };
-    let control =
-        Control { threads: Some(1), time: Some(Duration::from_secs(2)), memory: Some(MEMORY), ..Control::default() };
+    let control = Control {
+        threads: Some(1),
+        time_limit: Some(Duration::from_secs(2)),
+        memory: Some(MEMORY),
+        ..Control::default()
+    };
     let _ = render(&world, &job, &Arc::new(control));
 }
 

@@ -3,7 +3,7 @@
 use super::Table;
 use super::cases::{Case, What, cases};
 use anyhow::Result;
-use durer::integrator::{Integrate, Path, PathOptions, WhittedOptions};
+use durer::integrator::{Integrate, Path, PathOptions, RenderSettings};
 use durer::math::Ray;
 use durer::render::Job;
 use durer::sampler::{SampleId, random_2d};
@@ -45,7 +45,7 @@ fn one(path: &Path, what: &What, sample: u32) -> f64 {
 /// Returns the mean of many samples, and its standard error.
 fn measured(case: &Case, samples: u32) -> Result<(f64, f64)> {
     let world = world(case.name, &case.background, &case.materials, &case.lights, &case.group)?;
-    let settings = WhittedOptions { bounces: case.bounces, ..Job::default().settings };
+    let settings = RenderSettings { bounces: case.bounces, ..Job::default().settings };
     let path = Path::new(&world, settings, PathOptions::default());
     let (mut sum, mut squares) = (0.0, 0.0);
     for sample in 0..samples {

@@ -138,7 +138,7 @@ fn back(v: Vec3) -> Vec3 {
 
 fn of_lights(world: &World, cells: DirectionGrid) -> PdfComparison {
     let point = Vec3::ZERO.as_dvec3();
-    let to = Receiver { point, n: Vec3::ZERO, far: Receiver::FAR };
+    let to = Receiver { point, n: Vec3::ZERO, uniform_threshold: Receiver::UNIFORM_THRESHOLD };
     let sample = |choice: f32, u: Vec2| {
         let choice = world.emitters().choose(world, &to, choice)?;
         Some(turned(world.emitters().sample(world, &choice, point, u)?.wi))

@@ -7,7 +7,7 @@ use crate::open::CompiledInput;
 use durer::image::Transfer;
 use durer::image::compare::Comparison;
 use durer::math::Ray;
-use durer::render::explain::{ExplainOptions, Names, explain_ray, ray_text};
+use durer::render::explain::{ExplainOptions, SceneNames, explain_ray, ray_text};
 use durer::render::{Job, center_ray, raster};
 use durer::sampler::SampleId;
 use serde_json::{Value, json};
@@ -51,7 +51,7 @@ fn along(
     transfer: Transfer,
 ) -> Result<(Option<Hit>, Vec<String>), Failure> {
     let world = &compiled.world;
-    let names = Names { files: &compiled.files, scene: &compiled.loaded.scene, world };
+    let names = SceneNames { files: &compiled.files, scene: &compiled.loaded.scene, world };
     let hit = world.intersect(ray, &mut ()).map(|at| Hit {
         object: names.object(at.hit.object),
         material: names.material(at.material),

@@ -59,7 +59,7 @@ pub fn stage(
     // With filters wider than a pixel, edges cannot be reproduced exactly.
     let enough = if best.1.1.sampling.is_local() { SAME } else { MAX_OFF };
     // The course's programs have no path tracer, so there are no other dialects to try.
-    if best.0 <= enough || best.1.1.method.transport().is_some() {
+    if best.0 <= enough || best.1.1.method.path_options().is_some() {
         return Ok(Some(finished(args, path, best.1, best.2, None)));
     }
     let guessed = requested.dialect.or(best.1.0.loaded.guess.as_ref().map(|guess| guess.dialect));

@@ -11,7 +11,7 @@ use durer_photo::explain;
 pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     let all = read(&args.file, args.pictures.as_deref(), &mut Guard::default())?;
     let text = match (&args.camera, args.point) {
-        (Some(name), _) => explain::view_of(&all, name).and_then(|view| explain::camera(&all, view)),
+        (Some(name), _) => explain::find_view(&all, name).and_then(|view| explain::camera(&all, view)),
         (None, point) => explain::point(&all, point.unwrap_or(0)),
     };
     say(text.map_err(wrong)?.trim_end());

@@ -9,7 +9,7 @@ use crate::guard::Guard;
 use durer::format::folder::FolderSource;
 use durer::options::memory::Memory;
 use durer::source::SourceError;
-use durer_photo::format::{inputs, read_by};
+use durer_photo::format::{inputs, read_with};
 use durer_photo::{Error, Reconstruction};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -102,7 +102,7 @@ pub fn read(file: &Path, pictures: Option<&Path>, guard: &mut Guard) -> Result<R
             error => Error::new(error.to_string()),
         })
     };
-    let mut all = read_by(file, &mut open).map_err(wrong)?;
+    let mut all = read_with(file, &mut open).map_err(wrong)?;
     let Some(folder) = pictures.filter(|_| all.lenses.iter().any(|lens| lens.size == [0, 0])) else { return Ok(all) };
     let paths = photographs(folder)?;
     if paths.len() != all.views.len() {
@@ -117,7 +117,7 @@ pub fn read(file: &Path, pictures: Option<&Path>, guard: &mut Guard) -> Result<R
     for (i, path) in paths.iter().enumerate() {
         let content = bytes_below(folder, Path::new(path.file_name().unwrap_or_default()), guard)?;
         let size = durer_photo::photo::size(&path.to_string_lossy(), &content).map_err(wrong)?;
-        all.set_picture(i, &name(path), size);
+        all.set_image(i, &name(path), size);
     }
     Ok(all)
 }

@@ -23,8 +23,8 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let place = guard.writes("--output", &args.output)?;
     let options = Options {
         features: args.features as usize,
-        side: args.side,
-        field: args.field,
+        max_side: args.side,
+        field_of_view: args.field,
         ignore_exif: args.ignore_exif,
         seed: args.run.seed,
         ..Options::default()
@@ -44,7 +44,7 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
             let own = Path::new(path.file_name().unwrap_or_default());
             let content = bytes_below(&args.folder, own, &mut Guard::default())?;
             let photo = photo::read(&name(path), &content).map_err(wrong)?;
-            doubts.extend(photo.exif.doubt.as_ref().map(|doubt| format!("{}: {doubt}", photo.name)));
+            doubts.extend(photo.exif.warning.as_ref().map(|doubt| format!("{}: {doubt}", photo.name)));
             described.push(threaded(args.run.threads, || describe(&photo, &options))?);
             report(FEATURES * (i + 1) as f64 / paths.len() as f64);
         }
@@ -66,17 +66,17 @@ fn table(matches: &Matches) {
         let partners = matches.links.iter().filter(|link| link.pictures.contains(&i));
         let (count, most) = partners.fold((0, 0), |(count, most), link| (count + 1, most.max(link.matches)));
         let [width, height] = picture.size;
-        let (name, features, focal, from) = (&picture.name, picture.features, picture.focal, &picture.focal_from);
+        let (name, features, focal, from) = (&picture.name, picture.features, picture.focal, &picture.focal_source);
         let from = if from.starts_with(GUESS) { from.clone() } else { format!("EXIF: {from}") };
         say(&format!(
             "{name}: {width}x{height}, {features} features, focal length {focal:.0} ({from}); matches {count} others, \
              with at most {most} points"
         ));
     }
-    for link in matches.links.iter().filter(|link| link.moved < 0.5) {
+    for link in matches.links.iter().filter(|link| link.median_shift < 0.5) {
         let [a, b] = link.pictures.map(|i| &matches.pictures[i].name);
         complain(&format!("warning: {a} and {b} are the same picture, so they provide no depth information"));
     }
-    let longest = matches.tracks.iter().map(|track| track.seen.len()).max().unwrap_or(0);
+    let longest = matches.tracks.iter().map(|track| track.observations.len()).max().unwrap_or(0);
     say(&format!("{} tracks, the longest across {longest} photographs", matches.tracks.len()));
 }

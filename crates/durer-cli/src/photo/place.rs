@@ -19,7 +19,7 @@ use durer::film::Filter;
 use durer::film::aov::Aov;
 use durer::image::{Image, Layer, Transfer, decode_srgb};
 use durer::math::Vec3;
-use durer::render::{Control, Crop, Job, Sampling, raster, render};
+use durer::render::{Control, Job, PixelRect, Sampling, raster, render};
 use durer::scene::{Group, Object, ObjectKind};
 use durer::world::World;
 use durer_photo::photo;
@@ -147,7 +147,7 @@ fn coverage(
     let (width, height) = (job.width * ACROSS, job.height * ACROSS);
     let mut covered = vec![0.0_f32; job.width as usize * job.height as usize];
     for top in (0..height).step_by((BAND * ACROSS) as usize) {
-        let crop = Crop { left: 0, top, width, height: (BAND * ACROSS).min(height - top) };
+        let crop = PixelRect { left: 0, top, width, height: (BAND * ACROSS).min(height - top) };
         let aovs = Aov::from_name("material").into_iter().collect();
         let job =
             Job { width, height, crop: Some(crop), sampling: Sampling::Center, color: false, aovs, ..job.clone() };

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 /// Prints a summary of a reconstruction and its residuals.
 pub fn report(all: &Reconstruction) {
-    let (fit, count) = (all.fit(), all.registered());
+    let (fit, count) = (all.reprojection_error(), all.registered_count());
     say(&format!("{count} of {} photographs registered; {} points", all.views.len(), all.points.len()));
     if fit.observations > 0 {
         let (track, n) = (all.track_length(), fit.observations);

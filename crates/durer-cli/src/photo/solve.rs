@@ -7,9 +7,9 @@ use crate::failure::Failure;
 use crate::guard::Guard;
 use crate::progress;
 use crate::terminal::{complain, say};
-use durer_photo::adjust::{self, Loss, adjust_watched, covariance};
-use durer_photo::format::{Control, is_matches, read_control};
-use durer_photo::geometry::align::to_control;
+use durer_photo::adjust::{self, Loss, adjust_with_progress, covariance};
+use durer_photo::format::{ControlPoint, is_matches, read_control};
+use durer_photo::geometry::align::align_to_control_points;
 use durer_photo::matching::Matches;
 use durer_photo::solve::{Options, solve};
 use durer_photo::{Lens, Reconstruction};
@@ -36,7 +36,7 @@ pub fn run(args: &SolveArgs) -> Result<(), Failure> {
         }
     };
     if let Some(control) = control {
-        let (similarity, left) = to_control(&all, &control).map_err(wrong)?;
+        let (similarity, left) = align_to_control_points(&all, &control).map_err(wrong)?;
         similarity.apply_to(&mut all);
         let worst = left.iter().fold(0.0_f64, |m, d| m.max(*d));
         if !args.run.quiet {
@@ -57,12 +57,12 @@ pub fn run(args: &SolveArgs) -> Result<(), Failure> {
 
 fn lens_line(all: &Reconstruction, number: usize, lens: &Lens) -> String {
     let views = all.views.iter().filter(|view| view.lens == number && view.pose.is_some()).count();
-    let (f, [k1, k2]) = (lens.focal, lens.radial);
+    let (f, [k1, k2]) = (lens.focal, lens.distortion);
     format!("lens {}: focal length {f:.3} pixels, k1 {k1:.6}, k2 {k2:.6}; {views} photographs", number + 1)
 }
 
 /// Reads the control points before the work, so that errors in the file are reported at once.
-fn control(args: &SolveArgs, names: &[&str], guard: &mut Guard) -> Result<Option<Vec<Control>>, Failure> {
+fn control(args: &SolveArgs, names: &[&str], guard: &mut Guard) -> Result<Option<Vec<ControlPoint>>, Failure> {
     let Some(path) = &args.control else { return Ok(None) };
     read_control(&path.to_string_lossy(), &bytes(path, guard)?, names).map(Some).map_err(wrong)
 }
@@ -91,7 +91,7 @@ fn incremental(args: &SolveArgs, matches: &Matches) -> Result<Reconstruction, Fa
     if !args.run.quiet {
         solved.notes.iter().for_each(|note| complain(&format!("note: {note}")));
     }
-    Ok(solved.all)
+    Ok(solved.reconstruction)
 }
 
 /// Reads a file that already has cameras.
@@ -106,7 +106,7 @@ fn read_input(args: &SolveArgs, guard: &mut Guard) -> Result<Reconstruction, Fai
 
 /// Adjusts the cameras and points of a file.
 fn adjusted(args: &SolveArgs, mut all: Reconstruction) -> Result<Reconstruction, Failure> {
-    let before = all.fit();
+    let before = all.reprojection_error();
     if before.observations == 0 {
         return Err(crate::bad(format!("`{}` has no observations: there is nothing to adjust", args.file.display())));
     }
@@ -118,7 +118,7 @@ fn adjusted(args: &SolveArgs, mut all: Reconstruction) -> Result<Reconstruction,
                 share(step as f64 / options.iterations as f64)
             }
         };
-        threaded(args.run.threads, || adjust_watched(&mut all, &options, &watch))
+        threaded(args.run.threads, || adjust_with_progress(&mut all, &options, &watch))
     })?;
     if !args.run.quiet {
         let (steps, end) = (report.costs.len() - 1, if report.converged { "converged" } else { "not converged" });
@@ -145,7 +145,7 @@ fn exactness(args: &SolveArgs, all: &Reconstruction) -> Result<(), Failure> {
         found.sigma
     ));
     for (view, _) in &found.views {
-        let (name, place) = (&all.views[*view].name, found.place(all, *view).unwrap_or(0.0));
+        let (name, place) = (&all.views[*view].name, found.position_deviation(all, *view).unwrap_or(0.0));
         let turn = found.pose(*view).map_or(0.0, |c| c.fixed_view::<3, 3>(0, 0).trace().max(0.0).sqrt());
         say(&format!("{name}: position {place:.6}, direction {:.4} degrees", turn.to_degrees()));
     }

@@ -9,7 +9,7 @@ use crate::{page, progress};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use durer_photo::photo;
-use durer_photo::tour::shown;
+use durer_photo::tour::tour_views;
 use serde_json::json;
 use std::path::Path;
 
@@ -21,7 +21,7 @@ pub fn run(args: &TourArgs) -> Result<(), Failure> {
     let mut guard = Guard::default();
     let all = read(&args.file, Some(&args.pictures), &mut guard)?;
     let place = guard.writes("--output", &args.output)?;
-    let photographs = shown(&all);
+    let photographs = tour_views(&all);
     if photographs.is_empty() {
         return Err(bad(format!("no photograph of `{}` has a camera position", args.file.display())));
     }
@@ -37,7 +37,7 @@ pub fn run(args: &TourArgs) -> Result<(), Failure> {
                 path.display()
             )));
         }
-        let jpeg = photo.small(args.side).map_err(wrong)?;
+        let jpeg = photo.to_jpeg(args.side).map_err(wrong)?;
         Ok(format!("data:image/jpeg;base64,{}", STANDARD.encode(jpeg)))
     });
     let pictures = pictures.into_iter().collect::<Result<Vec<_>, Failure>>()?;

@@ -9,7 +9,7 @@
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! sections 5.2 and A6.
 
-use super::{Loss, Options, System};
+use super::{AdjustmentProblem, Loss, Options};
 use crate::{Error, Reconstruction};
 use nalgebra::{Cholesky, DMatrix, Matrix6};
 
@@ -38,8 +38,8 @@ impl Covariance {
     }
 
     /// Returns the standard deviation of a camera's position, as a length in world units.
-    pub fn place(&self, all: &Reconstruction, view: usize) -> Option<f64> {
-        let (pose, covariance) = (all.views[view].pose?, self.pose(view)?);
+    pub fn position_deviation(&self, reconstruction: &Reconstruction, view: usize) -> Option<f64> {
+        let (pose, covariance) = (reconstruction.views[view].pose?, self.pose(view)?);
         let turn = pose.rotation.transpose();
         let mut jacobian = nalgebra::Matrix3x6::zeros();
         // R becomes (1 + [ω]×) R, so C = -Rᵀ t changes by -Rᵀ [ω]×ᵀ t = Rᵀ (ω × t) = -Rᵀ [t]× ω.
@@ -55,14 +55,14 @@ impl Covariance {
 /// # Errors
 ///
 /// If the observations do not determine all cameras, or if fewer than two poses are known.
-pub fn covariance(all: &Reconstruction, options: &Options) -> Result<Covariance, Error> {
+pub fn covariance(reconstruction: &Reconstruction, options: &Options) -> Result<Covariance, Error> {
     let options = Options { loss: Loss::Squared, ..*options };
     // A point with a single observation does not constrain the cameras, and its own position is
     // undetermined.
-    let known = |seen: &&crate::Observation| all.views[seen.view].pose.is_some();
-    let mut kept = all.clone();
+    let known = |observation: &&crate::Observation| reconstruction.views[observation.view].pose.is_some();
+    let mut kept = reconstruction.clone();
     kept.points.retain(|point| !options.points || point.track.iter().filter(known).count() > 1);
-    let (system, state, views) = System::new(&kept, options);
+    let (system, state, views) = AdjustmentProblem::new(&kept, options);
     if views.len() < 2 {
         return Err(Error::new("a covariance needs at least two photographs whose pose is known"));
     }
@@ -80,7 +80,7 @@ pub fn covariance(all: &Reconstruction, options: &Options) -> Result<Covariance,
     let inverse = Cholesky::new(scaled).map(|factor| factor.inverse()).filter(|m| m.iter().all(|c| c.is_finite()));
     let inverse = inverse.ok_or_else(|| Error::new("the observations do not determine some camera"))?;
     let unknowns = free.len() + if options.points { 3 * kept.points.len() } else { 0 };
-    let spare = system.residuals().saturating_sub(unknowns).max(1);
+    let spare = system.residual_count().saturating_sub(unknowns).max(1);
     let sigma = (2.0 * system.cost(&state) / spare as f64).sqrt();
     let mut matrix = DMatrix::zeros(system.size, system.size);
     for (i, row) in free.iter().enumerate() {

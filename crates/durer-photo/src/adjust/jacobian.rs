@@ -23,7 +23,7 @@ pub fn project(lens: &Lens, pose: &Pose, point: &Vector3<f64>) -> (Vector2<f64>,
     let p = turned + pose.translation;
     let (x, y, z) = (p.x / p.z, p.y / p.z, p.z);
     let s = x * x + y * y;
-    let (g, slope) = (lens.factor(s), lens.radial[0] + 2.0 * s * lens.radial[1]);
+    let (g, slope) = (lens.distortion_factor(s), lens.distortion[0] + 2.0 * s * lens.distortion[1]);
     let (fx, fy) = (lens.focal, lens.focal * lens.aspect);
     let (ux, uy) = (fx * (g + 2.0 * x * x * slope), fx * 2.0 * x * y * slope);
     let (vx, vy) = (fy * 2.0 * x * y * slope, fy * (g + 2.0 * y * y * slope));
@@ -47,7 +47,7 @@ pub fn project(lens: &Lens, pose: &Pose, point: &Vector3<f64>) -> (Vector2<f64>,
             by_camera[(row, 6 + i)] = by_lens[i];
         }
     }
-    let pixel = Vector2::new(lens.center[0] + fx * g * x, lens.center[1] + fy * g * y);
+    let pixel = Vector2::new(lens.principal_point[0] + fx * g * x, lens.principal_point[1] + fy * g * y);
     (pixel, by_camera, by_p * pose.rotation)
 }
 
@@ -58,7 +58,7 @@ mod tests {
 
     #[test]
     fn derivatives_match_finite_differences() {
-        let lens = Lens { aspect: 1.1, radial: [-0.2, 0.07], ..Lens::new([640, 480], 500.0) };
+        let lens = Lens { aspect: 1.1, distortion: [-0.2, 0.07], ..Lens::new([640, 480], 500.0) };
         let pose =
             Pose { rotation: rotation_of(&Vector3::new(0.3, -0.2, 0.5)), translation: Vector3::new(0.1, 0.2, 4.0) };
         let point = Vector3::new(0.8, -0.7, 0.3);
@@ -69,7 +69,7 @@ mod tests {
                 0..3 => pose.rotation = rotation_of(&(by * Vector3::ith(i, 1.0))) * pose.rotation,
                 3..6 => pose.translation[i - 3] += by,
                 6 => lens.focal += by,
-                7..9 => lens.radial[i - 7] += by,
+                7..9 => lens.distortion[i - 7] += by,
                 _ => point[i - 9] += by,
             }
             project(&lens, &pose, &point).0

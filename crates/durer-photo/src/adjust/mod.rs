@@ -19,7 +19,7 @@ pub use loss::Loss;
 
 use crate::Reconstruction;
 use nalgebra::{Cholesky, DMatrix, DVector};
-use system::{State, System};
+use system::{AdjustmentProblem, Parameters};
 
 /// Options of bundle adjustment: the loss function, which parameters are free, and when to stop.
 #[derive(Debug, Clone, Copy)]
@@ -54,18 +54,22 @@ pub struct Report {
 }
 
 /// Adjusts the photographs with a known pose, their lenses, and the points.
-pub fn adjust(all: &mut Reconstruction, options: &Options) -> Report {
-    adjust_watched(all, options, &|_, _| {})
+pub fn adjust(reconstruction: &mut Reconstruction, options: &Options) -> Report {
+    adjust_with_progress(reconstruction, options, &|_, _| {})
 }
 
 /// Runs [`adjust`], and calls `watch` with the number and the cost of each step.
-pub fn adjust_watched(all: &mut Reconstruction, options: &Options, watch: &dyn Fn(usize, f64)) -> Report {
-    let (system, mut state, views) = System::new(all, *options);
+pub fn adjust_with_progress(
+    reconstruction: &mut Reconstruction,
+    options: &Options,
+    watch: &dyn Fn(usize, f64),
+) -> Report {
+    let (system, mut state, views) = AdjustmentProblem::new(reconstruction, *options);
     let mut cost = system.cost(&state);
     let mut report = Report { costs: vec![cost], converged: false };
     let (mut damping, mut growth) = (1e-4, 2.0);
     while report.costs.len() <= options.iterations && !report.converged {
-        let tried = attempt(&system, &state, damping);
+        let tried = damped_step(&system, &state, damping);
         let (better, fall) = match &tried {
             Some((next, foreseen)) => {
                 let next_cost = system.cost(next);
@@ -105,10 +109,10 @@ pub fn adjust_watched(all: &mut Reconstruction, options: &Options, watch: &dyn F
     views.iter().zip(state.poses).for_each(|(view, pose)| {
         // The product of many small rotations drifts away from a rotation.
         let rotation = crate::model::nearest_rotation(&pose.rotation);
-        all.views[*view].pose = Some(crate::Pose { rotation, ..pose });
+        reconstruction.views[*view].pose = Some(crate::Pose { rotation, ..pose });
     });
-    all.lenses = state.lenses;
-    all.points.iter_mut().zip(state.points).for_each(|(point, position)| point.position = position);
+    reconstruction.lenses = state.lenses;
+    reconstruction.points.iter_mut().zip(state.points).for_each(|(point, position)| point.position = position);
     report
 }
 
@@ -123,16 +127,16 @@ pub(crate) fn camera_jacobian(
 }
 
 /// Computes a damped step, and the decrease of the cost that it predicts.
-fn attempt(system: &System, state: &State, damping: f64) -> Option<(State, f64)> {
+fn damped_step(system: &AdjustmentProblem, state: &Parameters, damping: f64) -> Option<(Parameters, f64)> {
     let mut reduced = system.reduce(state, damping);
     // A parameter that is fixed or has no influence gets the equation 1 · dx = 0.
-    let held: DVector<f64> = reduced.diagonal.map(|d| if d > 0.0 { damping * d } else { 1.0 });
-    (0..system.size).for_each(|i| reduced.matrix[(i, i)] += held[i]);
+    let diagonal_damping: DVector<f64> = reduced.diagonal.map(|d| if d > 0.0 { damping * d } else { 1.0 });
+    (0..system.size).for_each(|i| reduced.matrix[(i, i)] += diagonal_damping[i]);
     let step = solve(reduced.matrix, &reduced.right)?;
-    let (points, fall) = system.back(state, damping, &step);
-    let foreseen = fall + 0.5 * step.dot(&(held.component_mul(&step) - reduced.gradient));
-    let (poses, lenses) = system.moved(state, &step);
-    Some((State { poses, lenses, points }, foreseen))
+    let (points, fall) = system.back_substitute(state, damping, &step);
+    let predicted = fall + 0.5 * step.dot(&(diagonal_damping.component_mul(&step) - reduced.gradient));
+    let (poses, lenses) = system.apply_step(state, &step);
+    Some((Parameters { poses, lenses, points }, predicted))
 }
 
 /// Solves symmetric equations after scaling them to a unit diagonal.

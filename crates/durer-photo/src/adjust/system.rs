@@ -19,14 +19,14 @@ use rayon::prelude::*;
 
 /// Parameters that bundle adjustment estimates: poses, lenses, and points.
 #[derive(Clone)]
-pub struct State {
+pub struct Parameters {
     pub poses: Vec<Pose>,
     pub lenses: Vec<Lens>,
     pub points: Vec<Vector3<f64>>,
 }
 
 /// Observed pixel in a photograph with a known pose, with the indices of its pose and lens in a
-/// [`State`].
+/// [`Parameters`].
 struct SystemObservation {
     pixel: Vector2<f64>,
     pose: usize,
@@ -35,10 +35,11 @@ struct SystemObservation {
 
 /// Nonlinear least-squares problem of bundle adjustment: the observations of each point, and the
 /// layout of the camera parameters.
-pub struct System {
+pub struct AdjustmentProblem {
     options: Options,
-    seen: Vec<SystemObservation>,
-    /// Index of each point's first observation in `seen`, followed by the number of observations.
+    observations: Vec<SystemObservation>,
+    /// Index of each point's first observation in `observations`, followed by the number of
+    /// observations.
     starts: Vec<usize>,
     /// Consecutive points that are summed by one task, with similar numbers of observations. The
     /// division depends only on the problem, so the order of summation does too.
@@ -49,7 +50,7 @@ pub struct System {
 }
 
 /// Normal equations of the cameras, after the points have been eliminated by the Schur complement.
-pub struct Reduced {
+pub struct ReducedSystem {
     /// U - W V⁻¹ Wᵀ, with undamped U.
     pub matrix: DMatrix<f64>,
     /// -gc + W V⁻¹ gp.
@@ -62,7 +63,7 @@ pub struct Reduced {
 
 /// Weighted residual of an observation, and its derivatives with respect to the camera and the
 /// point.
-struct Row {
+struct ResidualRow {
     residual: Vector2<f64>,
     by_camera: CameraJacobian,
     by_point: Matrix2x3<f64>,
@@ -70,67 +71,76 @@ struct Row {
 
 /// Damped 3x3 normal equations of one point, and the rows of its observations.
 struct PointBlock {
-    rows: Vec<Row>,
+    rows: Vec<ResidualRow>,
     inverse: Matrix3<f64>,
     gradient: Vector3<f64>,
     damping: Vector3<f64>,
 }
 
-impl System {
+impl AdjustmentProblem {
     /// Creates the system of a reconstruction. Also returns the initial state and the numbers of
     /// the photographs with a known pose.
-    pub fn new(all: &Reconstruction, options: Options) -> (Self, State, Vec<usize>) {
-        let views: Vec<usize> = (0..all.views.len()).filter(|i| all.views[*i].pose.is_some()).collect();
-        let mut number = vec![usize::MAX; all.views.len()];
+    pub fn new(reconstruction: &Reconstruction, options: Options) -> (Self, Parameters, Vec<usize>) {
+        let views: Vec<usize> =
+            (0..reconstruction.views.len()).filter(|i| reconstruction.views[*i].pose.is_some()).collect();
+        let mut number = vec![usize::MAX; reconstruction.views.len()];
         views.iter().enumerate().for_each(|(i, view)| number[*view] = i);
-        let (mut seen, mut starts) = (Vec::new(), vec![0]);
-        for point in &all.points {
-            let known = point.track.iter().filter(|seen| number[seen.view] != usize::MAX);
-            seen.extend(known.map(|seen| SystemObservation {
-                pixel: seen.pixel,
-                pose: number[seen.view],
-                lens: all.views[seen.view].lens,
+        let (mut observations, mut starts) = (Vec::new(), vec![0]);
+        for point in &reconstruction.points {
+            let known = point.track.iter().filter(|observation| number[observation.view] != usize::MAX);
+            observations.extend(known.map(|observation| SystemObservation {
+                pixel: observation.pixel,
+                pose: number[observation.view],
+                lens: reconstruction.views[observation.view].lens,
             }));
-            starts.push(seen.len());
+            starts.push(observations.len());
         }
-        let size = 6 * views.len() + 3 * all.lenses.len();
+        let size = 6 * views.len() + 3 * reconstruction.lenses.len();
         // Enough runs to keep threads busy, with at most 256 MiB for their sums.
         let count = ((1 << 25) / (size * size).max(1)).clamp(1, 16);
-        let bound = |i: usize| starts.partition_point(|start| start * count < i * seen.len()).min(all.points.len());
-        let runs = (0..count).map(|i| bound(i)..if i + 1 == count { all.points.len() } else { bound(i + 1) }).collect();
-        let poses = views.iter().filter_map(|view| all.views[*view].pose).collect();
-        let points = all.points.iter().map(|point| point.position).collect();
-        let state = State { poses, lenses: all.lenses.clone(), points };
-        (System { options, seen, starts, runs, poses: views.len(), size }, state, views)
+        let bound = |i: usize| {
+            starts.partition_point(|start| start * count < i * observations.len()).min(reconstruction.points.len())
+        };
+        let runs = (0..count)
+            .map(|i| bound(i)..if i + 1 == count { reconstruction.points.len() } else { bound(i + 1) })
+            .collect();
+        let poses = views.iter().filter_map(|view| reconstruction.views[*view].pose).collect();
+        let points = reconstruction.points.iter().map(|point| point.position).collect();
+        let state = Parameters { poses, lenses: reconstruction.lenses.clone(), points };
+        (AdjustmentProblem { options, observations, starts, runs, poses: views.len(), size }, state, views)
     }
 
     /// Returns the ranges of an observation's nine columns, first of the pose, then of the lens:
     /// the start in its row, the length, and the start in the system.
-    fn columns(&self, seen: &SystemObservation) -> [(usize, usize, usize); 2] {
-        [(0, 6, 6 * seen.pose), (6, 3, 6 * self.poses + 3 * seen.lens)]
+    fn columns(&self, observation: &SystemObservation) -> [(usize, usize, usize); 2] {
+        [(0, 6, 6 * observation.pose), (6, 3, 6 * self.poses + 3 * observation.lens)]
     }
 
-    fn seen(&self, point: usize) -> &[SystemObservation] {
-        &self.seen[self.starts[point]..self.starts[point + 1]]
+    fn observations_of(&self, point: usize) -> &[SystemObservation] {
+        &self.observations[self.starts[point]..self.starts[point + 1]]
     }
 
     /// Returns half the sum of the losses.
-    pub fn cost(&self, state: &State) -> f64 {
+    pub fn cost(&self, state: &Parameters) -> f64 {
         let run = |run: &std::ops::Range<usize>| {
             let one = |i: usize| {
-                let residual = |seen: &SystemObservation| {
-                    let p = state.poses[seen.pose].apply(&state.points[i]);
-                    (state.lenses[seen.lens].project(&p) - seen.pixel).norm_squared()
+                let residual = |observation: &SystemObservation| {
+                    let p = state.poses[observation.pose].apply(&state.points[i]);
+                    (state.lenses[observation.lens].project(&p) - observation.pixel).norm_squared()
                 };
-                self.seen(i).iter().map(|seen| self.options.loss.at(residual(seen)).0 / 2.0).sum::<f64>()
+                self.observations_of(i)
+                    .iter()
+                    .map(|observation| self.options.loss.at(residual(observation)).0 / 2.0)
+                    .sum::<f64>()
             };
             run.clone().map(one).sum::<f64>()
         };
         self.runs.par_iter().map(run).collect::<Vec<f64>>().into_iter().sum()
     }
 
-    fn block(&self, state: &State, point: usize, damping: f64) -> PointBlock {
-        let rows: Vec<Row> = self.seen(point).iter().map(|seen| self.row(state, point, seen)).collect();
+    fn block(&self, state: &Parameters, point: usize, damping: f64) -> PointBlock {
+        let rows: Vec<ResidualRow> =
+            self.observations_of(point).iter().map(|observation| self.row(state, point, observation)).collect();
         let (mut v, mut gradient) = (Matrix3::zeros(), Vector3::zeros());
         for row in &rows {
             v += row.by_point.transpose() * row.by_point;
@@ -143,10 +153,10 @@ impl System {
         PointBlock { rows, inverse, gradient, damping: diagonal }
     }
 
-    fn row(&self, state: &State, point: usize, seen: &SystemObservation) -> Row {
-        let (lens, pose) = (&state.lenses[seen.lens], &state.poses[seen.pose]);
+    fn row(&self, state: &Parameters, point: usize, observation: &SystemObservation) -> ResidualRow {
+        let (lens, pose) = (&state.lenses[observation.lens], &state.poses[observation.pose]);
         let (pixel, mut by_camera, by_point) = project(lens, pose, &state.points[point]);
-        let residual = pixel - seen.pixel;
+        let residual = pixel - observation.pixel;
         // The loss becomes a weight: Triggs' correction without the term of the second derivative.
         let weight = self.options.loss.at(residual.norm_squared()).1.sqrt();
         for (column, free) in [(6, self.options.focal), (7, self.options.radial), (8, self.options.radial)] {
@@ -155,18 +165,18 @@ impl System {
             }
         }
         let by_point = if self.options.points { weight * by_point } else { Matrix2x3::zeros() };
-        Row { residual: weight * residual, by_camera: weight * by_camera, by_point }
+        ResidualRow { residual: weight * residual, by_camera: weight * by_camera, by_point }
     }
 
     /// Computes the reduced equations, with damped point blocks.
-    pub fn reduce(&self, state: &State, damping: f64) -> Reduced {
+    pub fn reduce(&self, state: &Parameters, damping: f64) -> ReducedSystem {
         let n = self.size;
         let run = |run: &std::ops::Range<usize>| {
             let mut half = DMatrix::zeros(n, n);
             let (mut right, mut gradient, mut diagonal) = (DVector::zeros(n), DVector::zeros(n), DVector::zeros(n));
             for point in run.clone() {
                 let block = self.block(state, point, damping);
-                let seen = self.seen(point);
+                let observations = self.observations_of(point);
                 let step = block.inverse * block.gradient;
                 let w: Vec<SMatrix<f64, 9, 3>> =
                     block.rows.iter().map(|row| row.by_camera.transpose() * row.by_point).collect();
@@ -175,7 +185,7 @@ impl System {
                     let g = row.by_camera.transpose() * row.residual;
                     let reduced = w[i] * step - g;
                     let solved = w[i] * block.inverse;
-                    for (from, count, to) in self.columns(&seen[i]) {
+                    for (from, count, to) in self.columns(&observations[i]) {
                         for k in 0..count {
                             right[to + k] += reduced[from + k];
                             gradient[to + k] += g[from + k];
@@ -184,10 +194,15 @@ impl System {
                     }
                     // The matrix is the sum of `half` and its transpose, so diagonal blocks are
                     // halved.
-                    self.add(&mut half, &seen[i], &seen[i], &((squares - solved * w[i].transpose()) * 0.5));
+                    self.add(
+                        &mut half,
+                        &observations[i],
+                        &observations[i],
+                        &((squares - solved * w[i].transpose()) * 0.5),
+                    );
                     if self.options.points {
                         for j in 0..i {
-                            self.add(&mut half, &seen[i], &seen[j], &-(solved * w[j].transpose()));
+                            self.add(&mut half, &observations[i], &observations[j], &-(solved * w[j].transpose()));
                         }
                     }
                 }
@@ -198,7 +213,7 @@ impl System {
         let sum = parts.into_iter().reduce(|a, b| (a.0 + b.0, a.1 + b.1, a.2 + b.2, a.3 + b.3));
         let (half, right, gradient, diagonal) =
             sum.unwrap_or_else(|| (DMatrix::zeros(n, n), DVector::zeros(n), DVector::zeros(n), DVector::zeros(n)));
-        Reduced { matrix: &half + half.transpose(), right, gradient, diagonal }
+        ReducedSystem { matrix: &half + half.transpose(), right, gradient, diagonal }
     }
 
     /// Adds a block for the columns of two observations.
@@ -218,15 +233,15 @@ impl System {
 
     /// Computes the steps of the points from the step of the cameras, and the decrease of the
     /// points' part of the quadratic model.
-    pub fn back(&self, state: &State, damping: f64, step: &DVector<f64>) -> (Vec<Vector3<f64>>, f64) {
+    pub fn back_substitute(&self, state: &Parameters, damping: f64, step: &DVector<f64>) -> (Vec<Vector3<f64>>, f64) {
         let run = |run: &std::ops::Range<usize>| {
             let mut fall = 0.0;
             let moved = run.clone().map(|point| {
                 let block = self.block(state, point, damping);
                 let mut right = block.gradient;
-                for (row, seen) in block.rows.iter().zip(self.seen(point)) {
+                for (row, observation) in block.rows.iter().zip(self.observations_of(point)) {
                     let mut along = Vector2::zeros();
-                    for (from, count, to) in self.columns(seen) {
+                    for (from, count, to) in self.columns(observation) {
                         (0..count).for_each(|k| along += row.by_camera.column(from + k) * step[to + k]);
                     }
                     right += row.by_point.transpose() * along;
@@ -243,7 +258,7 @@ impl System {
     }
 
     /// Returns the poses and lenses after a step.
-    pub fn moved(&self, state: &State, step: &DVector<f64>) -> (Vec<Pose>, Vec<Lens>) {
+    pub fn apply_step(&self, state: &Parameters, step: &DVector<f64>) -> (Vec<Pose>, Vec<Lens>) {
         let (mut poses, mut lenses) = (state.poses.clone(), state.lenses.clone());
         let three = |at: usize| Vector3::new(step[at], step[at + 1], step[at + 2]);
         for (i, pose) in poses.iter_mut().enumerate() {
@@ -253,14 +268,14 @@ impl System {
         for (i, lens) in lenses.iter_mut().enumerate() {
             let change = three(6 * self.poses + 3 * i);
             lens.focal += change.x;
-            lens.radial[0] += change.y;
-            lens.radial[1] += change.z;
+            lens.distortion[0] += change.y;
+            lens.distortion[1] += change.z;
         }
         (poses, lenses)
     }
 
     /// Returns the number of residual components: two for each observation.
-    pub fn residuals(&self) -> usize {
-        2 * self.seen.len()
+    pub fn residual_count(&self) -> usize {
+        2 * self.observations.len()
     }
 }

@@ -1,21 +1,21 @@
 //! Orientations and descriptors (Lowe, sections 5 and 6).
 
-use super::detect::{Octave, Point};
-use super::{Feature, Gray, LENGTH};
+use super::detect::{Extremum, Octave};
+use super::{DESCRIPTOR_LENGTH, Feature, GrayImage};
 use std::f32::consts::{PI, TAU};
 
 /// Number of bins of the orientation histogram.
-const BINS: usize = 36;
+const HISTOGRAM_BINS: usize = 36;
 /// Number of cells of a descriptor along each axis.
 const CELLS: usize = 4;
 /// Number of orientation bins per cell.
-const TURNS: usize = 8;
+const ORIENTATION_BINS: usize = 8;
 /// Width of a cell, as a multiple of the feature's scale.
-const CELL: f32 = 3.0;
+const CELL_WIDTH: f32 = 3.0;
 
 /// Returns the features of an extremum, one for each of its orientations, with positions in pixels
 /// of the image.
-pub fn describe(octaves: &[Octave], point: &Point, doubled: bool) -> Vec<(Feature, [u8; LENGTH])> {
+pub fn describe(octaves: &[Octave], point: &Extremum, doubled: bool) -> Vec<(Feature, [u8; DESCRIPTOR_LENGTH])> {
     let gray = &octaves[point.octave].blurs[point.level];
     // Image pixels per octave pixel. Halving keeps the centre of the first pixel in place.
     let of_base = (1 << point.octave) as f32;
@@ -31,13 +31,18 @@ pub fn describe(octaves: &[Octave], point: &Point, doubled: bool) -> Vec<(Featur
 }
 
 /// Returns the length and the direction of the gradient at a pixel.
-fn gradient(gray: &Gray, x: usize, y: usize) -> (f32, f32) {
+fn gradient(gray: &GrayImage, x: usize, y: usize) -> (f32, f32) {
     let (dx, dy) = (gray.at(x + 1, y) - gray.at(x - 1, y), gray.at(x, y + 1) - gray.at(x, y - 1));
     ((dx * dx + dy * dy).sqrt(), libm::atan2f(dy, dx))
 }
 
 /// Calls `each` for every pixel within a radius of a point, except at the border.
-fn around(gray: &Gray, point: &Point, radius: f32, mut each: impl FnMut(usize, usize, f32, f32)) {
+fn for_each_pixel_around(
+    gray: &GrayImage,
+    point: &Extremum,
+    radius: f32,
+    mut each: impl FnMut(usize, usize, f32, f32),
+) {
     let range = |middle: f32, end: usize| {
         let low = (middle - radius).ceil().max(1.0) as usize;
         low..=((middle + radius).floor().min(end as f32 - 2.0)) as usize
@@ -51,30 +56,33 @@ fn around(gray: &Gray, point: &Point, radius: f32, mut each: impl FnMut(usize, u
 
 /// Returns at most two orientations: the peaks of the gradient histogram that reach four fifths of
 /// the highest one.
-fn orientations(gray: &Gray, point: &Point) -> Vec<f32> {
+fn orientations(gray: &GrayImage, point: &Extremum) -> Vec<f32> {
     let sigma = 1.5 * point.scale;
-    let mut bins = [0.0_f32; BINS];
-    around(gray, point, 3.0 * sigma, |x, y, dx, dy| {
+    let mut bins = [0.0_f32; HISTOGRAM_BINS];
+    for_each_pixel_around(gray, point, 3.0 * sigma, |x, y, dx, dy| {
         let distance = dx * dx + dy * dy;
         if distance > 9.0 * sigma * sigma {
             return;
         }
         let (length, angle) = gradient(gray, x, y);
-        let bin = ((angle + PI) / TAU * BINS as f32) as usize;
-        bins[bin % BINS] += length * libm::expf(-distance / (2.0 * sigma * sigma));
+        let bin = ((angle + PI) / TAU * HISTOGRAM_BINS as f32) as usize;
+        bins[bin % HISTOGRAM_BINS] += length * libm::expf(-distance / (2.0 * sigma * sigma));
     });
     for _ in 0..6 {
         let old = bins;
-        (0..BINS).for_each(|i| bins[i] = (old[(i + BINS - 1) % BINS] + old[i] + old[(i + 1) % BINS]) / 3.0);
+        (0..HISTOGRAM_BINS).for_each(|i| {
+            bins[i] = (old[(i + HISTOGRAM_BINS - 1) % HISTOGRAM_BINS] + old[i] + old[(i + 1) % HISTOGRAM_BINS]) / 3.0
+        });
     }
     let largest = bins.iter().fold(0.0_f32, |m, b| m.max(*b));
     let mut peaks = Vec::new();
-    for i in 0..BINS {
-        let (left, here, right) = (bins[(i + BINS - 1) % BINS], bins[i], bins[(i + 1) % BINS]);
+    for i in 0..HISTOGRAM_BINS {
+        let (left, here, right) =
+            (bins[(i + HISTOGRAM_BINS - 1) % HISTOGRAM_BINS], bins[i], bins[(i + 1) % HISTOGRAM_BINS]);
         if here > left && here > right && here >= 0.8 * largest {
             // Position of the vertex of the parabola through three bins.
             let shift = 0.5 * (left - right) / (left - 2.0 * here + right);
-            peaks.push((here, (i as f32 + 0.5 + shift) / BINS as f32 * TAU - PI));
+            peaks.push((here, (i as f32 + 0.5 + shift) / HISTOGRAM_BINS as f32 * TAU - PI));
         }
     }
     peaks.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.total_cmp(&b.1)));
@@ -84,12 +92,12 @@ fn orientations(gray: &Gray, point: &Point) -> Vec<f32> {
 
 /// Computes the SIFT descriptor: the gradient histograms of all cells. Each gradient is distributed
 /// over the neighbouring cells and bins by linear interpolation.
-fn descriptor(gray: &Gray, point: &Point, angle: f32) -> [u8; LENGTH] {
-    let width = CELL * point.scale;
+fn descriptor(gray: &GrayImage, point: &Extremum, angle: f32) -> [u8; DESCRIPTOR_LENGTH] {
+    let width = CELL_WIDTH * point.scale;
     let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
     let half = CELLS as f32 / 2.0;
-    let mut bins = [0.0_f32; LENGTH];
-    around(gray, point, width * (half + 0.5) * std::f32::consts::SQRT_2, |x, y, dx, dy| {
+    let mut bins = [0.0_f32; DESCRIPTOR_LENGTH];
+    for_each_pixel_around(gray, point, width * (half + 0.5) * std::f32::consts::SQRT_2, |x, y, dx, dy| {
         let (u, v) = ((cos * dx + sin * dy) / width, (cos * dy - sin * dx) / width);
         // Coordinates relative to the centre of the first cell.
         let (column, row) = (u + half - 0.5, v + half - 0.5);
@@ -98,7 +106,7 @@ fn descriptor(gray: &Gray, point: &Point, angle: f32) -> [u8; LENGTH] {
         }
         let (length, direction) = gradient(gray, x, y);
         let weight = length * libm::expf(-(u * u + v * v) / (2.0 * half * half));
-        let turn = (direction - angle).rem_euclid(TAU) / TAU * TURNS as f32;
+        let turn = (direction - angle).rem_euclid(TAU) / TAU * ORIENTATION_BINS as f32;
         let (c, r, t) = (column.floor(), row.floor(), turn.floor());
         let (fc, fr, ft) = (column - c, row - r, turn - t);
         for (dr, wr) in [(0.0, 1.0 - fr), (1.0, fr)] {
@@ -107,10 +115,10 @@ fn descriptor(gray: &Gray, point: &Point, angle: f32) -> [u8; LENGTH] {
                 if r < 0.0 || c < 0.0 || r >= CELLS as f32 || c >= CELLS as f32 {
                     continue;
                 }
-                let cell = (r as usize * CELLS + c as usize) * TURNS;
+                let cell = (r as usize * CELLS + c as usize) * ORIENTATION_BINS;
                 let share = weight * wr * wc;
-                bins[cell + t as usize % TURNS] += share * (1.0 - ft);
-                bins[cell + (t as usize + 1) % TURNS] += share * ft;
+                bins[cell + t as usize % ORIENTATION_BINS] += share * (1.0 - ft);
+                bins[cell + (t as usize + 1) % ORIENTATION_BINS] += share * ft;
             }
         }
     });

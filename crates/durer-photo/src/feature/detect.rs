@@ -1,32 +1,32 @@
 //! Extrema of the difference of Gaussians (Lowe, sections 3 and 4).
 
-use super::Gray;
+use super::GrayImage;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
 /// Number of scales per octave that are searched for extrema.
-pub const LEVELS: usize = 3;
+pub const SCALES_PER_OCTAVE: usize = 3;
 /// Standard deviation of the blur of an octave's first image, in pixels.
-pub const FIRST: f32 = 1.6;
+pub const BASE_BLUR: f32 = 1.6;
 /// Assumed standard deviation of the blur of a photograph, in pixels.
-const OWN: f32 = 0.5;
+const CAMERA_BLUR: f32 = 0.5;
 /// Minimum difference of Gaussians of an extremum, for pixel values from 0 to 1.
-const WEAKEST: f32 = 0.02 / LEVELS as f32;
+const MIN_CONTRAST: f32 = 0.02 / SCALES_PER_OCTAVE as f32;
 /// Maximum ratio of the two curvatures of an extremum; extrema on edges have a larger one.
-const EDGE: f32 = 10.0;
+const MAX_EDGE_RATIO: f32 = 10.0;
 /// Width of the border that is not searched, in pixels.
 const BORDER: usize = 5;
 
 /// Level of the scale-space pyramid: images of one size with increasing blur, and their
 /// differences.
 pub struct Octave {
-    pub blurs: Vec<Gray>,
-    differences: Vec<Gray>,
+    pub blurs: Vec<GrayImage>,
+    differences: Vec<GrayImage>,
 }
 
 /// Extremum of the difference of Gaussians in scale space: a candidate for a SIFT feature.
 #[derive(Debug, Clone, Copy)]
-pub struct Point {
+pub struct Extremum {
     pub octave: usize,
     pub level: usize,
     pub row: usize,
@@ -41,46 +41,46 @@ pub struct Point {
 
 /// Computes 2^(levels / LEVELS), for a fraction of an octave.
 fn power(levels: f32) -> f32 {
-    libm::exp2f(levels / LEVELS as f32)
+    libm::exp2f(levels / SCALES_PER_OCTAVE as f32)
 }
 
 /// Builds the scale-space pyramid, down to the smallest useful size.
-pub fn octaves(gray: &Gray, doubled: bool) -> Vec<Octave> {
-    let (start, own) = if doubled { (gray.doubled(), 2.0 * OWN) } else { (gray.clone(), OWN) };
-    let mut first = start.blurred((FIRST * FIRST - own * own).sqrt());
+pub fn octaves(gray: &GrayImage, doubled: bool) -> Vec<Octave> {
+    let (start, own) = if doubled { (gray.doubled(), 2.0 * CAMERA_BLUR) } else { (gray.clone(), CAMERA_BLUR) };
+    let mut first = start.blurred((BASE_BLUR * BASE_BLUR - own * own).sqrt());
     let mut all = Vec::new();
     while first.width.min(first.height) > 4 * BORDER && all.len() < 8 {
         let mut blurs = vec![first];
-        for level in 1..LEVELS + 3 {
+        for level in 1..SCALES_PER_OCTAVE + 3 {
             // Variances of successive blurs add up.
-            let (before, after) = (FIRST * power(level as f32 - 1.0), FIRST * power(level as f32));
+            let (before, after) = (BASE_BLUR * power(level as f32 - 1.0), BASE_BLUR * power(level as f32));
             blurs.push(blurs[level - 1].blurred((after * after - before * before).sqrt()));
         }
-        first = blurs[LEVELS].halved();
-        let differences = blurs.windows(2).map(|pair| pair[1].minus(&pair[0])).collect();
+        first = blurs[SCALES_PER_OCTAVE].halved();
+        let differences = blurs.windows(2).map(|pair| pair[1].difference(&pair[0])).collect();
         all.push(Octave { blurs, differences });
     }
     all
 }
 
 /// Finds the extrema in all octaves.
-pub fn points(octaves: &[Octave]) -> Vec<Point> {
-    let in_octave = |(number, octave): (usize, &Octave)| -> Vec<Point> {
+pub fn points(octaves: &[Octave]) -> Vec<Extremum> {
+    let in_octave = |(number, octave): (usize, &Octave)| -> Vec<Extremum> {
         let height = octave.differences[0].height;
-        let rows = (1..=LEVELS).flat_map(|level| (BORDER..height - BORDER).map(move |row| (level, row)));
+        let rows = (1..=SCALES_PER_OCTAVE).flat_map(|level| (BORDER..height - BORDER).map(move |row| (level, row)));
         let rows: Vec<_> = rows.collect();
-        let found: Vec<Vec<Point>> =
+        let extrema: Vec<Vec<Extremum>> =
             rows.into_par_iter().map(|(level, row)| in_row(&octave.differences, number, level, row)).collect();
-        found.into_iter().flatten().collect()
+        extrema.into_iter().flatten().collect()
     };
     octaves.iter().enumerate().flat_map(in_octave).collect()
 }
 
-fn in_row(d: &[Gray], octave: usize, level: usize, row: usize) -> Vec<Point> {
+fn in_row(d: &[GrayImage], octave: usize, level: usize, row: usize) -> Vec<Extremum> {
     let width = d[0].width;
     let extreme = |column: &usize| {
         let value = d[level].at(*column, row);
-        if value.abs() < 0.8 * WEAKEST {
+        if value.abs() < 0.8 * MIN_CONTRAST {
             return false;
         }
         let mut others = (0..27).filter(|i| *i != 13).map(|i| {
@@ -94,7 +94,7 @@ fn in_row(d: &[Gray], octave: usize, level: usize, row: usize) -> Vec<Point> {
 
 /// Refines an extremum by a quadratic fit to its neighbours; `None` if the fit moves away, or if
 /// the extremum is weak or on an edge.
-fn refined(d: &[Gray], octave: usize, mut level: usize, mut row: usize, mut column: usize) -> Option<Point> {
+fn refined(d: &[GrayImage], octave: usize, mut level: usize, mut row: usize, mut column: usize) -> Option<Extremum> {
     for _ in 0..5 {
         let at = |dx: isize, dy: isize, dl: isize| {
             let place = |base: usize, by: isize| base.wrapping_add_signed(by);
@@ -118,16 +118,17 @@ fn refined(d: &[Gray], octave: usize, mut level: usize, mut row: usize, mut colu
         if offset.iter().all(|o| o.abs() <= 0.6) {
             let strength = here + 0.5 * gradient.dot(&offset);
             let (trace, determinant) = (xx + yy, xx * yy - xy * xy);
-            let edge = determinant <= 0.0 || trace * trace * EDGE >= (EDGE + 1.0) * (EDGE + 1.0) * determinant;
-            let scale = FIRST * power(level as f32 + offset.z);
+            let edge = determinant <= 0.0
+                || trace * trace * MAX_EDGE_RATIO >= (MAX_EDGE_RATIO + 1.0) * (MAX_EDGE_RATIO + 1.0) * determinant;
+            let scale = BASE_BLUR * power(level as f32 + offset.z);
             let (x, y) = (column as f32 + offset.x, row as f32 + offset.y);
-            let strong = strength.abs() >= WEAKEST && !edge;
-            return strong.then_some(Point { octave, level, row, column, x, y, scale, strength });
+            let strong = strength.abs() >= MIN_CONTRAST && !edge;
+            return strong.then_some(Extremum { octave, level, row, column, x, y, scale, strength });
         }
         let moved = |base: usize, by: f32| base.wrapping_add_signed(by.clamp(-1.0, 1.0).round() as isize);
         (column, row, level) = (moved(column, offset.x), moved(row, offset.y), moved(level, offset.z));
         let inside = |i: usize, end: usize| (BORDER..end - BORDER).contains(&i);
-        if !(1..=LEVELS).contains(&level) || !inside(column, d[0].width) || !inside(row, d[0].height) {
+        if !(1..=SCALES_PER_OCTAVE).contains(&level) || !inside(column, d[0].width) || !inside(row, d[0].height) {
             return None;
         }
     }

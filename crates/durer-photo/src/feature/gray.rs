@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 /// Greyscale image with one `f32` per pixel, in which features are detected.
 #[derive(Debug, Clone)]
-pub struct Gray {
+pub struct GrayImage {
     /// Width in pixels.
     pub width: usize,
     /// Height in pixels.
@@ -13,7 +13,7 @@ pub struct Gray {
     pub values: Vec<f32>,
 }
 
-impl Gray {
+impl GrayImage {
     /// Returns the value of a pixel.
     pub fn at(&self, x: usize, y: usize) -> f32 {
         self.values[y * self.width + x]
@@ -21,7 +21,7 @@ impl Gray {
 
     /// Applies a Gaussian blur with standard deviation `sigma` in pixels. Edge pixels are repeated
     /// beyond the border.
-    pub fn blurred(&self, sigma: f32) -> Gray {
+    pub fn blurred(&self, sigma: f32) -> GrayImage {
         let radius = (4.0 * sigma).ceil() as usize;
         let weight = |i: usize| libm::expf(-((i * i) as f32) / (2.0 * sigma * sigma));
         let half: Vec<f32> = (0..=radius).map(weight).collect();
@@ -50,11 +50,11 @@ impl Gray {
                 to.iter_mut().zip(sides).for_each(|(to, (a, b))| *to += w * (a + b));
             }
         });
-        Gray { width, height, values }
+        GrayImage { width, height, values }
     }
 
     /// Doubles the size, with linear interpolation between pixel centres.
-    pub fn doubled(&self) -> Gray {
+    pub fn doubled(&self) -> GrayImage {
         let (width, height) = (2 * self.width, 2 * self.height);
         // The centre of pixel i is at (i + 1/2) / 2 in the smaller image.
         let between = |i: usize, end: usize| {
@@ -68,19 +68,19 @@ impl Gray {
             0.75 * row(y0) + 0.25 * row(y1)
         };
         let values = (0..width * height).into_par_iter().map(|i| value(i % width, i / width)).collect();
-        Gray { width, height, values }
+        GrayImage { width, height, values }
     }
 
     /// Keeps every second pixel of every second row.
-    pub fn halved(&self) -> Gray {
+    pub fn halved(&self) -> GrayImage {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let values = (0..width * height).map(|i| self.at(2 * (i % width), 2 * (i / width))).collect();
-        Gray { width, height, values }
+        GrayImage { width, height, values }
     }
 
     /// Returns the pixel-wise difference from an image of the same size.
-    pub fn minus(&self, other: &Gray) -> Gray {
+    pub fn difference(&self, other: &GrayImage) -> GrayImage {
         let values = self.values.iter().zip(&other.values).map(|(a, b)| a - b).collect();
-        Gray { values, ..*self }
+        GrayImage { values, ..*self }
     }
 }

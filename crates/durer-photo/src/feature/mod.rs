@@ -12,12 +12,12 @@ mod describe;
 mod detect;
 mod gray;
 
-pub use gray::Gray;
+pub use gray::GrayImage;
 
 use rayon::prelude::*;
 
 /// Length of a descriptor in bytes.
-pub const LENGTH: usize = 128;
+pub const DESCRIPTOR_LENGTH: usize = 128;
 
 /// Keypoint of a photograph found by SIFT: its position, scale, and orientation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,7 +35,7 @@ pub struct Feature {
 }
 
 /// Finds at most `most` features of an image and their descriptors, strongest first.
-pub fn features(gray: &Gray, most: usize) -> Vec<(Feature, [u8; LENGTH])> {
+pub fn features(gray: &GrayImage, most: usize) -> Vec<(Feature, [u8; DESCRIPTOR_LENGTH])> {
     // Small images yield more features when doubled; large ones have enough.
     let doubled = gray.width.max(gray.height) <= 1000;
     let octaves = detect::octaves(gray, doubled);
@@ -43,7 +43,7 @@ pub fn features(gray: &Gray, most: usize) -> Vec<(Feature, [u8; LENGTH])> {
     // Sort by decreasing strength, and break ties by position, so that the order does not depend on
     // threads.
     points.sort_by(|a, b| {
-        let keys = |p: &detect::Point| (p.octave, p.level, p.row, p.column);
+        let keys = |p: &detect::Extremum| (p.octave, p.level, p.row, p.column);
         b.strength.abs().total_cmp(&a.strength.abs()).then_with(|| keys(a).cmp(&keys(b)))
     });
     points.truncate(most);

@@ -3,36 +3,36 @@
 //!
 //! Source: Snavely, *Bundler v0.4 User's Manual*, 2010, "Output format and scene representation".
 
-use super::{Words, is_rotation, joined, opposite};
+use super::{TokenReader, flip_camera_axes, is_rotation, joined};
 use crate::{Error, Lens, Observation, Point, Pose, Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
 use std::fmt::Write;
 
 /// Reads a Bundler file. The format contains no image sizes: pixels are relative to the image
-/// centre until [`Reconstruction::set_picture`] sets the size.
+/// centre until [`Reconstruction::set_image`] sets the size.
 pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
-    let mut words = Words::new(file, bytes)?;
+    let mut words = TokenReader::new(file, bytes)?;
     if !words.next_line('#') {
         return Err(words.error("the file is empty"));
     }
     let cameras = words.count("the number of cameras", 30)?;
     let points = words.count("the number of points", 20)?;
-    let mut all = Reconstruction::default();
+    let mut reconstruction = Reconstruction::default();
     for number in 0..cameras {
-        let start = words.next_place();
+        let start = words.next_position();
         let [focal, k1, k2] = words.numbers("focal length and distortion")?;
         if focal < 0.0 {
             return Err(Error::at(file, start, "a focal length must be positive, or 0 for an unknown camera"));
         }
-        let start = words.next_place();
+        let start = words.next_position();
         let rotation = Matrix3::from_row_slice(&words.numbers::<9>("the rotation")?);
         if focal > 0.0 && !is_rotation(&rotation) {
             return Err(Error::at(file, start, "these nine numbers are not a rotation"));
         }
         let translation = Vector3::from(words.numbers::<3>("the translation")?);
-        let pose = (focal != 0.0).then(|| opposite(&Pose { rotation, translation }));
-        all.lenses.push(Lens { radial: [k1, k2], ..Lens::new([0, 0], focal) });
-        all.views.push(View { name: number.to_string(), lens: number, pose });
+        let pose = (focal != 0.0).then(|| flip_camera_axes(&Pose { rotation, translation }));
+        reconstruction.lenses.push(Lens { distortion: [k1, k2], ..Lens::new([0, 0], focal) });
+        reconstruction.views.push(View { name: number.to_string(), lens: number, pose });
     }
     for _ in 0..points {
         let position = Vector3::from(words.numbers::<3>("a position")?);
@@ -47,36 +47,36 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
             let [x, y] = words.numbers("a pixel position")?;
             track.push(Observation { view, feature, pixel: Vector2::new(x, -y) });
         }
-        all.points.push(Point { position, color, track });
+        reconstruction.points.push(Point { position, color, track });
     }
     words.end()?;
-    Ok(all)
+    Ok(reconstruction)
 }
 
 /// Writes a Bundler file, version 0.3.
-pub fn write(all: &Reconstruction) -> Result<Vec<u8>, Error> {
-    let mut text = format!("# Bundle file v0.3\n{} {}\n", all.views.len(), all.points.len());
-    for view in &all.views {
-        let lens = all.lenses[view.lens];
-        super::square(&lens, "Bundler")?;
+pub fn write(reconstruction: &Reconstruction) -> Result<Vec<u8>, Error> {
+    let mut text = format!("# Bundle file v0.3\n{} {}\n", reconstruction.views.len(), reconstruction.points.len());
+    for view in &reconstruction.views {
+        let lens = reconstruction.lenses[view.lens];
+        super::require_square_pixels(&lens, "Bundler")?;
         let Some(pose) = &view.pose else {
             text.push_str(&"0 0 0\n".repeat(5));
             continue;
         };
-        let Pose { rotation, translation } = opposite(pose);
-        let _ = writeln!(text, "{:e} {:e} {:e}", lens.focal, lens.radial[0], lens.radial[1]);
+        let Pose { rotation, translation } = flip_camera_axes(pose);
+        let _ = writeln!(text, "{:e} {:e} {:e}", lens.focal, lens.distortion[0], lens.distortion[1]);
         for row in rotation.row_iter().map(|row| joined(row.iter())) {
             let _ = writeln!(text, "{row}");
         }
         let _ = writeln!(text, "{}", joined(translation.iter()));
     }
-    for point in &all.points {
+    for point in &reconstruction.points {
         let _ = writeln!(text, "{}\n{}", joined(point.position.iter()), joined(point.color));
         let _ = write!(text, "{}", point.track.len());
-        for seen in &point.track {
-            let center = all.lenses[all.views[seen.view].lens].center;
-            let (x, y) = (seen.pixel.x - center[0], center[1] - seen.pixel.y);
-            let _ = write!(text, " {} {} {x} {y}", seen.view, seen.feature);
+        for observation in &point.track {
+            let center = reconstruction.lenses[reconstruction.views[observation.view].lens].principal_point;
+            let (x, y) = (observation.pixel.x - center[0], center[1] - observation.pixel.y);
+            let _ = write!(text, " {} {} {x} {y}", observation.view, observation.feature);
         }
         text.push('\n');
     }

@@ -15,7 +15,7 @@ pub const MODELS: [(&str, i32, usize); 5] =
 
 /// Creates a lens from the parameters of a model.
 pub fn lens(model: usize, size: [u32; 2], p: &[f64]) -> Result<Lens, String> {
-    let (focal, vertical, center, radial) = match model {
+    let (focal, vertical, principal_point, distortion) = match model {
         0 => (p[0], p[0], [p[1], p[2]], [0.0; 2]),
         1 => (p[0], p[1], [p[2], p[3]], [0.0; 2]),
         2 => (p[0], p[0], [p[1], p[2]], [p[3], 0.0]),
@@ -28,12 +28,12 @@ pub fn lens(model: usize, size: [u32; 2], p: &[f64]) -> Result<Lens, String> {
     if focal <= 0.0 || vertical <= 0.0 {
         return Err("focal lengths must be positive".into());
     }
-    Ok(Lens { size, focal, aspect: vertical / focal, center, radial })
+    Ok(Lens { size, focal, aspect: vertical / focal, principal_point, distortion })
 }
 
 /// Converts a lens to an index into [`MODELS`] and the parameters of that model.
 pub fn parameters(lens: &Lens) -> (usize, Vec<f64>) {
-    let ([x, y], [k1, k2]) = (lens.center, lens.radial);
+    let ([x, y], [k1, k2]) = (lens.principal_point, lens.distortion);
     match lens.aspect {
         1.0 => (3, vec![lens.focal, x, y, k1, k2]),
         aspect => (4, vec![lens.focal, lens.focal * aspect, x, y, k1, k2, 0.0, 0.0]),
@@ -41,7 +41,7 @@ pub fn parameters(lens: &Lens) -> (usize, Vec<f64>) {
 }
 
 /// Row of COLMAP's `images` table: the pose, name, and features of one photograph.
-pub struct Image {
+pub struct ImageRow {
     pub quaternion: [f64; 4],
     pub translation: [f64; 3],
     pub camera: u32,
@@ -51,7 +51,7 @@ pub struct Image {
 }
 
 /// Row of COLMAP's `points3D` table: a point and its observations.
-pub struct Row {
+pub struct PointRow {
     pub position: [f64; 3],
     pub color: [u8; 3],
     /// Pairs of image id and feature number.
@@ -60,27 +60,27 @@ pub struct Row {
 
 /// Contents of a COLMAP folder: cameras, images, and points by their ids in the files.
 #[derive(Default)]
-pub struct Tables {
+pub struct ColmapTables {
     pub cameras: BTreeMap<u32, Lens>,
-    pub images: BTreeMap<u32, Image>,
-    pub points: BTreeMap<u64, Row>,
+    pub images: BTreeMap<u32, ImageRow>,
+    pub points: BTreeMap<u64, PointRow>,
 }
 
 /// Inserts a row into a table. Returns an error if the id is already present.
-pub fn once<Id: Ord + Copy + Display, T>(into: &mut BTreeMap<Id, T>, id: Id, row: T) -> Result<(), String> {
+pub fn insert_unique<Id: Ord + Copy + Display, T>(into: &mut BTreeMap<Id, T>, id: Id, row: T) -> Result<(), String> {
     match into.insert(id, row) {
         None => Ok(()),
         Some(_) => Err(format!("the id {id} occurs twice")),
     }
 }
 
-impl Tables {
+impl ColmapTables {
     /// Converts the tables to a reconstruction. Ids become consecutive indices in the same order.
     pub fn into_reconstruction(self, file: &str) -> Result<Reconstruction, Error> {
-        let fail = |why: String| Error::of(file, why);
+        let fail = |why: String| Error::in_file(file, why);
         let lens_of: BTreeMap<u32, usize> = self.cameras.keys().enumerate().map(|(i, id)| (*id, i)).collect();
         let view_of: BTreeMap<u32, usize> = self.images.keys().enumerate().map(|(i, id)| (*id, i)).collect();
-        let mut all = Reconstruction { lenses: self.cameras.into_values().collect(), ..Default::default() };
+        let mut reconstruction = Reconstruction { lenses: self.cameras.into_values().collect(), ..Default::default() };
         for (id, image) in &self.images {
             let lens = *lens_of
                 .get(&image.camera)
@@ -90,18 +90,18 @@ impl Tables {
             }
             let rotation = rotation_of_quaternion(image.quaternion);
             let pose = Some(Pose { rotation, translation: Vector3::from(image.translation) });
-            all.views.push(View { name: image.name.clone(), lens, pose });
+            reconstruction.views.push(View { name: image.name.clone(), lens, pose });
         }
         for (id, row) in self.points {
-            let seen = |(image, feature): (u32, usize)| {
+            let observation_of = |(image, feature): (u32, usize)| {
                 let pixel = self.images.get(&image).and_then(|image| image.features.get(feature));
                 let pixel = pixel.ok_or_else(|| fail(format!("point {id}: image {image} has no feature {feature}")))?;
                 Ok(Observation { view: view_of[&image], feature, pixel: Vector2::from(*pixel) })
             };
-            let track = row.track.into_iter().map(seen).collect::<Result<_, Error>>()?;
-            all.points.push(Point { position: Vector3::from(row.position), color: row.color, track });
+            let track = row.track.into_iter().map(observation_of).collect::<Result<_, Error>>()?;
+            reconstruction.points.push(Point { position: Vector3::from(row.position), color: row.color, track });
         }
-        Ok(all)
+        Ok(reconstruction)
     }
 }
 
@@ -110,13 +110,13 @@ pub type Features = Vec<(Vector2<f64>, usize)>;
 
 /// Returns the features of each photograph in the order in which they are written, and for each
 /// point, the feature numbers of its observations.
-pub fn features(all: &Reconstruction) -> (Vec<Features>, Vec<Vec<usize>>) {
-    let mut features = vec![Vec::new(); all.views.len()];
+pub fn features(reconstruction: &Reconstruction) -> (Vec<Features>, Vec<Vec<usize>>) {
+    let mut features = vec![Vec::new(); reconstruction.views.len()];
     let mut numbers = Vec::new();
-    for (i, point) in all.points.iter().enumerate() {
-        let number = |seen: &Observation| {
-            features[seen.view].push((seen.pixel, i + 1));
-            features[seen.view].len() - 1
+    for (i, point) in reconstruction.points.iter().enumerate() {
+        let number = |observation: &Observation| {
+            features[observation.view].push((observation.pixel, i + 1));
+            features[observation.view].len() - 1
         };
         numbers.push(point.track.iter().map(number).collect());
     }
@@ -124,8 +124,11 @@ pub fn features(all: &Reconstruction) -> (Vec<Features>, Vec<Vec<usize>>) {
 }
 
 /// Returns the mean length of a point's residuals in pixels.
-pub fn error(all: &Reconstruction, point: &Point) -> f64 {
-    let lengths: Vec<f64> =
-        point.track.iter().filter_map(|seen| Some(all.residual(&point.position, seen)?.norm())).collect();
+pub fn error(reconstruction: &Reconstruction, point: &Point) -> f64 {
+    let lengths: Vec<f64> = point
+        .track
+        .iter()
+        .filter_map(|observation| Some(reconstruction.residual(&point.position, observation)?.norm()))
+        .collect();
     lengths.iter().sum::<f64>() / lengths.len().max(1) as f64
 }

@@ -1,26 +1,26 @@
 //! COLMAP's tables as little-endian binary files.
 
-use super::colmap::{Image, MODELS, Row, Tables, error, features, lens, once, parameters};
+use super::colmap::{ColmapTables, ImageRow, MODELS, PointRow, error, features, insert_unique, lens, parameters};
 use crate::model::quaternion_of;
 use crate::{Error, Reconstruction};
 
 /// Reader of little-endian numbers from a binary file, which checks the length and reports byte
 /// offsets in errors.
-pub struct Bytes<'b> {
+pub struct ByteReader<'b> {
     file: &'b str,
     bytes: &'b [u8],
     at: usize,
 }
 
-impl<'b> Bytes<'b> {
+impl<'b> ByteReader<'b> {
     /// Creates a reader of a file's bytes. `file` is the name for messages.
     pub fn new(file: &'b str, bytes: &'b [u8]) -> Self {
-        Bytes { file, bytes, at: 0 }
+        ByteReader { file, bytes, at: 0 }
     }
 
     /// Creates an error at the current position.
     pub fn error(&self, why: impl AsRef<str>) -> Error {
-        Error::of(self.file, format!("at byte {}: {}", self.at, why.as_ref()))
+        Error::in_file(self.file, format!("at byte {}: {}", self.at, why.as_ref()))
     }
 
     /// Reads the next `count` bytes.
@@ -77,8 +77,8 @@ impl<'b> Bytes<'b> {
 
 /// Reads the contents of cameras.bin, images.bin, and points3D.bin, each with its file name.
 pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Result<Reconstruction, Error> {
-    let mut tables = Tables::default();
-    let mut bytes = Bytes::new(cameras.0, cameras.1);
+    let mut tables = ColmapTables::default();
+    let mut bytes = ByteReader::new(cameras.0, cameras.1);
     for _ in 0..bytes.count(24)? {
         let (id, number) = (bytes.u32()?, bytes.u32()? as i32);
         let model = MODELS.iter().position(|model| model.1 == number);
@@ -86,10 +86,10 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
         let size = [bytes.u64()?, bytes.u64()?].map(|side| side.min(u64::from(u32::MAX)) as u32);
         let numbers = (0..MODELS[model].2).map(|_| bytes.f64()).collect::<Result<Vec<_>, _>>()?;
         let lens = lens(model, size, &numbers).map_err(|why| bytes.error(why))?;
-        once(&mut tables.cameras, id, lens).map_err(|why| bytes.error(why))?;
+        insert_unique(&mut tables.cameras, id, lens).map_err(|why| bytes.error(why))?;
     }
     bytes.end()?;
-    let mut bytes = Bytes::new(images.0, images.1);
+    let mut bytes = ByteReader::new(images.0, images.1);
     for _ in 0..bytes.count(73)? {
         let id = bytes.u32()?;
         let (quaternion, translation, camera) = (bytes.numbers()?, bytes.numbers()?, bytes.u32()?);
@@ -106,11 +106,11 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
             bytes.u64()?;
         }
         let name = String::from_utf8_lossy(&name).into_owned();
-        let image = Image { quaternion, translation, camera, name, features: list };
-        once(&mut tables.images, id, image).map_err(|why| bytes.error(why))?;
+        let image = ImageRow { quaternion, translation, camera, name, features: list };
+        insert_unique(&mut tables.images, id, image).map_err(|why| bytes.error(why))?;
     }
     bytes.end()?;
-    let mut bytes = Bytes::new(points.0, points.1);
+    let mut bytes = ByteReader::new(points.0, points.1);
     for _ in 0..bytes.count(51)? {
         let id = bytes.u64()?;
         let (position, color) = (bytes.numbers()?, bytes.array()?);
@@ -119,7 +119,7 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
         for _ in 0..bytes.count(8)? {
             track.push((bytes.u32()?, bytes.u32()? as usize));
         }
-        once(&mut tables.points, id, Row { position, color, track }).map_err(|why| bytes.error(why))?;
+        insert_unique(&mut tables.points, id, PointRow { position, color, track }).map_err(|why| bytes.error(why))?;
     }
     bytes.end()?;
     tables.into_reconstruction(folder)
@@ -130,18 +130,18 @@ fn put(into: &mut Vec<u8>, numbers: impl IntoIterator<Item = f64>) {
 }
 
 /// Writes cameras.bin, images.bin, and points3D.bin. Leaves out photographs without a pose.
-pub fn write(all: &Reconstruction) -> [Vec<u8>; 3] {
-    let (features, numbers) = features(all);
-    let mut cameras = (all.lenses.len() as u64).to_le_bytes().to_vec();
-    for (i, lens) in all.lenses.iter().enumerate() {
+pub fn write(reconstruction: &Reconstruction) -> [Vec<u8>; 3] {
+    let (features, numbers) = features(reconstruction);
+    let mut cameras = (reconstruction.lenses.len() as u64).to_le_bytes().to_vec();
+    for (i, lens) in reconstruction.lenses.iter().enumerate() {
         let (model, p) = parameters(lens);
         cameras.extend((i as u32 + 1).to_le_bytes());
         cameras.extend(MODELS[model].1.to_le_bytes());
         lens.size.iter().for_each(|side| cameras.extend(u64::from(*side).to_le_bytes()));
         put(&mut cameras, p);
     }
-    let mut images = (all.registered() as u64).to_le_bytes().to_vec();
-    for (i, view) in all.views.iter().enumerate() {
+    let mut images = (reconstruction.registered_count() as u64).to_le_bytes().to_vec();
+    for (i, view) in reconstruction.views.iter().enumerate() {
         let Some(pose) = &view.pose else { continue };
         images.extend((i as u32 + 1).to_le_bytes());
         put(&mut images, quaternion_of(&pose.rotation).into_iter().chain(pose.translation.iter().copied()));
@@ -153,14 +153,19 @@ pub fn write(all: &Reconstruction) -> [Vec<u8>; 3] {
             images.extend((*id as u64).to_le_bytes());
         }
     }
-    let mut points = (all.points.len() as u64).to_le_bytes().to_vec();
-    for (i, point) in all.points.iter().enumerate() {
+    let mut points = (reconstruction.points.len() as u64).to_le_bytes().to_vec();
+    for (i, point) in reconstruction.points.iter().enumerate() {
         points.extend((i as u64 + 1).to_le_bytes());
         put(&mut points, point.position.iter().copied());
         points.extend(point.color);
-        put(&mut points, [error(all, point)]);
-        let posed = point.track.iter().zip(&numbers[i]).filter(|(seen, _)| all.views[seen.view].pose.is_some());
-        let track: Vec<(u32, u32)> = posed.map(|(seen, number)| (seen.view as u32 + 1, *number as u32)).collect();
+        put(&mut points, [error(reconstruction, point)]);
+        let posed = point
+            .track
+            .iter()
+            .zip(&numbers[i])
+            .filter(|(observation, _)| reconstruction.views[observation.view].pose.is_some());
+        let track: Vec<(u32, u32)> =
+            posed.map(|(observation, number)| (observation.view as u32 + 1, *number as u32)).collect();
         points.extend((track.len() as u64).to_le_bytes());
         for (view, number) in track {
             points.extend(view.to_le_bytes());

@@ -1,15 +1,15 @@
 //! COLMAP's tables as text files.
 
-use super::colmap::{Image, MODELS, Row, Tables, error, features, lens, once, parameters};
-use super::{Words, joined};
+use super::colmap::{ColmapTables, ImageRow, MODELS, PointRow, error, features, insert_unique, lens, parameters};
+use super::{TokenReader, joined};
 use crate::model::quaternion_of;
 use crate::{Error, Reconstruction};
 use std::fmt::Write;
 
 /// Reads the contents of cameras.txt, images.txt, and points3D.txt, each with its file name.
 pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Result<Reconstruction, Error> {
-    let mut tables = Tables::default();
-    let mut words = Words::in_rows(cameras.0, cameras.1)?;
+    let mut tables = ColmapTables::default();
+    let mut words = TokenReader::in_rows(cameras.0, cameras.1)?;
     while words.next_line('#') {
         let id = words.parse("a camera's id")?;
         let (name, place) = words.word("a camera's model")?;
@@ -26,9 +26,9 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
         let numbers = (0..MODELS[model].2).map(|_| words.number("a parameter")).collect::<Result<Vec<_>, _>>()?;
         let lens = lens(model, size, &numbers).map_err(|why| Error::at(cameras.0, place, why))?;
         words.end_of_row("a camera's id, model, width, height and parameters")?;
-        once(&mut tables.cameras, id, lens).map_err(|why| words.error(why))?;
+        insert_unique(&mut tables.cameras, id, lens).map_err(|why| words.error(why))?;
     }
-    let mut words = Words::in_rows(images.0, images.1)?;
+    let mut words = TokenReader::in_rows(images.0, images.1)?;
     while words.next_line('#') {
         let id = words.parse("an image's id")?;
         let (quaternion, translation) = (words.numbers("a quaternion")?, words.numbers("a translation")?);
@@ -42,10 +42,10 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
             list.push(words.numbers("a feature's position")?);
             words.parse::<i64>("a point's id")?;
         }
-        let image = Image { quaternion, translation, camera, name, features: list };
-        once(&mut tables.images, id, image).map_err(|why| words.error(why))?;
+        let image = ImageRow { quaternion, translation, camera, name, features: list };
+        insert_unique(&mut tables.images, id, image).map_err(|why| words.error(why))?;
     }
-    let mut words = Words::in_rows(points.0, points.1)?;
+    let mut words = TokenReader::in_rows(points.0, points.1)?;
     while words.next_line('#') {
         let id = words.parse("a point's id")?;
         let position = words.numbers("a position")?;
@@ -58,23 +58,23 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
         while !words.is_at_end_of_line() {
             track.push((words.parse("an image's id")?, words.parse("a feature's number")?));
         }
-        once(&mut tables.points, id, Row { position, color, track }).map_err(|why| words.error(why))?;
+        insert_unique(&mut tables.points, id, PointRow { position, color, track }).map_err(|why| words.error(why))?;
     }
     tables.into_reconstruction(folder)
 }
 
 /// Writes cameras.txt, images.txt, and points3D.txt. Leaves out photographs without a pose.
-pub fn write(all: &Reconstruction) -> [String; 3] {
-    let (features, numbers) = features(all);
+pub fn write(reconstruction: &Reconstruction) -> [String; 3] {
+    let (features, numbers) = features(reconstruction);
     let mut cameras = String::from("# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n");
-    for (i, lens) in all.lenses.iter().enumerate() {
+    for (i, lens) in reconstruction.lenses.iter().enumerate() {
         let (model, p) = parameters(lens);
         let [width, height] = lens.size;
         let _ = writeln!(cameras, "{} {} {width} {height} {}", i + 1, MODELS[model].0, joined(p));
     }
     let mut images =
         String::from("# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n# POINTS2D[] as (X, Y, POINT3D_ID)\n");
-    for (i, view) in all.views.iter().enumerate() {
+    for (i, view) in reconstruction.views.iter().enumerate() {
         let Some(pose) = &view.pose else { continue };
         let (q, t) = (joined(quaternion_of(&pose.rotation)), joined(pose.translation.iter()));
         let _ = writeln!(images, "{} {q} {t} {} {}", i + 1, view.lens + 1, view.name);
@@ -82,10 +82,15 @@ pub fn write(all: &Reconstruction) -> [String; 3] {
         let _ = writeln!(images, "{}", joined(list));
     }
     let mut points = String::from("# POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] as (IMAGE_ID, POINT2D_IDX)\n");
-    for (i, point) in all.points.iter().enumerate() {
-        let posed = point.track.iter().zip(&numbers[i]).filter(|(seen, _)| all.views[seen.view].pose.is_some());
-        let track = joined(posed.map(|(seen, number)| format!("{} {number}", seen.view + 1)));
-        let (position, color, error) = (joined(point.position.iter()), joined(point.color), error(all, point));
+    for (i, point) in reconstruction.points.iter().enumerate() {
+        let posed = point
+            .track
+            .iter()
+            .zip(&numbers[i])
+            .filter(|(observation, _)| reconstruction.views[observation.view].pose.is_some());
+        let track = joined(posed.map(|(observation, number)| format!("{} {number}", observation.view + 1)));
+        let (position, color, error) =
+            (joined(point.position.iter()), joined(point.color), error(reconstruction, point));
         let _ = writeln!(points, "{} {position} {color} {error} {track}", i + 1);
     }
     [cameras, images, points]

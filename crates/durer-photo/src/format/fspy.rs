@@ -8,8 +8,8 @@
 //!
 //! Source: documentation of fSpy-Blender, *The fSpy project file format*.
 
-use super::colmap_binary::Bytes;
-use super::opposite;
+use super::colmap_binary::ByteReader;
+use super::flip_camera_axes;
 use crate::known::{Axis, VanishingLines};
 use crate::{Error, Lens, Pose, Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
@@ -18,13 +18,13 @@ use serde_json::Value;
 
 /// 4x4 matrix in an exported camera's JSON, by rows.
 #[derive(Deserialize)]
-struct Rows {
+struct JsonMatrix {
     rows: [[f64; 4]; 4],
 }
 
 /// Point in fSpy's JSON.
 #[derive(Deserialize)]
-struct Place {
+struct JsonPoint {
     x: f64,
     y: f64,
 }
@@ -32,9 +32,9 @@ struct Place {
 /// JSON of a camera exported by fSpy.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
-struct Exported {
-    principal_point: Place,
-    view_transform: Rows,
+struct ExportedCamera {
+    principal_point: JsonPoint,
+    view_transform: JsonMatrix,
     relative_focal_length: f64,
     image_width: u32,
     image_height: u32,
@@ -42,24 +42,24 @@ struct Exported {
 
 /// Reads an exported camera.
 pub fn read_camera(file: &str, json: &[u8]) -> Result<Reconstruction, Error> {
-    let camera: Exported = serde_json::from_slice(json)
+    let camera: ExportedCamera = serde_json::from_slice(json)
         .map_err(|error| Error::at(file, (error.line(), error.column()), format!("fSpy's JSON: {error}")))?;
     let size = [camera.image_width, camera.image_height];
     let half = f64::from(size[0].max(size[1])) / 2.0;
     let mut lens = Lens::new(size, camera.relative_focal_length * half);
-    lens.center[0] += half * camera.principal_point.x;
-    lens.center[1] -= half * camera.principal_point.y;
+    lens.principal_point[0] += half * camera.principal_point.x;
+    lens.principal_point[1] -= half * camera.principal_point.y;
     let rows = camera.view_transform.rows;
     let pose = Pose { rotation: Matrix3::from_fn(|i, j| rows[i][j]), translation: Vector3::from_fn(|i, _| rows[i][3]) };
-    let view = View { name: file.to_string(), lens: 0, pose: Some(opposite(&pose)) };
+    let view = View { name: file.to_string(), lens: 0, pose: Some(flip_camera_axes(&pose)) };
     Ok(Reconstruction { lenses: vec![lens], views: vec![view], points: Vec::new() })
 }
 
 /// Reads a project: its vanishing lines and origin, and the bytes of the photograph.
 pub fn read_project<'b>(file: &'b str, content: &'b [u8]) -> Result<(VanishingLines, &'b [u8]), Error> {
-    let mut bytes = Bytes::new(file, content);
+    let mut bytes = ByteReader::new(file, content);
     if bytes.take(4).ok() != Some(b"fspy") {
-        return Err(Error::of(file, "this is not an fSpy project"));
+        return Err(Error::in_file(file, "this is not an fSpy project"));
     }
     let version = bytes.u32()?;
     if version != 1 {
@@ -69,9 +69,12 @@ pub fn read_project<'b>(file: &'b str, content: &'b [u8]) -> Result<(VanishingLi
     let state = bytes.take(state)?;
     let photograph = bytes.take(photograph)?;
     let state: Value = serde_json::from_slice(state)
-        .map_err(|error| Error::of(file, format!("invalid JSON in its state: {error}")))?;
+        .map_err(|error| Error::in_file(file, format!("invalid JSON in its state: {error}")))?;
     if state["globalSettings"]["calibrationMode"] != "TwoVanishingPoints" {
-        return Err(Error::of(file, "only projects with two vanishing points determine a camera from lines alone"));
+        return Err(Error::in_file(
+            file,
+            "only projects with two vanishing points determine a camera from lines alone",
+        ));
     }
     let size = crate::photo::size(file, photograph)?;
     let [width, height] = size.map(f64::from);
@@ -86,7 +89,7 @@ pub fn read_project<'b>(file: &'b str, content: &'b [u8]) -> Result<(VanishingLi
     let center = match state["calibrationSettings2VP"]["principalPointMode"].as_str() {
         Some("Manual") => place(&base["principalPoint"]),
         Some("Default") => Some(Vector2::new(width / 2.0, height / 2.0)),
-        _ => return Err(Error::of(file, "a principal point from three vanishing points is not supported")),
+        _ => return Err(Error::in_file(file, "a principal point from three vanishing points is not supported")),
     };
     let first = lines(&base["firstVanishingPoint"]);
     let second = match state["calibrationSettings2VP"]["quadModeEnabled"].as_bool() {
@@ -103,5 +106,5 @@ pub fn read_project<'b>(file: &'b str, content: &'b [u8]) -> Result<(VanishingLi
             lines: [first?, second?],
         })
     };
-    Ok((all().ok_or_else(|| Error::of(file, "its state lacks vanishing lines, axes or the origin"))?, photograph))
+    Ok((all().ok_or_else(|| Error::in_file(file, "its state lacks vanishing lines, axes or the origin"))?, photograph))
 }

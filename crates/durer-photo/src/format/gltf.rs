@@ -8,7 +8,7 @@
 //!
 //! Source: Khronos, *glTF 2.0 Specification*, sections 3.6, 3.10, 4.4 and 5.12.
 
-use super::opposite;
+use super::flip_camera_axes;
 use crate::model::{nearest_rotation, quaternion_of, rotation_of_quaternion};
 use crate::{Error, Lens, Point, Pose, Reconstruction, View};
 use base64::Engine;
@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 /// Assumed number of rows of a photograph whose size is unknown.
-const ROWS: f64 = 1000.0;
+const DEFAULT_HEIGHT: f64 = 1000.0;
 
 /// JSON of a glTF file, as far as it is read.
 #[derive(Default, Deserialize)]
@@ -128,14 +128,14 @@ struct Buffer {
 /// Reads the cameras and points of a glTF file, and ignores everything else. The format contains no
 /// observations.
 pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
-    let fail = |why: String| Error::of(name, why);
+    let fail = |why: String| Error::in_file(name, why);
     let (json, binary) =
         chunks(bytes).ok_or_else(|| fail("this binary glTF file is truncated, or not version 2".into()))?;
     let file: File = serde_json::from_slice(json)
         .map_err(|error| Error::at(name, (error.line(), error.column()), format!("glTF's JSON: {error}")))?;
-    let mut all = Reconstruction::default();
+    let mut reconstruction = Reconstruction::default();
     let mut buffers = vec![None; file.buffers.len()];
-    for (i, world) in placed(&file).map_err(fail)? {
+    for (i, world) in world_transforms(&file).map_err(fail)? {
         let node = &file.nodes[i];
         if let Some(number) = node.camera {
             let camera =
@@ -146,10 +146,14 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
             let pose = pose(&world)
                 .ok_or_else(|| fail(format!("node {i}: a camera cannot be scaled to zero, or mirrored")))?;
             let named = node.name.as_ref().or(camera.name.as_ref());
-            let name = named.cloned().unwrap_or_else(|| all.views.len().to_string());
-            let known = all.lenses.iter().position(|known| *known == lens);
-            all.views.push(View { name, lens: known.unwrap_or(all.lenses.len()), pose: Some(pose) });
-            all.lenses.extend(known.is_none().then_some(lens));
+            let name = named.cloned().unwrap_or_else(|| reconstruction.views.len().to_string());
+            let known = reconstruction.lenses.iter().position(|known| *known == lens);
+            reconstruction.views.push(View {
+                name,
+                lens: known.unwrap_or(reconstruction.lenses.len()),
+                pose: Some(pose),
+            });
+            reconstruction.lenses.extend(known.is_none().then_some(lens));
         }
         let mesh = node.mesh.map(|number| {
             file.meshes.get(number).ok_or_else(|| fail(format!("node {i}: mesh {number} does not exist")))
@@ -162,18 +166,18 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
                 return Err(fail(format!("node {i}: the numbers of colours and points differ")));
             }
             // A mesh may be instanced many times.
-            if all.points.len() + positions.len() > bytes.len() {
+            if reconstruction.points.len() + positions.len() > bytes.len() {
                 return Err(fail("there are more points than the file has bytes: meshes are used too often".into()));
             }
             for (k, place) in positions.iter().enumerate() {
                 let position = (world * place.insert_row(3, 1.0)).xyz();
                 let shade = |value: f64| (255.0 * value).round().clamp(0.0, 255.0) as u8;
                 let color = colors.as_ref().map_or([128; 3], |colors| colors[k].map(shade).into());
-                all.points.push(Point { position, color, track: Vec::new() });
+                reconstruction.points.push(Point { position, color, track: Vec::new() });
             }
         }
     }
-    Ok(all)
+    Ok(reconstruction)
 }
 
 /// Splits a file into its JSON and, for a binary file, its data chunk.
@@ -192,7 +196,7 @@ fn chunks(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
 }
 
 /// Returns the indices and world transforms of all nodes, parents first.
-fn placed(file: &File) -> Result<Vec<(usize, Matrix4<f64>)>, String> {
+fn world_transforms(file: &File) -> Result<Vec<(usize, Matrix4<f64>)>, String> {
     let count = file.nodes.len();
     let mut is_child = vec![false; count];
     for child in file.nodes.iter().flat_map(|node| &node.children) {
@@ -229,7 +233,7 @@ fn pose(world: &Matrix4<f64>) -> Option<Pose> {
     let axes = world.fixed_view::<3, 3>(0, 0).into_owned();
     let is_turn = axes.determinant() > 0.0 && world.iter().all(|value| value.is_finite());
     let center = world.fixed_view::<3, 1>(0, 3).into_owned();
-    is_turn.then(|| opposite(&Pose::at(&center, nearest_rotation(&axes).transpose())))
+    is_turn.then(|| flip_camera_axes(&Pose::at(&center, nearest_rotation(&axes).transpose())))
 }
 
 fn lens(perspective: &Perspective, extras: &Value) -> Result<Lens, String> {
@@ -243,8 +247,8 @@ fn lens(perspective: &Perspective, extras: &Value) -> Result<Lens, String> {
         lens => Some(Extras::deserialize(lens).map_err(|error| format!("its `extras.lens`: {error}"))?),
     };
     let Some(beyond) = beyond else {
-        let size = [(ROWS * ratio).round().clamp(1.0, 1e6), ROWS];
-        return Ok(Lens::new(size.map(|side| side as u32), ROWS / (2.0 * half)));
+        let size = [(DEFAULT_HEIGHT * ratio).round().clamp(1.0, 1e6), DEFAULT_HEIGHT];
+        return Ok(Lens::new(size.map(|side| side as u32), DEFAULT_HEIGHT / (2.0 * half)));
     };
     let vertical = f64::from(beyond.height) / (2.0 * half);
     let aspect = ratio * f64::from(beyond.height) / f64::from(beyond.width);
@@ -254,7 +258,7 @@ fn lens(perspective: &Perspective, extras: &Value) -> Result<Lens, String> {
     if size.contains(&0) {
         return Err("its `extras.lens` has a size of 0".into());
     }
-    Ok(Lens { size, focal: vertical / aspect, aspect, center: beyond.center, radial: beyond.radial })
+    Ok(Lens { size, focal: vertical / aspect, aspect, principal_point: beyond.center, distortion: beyond.radial })
 }
 
 /// Reads the first three components of a vertex attribute. Integers are normalised by their
@@ -318,11 +322,11 @@ fn column(
 }
 
 /// Writes cameras and points as one self-contained glTF file.
-pub fn write(all: &Reconstruction) -> Result<Vec<u8>, Error> {
+pub fn write(reconstruction: &Reconstruction) -> Result<Vec<u8>, Error> {
     let (mut nodes, mut cameras) = (Vec::new(), Vec::new());
-    for view in &all.views {
+    for view in &reconstruction.views {
         let Some(pose) = &view.pose else { continue };
-        let lens = &all.lenses[view.lens];
+        let lens = &reconstruction.lenses[view.lens];
         let [width, height] = lens.size.map(f64::from);
         if width == 0.0 || height == 0.0 {
             return Err(Error::new("glTF cameras need the size of the photographs: pass their folder"));
@@ -332,20 +336,23 @@ pub fn write(all: &Reconstruction) -> Result<Vec<u8>, Error> {
         let perspective = json!({"yfov": yfov, "aspectRatio": aspect, "znear": 0.01});
         nodes.push(json!({
             "name": view.name, "camera": cameras.len(), "translation": pose.center().as_slice(),
-            "rotation": rotation(&opposite(pose)),
+            "rotation": rotation(&flip_camera_axes(pose)),
         }));
-        let ([width, height], center, radial) = (lens.size, lens.center, lens.radial);
+        let ([width, height], center, radial) = (lens.size, lens.principal_point, lens.distortion);
         let extras = json!({"lens": Extras { width, height, center, radial }});
         cameras.push(json!({"name": view.name, "type": "perspective", "perspective": perspective, "extras": extras}));
     }
     let mut gltf = json!({"asset": {"version": "2.0", "generator": "durer photo"}, "scene": 0});
     let mut put = |name: &str, value: Value| gltf[name] = value;
-    if !all.points.is_empty() {
-        let count = all.points.len();
+    if !reconstruction.points.is_empty() {
+        let count = reconstruction.points.len();
         nodes.push(json!({"name": "points", "mesh": 0}));
-        let positions = || all.points.iter().map(|point| point.position.map(|value| value as f32));
+        let positions = || reconstruction.points.iter().map(|point| point.position.map(|value| value as f32));
         let mut bytes: Vec<u8> = positions().flat_map(|p| [p.x, p.y, p.z]).flat_map(f32::to_le_bytes).collect();
-        all.points.iter().for_each(|point| bytes.extend([point.color[0], point.color[1], point.color[2], 255]));
+        reconstruction
+            .points
+            .iter()
+            .for_each(|point| bytes.extend([point.color[0], point.color[1], point.color[2], 255]));
         let bound = |pick: fn(f32, f32) -> f32| {
             let first = positions().next().unwrap_or_default();
             positions().fold(first, |a, b| a.zip_map(&b, pick)).as_slice().to_vec()

@@ -5,26 +5,26 @@ mod bundler;
 mod colmap;
 mod colmap_binary;
 mod colmap_text;
+mod compressed;
 mod fspy;
 mod gltf;
-mod handwritten;
 mod opensfm;
-mod packed;
 mod ply;
 mod scene;
 mod text;
+mod user_input;
 
 use crate::{Error, Lens, Pose, Reconstruction};
 use nalgebra::{Matrix3, Vector2, Vector3};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use text::Words;
+use text::TokenReader;
 
-pub use crate::known::Control;
+pub use crate::known::ControlPoint;
 pub use fspy::read_project;
-pub use handwritten::{read_control, read_lines, read_points};
 pub use scene::projective_camera;
+pub use user_input::{read_control, read_lines, read_points};
 
 /// Row of the table of file formats: the coordinate conventions of one format, as text for the
 /// manual.
@@ -34,7 +34,7 @@ pub struct Convention {
     /// Extensions by which its files are recognised.
     pub files: &'static str,
     /// Supported directions: in, out, or both.
-    pub way: &'static str,
+    pub direction: &'static str,
     /// Camera frame.
     pub frame: &'static str,
     /// Representation of rotations.
@@ -50,8 +50,8 @@ pub struct Convention {
 /// Coordinate conventions of all formats, as shown in docs/photographs.md.
 pub const CONVENTIONS: [Convention; 9] = {
     const fn row(f: [&'static str; 8]) -> Convention {
-        let [name, files, way, frame, rotation, translation, pixels, lens] = f;
-        Convention { name, files, way, frame, rotation, translation, pixels, lens }
+        let [name, files, direction, frame, rotation, translation, pixels, lens] = f;
+        Convention { name, files, direction, frame, rotation, translation, pixels, lens }
     }
     const T: &str = "P = R X + t";
     const CORNER: &str = "pixels from the upper left corner, y down";
@@ -108,7 +108,7 @@ pub const CONVENTIONS: [Convention; 9] = {
 };
 
 /// Converts a pose between the two camera frames: -z forward with y up, and +z forward with y down.
-fn opposite(pose: &Pose) -> Pose {
+fn flip_camera_axes(pose: &Pose) -> Pose {
     let turn = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
     Pose { rotation: turn * pose.rotation, translation: turn * pose.translation }
 }
@@ -119,11 +119,11 @@ fn is_rotation(matrix: &Matrix3<f64>) -> bool {
 }
 
 fn joined<T: Display>(values: impl IntoIterator<Item = T>) -> String {
-    text::joined(values)
+    text::join(values)
 }
 
 /// Returns an error if a lens has non-square pixels, which `format` does not support.
-fn square(lens: &Lens, format: &str) -> Result<(), Error> {
+fn require_square_pixels(lens: &Lens, format: &str) -> Result<(), Error> {
     if lens.aspect == 1.0 {
         return Ok(());
     }
@@ -131,11 +131,11 @@ fn square(lens: &Lens, format: &str) -> Result<(), Error> {
 }
 
 /// Callback that returns the bytes of the file at a path.
-pub type Open<'a> = dyn FnMut(&Path) -> Result<Arc<[u8]>, Error> + 'a;
+pub type OpenFile<'a> = dyn FnMut(&Path) -> Result<Arc<[u8]>, Error> + 'a;
 
 /// Reads a file, and decompresses gzip and bzip2.
-fn bytes(path: &Path, open: &mut Open) -> Result<Arc<[u8]>, Error> {
-    packed::unpacked(&path.to_string_lossy(), open(path)?)
+fn bytes(path: &Path, open: &mut OpenFile) -> Result<Arc<[u8]>, Error> {
+    compressed::decompress(&path.to_string_lossy(), open(path)?)
 }
 
 /// Returns the files that [`read`] opens for a path.
@@ -158,14 +158,14 @@ fn tracks_of(path: &Path) -> Option<PathBuf> {
 /// Reads cameras and points. The extension determines the format, ignoring a final `.gz` or `.bz2`;
 /// a folder is in COLMAP's format.
 pub fn read(path: &Path) -> Result<Reconstruction, Error> {
-    read_by(path, &mut |path| {
+    read_with(path, &mut |path| {
         let read = std::fs::read(path).map(Into::into);
-        read.map_err(|error| Error::of(&path.to_string_lossy(), format!("cannot read it: {error}")))
+        read.map_err(|error| Error::in_file(&path.to_string_lossy(), format!("cannot read it: {error}")))
     })
 }
 
 /// Reads cameras and points like [`read`], but opens the files with `open`; see [`inputs`].
-pub fn read_by(path: &Path, open: &mut Open) -> Result<Reconstruction, Error> {
+pub fn read_with(path: &Path, open: &mut OpenFile) -> Result<Reconstruction, Error> {
     let file = path.to_string_lossy();
     if path.is_dir() {
         let paths = inputs(path);
@@ -178,21 +178,22 @@ pub fn read_by(path: &Path, open: &mut Open) -> Result<Reconstruction, Error> {
         };
     }
     let content = bytes(path, open)?;
-    match packed::plain(path).extension().and_then(|end| end.to_str()) {
+    match compressed::without_compression_extension(path).extension().and_then(|end| end.to_str()) {
         Some("out") => bundler::read(&file, &content),
         Some("txt") => bal::read(&file, &content),
         Some("ply") => ply::read(&file, &content),
         Some("gltf" | "glb") => gltf::read(&file, &content),
-        Some("json") if is_matches(&content) => {
-            Err(Error::of(&file, "these are matches without cameras: compute the cameras with `durer photo solve`"))
-        }
+        Some("json") if is_matches(&content) => Err(Error::in_file(
+            &file,
+            "these are matches without cameras: compute the cameras with `durer photo solve`",
+        )),
         Some("json") if content.trim_ascii_start().starts_with(b"{") => fspy::read_camera(&file, &content),
         Some("json") => {
             let tracks = tracks_of(path).map(|path| Ok((path.to_string_lossy().into_owned(), bytes(&path, open)?)));
             let tracks = tracks.transpose()?;
             opensfm::read(&file, &content, tracks.as_ref().map(|(name, bytes)| (&**name, &**bytes)))
         }
-        _ => Err(Error::of(
+        _ => Err(Error::in_file(
             &file,
             "the name must end in .out (Bundler), .txt (BAL), .json (OpenSfM, fSpy), .gltf, .glb or .ply, or be a COLMAP folder",
         )),
@@ -240,7 +241,7 @@ impl Output {
             Some(_) => {
                 let file = path.to_string_lossy();
                 let why = "the name must end in .out, .txt, .json, .ply or .gltf, or be a COLMAP folder";
-                return Err(Error::of(&file, why));
+                return Err(Error::in_file(&file, why));
             }
         })
     }
@@ -269,15 +270,15 @@ impl Output {
     }
 
     /// Returns the contents of the files.
-    pub fn write(self, all: &Reconstruction) -> Result<Vec<Vec<u8>>, Error> {
+    pub fn write(self, reconstruction: &Reconstruction) -> Result<Vec<Vec<u8>>, Error> {
         Ok(match self {
-            Output::Bundler => vec![bundler::write(all)?],
-            Output::Bal => vec![bal::write(all)?],
-            Output::ColmapText => colmap_text::write(all).map(String::into_bytes).into(),
-            Output::ColmapBinary => colmap_binary::write(all).into(),
-            Output::OpenSfm => opensfm::write(all)?.map(String::into_bytes).into(),
-            Output::Ply => vec![ply::write(all)],
-            Output::Gltf => vec![gltf::write(all)?],
+            Output::Bundler => vec![bundler::write(reconstruction)?],
+            Output::Bal => vec![bal::write(reconstruction)?],
+            Output::ColmapText => colmap_text::write(reconstruction).map(String::into_bytes).into(),
+            Output::ColmapBinary => colmap_binary::write(reconstruction).into(),
+            Output::OpenSfm => opensfm::write(reconstruction)?.map(String::into_bytes).into(),
+            Output::Ply => vec![ply::write(reconstruction)],
+            Output::Gltf => vec![gltf::write(reconstruction)?],
         })
     }
 }
@@ -285,7 +286,7 @@ impl Output {
 impl Reconstruction {
     /// Sets the name and the size of a photograph that was read from a format without them. Its
     /// pixels are then relative to the upper left corner instead of the image centre.
-    pub fn set_picture(&mut self, view: usize, name: &str, size: [u32; 2]) {
+    pub fn set_image(&mut self, view: usize, name: &str, size: [u32; 2]) {
         self.views[view].name = name.to_string();
         let lens = self.views[view].lens;
         if self.lenses[lens].size != [0, 0] {
@@ -293,9 +294,9 @@ impl Reconstruction {
         }
         let shift = Vector2::from(size.map(|side| f64::from(side) / 2.0));
         self.lenses[lens].size = size;
-        self.lenses[lens].center = shift.into();
+        self.lenses[lens].principal_point = shift.into();
         let views: Vec<bool> = self.views.iter().map(|view| view.lens == lens).collect();
-        let seen = self.points.iter_mut().flat_map(|point| &mut point.track);
-        seen.filter(|seen| views[seen.view]).for_each(|seen| seen.pixel += shift);
+        let observations = self.points.iter_mut().flat_map(|point| &mut point.track);
+        observations.filter(|observation| views[observation.view]).for_each(|observation| observation.pixel += shift);
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Source: OpenSfM documentation, "Reconstruction file format", "Tracks" and "Geometric Models".
 
-use super::Words;
+use super::TokenReader;
 use crate::model::{axis_angle_of, rotation_of};
 use crate::{Error, Lens, Observation, Point, Pose, Reconstruction, View};
 use nalgebra::{Vector2, Vector3};
@@ -33,60 +33,60 @@ struct Shot {
 
 /// Point of OpenSfM's JSON.
 #[derive(Serialize, Deserialize)]
-struct Place {
+struct JsonPoint {
     color: [f64; 3],
     coordinates: [f64; 3],
 }
 
 /// One of the reconstructions in OpenSfM's JSON.
 #[derive(Serialize, Deserialize)]
-struct Part {
+struct JsonReconstruction {
     cameras: BTreeMap<String, Camera>,
     shots: BTreeMap<String, Shot>,
-    points: BTreeMap<String, Place>,
+    points: BTreeMap<String, JsonPoint>,
 }
 
 /// Reads a reconstruction and its tracks, if any. If the file contains several reconstructions, the
 /// one with the most shots is used.
 pub fn read(file: &str, json: &[u8], tracks: Option<(&str, &[u8])>) -> Result<Reconstruction, Error> {
-    let parts: Vec<Part> = serde_json::from_slice(json)
+    let parts: Vec<JsonReconstruction> = serde_json::from_slice(json)
         .map_err(|error| Error::at(file, (error.line(), error.column()), format!("OpenSfM's JSON: {error}")))?;
     let part = parts.into_iter().reduce(|best, next| if next.shots.len() > best.shots.len() { next } else { best });
-    let part = part.ok_or_else(|| Error::of(file, "the file has no reconstruction"))?;
-    let mut all = Reconstruction::default();
+    let part = part.ok_or_else(|| Error::in_file(file, "the file has no reconstruction"))?;
+    let mut reconstruction = Reconstruction::default();
     let mut lens_of = BTreeMap::new();
     for (name, camera) in part.cameras {
         if camera.projection_type != "perspective" {
             let why = format!("cameras of type `{}` are not supported, only `perspective`", camera.projection_type);
-            return Err(Error::of(file, why));
+            return Err(Error::in_file(file, why));
         }
         let size = [camera.width, camera.height];
         if size.contains(&0) || !(camera.focal.is_finite() && camera.focal > 0.0) {
-            return Err(Error::of(file, format!("camera `{name}` has no valid width, height or focal length")));
+            return Err(Error::in_file(file, format!("camera `{name}` has no valid width, height or focal length")));
         }
         let focal = camera.focal * f64::from(size[0].max(size[1]));
-        lens_of.insert(name, all.lenses.len());
-        all.lenses.push(Lens { radial: [camera.k1, camera.k2], ..Lens::new(size, focal) });
+        lens_of.insert(name, reconstruction.lenses.len());
+        reconstruction.lenses.push(Lens { distortion: [camera.k1, camera.k2], ..Lens::new(size, focal) });
     }
     for (name, shot) in part.shots {
         let lens = lens_of.get(&shot.camera);
-        let lens = *lens.ok_or_else(|| Error::of(file, format!("camera `{}` does not exist", shot.camera)))?;
+        let lens = *lens.ok_or_else(|| Error::in_file(file, format!("camera `{}` does not exist", shot.camera)))?;
         let rotation = rotation_of(&Vector3::from(shot.rotation));
         let pose = Some(Pose { rotation, translation: Vector3::from(shot.translation) });
-        all.views.push(View { name, lens, pose });
+        reconstruction.views.push(View { name, lens, pose });
     }
     let mut point_of = BTreeMap::new();
     for (id, place) in part.points {
-        point_of.insert(id, all.points.len());
+        point_of.insert(id, reconstruction.points.len());
         let color = place.color.map(|channel| channel.clamp(0.0, 255.0) as u8);
-        all.points.push(Point { position: Vector3::from(place.coordinates), color, track: Vec::new() });
+        reconstruction.points.push(Point { position: Vector3::from(place.coordinates), color, track: Vec::new() });
     }
     if let Some((file, bytes)) = tracks {
         let views: BTreeMap<String, usize> =
-            all.views.iter().enumerate().map(|(i, view)| (view.name.clone(), i)).collect();
-        read_tracks(file, bytes, &mut all, &views, &point_of)?;
+            reconstruction.views.iter().enumerate().map(|(i, view)| (view.name.clone(), i)).collect();
+        read_tracks(file, bytes, &mut reconstruction, &views, &point_of)?;
     }
-    Ok(all)
+    Ok(reconstruction)
 }
 
 /// Adds the observations from `tracks.csv`. Skips rows with unknown photographs or points, since
@@ -94,11 +94,11 @@ pub fn read(file: &str, json: &[u8], tracks: Option<(&str, &[u8])>) -> Result<Re
 fn read_tracks(
     file: &str,
     bytes: &[u8],
-    all: &mut Reconstruction,
+    reconstruction: &mut Reconstruction,
     views: &BTreeMap<String, usize>,
     points: &BTreeMap<String, usize>,
 ) -> Result<(), Error> {
-    let mut words = Words::new(file, bytes)?;
+    let mut words = TokenReader::new(file, bytes)?;
     let (version, place) = words.word("OPENSFM_TRACKS_VERSION")?;
     if !["OPENSFM_TRACKS_VERSION_v1", "OPENSFM_TRACKS_VERSION_v2"].contains(&version) {
         return Err(Error::at(file, place, format!("`{version}` is not OPENSFM_TRACKS_VERSION_v1 or _v2")));
@@ -112,43 +112,43 @@ fn read_tracks(
         let feature = fields.get(2).and_then(|field| field.trim().parse().ok());
         let (Some(feature), Some(x), Some(y)) = (feature, number(3), number(4)) else { return Err(error) };
         let (Some(view), Some(point)) = (views.get(fields[0]), points.get(fields[1])) else { continue };
-        let lens = all.lenses[all.views[*view].lens];
-        let pixel = Vector2::from(lens.center) + lens.longer_side() * Vector2::new(x, y);
-        all.points[*point].track.push(Observation { view: *view, feature, pixel });
+        let lens = reconstruction.lenses[reconstruction.views[*view].lens];
+        let pixel = Vector2::from(lens.principal_point) + lens.longer_side() * Vector2::new(x, y);
+        reconstruction.points[*point].track.push(Observation { view: *view, feature, pixel });
     }
-    all.points.iter_mut().for_each(|point| point.track.sort_by_key(|seen| seen.view));
+    reconstruction.points.iter_mut().for_each(|point| point.track.sort_by_key(|observation| observation.view));
     Ok(())
 }
 
 /// Writes reconstruction.json and tracks.csv. Photographs without a pose are omitted.
-pub fn write(all: &Reconstruction) -> Result<[String; 2], Error> {
+pub fn write(reconstruction: &Reconstruction) -> Result<[String; 2], Error> {
     let name = |lens: usize| format!("camera {}", lens + 1);
-    let mut part = Part { cameras: BTreeMap::new(), shots: BTreeMap::new(), points: BTreeMap::new() };
-    for (i, lens) in all.lenses.iter().enumerate() {
-        super::square(lens, "OpenSfM")?;
-        let ([width, height], [k1, k2]) = (lens.size, lens.radial);
+    let mut part = JsonReconstruction { cameras: BTreeMap::new(), shots: BTreeMap::new(), points: BTreeMap::new() };
+    for (i, lens) in reconstruction.lenses.iter().enumerate() {
+        super::require_square_pixels(lens, "OpenSfM")?;
+        let ([width, height], [k1, k2]) = (lens.size, lens.distortion);
         if width == 0 || height == 0 {
             return Err(Error::new("OpenSfM files need the size of the photographs: pass their folder"));
         }
         let focal = lens.focal / lens.longer_side();
         part.cameras.insert(name(i), Camera { projection_type: "perspective".into(), width, height, focal, k1, k2 });
     }
-    for view in &all.views {
+    for view in &reconstruction.views {
         let Some(pose) = &view.pose else { continue };
         let (rotation, translation) = (axis_angle_of(&pose.rotation).into(), pose.translation.into());
         part.shots.insert(view.name.clone(), Shot { rotation, translation, camera: name(view.lens) });
     }
     let mut tracks = String::from("OPENSFM_TRACKS_VERSION_v2\n");
-    for (i, point) in all.points.iter().enumerate() {
-        let place = Place { color: point.color.map(f64::from), coordinates: point.position.into() };
+    for (i, point) in reconstruction.points.iter().enumerate() {
+        let place = JsonPoint { color: point.color.map(f64::from), coordinates: point.position.into() };
         part.points.insert(i.to_string(), place);
-        for seen in &point.track {
-            let view = &all.views[seen.view];
-            let lens = all.lenses[view.lens];
-            let p = (seen.pixel - Vector2::from(lens.center)) / lens.longer_side();
+        for observation in &point.track {
+            let view = &reconstruction.views[observation.view];
+            let lens = reconstruction.lenses[view.lens];
+            let p = (observation.pixel - Vector2::from(lens.principal_point)) / lens.longer_side();
             let [r, g, b] = point.color;
             // The feature's size is unknown; 0.001 is OpenSfM's default.
-            let row = (&view.name, i, seen.feature, p.x, p.y);
+            let row = (&view.name, i, observation.feature, p.x, p.y);
             let _ =
                 writeln!(tracks, "{}\t{}\t{}\t{}\t{}\t0.001\t{r}\t{g}\t{b}\t-1\t-1", row.0, row.1, row.2, row.3, row.4);
         }

@@ -6,16 +6,16 @@
 //!
 //! Source: Turk, *The PLY Polygon File Format*, 1994.
 
-use super::Words;
-use super::colmap_binary::Bytes;
+use super::TokenReader;
+use super::colmap_binary::ByteReader;
 use crate::{Error, Point, Reconstruction};
 use nalgebra::Vector3;
 
 /// Text of the header comment that precedes the number of cameras.
-const CAMERAS: &str = "cameras at the end:";
+const CAMERA_COMMENT: &str = "cameras at the end:";
 
 /// Number types of PLY: the old and the new name, and the size in bytes.
-const KINDS: [(&str, &str, usize); 8] = [
+const NUMBER_TYPES: [(&str, &str, usize); 8] = [
     ("char", "int8", 1),
     ("uchar", "uint8", 1),
     ("short", "int16", 2),
@@ -35,14 +35,14 @@ enum Encoding {
 }
 
 /// Header of a PLY file, as far as it is needed to read the points.
-struct Head {
+struct Header {
     encoding: Encoding,
     /// Number of points.
     count: usize,
-    place: (usize, usize),
+    count_position: (usize, usize),
     /// Number of points at the end of the file that are camera positions.
     cameras: usize,
-    /// Name and type (index into [`KINDS`]) of each property.
+    /// Name and type (index into [`NUMBER_TYPES`]) of each property.
     properties: Vec<(String, usize)>,
 }
 
@@ -53,40 +53,41 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let lines = bytes.split_inclusive(|byte| *byte == b'\n').filter(|_| bytes.starts_with(b"ply"));
     let mut length = 0;
     let end = lines.inspect(|line| length += line.len()).find(is_end);
-    end.ok_or_else(|| Error::of(file, "this is not a PLY file: it needs a header from `ply` to `end_header`"))?;
+    end.ok_or_else(|| Error::in_file(file, "this is not a PLY file: it needs a header from `ply` to `end_header`"))?;
     let head = head(file, &bytes[..length])?;
-    let (size, rest) = (head.properties.iter().map(|(_, kind)| KINDS[*kind].2).sum::<usize>(), bytes.len() - length);
+    let (size, rest) =
+        (head.properties.iter().map(|(_, kind)| NUMBER_TYPES[*kind].2).sum::<usize>(), bytes.len() - length);
     // In text, a number takes at least two bytes, including the separator.
     let row = if head.encoding == Encoding::Text { 2 * head.properties.len() } else { size };
     if head.count > rest / row + 1 {
         let why = format!("the file is too short for {} points: {rest} bytes follow the header", head.count);
-        return Err(Error::at(file, head.place, why));
+        return Err(Error::at(file, head.count_position, why));
     }
     let of = |name: &str| head.properties.iter().position(|property| property.0 == name);
     let (Some(x), Some(y), Some(z)) = (of("x"), of("y"), of("z")) else {
-        return Err(Error::at(file, head.place, "these points have no x, y and z"));
+        return Err(Error::at(file, head.count_position, "these points have no x, y and z"));
     };
     // Colours are integers up to 255 or 65535, or floats from 0 to 1.
-    let shade = |i: usize| match KINDS[head.properties[i].1].0 {
+    let shade = |i: usize| match NUMBER_TYPES[head.properties[i].1].0 {
         "float" | "double" => (i, 255.0),
         "ushort" => (i, 255.0 / 65535.0),
         _ => (i, 1.0),
     };
     let shades = of("red").zip(of("green")).zip(of("blue")).map(|((r, g), b)| [r, g, b].map(shade));
-    let mut all = Reconstruction::default();
+    let mut reconstruction = Reconstruction::default();
     let mut add = |row: &[f64]| {
         let color = shades.map(|all| all.map(|(i, scale)| (row[i] * scale).round().clamp(0.0, 255.0) as u8));
         let position = Vector3::new(row[x], row[y], row[z]);
-        all.points.push(Point { position, color: color.unwrap_or([128; 3]), track: Vec::new() });
+        reconstruction.points.push(Point { position, color: color.unwrap_or([128; 3]), track: Vec::new() });
     };
     let mut row = vec![0.0; head.properties.len()];
     if head.encoding == Encoding::Text {
-        let mut words = Words::in_rows(file, bytes)?;
+        let mut words = TokenReader::in_rows(file, bytes)?;
         while words.rest_of_line() != "end_header" {
             words.skip_line_end();
         }
         for _ in 0..head.count {
-            words.next_place();
+            words.next_position();
             for (value, (name, _)) in row.iter_mut().zip(&head.properties) {
                 *value = words.number(name)?;
             }
@@ -94,11 +95,11 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
             add(&row);
         }
     } else {
-        let mut body = Bytes::new(file, bytes);
+        let mut body = ByteReader::new(file, bytes);
         body.take(length)?;
         for _ in 0..head.count {
             for (value, (name, kind)) in row.iter_mut().zip(&head.properties) {
-                *value = number(*kind, body.take(KINDS[*kind].2)?, head.encoding);
+                *value = number(*kind, body.take(NUMBER_TYPES[*kind].2)?, head.encoding);
                 if !value.is_finite() {
                     return Err(body.error(format!("expected a finite number for {name}, found {value}")));
                 }
@@ -106,13 +107,14 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
             add(&row);
         }
     }
-    all.points.truncate(head.count - head.cameras);
-    Ok(all)
+    reconstruction.points.truncate(head.count - head.cameras);
+    Ok(reconstruction)
 }
 
-fn head(file: &str, text: &[u8]) -> Result<Head, Error> {
-    let mut words = Words::in_rows(file, text)?;
-    let mut head = Head { encoding: Encoding::Text, count: 0, place: (1, 1), cameras: 0, properties: Vec::new() };
+fn head(file: &str, text: &[u8]) -> Result<Header, Error> {
+    let mut words = TokenReader::in_rows(file, text)?;
+    let mut head =
+        Header { encoding: Encoding::Text, count: 0, count_position: (1, 1), cameras: 0, properties: Vec::new() };
     let (mut has_points, mut is_theirs) = (false, false);
     words.rest_of_line();
     while !words.is_at_end() {
@@ -129,13 +131,13 @@ fn head(file: &str, text: &[u8]) -> Result<Head, Error> {
                 }
             }
             "comment" => {
-                let cameras = words.rest_of_line().strip_prefix(CAMERAS);
+                let cameras = words.rest_of_line().strip_prefix(CAMERA_COMMENT);
                 head.cameras = cameras.and_then(|count| count.trim().parse().ok()).unwrap_or(head.cameras);
             }
             "element" => {
                 let name = words.word("an element's name")?.0;
                 if name == "vertex" && !has_points {
-                    head.place = words.next_place();
+                    head.count_position = words.next_position();
                     head.count = words.parse("a number of points")?;
                 } else if !has_points {
                     return fail(format!("the element `vertex` must come before `{name}`"));
@@ -145,7 +147,7 @@ fn head(file: &str, text: &[u8]) -> Result<Head, Error> {
             }
             "property" if is_theirs => {
                 let (kind, place) = words.word("a type")?;
-                let number = KINDS.iter().position(|(old, new, _)| [old, new].contains(&&kind));
+                let number = NUMBER_TYPES.iter().position(|(old, new, _)| [old, new].contains(&&kind));
                 let Some(number) = number else {
                     return Err(Error::at(file, place, format!("`{kind}` is not a number type")));
                 };
@@ -157,13 +159,13 @@ fn head(file: &str, text: &[u8]) -> Result<Head, Error> {
         words.rest_of_line();
     }
     if head.properties.is_empty() {
-        return Err(Error::of(file, "the file has no points: it has no element `vertex` with properties"));
+        return Err(Error::in_file(file, "the file has no points: it has no element `vertex` with properties"));
     }
     head.cameras = head.cameras.min(head.count);
     Ok(head)
 }
 
-/// Decodes a number. `kind` is the index of its type in [`KINDS`].
+/// Decodes a number. `kind` is the index of its type in [`NUMBER_TYPES`].
 fn number(kind: usize, bytes: &[u8], encoding: Encoding) -> f64 {
     let mut all = [0; 8];
     all[..bytes.len()].copy_from_slice(bytes);
@@ -171,7 +173,7 @@ fn number(kind: usize, bytes: &[u8], encoding: Encoding) -> f64 {
         all[..bytes.len()].reverse();
     }
     let [a, b, c, d, ..] = all;
-    match KINDS[kind].0 {
+    match NUMBER_TYPES[kind].0 {
         "char" => f64::from(a as i8),
         "uchar" => f64::from(a),
         "short" => f64::from(i16::from_le_bytes([a, b])),
@@ -184,11 +186,11 @@ fn number(kind: usize, bytes: &[u8], encoding: Encoding) -> f64 {
 }
 
 /// Writes the points, followed by the camera positions in red.
-pub fn write(all: &Reconstruction) -> Vec<u8> {
-    let cameras = all.views.iter().filter_map(|view| Some((view.pose.as_ref()?.center(), [255, 0, 0])));
-    let rows: Vec<_> = all.points.iter().map(|point| (point.position, point.color)).chain(cameras).collect();
-    let cameras = rows.len() - all.points.len();
-    let mut head = format!("ply\nformat binary_little_endian 1.0\ncomment {CAMERAS} {cameras}\n");
+pub fn write(reconstruction: &Reconstruction) -> Vec<u8> {
+    let cameras = reconstruction.views.iter().filter_map(|view| Some((view.pose.as_ref()?.center(), [255, 0, 0])));
+    let rows: Vec<_> = reconstruction.points.iter().map(|point| (point.position, point.color)).chain(cameras).collect();
+    let cameras = rows.len() - reconstruction.points.len();
+    let mut head = format!("ply\nformat binary_little_endian 1.0\ncomment {CAMERA_COMMENT} {cameras}\n");
     head += &format!("element vertex {}\n", rows.len());
     for (kind, names) in [("float", ["x", "y", "z"]), ("uchar", ["red", "green", "blue"])] {
         names.iter().for_each(|name| head += &format!("property {kind} {name}\n"));

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use std::str::FromStr;
 
 /// Reader of the whitespace-separated words of a text file, with line and column for errors.
-pub struct Words<'t> {
+pub struct TokenReader<'t> {
     file: &'t str,
     text: &'t str,
     /// Byte offset at which the search for the next word begins.
@@ -17,7 +17,7 @@ pub struct Words<'t> {
     rows: bool,
 }
 
-impl<'t> Words<'t> {
+impl<'t> TokenReader<'t> {
     /// Creates a reader of a file's words.
     pub fn new(file: &'t str, bytes: &'t [u8]) -> Result<Self, Error> {
         let text = std::str::from_utf8(bytes).map_err(|error| {
@@ -26,28 +26,28 @@ impl<'t> Words<'t> {
             let column = 1 + before.len() - before.iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
             Error::at(file, (line, column), "this is not a text file")
         })?;
-        Ok(Words { file, text, at: 0, line: 1, start: 0, rows: false })
+        Ok(TokenReader { file, text, at: 0, line: 1, start: 0, rows: false })
     }
 
     /// Creates a reader of a file in which each line is a row. A word missing from a row is an
     /// error, and is not taken from the next line.
     pub fn in_rows(file: &'t str, bytes: &'t [u8]) -> Result<Self, Error> {
-        Ok(Words { rows: true, ..Words::new(file, bytes)? })
+        Ok(TokenReader { rows: true, ..TokenReader::new(file, bytes)? })
     }
 
-    fn place(&self) -> (usize, usize) {
+    fn position(&self) -> (usize, usize) {
         (self.line, 1 + self.text[self.start..self.at].chars().count())
     }
 
     /// Returns the line and column of the next word.
-    pub fn next_place(&mut self) -> (usize, usize) {
+    pub fn next_position(&mut self) -> (usize, usize) {
         self.advance(true);
-        self.place()
+        self.position()
     }
 
     /// Creates an error at the next word.
     pub fn error(&self, message: impl Into<String>) -> Error {
-        Error::at(self.file, self.place(), message)
+        Error::at(self.file, self.position(), message)
     }
 
     /// Skips to the next word, across lines if `over_lines`. Returns false if there is none.
@@ -110,7 +110,7 @@ impl<'t> Words<'t> {
             let end = if self.rows { "row" } else { "file" };
             return Err(self.error(format!("the {end} ends where {what} should follow")));
         }
-        let place = self.place();
+        let place = self.position();
         let word = self.text[self.at..].split_ascii_whitespace().next().unwrap_or_default();
         self.at += word.len();
         Ok((word, place))
@@ -174,6 +174,6 @@ impl<'t> Words<'t> {
 }
 
 /// Joins values with spaces.
-pub fn joined<T: Display>(values: impl IntoIterator<Item = T>) -> String {
+pub fn join<T: Display>(values: impl IntoIterator<Item = T>) -> String {
     values.into_iter().map(|value| value.to_string()).collect::<Vec<_>>().join(" ")
 }

@@ -16,29 +16,29 @@ pub struct Similarity {
     /// Rotation matrix.
     pub rotation: Matrix3<f64>,
     /// Translation.
-    pub shift: Vector3<f64>,
+    pub translation: Vector3<f64>,
 }
 
 impl Similarity {
     /// Transforms a point.
     pub fn apply(&self, point: &Vector3<f64>) -> Vector3<f64> {
-        self.scale * (self.rotation * point) + self.shift
+        self.scale * (self.rotation * point) + self.translation
     }
 
     /// Transforms cameras and points, so that the projections stay the same.
-    pub fn apply_to(&self, all: &mut Reconstruction) {
-        for view in &mut all.views {
+    pub fn apply_to(&self, reconstruction: &mut Reconstruction) {
+        for view in &mut reconstruction.views {
             if let Some(pose) = &mut view.pose {
                 *pose = Pose::at(&self.apply(&pose.center()), pose.rotation * self.rotation.transpose());
             }
         }
-        all.points.iter_mut().for_each(|point| point.position = self.apply(&point.position));
+        reconstruction.points.iter_mut().for_each(|point| point.position = self.apply(&point.position));
     }
 }
 
 /// Returns the means of both point sets, the rotation from the singular vectors of their
 /// covariance, and the sum of the singular values; `None` if the points are on a line.
-fn turned(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<([Vector3<f64>; 2], Matrix3<f64>, f64)> {
+fn fit_rotation(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<([Vector3<f64>; 2], Matrix3<f64>, f64)> {
     let count = from.len().min(to.len()) as f64;
     let mean = |points: &[Vector3<f64>]| points.iter().sum::<Vector3<f64>>() / count;
     let means = [mean(from), mean(to)];
@@ -55,20 +55,20 @@ fn turned(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<([Vector3<f64>; 
 
 /// Computes the similarity that best maps the points `from` to `to`; `None` for fewer than three
 /// points, or points on a line.
-pub fn similarity(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<Similarity> {
+pub fn align_points(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<Similarity> {
     if from.len() < 3 || from.len() != to.len() {
         return None;
     }
-    let (means, rotation, trace) = turned(from, to)?;
+    let (means, rotation, trace) = fit_rotation(from, to)?;
     let variance = from.iter().map(|point| (point - means[0]).norm_squared()).sum::<f64>() / from.len() as f64;
     let scale = trace / variance;
-    Some(Similarity { scale, rotation, shift: means[1] - scale * (rotation * means[0]) })
+    Some(Similarity { scale, rotation, translation: means[1] - scale * (rotation * means[0]) })
 }
 
 /// Computes the similarity that best maps the cameras `from` to `to`: the mean of the relative
 /// rotations, and the scale and translation that align the centres. Rotations are used because
 /// centres near a line would leave the rotation about that line uncertain.
-pub fn cameras(from: &[Pose], to: &[Pose]) -> Option<Similarity> {
+pub fn align_cameras(from: &[Pose], to: &[Pose]) -> Option<Similarity> {
     let count = from.len() as f64;
     if from.len() < 2 || from.len() != to.len() {
         return None;
@@ -84,12 +84,12 @@ pub fn cameras(from: &[Pose], to: &[Pose]) -> Option<Similarity> {
         square += a.norm_squared();
     }
     let scale = along / square;
-    (scale.is_finite() && scale > 0.0).then(|| Similarity { scale, rotation, shift: means[1] - scale * means[0] })
+    (scale.is_finite() && scale > 0.0).then(|| Similarity { scale, rotation, translation: means[1] - scale * means[0] })
 }
 
 /// Computes the pose that best maps world points to points in the camera frame.
 pub fn rigid(world: &[Vector3<f64>], camera: &[Vector3<f64>]) -> Option<Pose> {
-    let (means, rotation, _) = turned(world, camera)?;
+    let (means, rotation, _) = fit_rotation(world, camera)?;
     Some(Pose { rotation, translation: means[1] - rotation * means[0] })
 }
 
@@ -100,18 +100,18 @@ pub fn rigid(world: &[Vector3<f64>], camera: &[Vector3<f64>]) -> Option<Pose> {
 ///
 /// If fewer than three control points are observed by two photographs with a known pose, or if they
 /// lie on a line.
-pub fn to_control(
-    all: &Reconstruction,
-    control: &[crate::known::Control],
+pub fn align_to_control_points(
+    reconstruction: &Reconstruction,
+    control: &[crate::known::ControlPoint],
 ) -> Result<(Similarity, Vec<f64>), crate::Error> {
-    let ray = |seen: &crate::Observation| {
-        let view = &all.views[seen.view];
-        let (pose, direction) = (view.pose.as_ref()?, all.lenses[view.lens].unproject(&seen.pixel)?);
-        Some((pose.center(), pose.outwards(&direction).normalize()))
+    let ray = |observation: &crate::Observation| {
+        let view = &reconstruction.views[observation.view];
+        let (pose, direction) = (view.pose.as_ref()?, reconstruction.lenses[view.lens].unproject(&observation.pixel)?);
+        Some((pose.center(), pose.direction_to_world(&direction).normalize()))
     };
     let (mut from, mut to) = (Vec::new(), Vec::new());
-    for (position, seen) in control {
-        let rays: Vec<_> = seen.iter().filter_map(ray).collect();
+    for (position, observations) in control {
+        let rays: Vec<_> = observations.iter().filter_map(ray).collect();
         if let Some(point) = super::triangulate::nearest_to_rays(&rays).filter(|_| rays.len() > 1) {
             from.push(point);
             to.push(*position);
@@ -123,9 +123,9 @@ pub fn to_control(
             "control needs at least three points, each observed by two photographs with a known pose; the file has {count}"
         )));
     }
-    let found = similarity(&from, &to).ok_or_else(|| {
+    let similarity = align_points(&from, &to).ok_or_else(|| {
         crate::Error::new("the control points lie on a line, so the rotation about it is undetermined")
     })?;
-    let left = from.iter().zip(&to).map(|(a, b)| (found.apply(a) - b).norm()).collect();
-    Ok((found, left))
+    let left = from.iter().zip(&to).map(|(a, b)| (similarity.apply(a) - b).norm()).collect();
+    Ok((similarity, left))
 }

@@ -12,16 +12,16 @@ use nalgebra::{DMatrix, Matrix3, Matrix3x4, Matrix4, Vector2, Vector3};
 
 /// Result of the direct linear transform: a 3x4 projection matrix and the singular values of its
 /// equations.
-pub struct Linear {
+pub struct DltSolution {
     /// Matrix P, up to scale.
     pub matrix: Matrix3x4<f64>,
     /// Singular values of the equations in Hartley's normalised coordinates, in decreasing order.
     /// The last one is the residual. If the second to last is zero, the matrix is not unique.
-    pub singular: Vec<f64>,
+    pub singular_values: Vec<f64>,
 }
 
 /// Returns the standard deviations of points along their principal axes, in decreasing order.
-pub fn spread(points: &[Vector3<f64>]) -> [f64; 3] {
+pub fn principal_deviations(points: &[Vector3<f64>]) -> [f64; 3] {
     let mean = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
     let covariance = points.iter().map(|p| (p - mean) * (p - mean).transpose()).sum::<Matrix3<f64>>();
     let svd = (covariance / points.len().max(1) as f64).svd(false, false);
@@ -31,7 +31,7 @@ pub fn spread(points: &[Vector3<f64>]) -> [f64; 3] {
 }
 
 /// Computes the least-squares projection matrix of six or more points.
-pub fn linear(points: &[Vector3<f64>], pixels: &[Vector2<f64>]) -> Option<Linear> {
+pub fn solve_dlt(points: &[Vector3<f64>], pixels: &[Vector2<f64>]) -> Option<DltSolution> {
     if points.len() < 6 || points.len() != pixels.len() {
         return None;
     }
@@ -50,18 +50,18 @@ pub fn linear(points: &[Vector3<f64>], pixels: &[Vector2<f64>]) -> Option<Linear
             _ => 0.0,
         }
     });
-    let (v, singular) = null_vector(&rows);
+    let (v, singular_values) = null_vector(&rows);
     let back = Matrix3::new(1.0 / s, 0.0, m.x, 0.0, 1.0 / s, m.y, 0.0, 0.0, 1.0);
     let mut normal = Matrix4::identity() * scale;
     normal.fixed_view_mut::<3, 1>(0, 3).copy_from(&(-scale * mean));
     normal[(3, 3)] = 1.0;
     let matrix = back * Matrix3x4::from_row_slice(v.as_slice()) * normal;
-    matrix.iter().all(|c| c.is_finite()).then_some(Linear { matrix, singular })
+    matrix.iter().all(|c| c.is_finite()).then_some(DltSolution { matrix, singular_values })
 }
 
 /// Decomposes P into K, R, and t. The last element of K is 1, and signs are chosen so that depths
 /// are positive.
-pub fn take_apart(p: &Matrix3x4<f64>) -> Option<(Matrix3<f64>, Matrix3<f64>, Vector3<f64>)> {
+pub fn decompose(p: &Matrix3x4<f64>) -> Option<(Matrix3<f64>, Matrix3<f64>, Vector3<f64>)> {
     let left = p.fixed_columns::<3>(0).into_owned();
     let p = if left.determinant() < 0.0 { -p } else { *p };
     let row = |i: usize| Vector3::new(p[(i, 0)], p[(i, 1)], p[(i, 2)]);

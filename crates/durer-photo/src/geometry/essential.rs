@@ -9,9 +9,9 @@
 //! Source: Nistér, *An Efficient Solution to the Five-Point Relative Pose Problem*, PAMI 26(6),
 //! 2004.
 
-use super::fundamental::{Pair, eight_point, sampson};
+use super::fundamental::{Correspondence, eight_point, sampson};
 use super::polynomial::real_roots;
-use super::ransac::Estimate;
+use super::ransac::RansacProblem;
 use super::triangulate::two_views;
 use crate::Pose;
 use nalgebra::{Matrix3, SMatrix, Vector3};
@@ -45,14 +45,14 @@ const MONOMIALS: [[usize; 3]; 20] = [
 type Cubic = [f64; 20];
 
 /// Returns the index of a monomial in [`MONOMIALS`].
-fn place(exponents: [usize; 3]) -> usize {
+fn monomial_index(exponents: [usize; 3]) -> usize {
     MONOMIALS.iter().position(|m| *m == exponents).unwrap_or(usize::MAX)
 }
 
 /// Returns the index of the product of each pair of monomials; [`usize::MAX`] if its degree exceeds
 /// three.
 fn products() -> [[usize; 20]; 20] {
-    let product = |a: usize, b: usize| place([0, 1, 2].map(|i| MONOMIALS[a][i] + MONOMIALS[b][i]));
+    let product = |a: usize, b: usize| monomial_index([0, 1, 2].map(|i| MONOMIALS[a][i] + MONOMIALS[b][i]));
     std::array::from_fn(|a| std::array::from_fn(|b| product(a, b)))
 }
 
@@ -81,11 +81,11 @@ fn plus(a: &Cubic, b: &Cubic, factor: f64) -> Cubic {
 }
 
 /// Computes up to ten essential matrices from five pairs of directions (x, y, 1).
-pub fn five_point(pairs: &[Pair; 5]) -> Vec<Matrix3<f64>> {
+pub fn five_point(pairs: &[Correspondence; 5]) -> Vec<Matrix3<f64>> {
     solutions(pairs).unwrap_or_default()
 }
 
-fn solutions(pairs: &[Pair; 5]) -> Option<Vec<Matrix3<f64>>> {
+fn solutions(pairs: &[Correspondence; 5]) -> Option<Vec<Matrix3<f64>>> {
     let rows = SMatrix::<f64, 9, 9>::from_fn(|row, column| {
         let Some((a, b)) = pairs.get(row) else { return 0.0 };
         [b.x, b.y, 1.0][column / 3] * [a.x, a.y, 1.0][column % 3]
@@ -93,7 +93,7 @@ fn solutions(pairs: &[Pair; 5]) -> Option<Vec<Matrix3<f64>>> {
     let v = rows.svd(false, true).v_t?;
     let basis = [5, 6, 7, 8].map(|i| Matrix3::from_row_slice(v.row(i).transpose().as_slice()));
     let algebra = Algebra(products());
-    let variables = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 0]].map(place);
+    let variables = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 0]].map(monomial_index);
     let e: [[Cubic; 3]; 3] = std::array::from_fn(|i| {
         std::array::from_fn(|j| {
             let mut entry = [0.0; 20];
@@ -150,7 +150,7 @@ fn solutions(pairs: &[Pair; 5]) -> Option<Vec<Matrix3<f64>>> {
         .map(|(column, minor)| product(&polynomials[0][column], &minor));
     let whole: Vec<f64> = (0..=10).map(|n| terms.iter().map(|term| term[n]).sum()).collect();
     let at = |p: &[f64; 5], z: f64| p.iter().rev().fold(0.0, |sum, c| sum * z + c);
-    let mut found = Vec::new();
+    let mut solutions = Vec::new();
     for z in real_roots(&whole) {
         let m = Matrix3::from_fn(|i, j| at(&polynomials[i][j], z));
         // (x, y, 1) is orthogonal to all rows. The largest cross product of two rows is the most
@@ -160,10 +160,10 @@ fn solutions(pairs: &[Pair; 5]) -> Option<Vec<Matrix3<f64>>> {
         let (x, y) = (best.x / best.z, best.y / best.z);
         let e = basis[0] * x + basis[1] * y + basis[2] * z + basis[3];
         if e.iter().all(|c| c.is_finite()) {
-            found.push(e / e.norm());
+            solutions.push(e / e.norm());
         }
     }
-    Some(found)
+    Some(solutions)
 }
 
 /// Returns the four possible poses of the second camera, with a translation of length 1.
@@ -184,9 +184,9 @@ pub fn poses(e: &Matrix3<f64>) -> Option<[Pose; 4]> {
 }
 
 /// Returns the pose that puts the most points in front of both cameras, and their number.
-pub fn pose_before(e: &Matrix3<f64>, pairs: &[Pair]) -> Option<(Pose, usize)> {
+pub fn pose_in_front(e: &Matrix3<f64>, pairs: &[Correspondence]) -> Option<(Pose, usize)> {
     let before = |pose: &Pose| {
-        let in_front = |pair: &&Pair| {
+        let in_front = |pair: &&Correspondence| {
             let point = two_views(pose, pair);
             point.z > 0.0 && pose.depth(&point) > 0.0
         };
@@ -198,20 +198,20 @@ pub fn pose_before(e: &Matrix3<f64>, pairs: &[Pair]) -> Option<(Pose, usize)> {
 
 /// RANSAC problem of the essential matrix: corresponding directions (x, y, 1) in two photographs,
 /// including outliers.
-pub struct Directions<'p>(pub &'p [Pair]);
+pub struct EssentialProblem<'p>(pub &'p [Correspondence]);
 
-impl Estimate<5> for Directions<'_> {
+impl RansacProblem<5> for EssentialProblem<'_> {
     type Model = Matrix3<f64>;
 
     fn count(&self) -> usize {
         self.0.len()
     }
 
-    fn minimal(&self, sample: &[usize; 5]) -> Vec<Matrix3<f64>> {
+    fn solve_minimal(&self, sample: &[usize; 5]) -> Vec<Matrix3<f64>> {
         five_point(&sample.map(|i| self.0[i]))
     }
 
-    fn refined(&self, inliers: &[usize], _: &Matrix3<f64>) -> Option<Matrix3<f64>> {
+    fn refine(&self, inliers: &[usize], _: &Matrix3<f64>) -> Option<Matrix3<f64>> {
         let e = eight_point(&inliers.iter().map(|i| self.0[*i]).collect::<Vec<_>>())?;
         let svd = e.svd(true, true);
         // Project onto the essential matrices, whose singular values are 1, 1, 0.

@@ -7,12 +7,12 @@
 //! sections 11.1 to 11.4.
 
 use super::polynomial::real_roots;
-use super::ransac::Estimate;
+use super::ransac::RansacProblem;
 use super::{normalization, null_vector};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};
 
 /// Correspondence: the positions of a scene point in two photographs.
-pub type Pair = (Vector2<f64>, Vector2<f64>);
+pub type Correspondence = (Vector2<f64>, Vector2<f64>);
 
 fn homogeneous(p: &Vector2<f64>) -> Vector3<f64> {
     Vector3::new(p.x, p.y, 1.0)
@@ -20,7 +20,7 @@ fn homogeneous(p: &Vector2<f64>) -> Vector3<f64> {
 
 /// Returns the squared Sampson distance: to first order, the squared distance that the two
 /// positions must move to satisfy the epipolar equation.
-pub fn sampson(f: &Matrix3<f64>, (a, b): &Pair) -> f64 {
+pub fn sampson(f: &Matrix3<f64>, (a, b): &Correspondence) -> f64 {
     let (a, b) = (homogeneous(a), homogeneous(b));
     let (fa, fb) = (f * a, f.transpose() * b);
     let product = b.dot(&fa);
@@ -29,7 +29,7 @@ pub fn sampson(f: &Matrix3<f64>, (a, b): &Pair) -> f64 {
 
 /// Returns the linear equations for F, one row per pair. Positions are normalised by the
 /// `(scale, mean)` of each photograph.
-fn equations(pairs: &[Pair], [one, two]: [(f64, Vector2<f64>); 2]) -> DMatrix<f64> {
+fn equations(pairs: &[Correspondence], [one, two]: [(f64, Vector2<f64>); 2]) -> DMatrix<f64> {
     DMatrix::from_fn(pairs.len(), 9, |row, column| {
         let (a, b) = pairs[row];
         let (a, b) = (homogeneous(&((a - one.1) * one.0)), homogeneous(&((b - two.1) * two.0)));
@@ -37,7 +37,7 @@ fn equations(pairs: &[Pair], [one, two]: [(f64, Vector2<f64>); 2]) -> DMatrix<f6
     })
 }
 
-fn normalizations(pairs: &[Pair]) -> [(f64, Vector2<f64>); 2] {
+fn normalizations(pairs: &[Correspondence]) -> [(f64, Vector2<f64>); 2] {
     [normalization(pairs.iter().map(|pair| pair.0)), normalization(pairs.iter().map(|pair| pair.1))]
 }
 
@@ -53,7 +53,7 @@ fn denormalized(f: Matrix3<f64>, [one, two]: [(f64, Vector2<f64>); 2]) -> Matrix
 }
 
 /// Estimates F from eight or more pairs with the normalised eight-point algorithm (Hartley).
-pub fn eight_point(pairs: &[Pair]) -> Option<Matrix3<f64>> {
+pub fn eight_point(pairs: &[Correspondence]) -> Option<Matrix3<f64>> {
     if pairs.len() < 8 {
         return None;
     }
@@ -68,7 +68,7 @@ pub fn eight_point(pairs: &[Pair]) -> Option<Matrix3<f64>> {
 }
 
 /// Computes the one to three fundamental matrices of seven pairs.
-pub fn seven_point(pairs: &[Pair; 7]) -> Vec<Matrix3<f64>> {
+pub fn seven_point(pairs: &[Correspondence; 7]) -> Vec<Matrix3<f64>> {
     let normal = normalizations(pairs);
     let svd = super::padded(&equations(pairs, normal)).svd(false, true);
     let Some(v) = svd.v_t else { return Vec::new() };
@@ -85,20 +85,20 @@ pub fn seven_point(pairs: &[Pair; 7]) -> Vec<Matrix3<f64>> {
 
 /// RANSAC problem of the fundamental matrix: corresponding pixels in two photographs, including
 /// outliers.
-pub struct Pairs<'p>(pub &'p [Pair]);
+pub struct FundamentalProblem<'p>(pub &'p [Correspondence]);
 
-impl Estimate<7> for Pairs<'_> {
+impl RansacProblem<7> for FundamentalProblem<'_> {
     type Model = Matrix3<f64>;
 
     fn count(&self) -> usize {
         self.0.len()
     }
 
-    fn minimal(&self, sample: &[usize; 7]) -> Vec<Matrix3<f64>> {
+    fn solve_minimal(&self, sample: &[usize; 7]) -> Vec<Matrix3<f64>> {
         seven_point(&sample.map(|i| self.0[i]))
     }
 
-    fn refined(&self, inliers: &[usize], _: &Matrix3<f64>) -> Option<Matrix3<f64>> {
+    fn refine(&self, inliers: &[usize], _: &Matrix3<f64>) -> Option<Matrix3<f64>> {
         eight_point(&inliers.iter().map(|i| self.0[*i]).collect::<Vec<_>>())
     }
 

@@ -4,19 +4,19 @@
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! section 4.1.
 
-use super::fundamental::Pair;
-use super::ransac::Estimate;
+use super::fundamental::Correspondence;
+use super::ransac::RansacProblem;
 use super::{normalization, null_vector};
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 
 /// Maps a pixel by a homography.
-pub fn mapped(h: &Matrix3<f64>, p: &Vector2<f64>) -> Vector2<f64> {
+pub fn map_pixel(h: &Matrix3<f64>, p: &Vector2<f64>) -> Vector2<f64> {
     let q = h * Vector3::new(p.x, p.y, 1.0);
     Vector2::new(q.x / q.z, q.y / q.z)
 }
 
 /// Estimates the homography from four or more pairs by the direct linear transform.
-pub fn homography(pairs: &[Pair]) -> Option<Matrix3<f64>> {
+pub fn homography(pairs: &[Correspondence]) -> Option<Matrix3<f64>> {
     if pairs.len() < 4 {
         return None;
     }
@@ -41,25 +41,25 @@ pub fn homography(pairs: &[Pair]) -> Option<Matrix3<f64>> {
 
 /// RANSAC problem of a homography: corresponding pixels in two photographs, including outliers from
 /// other planes.
-pub struct Planar<'p>(pub &'p [Pair]);
+pub struct HomographyProblem<'p>(pub &'p [Correspondence]);
 
-impl Estimate<4> for Planar<'_> {
+impl RansacProblem<4> for HomographyProblem<'_> {
     type Model = Matrix3<f64>;
 
     fn count(&self) -> usize {
         self.0.len()
     }
 
-    fn minimal(&self, sample: &[usize; 4]) -> Vec<Matrix3<f64>> {
+    fn solve_minimal(&self, sample: &[usize; 4]) -> Vec<Matrix3<f64>> {
         homography(&sample.map(|i| self.0[i])).into_iter().collect()
     }
 
-    fn refined(&self, inliers: &[usize], _: &Matrix3<f64>) -> Option<Matrix3<f64>> {
+    fn refine(&self, inliers: &[usize], _: &Matrix3<f64>) -> Option<Matrix3<f64>> {
         homography(&inliers.iter().map(|i| self.0[*i]).collect::<Vec<_>>())
     }
 
     fn error(&self, model: &Matrix3<f64>, datum: usize) -> f64 {
         let (a, b) = &self.0[datum];
-        (mapped(model, a) - b).norm_squared()
+        (map_pixel(model, a) - b).norm_squared()
     }
 }

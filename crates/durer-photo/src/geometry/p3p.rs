@@ -39,8 +39,8 @@ pub fn p3p(points: &[Vector3<f64>; 3], directions: &[Vector3<f64>; 3]) -> Vec<Po
         let u = ((k1 - 1.0) * v * v - 2.0 * k1 * cb * v + 1.0 + k1) / (2.0 * (cg - v * ca));
         let s1 = (b2 / (1.0 + v * v - 2.0 * v * cb)).sqrt();
         if u > 0.0 && s1.is_finite() && u.is_finite() {
-            let seen = [s1 * j1, u * s1 * j2, v * s1 * j3];
-            poses.extend(rigid(points, &seen));
+            let in_camera = [s1 * j1, u * s1 * j2, v * s1 * j3];
+            poses.extend(rigid(points, &in_camera));
         }
     }
     poses

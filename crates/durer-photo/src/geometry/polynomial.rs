@@ -68,9 +68,9 @@ mod tests {
             }
             p = product;
         }
-        let found = real_roots(&p);
-        assert_eq!(found.len(), wanted.len(), "{found:?}");
-        found.iter().zip(wanted).for_each(|(a, b)| assert!((a - b).abs() < 1e-9, "{a} {b}"));
+        let roots = real_roots(&p);
+        assert_eq!(roots.len(), wanted.len(), "{roots:?}");
+        roots.iter().zip(wanted).for_each(|(a, b)| assert!((a - b).abs() < 1e-9, "{a} {b}"));
         assert_eq!(real_roots(&[1.0, -2.0, 1.0]), [1.0]);
         assert!(real_roots(&[0.0]).is_empty() && real_roots(&[1.0, 0.0, 1.0]).is_empty());
     }

@@ -11,22 +11,22 @@ use crate::random::Random;
 
 /// Estimation problem that [`ransac`] solves, such as finding a fundamental matrix from pairs of
 /// pixels. `N` is the size of a minimal sample.
-pub trait Estimate<const N: usize> {
+pub trait RansacProblem<const N: usize> {
     /// Model to estimate, for example a matrix or a pose.
     type Model: Clone;
     /// Returns the number of data.
     fn count(&self) -> usize;
     /// Returns all models that fit a minimal sample, given by indices.
-    fn minimal(&self, sample: &[usize; N]) -> Vec<Self::Model>;
+    fn solve_minimal(&self, sample: &[usize; N]) -> Vec<Self::Model>;
     /// Returns the model fitted to all inliers. `model` is the initial estimate.
-    fn refined(&self, inliers: &[usize], model: &Self::Model) -> Option<Self::Model>;
+    fn refine(&self, inliers: &[usize], model: &Self::Model) -> Option<Self::Model>;
     /// Returns the squared error of a datum.
-    fn error(&self, model: &Self::Model, datum: usize) -> f64;
+    fn error(&self, model: &Self::Model, index: usize) -> f64;
 }
 
 /// Parameters of a RANSAC search.
 #[derive(Debug, Clone, Copy)]
-pub struct Search {
+pub struct RansacOptions {
     /// Maximum error of an inlier.
     pub threshold: f64,
     /// Maximum number of samples.
@@ -37,7 +37,10 @@ pub struct Search {
 
 /// Returns the best model and the indices of its inliers; `None` if no model has more inliers than
 /// its sample.
-pub fn ransac<const N: usize, E: Estimate<N>>(problem: &E, search: &Search) -> Option<(E::Model, Vec<usize>)> {
+pub fn ransac<const N: usize, E: RansacProblem<N>>(
+    problem: &E,
+    search: &RansacOptions,
+) -> Option<(E::Model, Vec<usize>)> {
     let count = problem.count();
     if count < N {
         return None;
@@ -48,10 +51,10 @@ pub fn ransac<const N: usize, E: Estimate<N>>(problem: &E, search: &Search) -> O
     let (mut tried, mut needed) = (0, search.samples);
     while tried < needed {
         tried += 1;
-        for model in problem.minimal(&random.sample::<N>(count)) {
+        for model in problem.solve_minimal(&random.sample::<N>(count)) {
             let bound = best.as_ref().map_or(f64::INFINITY, |best| best.0);
             let Some(loss) = loss(problem, &model, limit, bound) else { continue };
-            let (loss, model) = improved(problem, model, loss, limit);
+            let (loss, model) = refine_locally(problem, model, loss, limit);
             let share = inliers(problem, &model, limit).len() as f64 / count as f64;
             needed = needed.min(samples_for::<N>(share, search.samples));
             best = Some((loss, model));
@@ -73,11 +76,11 @@ fn samples_for<const N: usize>(share: f64, most: usize) -> usize {
 }
 
 /// Returns the sum of truncated squared errors; `None` if it reaches `bound`.
-fn loss<const N: usize, E: Estimate<N>>(problem: &E, model: &E::Model, limit: f64, bound: f64) -> Option<f64> {
+fn loss<const N: usize, E: RansacProblem<N>>(problem: &E, model: &E::Model, limit: f64, bound: f64) -> Option<f64> {
     let mut sum = 0.0;
-    for datum in 0..problem.count() {
+    for index in 0..problem.count() {
         // NaN counts as an outlier.
-        let error = problem.error(model, datum);
+        let error = problem.error(model, index);
         sum += if error < limit { error } else { limit };
         if sum >= bound {
             return None;
@@ -86,16 +89,21 @@ fn loss<const N: usize, E: Estimate<N>>(problem: &E, model: &E::Model, limit: f6
     Some(sum)
 }
 
-fn inliers<const N: usize, E: Estimate<N>>(problem: &E, model: &E::Model, limit: f64) -> Vec<usize> {
-    (0..problem.count()).filter(|datum| problem.error(model, *datum) < limit).collect()
+fn inliers<const N: usize, E: RansacProblem<N>>(problem: &E, model: &E::Model, limit: f64) -> Vec<usize> {
+    (0..problem.count()).filter(|index| problem.error(model, *index) < limit).collect()
 }
 
 /// Fits the model repeatedly to its inliers, while the threshold decreases from `start` to `limit`.
-fn improved<const N: usize, E: Estimate<N>>(problem: &E, model: E::Model, start: f64, limit: f64) -> (f64, E::Model) {
+fn refine_locally<const N: usize, E: RansacProblem<N>>(
+    problem: &E,
+    model: E::Model,
+    start: f64,
+    limit: f64,
+) -> (f64, E::Model) {
     let (mut best, mut current) = ((start, model.clone()), model);
     for widened in [4.0, 2.0, 1.0, 1.0] {
         let near = inliers(problem, &current, widened * limit);
-        let Some(next) = (near.len() > N).then(|| problem.refined(&near, &current)).flatten() else { break };
+        let Some(next) = (near.len() > N).then(|| problem.refine(&near, &current)).flatten() else { break };
         if let Some(loss) = loss(problem, &next, limit, best.0) {
             best = (loss, next.clone());
         }

@@ -3,7 +3,7 @@
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! chapter 12.
 
-use super::fundamental::Pair;
+use super::fundamental::Correspondence;
 use crate::Pose;
 use nalgebra::{Matrix3, Vector3};
 
@@ -22,8 +22,9 @@ pub fn nearest_to_rays(rays: &[(Vector3<f64>, Vector3<f64>)]) -> Option<Vector3<
 
 /// Returns the point that two cameras see in the directions (x, y, 1). The first camera is at the
 /// origin. NaN if the rays are parallel.
-pub fn two_views(second: &Pose, (a, b): &Pair) -> Vector3<f64> {
-    let ray = |pose: &Pose, x: f64, y: f64| (pose.center(), pose.outwards(&Vector3::new(x, y, 1.0)).normalize());
+pub fn two_views(second: &Pose, (a, b): &Correspondence) -> Vector3<f64> {
+    let ray =
+        |pose: &Pose, x: f64, y: f64| (pose.center(), pose.direction_to_world(&Vector3::new(x, y, 1.0)).normalize());
     let rays = [ray(&Pose::identity(), a.x, a.y), ray(second, b.x, b.y)];
     nearest_to_rays(&rays).unwrap_or_else(|| Vector3::repeat(f64::NAN))
 }

@@ -7,8 +7,8 @@ use crate::feature::{Feature, features};
 use crate::photo::Photo;
 use crate::{Error, Lens};
 use nalgebra::Vector2;
-pub(crate) use pairs::by_chance;
-use pairs::{Descriptors, alike, verified};
+pub(crate) use pairs::is_chance;
+use pairs::{Descriptors, match_descriptors, verify_matches};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -18,15 +18,15 @@ pub struct Options {
     /// Maximum number of features per photograph.
     pub features: usize,
     /// Maximum length of a photograph's longer side in pixels; larger photographs are reduced.
-    pub side: u32,
+    pub max_side: u32,
     /// Maximum ratio of the descriptor distances to the nearest and the second nearest feature.
     pub ratio: f64,
     /// Maximum distance from the epipolar line, in pixels of the reduced photograph.
     pub threshold: f64,
     /// Minimum number of matches between two photographs that agree with one fundamental matrix.
-    pub least: usize,
+    pub min_matches: usize,
     /// Horizontal field of view in degrees, used for photographs without EXIF data.
-    pub field: f64,
+    pub field_of_view: f64,
     /// True if focal lengths from EXIF data are ignored.
     pub ignore_exif: bool,
     /// Seed of the random numbers.
@@ -36,14 +36,23 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let (features, side, ratio, threshold) = (6000, 1600, 0.8, 2.0);
-        Options { features, side, ratio, threshold, least: 16, field: 45.0, ignore_exif: false, seed: 0 }
+        Options {
+            features,
+            max_side: side,
+            ratio,
+            threshold,
+            min_matches: 16,
+            field_of_view: 45.0,
+            ignore_exif: false,
+            seed: 0,
+        }
     }
 }
 
 /// Photograph in the output of matching: its name, size, initial focal length, and number of
 /// features.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Picture {
+pub struct MatchedPhoto {
     /// File name.
     pub name: String,
     /// Width and height in pixels.
@@ -51,7 +60,8 @@ pub struct Picture {
     /// Initial focal length in pixels.
     pub focal: f64,
     /// Description of where the focal length comes from.
-    pub focal_from: String,
+    #[serde(rename = "focal_from")]
+    pub focal_source: String,
     /// Index of the lens. Photographs with the same camera, size, and focal length share one.
     pub lens: usize,
     /// Number of features.
@@ -60,23 +70,26 @@ pub struct Picture {
 
 /// Pair of photographs that show the same part of the scene, with statistics of their matches.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Link {
+pub struct PhotoPair {
     /// Indices of the two photographs.
     pub pictures: [usize; 2],
     /// Number of feature pairs with similar descriptors.
-    pub alike: usize,
+    #[serde(rename = "alike")]
+    pub candidates: usize,
     /// Number of these pairs that agree with one fundamental matrix.
     pub matches: usize,
     /// Share of the matches that a single homography explains.
-    pub planar: f64,
+    #[serde(rename = "planar")]
+    pub planar_fraction: f64,
     /// Median distance between the positions in both photographs, in pixels.
-    pub moved: f64,
+    #[serde(rename = "moved")]
+    pub median_shift: f64,
 }
 
 /// Observation in a track: index of the photograph, index of the feature, and x and y in pixels
 /// from the upper left corner.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Sighting(pub usize, pub usize, pub f64, pub f64);
+pub struct TrackObservation(pub usize, pub usize, pub f64, pub f64);
 
 /// Features in several photographs that show the same scene point, whose position is not yet known.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -84,7 +97,8 @@ pub struct Track {
     /// Mean colour.
     pub color: [u8; 3],
     /// Observations.
-    pub seen: Vec<Sighting>,
+    #[serde(rename = "seen")]
+    pub observations: Vec<TrackObservation>,
 }
 
 /// Result of matching, the input of [`solve`](crate::solve): photographs, pairs that match, and
@@ -94,14 +108,14 @@ pub struct Matches {
     /// Format identifier of the file.
     pub format: String,
     /// Photographs.
-    pub pictures: Vec<Picture>,
+    pub pictures: Vec<MatchedPhoto>,
     /// Pairs of photographs that match.
-    pub links: Vec<Link>,
+    pub links: Vec<PhotoPair>,
     /// Tracks of scene points.
     pub tracks: Vec<Track>,
 }
 
-/// Prefix of [`Picture::focal_from`] if the focal length is a guess.
+/// Prefix of [`MatchedPhoto::focal_source`] if the focal length is a guess.
 pub const GUESS: &str = "a guess";
 
 /// Value of [`Matches::format`].
@@ -110,7 +124,7 @@ pub const FORMAT: &str = "durer matches 1";
 /// Features of one photograph with their descriptors and colours, computed by [`describe`] and
 /// matched by [`match_all`].
 pub struct ImageFeatures {
-    picture: Picture,
+    picture: MatchedPhoto,
     camera: String,
     features: Vec<Feature>,
     colors: Vec<[u8; 3]>,
@@ -120,22 +134,22 @@ pub struct ImageFeatures {
 
 /// Detects the features of a photograph. The pixels are not needed afterwards.
 pub fn describe(photo: &Photo, options: &Options) -> ImageFeatures {
-    let (gray, scale) = photo.gray(options.side);
-    let mut found = features(&gray, options.features);
-    for (feature, _) in &mut found {
+    let (gray, scale) = photo.gray(options.max_side);
+    let mut detected = features(&gray, options.features);
+    for (feature, _) in &mut detected {
         (feature.x, feature.y) = (feature.x * scale[0] as f32, feature.y * scale[1] as f32);
     }
     let [width, height] = photo.size();
-    let guess = f64::from(width) / (2.0 * libm::tan(options.field.to_radians() / 2.0));
-    let guessed = || (guess, format!("{GUESS}: {} degrees across", options.field));
-    let (focal, focal_from) = photo.exif.focal.clone().filter(|_| !options.ignore_exif).unwrap_or_else(guessed);
-    let colors = found.iter().map(|(f, _)| photo.color(f64::from(f.x), f64::from(f.y))).collect();
+    let guess = f64::from(width) / (2.0 * libm::tan(options.field_of_view.to_radians() / 2.0));
+    let guessed = || (guess, format!("{GUESS}: {} degrees across", options.field_of_view));
+    let (focal, focal_source) = photo.exif.focal.clone().filter(|_| !options.ignore_exif).unwrap_or_else(guessed);
+    let colors = detected.iter().map(|(f, _)| photo.color(f64::from(f.x), f64::from(f.y))).collect();
     let (name, size) = (photo.name.clone(), [width, height]);
     ImageFeatures {
-        picture: Picture { name, size, focal, focal_from, lens: 0, features: found.len() },
+        picture: MatchedPhoto { name, size, focal, focal_source, lens: 0, features: detected.len() },
         camera: photo.exif.camera.clone(),
-        descriptors: Descriptors::new(found.iter().map(|(_, descriptor)| descriptor)),
-        features: found.into_iter().map(|(feature, _)| feature).collect(),
+        descriptors: Descriptors::new(detected.iter().map(|(_, descriptor)| descriptor)),
+        features: detected.into_iter().map(|(feature, _)| feature).collect(),
         colors,
         scale: scale[0],
     }
@@ -157,62 +171,62 @@ pub fn match_all(
     }
     let keys: Vec<_> =
         photos.iter().map(|photo| (photo.camera.clone(), photo.picture.size, photo.picture.focal.to_bits())).collect();
-    let mut seen = Vec::new();
+    let mut lens_keys = Vec::new();
     for (photo, key) in photos.iter_mut().zip(keys) {
-        photo.picture.lens = seen.iter().position(|other| *other == key).unwrap_or_else(|| {
-            seen.push(key);
-            seen.len() - 1
+        photo.picture.lens = lens_keys.iter().position(|other| *other == key).unwrap_or_else(|| {
+            lens_keys.push(key);
+            lens_keys.len() - 1
         });
     }
     let count = photos.len();
-    let all: Vec<(usize, usize)> = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j))).collect();
+    let pairs: Vec<(usize, usize)> = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j))).collect();
     let done = std::sync::atomic::AtomicUsize::new(0);
     let one = |&(i, j): &(usize, usize)| {
         let (a, b) = (&photos[i], &photos[j]);
-        let candidates = alike(&a.descriptors, &b.descriptors, options.ratio);
+        let candidates = match_descriptors(&a.descriptors, &b.descriptors, options.ratio);
         let places: Vec<_> = candidates.iter().map(|(m, n)| (place(&a.features[*m]), place(&b.features[*n]))).collect();
         let threshold = options.threshold * a.scale.max(b.scale);
         let seed = options.seed ^ ((i as u64) << 32 | j as u64);
-        let geometry = verified(&places, threshold, options.least, seed);
+        let geometry = verify_matches(&places, threshold, options.min_matches, seed);
         let now = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        progress(now as f64 / all.len() as f64);
+        progress(now as f64 / pairs.len() as f64);
         let geometry = geometry?;
         let matches: Vec<_> = geometry.inliers.iter().map(|k| candidates[*k]).collect();
-        let link = Link {
+        let link = PhotoPair {
             pictures: [i, j],
-            alike: candidates.len(),
+            candidates: candidates.len(),
             matches: matches.len(),
-            planar: geometry.planar,
-            moved: geometry.moved,
+            planar_fraction: geometry.planar_fraction,
+            median_shift: geometry.median_shift,
         };
         Some((link, matches))
     };
-    let found: Vec<_> = all.par_iter().map(one).collect::<Vec<_>>().into_iter().flatten().collect();
-    if found.is_empty() {
+    let matched: Vec<_> = pairs.par_iter().map(one).collect::<Vec<_>>().into_iter().flatten().collect();
+    if matched.is_empty() {
         return Err(Error::new("no two photographs show the same objects: too few matches agree on one geometry"));
     }
-    if found.iter().all(|(link, _)| link.moved < 0.5) {
+    if matched.iter().all(|(link, _)| link.median_shift < 0.5) {
         return Err(Error::new("the photographs are the same picture: without parallax, depth is undetermined"));
     }
     let counts: Vec<usize> = photos.iter().map(|photo| photo.features.len()).collect();
-    let connected = found.iter().flat_map(|(link, matches)| {
+    let connected = matched.iter().flat_map(|(link, matches)| {
         let [i, j] = link.pictures;
         matches.iter().map(move |(m, n)| ((i, *m), (j, *n)))
     });
-    let track = |list: Vec<tracks::Member>| {
+    let track = |list: Vec<tracks::FeatureId>| {
         let mean = |channel: usize| {
             let sum: u32 = list.iter().map(|(i, m)| u32::from(photos[*i].colors[*m][channel])).sum();
             (sum / list.len() as u32) as u8
         };
         let color = [mean(0), mean(1), mean(2)];
-        let sighting = |&(i, m): &tracks::Member| {
+        let sighting = |&(i, m): &tracks::FeatureId| {
             let p = place(&photos[i].features[m]);
-            Sighting(i, m, p.x, p.y)
+            TrackObservation(i, m, p.x, p.y)
         };
-        Track { color, seen: list.iter().map(sighting).collect() }
+        Track { color, observations: list.iter().map(sighting).collect() }
     };
-    let tracks = tracks::tracks(&counts, connected).into_iter().map(track).collect();
-    let links = found.iter().map(|(link, _)| link.clone()).collect();
+    let tracks = tracks::build_tracks(&counts, connected).into_iter().map(track).collect();
+    let links = matched.iter().map(|(link, _)| link.clone()).collect();
     let pictures = photos.into_iter().map(|photo| photo.picture).collect();
     Ok(Matches { format: FORMAT.into(), pictures, links, tracks })
 }
@@ -230,31 +244,31 @@ impl Matches {
 
     /// Reads the output of [`Matches::to_json`].
     pub fn from_json(file: &str, json: &[u8]) -> Result<Self, Error> {
-        let all: Matches = serde_json::from_slice(json).map_err(|error| {
+        let matches: Matches = serde_json::from_slice(json).map_err(|error| {
             Error::at(file, (error.line(), error.column()), format!("not a file of durer photo match: {error}"))
         })?;
-        let fail = |why: String| Err(Error::of(file, why));
-        if all.format != FORMAT {
-            return fail(format!("its format is `{}`, not `{FORMAT}`", all.format));
+        let fail = |why: String| Err(Error::in_file(file, why));
+        if matches.format != FORMAT {
+            return fail(format!("its format is `{}`, not `{FORMAT}`", matches.format));
         }
-        let count = all.lenses().len();
-        for (i, picture) in all.pictures.iter().enumerate() {
+        let count = matches.lenses().len();
+        for (i, picture) in matches.pictures.iter().enumerate() {
             let fine = picture.focal.is_finite() && picture.focal > 0.0 && picture.size.iter().all(|side| *side > 0);
             if !fine || picture.lens >= count {
                 return fail(format!("photograph {i} has no valid size, focal length or lens"));
             }
         }
-        for (i, track) in all.tracks.iter().enumerate() {
-            let order = track.seen.windows(2).all(|pair| pair[0].0 < pair[1].0);
-            let fine = |s: &Sighting| s.0 < all.pictures.len() && s.2.is_finite() && s.3.is_finite();
-            if !order || !track.seen.iter().all(fine) {
+        for (i, track) in matches.tracks.iter().enumerate() {
+            let order = track.observations.windows(2).all(|pair| pair[0].0 < pair[1].0);
+            let fine = |s: &TrackObservation| s.0 < matches.pictures.len() && s.2.is_finite() && s.3.is_finite();
+            if !order || !track.observations.iter().all(fine) {
                 return fail(format!("track {i} names photographs that do not exist, occur twice or are out of order"));
             }
         }
-        if all.links.iter().any(|link| link.pictures.iter().any(|i| *i >= all.pictures.len())) {
+        if matches.links.iter().any(|link| link.pictures.iter().any(|i| *i >= matches.pictures.len())) {
             return fail("a link names photographs that do not exist".into());
         }
-        Ok(all)
+        Ok(matches)
     }
 
     /// Writes the matches as JSON, one item per line.

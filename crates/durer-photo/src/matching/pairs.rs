@@ -1,23 +1,23 @@
 //! Matches the features of two photographs by their descriptors, and verifies the matches by
 //! geometry.
 
-use crate::feature::LENGTH;
-use crate::geometry::fundamental::{Pair, Pairs};
-use crate::geometry::homography::{Planar, mapped};
-use crate::geometry::ransac::{Search, ransac};
+use crate::feature::DESCRIPTOR_LENGTH;
+use crate::geometry::fundamental::{Correspondence, FundamentalProblem};
+use crate::geometry::homography::{HomographyProblem, map_pixel};
+use crate::geometry::ransac::{RansacOptions, ransac};
 use nalgebra::{Matrix3, Vector2};
 
 /// SIFT descriptors of all features of one photograph, as 16-bit integers with their squared
 /// lengths, for fast distance computation.
 pub struct Descriptors {
-    values: Vec<[i16; LENGTH]>,
+    values: Vec<[i16; DESCRIPTOR_LENGTH]>,
     squares: Vec<i32>,
 }
 
 impl Descriptors {
     /// Converts the descriptors of all features of a photograph.
-    pub fn new<'d>(all: impl Iterator<Item = &'d [u8; LENGTH]>) -> Self {
-        let values: Vec<[i16; LENGTH]> = all.map(|descriptor| descriptor.map(i16::from)).collect();
+    pub fn new<'d>(all: impl Iterator<Item = &'d [u8; DESCRIPTOR_LENGTH]>) -> Self {
+        let values: Vec<[i16; DESCRIPTOR_LENGTH]> = all.map(|descriptor| descriptor.map(i16::from)).collect();
         let squares = values.iter().map(|v| dot(v, v)).collect();
         Descriptors { values, squares }
     }
@@ -26,13 +26,13 @@ impl Descriptors {
 /// Returns the dot product of two descriptors. The sum of 128 products of bytes cannot overflow;
 /// wrapping arithmetic lets the compiler vectorise the loop. Integers give the same result on all
 /// processors.
-fn dot(a: &[i16; LENGTH], b: &[i16; LENGTH]) -> i32 {
+fn dot(a: &[i16; DESCRIPTOR_LENGTH], b: &[i16; DESCRIPTOR_LENGTH]) -> i32 {
     a.iter().zip(b).fold(0, |sum, (a, b)| sum.wrapping_add(i32::from(*a).wrapping_mul(i32::from(*b))))
 }
 
 /// Returns pairs of features that are each other's nearest neighbours, and whose distance is less
 /// than `ratio` times the distance to the second nearest (Lowe, section 7.1).
-pub fn alike(a: &Descriptors, b: &Descriptors, ratio: f64) -> Vec<(usize, usize)> {
+pub fn match_descriptors(a: &Descriptors, b: &Descriptors, ratio: f64) -> Vec<(usize, usize)> {
     let mut back = vec![(i32::MAX, usize::MAX); b.values.len()];
     let mut forth = Vec::with_capacity(a.values.len());
     for (i, descriptor) in a.values.iter().enumerate() {
@@ -59,36 +59,36 @@ pub fn alike(a: &Descriptors, b: &Descriptors, ratio: f64) -> Vec<(usize, usize)
 
 /// Result of verifying the matches of two photographs: the inliers of a fundamental matrix, and
 /// statistics about them.
-pub struct Geometry {
+pub struct VerifiedMatches {
     /// Indices of the matches that agree with the fundamental matrix.
     pub inliers: Vec<usize>,
     /// Share of these that a single homography explains. If it is near 1, the scene is flat or the
     /// camera only rotated.
-    pub planar: f64,
+    pub planar_fraction: f64,
     /// Median distance in pixels between the positions in both photographs.
-    pub moved: f64,
+    pub median_shift: f64,
 }
 
 /// Returns true if `agree` of `all` matches can agree on a geometry by chance. A few percent of
 /// false matches always lie near their epipolar lines.
-pub fn by_chance(agree: usize, all: usize) -> bool {
+pub fn is_chance(agree: usize, all: usize) -> bool {
     agree * 5 < all
 }
 
 /// Finds the matches that agree with one fundamental matrix; `None` if there are fewer than
 /// `least`, or so few that they could agree by chance.
-pub fn verified(places: &[Pair], threshold: f64, least: usize, seed: u64) -> Option<Geometry> {
-    let search = Search { threshold, samples: 5000, seed };
-    let (_, inliers) = ransac(&Pairs(places), &search)?;
-    if inliers.len() < least || by_chance(inliers.len(), places.len()) {
+pub fn verify_matches(places: &[Correspondence], threshold: f64, least: usize, seed: u64) -> Option<VerifiedMatches> {
+    let search = RansacOptions { threshold, samples: 5000, seed };
+    let (_, inliers) = ransac(&FundamentalProblem(places), &search)?;
+    if inliers.len() < least || is_chance(inliers.len(), places.len()) {
         return None;
     }
-    let pairs: Vec<Pair> = inliers.iter().map(|i| places[*i]).collect();
-    let plane = ransac(&Planar(&pairs), &Search { samples: 500, ..search });
-    let near = |h: &Matrix3<f64>| pairs.iter().filter(|(a, b)| (mapped(h, a) - b).norm() < threshold).count();
-    let planar = plane.map_or(0.0, |(h, _)| near(&h) as f64 / pairs.len() as f64);
+    let pairs: Vec<Correspondence> = inliers.iter().map(|i| places[*i]).collect();
+    let plane = ransac(&HomographyProblem(&pairs), &RansacOptions { samples: 500, ..search });
+    let near = |h: &Matrix3<f64>| pairs.iter().filter(|(a, b)| (map_pixel(h, a) - b).norm() < threshold).count();
+    let planar_fraction = plane.map_or(0.0, |(h, _)| near(&h) as f64 / pairs.len() as f64);
     let mut distances: Vec<f64> = pairs.iter().map(|(a, b): &(Vector2<f64>, Vector2<f64>)| (a - b).norm()).collect();
     distances.sort_by(f64::total_cmp);
-    let moved = distances[distances.len() / 2];
-    Some(Geometry { inliers, planar, moved })
+    let median_shift = distances[distances.len() / 2];
+    Some(VerifiedMatches { inliers, planar_fraction, median_shift })
 }

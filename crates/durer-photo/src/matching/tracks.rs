@@ -1,11 +1,11 @@
 //! Tracks: features matched across photographs, ideally of the same scene point.
 
 /// Feature, given by the index of its photograph and its index in that photograph.
-pub type Member = (usize, usize);
+pub type FeatureId = (usize, usize);
 
 /// Returns the connected components of the graph of matched features, each sorted by photograph. A
 /// component with two features in one photograph cannot be a single point, and is dropped.
-pub fn tracks(counts: &[usize], matches: impl Iterator<Item = (Member, Member)>) -> Vec<Vec<Member>> {
+pub fn build_tracks(counts: &[usize], matches: impl Iterator<Item = (FeatureId, FeatureId)>) -> Vec<Vec<FeatureId>> {
     let mut starts = vec![0];
     counts.iter().for_each(|count| starts.push(starts[starts.len() - 1] + count));
     let mut parents: Vec<usize> = (0..starts[counts.len()]).collect();
@@ -21,7 +21,7 @@ pub fn tracks(counts: &[usize], matches: impl Iterator<Item = (Member, Member)>)
         // The smaller index becomes the root, so the result is independent of the order of matches.
         parents[a.max(b)] = a.min(b);
     }
-    let mut lists: Vec<Vec<Member>> = vec![Vec::new(); parents.len()];
+    let mut lists: Vec<Vec<FeatureId>> = vec![Vec::new(); parents.len()];
     for (photo, count) in counts.iter().enumerate() {
         for feature in 0..*count {
             lists[root(&mut parents, starts[photo] + feature)].push((photo, feature));

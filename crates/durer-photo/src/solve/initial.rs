@@ -1,36 +1,36 @@
 //! Selects the two photographs from which the reconstruction starts.
 
 use super::Solver;
-use crate::geometry::essential::{Directions, pose_before};
-use crate::geometry::ransac::{Search, ransac};
+use crate::geometry::essential::{EssentialProblem, pose_in_front};
+use crate::geometry::ransac::{RansacOptions, ransac};
 use crate::geometry::triangulate::two_views;
-use crate::matching::{Link, Matches, by_chance};
+use crate::matching::{Matches, PhotoPair, is_chance};
 use crate::{Error, Pose};
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
 /// Number of photograph pairs to try, in decreasing order of matches.
-const TRIED: usize = 30;
+const MAX_PAIRS: usize = 30;
 
 impl Solver<'_> {
     /// Selects two photographs that share many points and were taken from clearly different
     /// positions. Sets their poses and triangulates their points.
     pub(super) fn initial(&mut self, matches: &Matches) -> Result<[usize; 2], Error> {
-        let mut links: Vec<&Link> = matches.links.iter().collect();
+        let mut links: Vec<&PhotoPair> = matches.links.iter().collect();
         links.sort_by(|a, b| b.matches.cmp(&a.matches).then(a.pictures.cmp(&b.pictures)));
         let mut best: Option<(f64, [usize; 2], Pose)> = None;
         let mut turned = 0;
-        links.truncate(TRIED);
+        links.truncate(MAX_PAIRS);
         let poses: Vec<_> = links.par_iter().map(|link| self.relative(link.pictures)).collect();
-        for (link, found) in links.into_iter().zip(poses) {
-            let Some((pose, count, angle)) = found else { continue };
-            if angle < self.options.angle.to_radians() {
+        for (link, result) in links.into_iter().zip(poses) {
+            let Some((pose, count, angle)) = result else { continue };
+            if angle < self.options.min_angle.to_radians() {
                 turned += 1;
                 continue;
             }
             // Angles of ten degrees or more are equally good. Planar scenes do not determine the
             // lens.
-            let score = count as f64 * (angle.to_degrees() / 10.0).min(1.0) * (1.2 - link.planar);
+            let score = count as f64 * (angle.to_degrees() / 10.0).min(1.0) * (1.2 - link.planar_fraction);
             if best.as_ref().is_none_or(|best| score > best.0) {
                 best = Some((score, link.pictures, pose));
             }
@@ -43,10 +43,10 @@ impl Solver<'_> {
         let (_, [a, b], pose) = best.ok_or_else(|| Error::new(why))?;
         self.views[a].pose = Some(Pose::identity());
         self.views[b].pose = Some(pose);
-        self.extend();
-        self.settle(2);
+        self.triangulate_tracks();
+        self.adjust_and_filter(2);
         let count = self.tracks.iter().filter(|track| track.position.is_some()).count();
-        if count < self.options.least {
+        if count < self.options.min_points {
             return Err(Error::new("no two photographs share enough points that agree on one geometry"));
         }
         Ok([a, b])
@@ -57,21 +57,21 @@ impl Solver<'_> {
     fn relative(&self, [a, b]: [usize; 2]) -> Option<(Pose, usize, f64)> {
         let lenses = [a, b].map(|view| self.lenses[self.views[view].lens]);
         let mut pairs = Vec::new();
-        for (t, k) in &self.of_view[a] {
+        for (t, k) in &self.tracks_of_view[a] {
             let track = &self.tracks[*t];
-            let Some(other) = track.seen.iter().find(|seen| seen.view == b) else { continue };
+            let Some(other) = track.observations.iter().find(|observation| observation.view == b) else { continue };
             let direction = |lens: usize, pixel: &Vector2<f64>| Some(lenses[lens].unproject(pixel)?.xy());
-            pairs.extend(direction(0, &track.seen[*k].pixel).zip(direction(1, &other.pixel)));
+            pairs.extend(direction(0, &track.observations[*k].pixel).zip(direction(1, &other.pixel)));
         }
         let threshold = (self.threshold(a) / lenses[0].focal).max(self.threshold(b) / lenses[1].focal);
         let seed = self.options.seed ^ 0x5eed ^ ((a as u64) << 32 | b as u64);
-        let (e, inliers) = ransac(&Directions(&pairs), &Search { threshold, samples: 2000, seed })?;
-        if by_chance(inliers.len(), pairs.len()) {
+        let (e, inliers) = ransac(&EssentialProblem(&pairs), &RansacOptions { threshold, samples: 2000, seed })?;
+        if is_chance(inliers.len(), pairs.len()) {
             return None;
         }
         let inliers: Vec<_> = inliers.into_iter().map(|i| pairs[i]).collect();
-        let (pose, before) = pose_before(&e, &inliers)?;
-        if before < self.options.least || before * 2 < inliers.len() {
+        let (pose, before) = pose_in_front(&e, &inliers)?;
+        if before < self.options.min_points || before * 2 < inliers.len() {
             return None;
         }
         let center = pose.center();

@@ -11,7 +11,7 @@ mod initial;
 mod register;
 mod structure;
 
-pub use register::{pose_of, refined_pose};
+pub use register::{estimate_pose, refine_pose};
 
 use crate::adjust::{self, Loss, adjust};
 use crate::geometry::align::Similarity;
@@ -25,7 +25,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 /// of a pixel or less, and some by two pixels.
 const CAUCHY: f64 = 2.385;
 /// Minimum standard deviation of a keypoint's position in pixels.
-const FINEST: f64 = 0.02;
+const MIN_NOISE: f64 = 0.02;
 
 /// Options of incremental reconstruction by [`solve`].
 #[derive(Debug, Clone)]
@@ -40,9 +40,9 @@ pub struct Options {
     /// proportionally more for larger ones.
     pub threshold: f64,
     /// Minimum angle in degrees between the rays to a point.
-    pub angle: f64,
+    pub min_angle: f64,
     /// Minimum number of known points that a photograph must observe to be registered.
-    pub least: usize,
+    pub min_points: usize,
     /// Seed of the random numbers.
     pub seed: u64,
 }
@@ -50,14 +50,14 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let (fixed_focal, no_distortion, own_lenses) = (false, false, false);
-        Options { fixed_focal, no_distortion, own_lenses, threshold: 2.5, angle: 1.5, least: 15, seed: 0 }
+        Options { fixed_focal, no_distortion, own_lenses, threshold: 2.5, min_angle: 1.5, min_points: 15, seed: 0 }
     }
 }
 
 /// Track during reconstruction: its observations, and its position once it is triangulated.
 struct CandidateTrack {
     color: [u8; 3],
-    seen: Vec<Observation>,
+    observations: Vec<Observation>,
     /// For each observation, true if its residual is within the threshold.
     fits: Vec<bool>,
     position: Option<Vector3<f64>>,
@@ -69,16 +69,16 @@ struct Solver<'o> {
     views: Vec<View>,
     lenses: Vec<Lens>,
     /// Initial lenses, which replace lenses that diverge.
-    first: Vec<Lens>,
+    initial_lenses: Vec<Lens>,
     tracks: Vec<CandidateTrack>,
     /// For each photograph, the tracks that it observes and the index of its observation in each.
-    of_view: Vec<Vec<(usize, usize)>>,
+    tracks_of_view: Vec<Vec<(usize, usize)>>,
 }
 
 /// Result of [`solve`]: the reconstruction, and notes for the user.
 pub struct Solution {
     /// Cameras and points.
-    pub all: Reconstruction,
+    pub reconstruction: Reconstruction,
     /// Notes for the user: photographs that were left out, with the reason, and focal lengths that
     /// differ much from EXIF.
     pub notes: Vec<String>,
@@ -96,25 +96,29 @@ pub struct Solution {
 ///
 /// If no two photographs are suitable to start with.
 pub fn solve(matches: &Matches, options: &Options, progress: &dyn Fn(usize)) -> Result<Solution, Error> {
-    let first = attempt(matches, matches, options, progress);
+    let first = solve_once(matches, matches, options, progress);
     let usual = |size: [u32; 2]| 1.2 * f64::from(size[0].max(size[1]));
     let mut again = matches.clone();
     for (i, picture) in again.pictures.iter_mut().enumerate() {
         picture.focal = match &first {
-            Ok(solved) if moved(solved.focal(i) / picture.focal) => solved.focal(i),
-            _ if moved(usual(picture.size) / picture.focal) => usual(picture.size),
+            Ok(solved) if focal_changed(solved.focal(i) / picture.focal) => solved.focal(i),
+            _ if focal_changed(usual(picture.size) / picture.focal) => usual(picture.size),
             _ => picture.focal,
         };
     }
     let whole = first.as_ref().is_ok_and(|solved| {
-        let near = |(i, picture): (usize, &crate::matching::Picture)| !moved(solved.focal(i) / picture.focal);
-        solved.all.registered() == solved.all.views.len() && matches.pictures.iter().enumerate().all(near)
+        let near =
+            |(i, picture): (usize, &crate::matching::MatchedPhoto)| !focal_changed(solved.focal(i) / picture.focal);
+        solved.reconstruction.registered_count() == solved.reconstruction.views.len()
+            && matches.pictures.iter().enumerate().all(near)
     });
     if whole || options.fixed_focal || again == *matches {
         return first;
     }
-    let second = attempt(&again, matches, options, progress);
-    let worth = |solved: &Solution| (solved.all.registered(), solved.all.fit().observations);
+    let second = solve_once(&again, matches, options, progress);
+    let worth = |solved: &Solution| {
+        (solved.reconstruction.registered_count(), solved.reconstruction.reprojection_error().observations)
+    };
     match (first, second) {
         (Ok(one), Ok(two)) => Ok(if worth(&two) > worth(&one) { two } else { one }),
         (one, two) => one.or(two),
@@ -122,20 +126,20 @@ pub fn solve(matches: &Matches, options: &Options, progress: &dyn Fn(usize)) -> 
 }
 
 /// Returns true if a focal length has changed considerably.
-fn moved(ratio: f64) -> bool {
+fn focal_changed(ratio: f64) -> bool {
     !(0.75..=1.33).contains(&ratio)
 }
 
 impl Solution {
     /// Returns the focal length of a photograph's lens in pixels.
     fn focal(&self, view: usize) -> f64 {
-        self.all.lenses[self.all.views[view].lens].focal
+        self.reconstruction.lenses[self.reconstruction.views[view].lens].focal
     }
 }
 
 /// Solves once from the focal lengths in `matches`. Notes compare the result with the focal lengths
 /// in `written`.
-fn attempt(
+fn solve_once(
     matches: &Matches,
     written: &Matches,
     options: &Options,
@@ -154,17 +158,17 @@ fn attempt(
         }
         // Photographs that were refused may fit now.
         refused.fill(false);
-        solver.extend();
+        solver.triangulate_tracks();
         let known = solver.registered();
         progress(known);
         // Adjust only after the number of photographs has grown by a tenth.
         if known > last_adjusted + last_adjusted / 10 {
             solver.adjust(false);
-            solver.drop_misfits();
+            solver.drop_outliers();
             last_adjusted = known;
         }
     }
-    solver.settle(6);
+    solver.adjust_and_filter(6);
     for (i, view) in solver.views.iter().enumerate().filter(|(_, view)| view.pose.is_none()) {
         let why = match matches.links.iter().any(|link| link.pictures.contains(&i)) {
             false => "it shows no point that another photograph shows",
@@ -172,20 +176,23 @@ fn attempt(
         };
         notes.push(format!("{} is left out: {why}", view.name));
     }
-    let mut told = Vec::new();
+    let mut reported = Vec::new();
     for (view, picture) in solver.views.iter().zip(&written.pictures).filter(|(view, _)| view.pose.is_some()) {
         let focal = solver.lenses[view.lens].focal;
-        if moved(focal / picture.focal) && !picture.focal_from.starts_with(GUESS) && !told.contains(&view.lens) {
-            told.push(view.lens);
+        if focal_changed(focal / picture.focal)
+            && !picture.focal_source.starts_with(GUESS)
+            && !reported.contains(&view.lens)
+        {
+            reported.push(view.lens);
             let (name, wrong) = (&picture.name, picture.focal);
             notes.push(format!(
                 "{name}: the focal length is {focal:.0} pixels, but EXIF says {wrong:.0}: EXIF is wrong"
             ));
         }
     }
-    let mut all = solver.reconstruction(true).0;
-    upright(&mut all);
-    Ok(Solution { all, notes })
+    let mut reconstruction = solver.reconstruction(true).0;
+    normalize_world(&mut reconstruction);
+    Ok(Solution { reconstruction, notes })
 }
 
 impl<'o> Solver<'o> {
@@ -197,18 +204,23 @@ impl<'o> Solver<'o> {
         }
         let view = |(i, name): (usize, String)| View { name, lens: lens(i), pose: None };
         let views: Vec<View> = matches.pictures.iter().map(|p| p.name.clone()).enumerate().map(view).collect();
-        let mut of_view = vec![Vec::new(); views.len()];
+        let mut tracks_of_view = vec![Vec::new(); views.len()];
         let mut tracks = Vec::new();
         for (t, track) in matches.tracks.iter().enumerate() {
-            let seen: Vec<Observation> = track
-                .seen
+            let observations: Vec<Observation> = track
+                .observations
                 .iter()
                 .map(|s| Observation { view: s.0, feature: s.1, pixel: Vector2::new(s.2, s.3) })
                 .collect();
-            seen.iter().enumerate().for_each(|(k, seen)| of_view[seen.view].push((t, k)));
-            tracks.push(CandidateTrack { color: track.color, fits: vec![true; seen.len()], seen, position: None });
+            observations.iter().enumerate().for_each(|(k, observation)| tracks_of_view[observation.view].push((t, k)));
+            tracks.push(CandidateTrack {
+                color: track.color,
+                fits: vec![true; observations.len()],
+                observations,
+                position: None,
+            });
         }
-        Solver { options, views, first: lenses.clone(), lenses, tracks, of_view }
+        Solver { options, views, initial_lenses: lenses.clone(), lenses, tracks, tracks_of_view }
     }
 
     fn registered(&self) -> usize {
@@ -229,7 +241,7 @@ impl<'o> Solver<'o> {
             let Some(position) = track.position else { continue };
             let fits =
                 |(seen, fits): (&Observation, &bool)| (*fits && self.views[seen.view].pose.is_some()).then_some(*seen);
-            let list: Vec<Observation> = track.seen.iter().zip(&track.fits).filter_map(fits).collect();
+            let list: Vec<Observation> = track.observations.iter().zip(&track.fits).filter_map(fits).collect();
             if !all || list.len() >= 2 {
                 points.push(Point { position, color: track.color, track: list });
                 tracks.push(t);
@@ -239,17 +251,17 @@ impl<'o> Solver<'o> {
     }
 
     /// Alternates between bundle adjustment and dropping outliers, at most `times` times.
-    fn settle(&mut self, times: usize) {
+    fn adjust_and_filter(&mut self, times: usize) {
         for _ in 0..times {
             self.adjust(false);
-            let dropped = self.drop_misfits();
-            let added = self.extend();
+            let dropped = self.drop_outliers();
+            let added = self.triangulate_tracks();
             if dropped + added == 0 {
                 break;
             }
         }
         self.adjust(true);
-        self.drop_misfits();
+        self.drop_outliers();
     }
 
     /// Runs bundle adjustment. If `thoroughly` is false, it stops at the accuracy that adding
@@ -260,7 +272,7 @@ impl<'o> Solver<'o> {
         // Two photographs do not determine a lens.
         let free = known > 2;
         let options = adjust::Options {
-            loss: if thoroughly { Loss::Cauchy(CAUCHY * all.noise().max(FINEST)) } else { Loss::Huber(1.0) },
+            loss: if thoroughly { Loss::Cauchy(CAUCHY * all.noise().max(MIN_NOISE)) } else { Loss::Huber(1.0) },
             focal: free && !self.options.fixed_focal,
             radial: free && !self.options.no_distortion,
             iterations: if thoroughly { 50 } else { 10 },
@@ -272,8 +284,8 @@ impl<'o> Solver<'o> {
         self.views = all.views;
         self.lenses = all.lenses;
         tracks.iter().zip(&all.points).for_each(|(t, point)| self.tracks[*t].position = Some(point.position));
-        for ((lens, before), first) in self.lenses.iter_mut().zip(before).zip(&self.first) {
-            let sane = (0.2..20.0).contains(&(lens.focal / lens.longer_side())) && lens.radial[0].abs() < 2.0;
+        for ((lens, before), first) in self.lenses.iter_mut().zip(before).zip(&self.initial_lenses) {
+            let sane = (0.2..20.0).contains(&(lens.focal / lens.longer_side())) && lens.distortion[0].abs() < 2.0;
             if !sane {
                 *lens = Lens { focal: before.focal.min(20.0 * before.longer_side()), ..*first };
             }
@@ -282,18 +294,19 @@ impl<'o> Solver<'o> {
 
     /// Finds the photograph that observes the most known points.
     fn next(&self, refused: &[bool]) -> Option<usize> {
-        let count = |view: usize| self.of_view[view].iter().filter(|(t, _)| self.tracks[*t].position.is_some()).count();
+        let count =
+            |view: usize| self.tracks_of_view[view].iter().filter(|(t, _)| self.tracks[*t].position.is_some()).count();
         let open = (0..self.views.len()).filter(|i| self.views[*i].pose.is_none() && !refused[*i]);
         let best = open.map(|i| (i, count(i))).reduce(|a, b| if b.1 > a.1 { b } else { a });
-        best.filter(|(_, count)| *count >= self.options.least).map(|best| best.0)
+        best.filter(|(_, count)| *count >= self.options.min_points).map(|best| best.0)
     }
 }
 
 /// Normalises the orientation, position, and scale of the world: the mean up direction of the
 /// photographs becomes y, the median of the points becomes the origin, and the mean distance of the
 /// cameras becomes 1.
-fn upright(all: &mut Reconstruction) {
-    let poses: Vec<_> = all.views.iter().filter_map(|view| view.pose).collect();
+fn normalize_world(reconstruction: &mut Reconstruction) {
+    let poses: Vec<_> = reconstruction.views.iter().filter_map(|view| view.pose).collect();
     let up: Vector3<f64> = poses.iter().map(|pose| -pose.rotation.row(1).transpose()).sum();
     let Some(up) = up.try_normalize(1e-9) else { return };
     let forward: Vector3<f64> = poses.iter().map(|pose| pose.rotation.row(2).transpose()).sum();
@@ -301,11 +314,11 @@ fn upright(all: &mut Reconstruction) {
     let rotation = Matrix3::from_rows(&[up.cross(&back).transpose(), up.transpose(), back.transpose()]);
     let mut middle = Vector3::zeros();
     for axis in 0..3 {
-        let mut values: Vec<f64> = all.points.iter().map(|point| point.position[axis]).collect();
+        let mut values: Vec<f64> = reconstruction.points.iter().map(|point| point.position[axis]).collect();
         values.sort_by(f64::total_cmp);
         middle[axis] = values.get(values.len() / 2).copied().unwrap_or(0.0);
     }
     let distance = poses.iter().map(|pose| (pose.center() - middle).norm()).sum::<f64>() / poses.len() as f64;
     let scale = if distance > 0.0 { 1.0 / distance } else { 1.0 };
-    Similarity { scale, rotation, shift: -scale * (rotation * middle) }.apply_to(all);
+    Similarity { scale, rotation, translation: -scale * (rotation * middle) }.apply_to(reconstruction);
 }

@@ -3,19 +3,19 @@
 use super::Solver;
 use crate::adjust::{Loss, Options, adjust};
 use crate::geometry::p3p::p3p;
-use crate::geometry::ransac::{Estimate, Search, ransac};
+use crate::geometry::ransac::{RansacOptions, RansacProblem, ransac};
 use crate::{Lens, Observation, Point, Pose, Reconstruction, View};
 use nalgebra::{Vector2, Vector3};
 
 /// RANSAC problem of a camera's pose: world points and their pixels, including outliers, with a
 /// known lens.
-struct PosePairs<'k> {
+struct PoseProblem<'k> {
     lens: &'k Lens,
     pairs: &'k [(Vector3<f64>, Vector2<f64>)],
     directions: Vec<Option<Vector3<f64>>>,
 }
 
-impl Estimate<4> for PosePairs<'_> {
+impl RansacProblem<4> for PoseProblem<'_> {
     type Model = Pose;
 
     fn count(&self) -> usize {
@@ -23,17 +23,17 @@ impl Estimate<4> for PosePairs<'_> {
     }
 
     /// Computes up to four poses from three points, and selects one by the fourth point.
-    fn minimal(&self, sample: &[usize; 4]) -> Vec<Pose> {
+    fn solve_minimal(&self, sample: &[usize; 4]) -> Vec<Pose> {
         let [Some(a), Some(b), Some(c), _] = sample.map(|i| self.directions[i]) else { return Vec::new() };
         let points = [0, 1, 2].map(|k| self.pairs[sample[k]].0);
         let poses = p3p(&points, &[a, b, c]).into_iter().map(|pose| (self.error(&pose, sample[3]), pose));
         poses.reduce(|best, next| if next.0 < best.0 { next } else { best }).map(|best| best.1).into_iter().collect()
     }
 
-    fn refined(&self, inliers: &[usize], model: &Pose) -> Option<Pose> {
+    fn refine(&self, inliers: &[usize], model: &Pose) -> Option<Pose> {
         let pairs: Vec<_> = inliers.iter().map(|i| self.pairs[*i]).collect();
         let options = Options { focal: false, radial: false, iterations: 5, ..Options::default() };
-        refined_pose(&pairs, self.lens, model, &options).map(|refined| refined.0)
+        refine_pose(&pairs, self.lens, model, &options).map(|refined| refined.0)
     }
 
     fn error(&self, model: &Pose, datum: usize) -> f64 {
@@ -44,7 +44,7 @@ impl Estimate<4> for PosePairs<'_> {
 }
 
 /// Adjusts the pose and lens of a single camera.
-pub fn refined_pose(
+pub fn refine_pose(
     pairs: &[(Vector3<f64>, Vector2<f64>)],
     lens: &Lens,
     pose: &Pose,
@@ -65,23 +65,24 @@ pub fn refined_pose(
 
 /// Estimates the pose of a camera with a known lens. Also returns the indices of the inliers;
 /// `None` if there are at most four.
-pub fn pose_of(
+pub fn estimate_pose(
     pairs: &[(Vector3<f64>, Vector2<f64>)],
     lens: &Lens,
     threshold: f64,
     seed: u64,
 ) -> Option<(Pose, Vec<usize>)> {
     let directions = pairs.iter().map(|pair| lens.unproject(&pair.1)).collect();
-    ransac(&PosePairs { lens, pairs, directions }, &Search { threshold, samples: 3000, seed })
+    ransac(&PoseProblem { lens, pairs, directions }, &RansacOptions { threshold, samples: 3000, seed })
 }
 
 impl Solver<'_> {
     /// Estimates the pose of a photograph and adds it to the reconstruction. Returns true on
     /// success.
     pub(super) fn register(&mut self, view: usize) -> bool {
-        let known = self.of_view[view].iter().filter_map(|(t, k)| Some((*t, *k, self.tracks[*t].position?)));
+        let known = self.tracks_of_view[view].iter().filter_map(|(t, k)| Some((*t, *k, self.tracks[*t].position?)));
         let known: Vec<(usize, usize, Vector3<f64>)> = known.collect();
-        let pairs: Vec<_> = known.iter().map(|(t, k, position)| (*position, self.tracks[*t].seen[*k].pixel)).collect();
+        let pairs: Vec<_> =
+            known.iter().map(|(t, k, position)| (*position, self.tracks[*t].observations[*k].pixel)).collect();
         let number = self.views[view].lens;
         // The focal length may still be wrong if no registered photograph has the same lens.
         let alone = !self.views.iter().any(|other| other.lens == number && other.pose.is_some());
@@ -91,7 +92,7 @@ impl Solver<'_> {
         let mut best: Option<(Pose, Vec<usize>, Lens)> = None;
         for factor in factors {
             let lens = Lens { focal: factor * self.lenses[number].focal, ..self.lenses[number] };
-            let Some((pose, inliers)) = pose_of(&pairs, &lens, threshold, self.options.seed ^ view as u64) else {
+            let Some((pose, inliers)) = estimate_pose(&pairs, &lens, threshold, self.options.seed ^ view as u64) else {
                 continue;
             };
             let enough = inliers.len() * 10 >= pairs.len() * 9;
@@ -103,13 +104,13 @@ impl Solver<'_> {
             }
         }
         let Some((pose, inliers, lens)) = best else { return false };
-        if inliers.len() < self.options.least || inliers.len() * 4 < pairs.len() {
+        if inliers.len() < self.options.min_points || inliers.len() * 4 < pairs.len() {
             return false;
         }
         let good: Vec<_> = inliers.iter().map(|i| pairs[*i]).collect();
         let options =
             Options { loss: Loss::Huber(1.0), focal: free, radial: false, iterations: 20, ..Options::default() };
-        let Some((pose, lens)) = refined_pose(&good, &lens, &pose, &options) else { return false };
+        let Some((pose, lens)) = refine_pose(&good, &lens, &pose, &options) else { return false };
         self.views[view].pose = Some(pose);
         self.lenses[number] = lens;
         let mut fits = vec![false; known.len()];

@@ -6,31 +6,31 @@ use crate::{Observation, Pose};
 use nalgebra::Vector3;
 
 /// Maximum number of ray pairs from which a point is triangulated.
-const TRIED: usize = 12;
+const MAX_RAY_PAIRS: usize = 12;
 
 impl Solver<'_> {
     /// Returns the residual of an observation in pixels; infinite behind the camera, `None` if the
     /// photograph is not registered.
-    fn residual(&self, position: &Vector3<f64>, seen: &Observation) -> Option<f64> {
-        let view = &self.views[seen.view];
+    fn residual(&self, position: &Vector3<f64>, observation: &Observation) -> Option<f64> {
+        let view = &self.views[observation.view];
         let p = view.pose.as_ref()?.apply(position);
-        let length = (self.lenses[view.lens].project(&p) - seen.pixel).norm();
+        let length = (self.lenses[view.lens].project(&p) - observation.pixel).norm();
         Some(if p.z > 0.0 && length.is_finite() { length } else { f64::INFINITY })
     }
 
-    fn fits(&self, position: &Vector3<f64>, seen: &Observation) -> bool {
-        self.residual(position, seen).is_some_and(|length| length <= self.threshold(seen.view))
+    fn fits(&self, position: &Vector3<f64>, observation: &Observation) -> bool {
+        self.residual(position, observation).is_some_and(|length| length <= self.threshold(observation.view))
     }
 
     /// Triangulates tracks without a point, and updates which observations fit. Returns the number
     /// of new points.
-    pub(super) fn extend(&mut self) -> usize {
+    pub(super) fn triangulate_tracks(&mut self) -> usize {
         let mut added = 0;
         for t in 0..self.tracks.len() {
             let track = &self.tracks[t];
             let position = match track.position {
                 Some(position) => position,
-                None => match self.triangulated(track) {
+                None => match self.triangulate(track) {
                     Some(position) => {
                         added += 1;
                         position
@@ -38,7 +38,7 @@ impl Solver<'_> {
                     None => continue,
                 },
             };
-            let fits = track.seen.iter().map(|seen| self.fits(&position, seen)).collect();
+            let fits = track.observations.iter().map(|observation| self.fits(&position, observation)).collect();
             let track = &mut self.tracks[t];
             (track.position, track.fits) = (Some(position), fits);
         }
@@ -47,18 +47,18 @@ impl Solver<'_> {
 
     /// Returns the rays from the registered photographs to a track's point.
     fn rays(&self, track: &CandidateTrack) -> Vec<(Vector3<f64>, Vector3<f64>)> {
-        let ray = |seen: &Observation| {
-            let view = &self.views[seen.view];
+        let ray = |observation: &Observation| {
+            let view = &self.views[observation.view];
             let pose: &Pose = view.pose.as_ref()?;
-            let direction = self.lenses[view.lens].unproject(&seen.pixel)?;
-            Some((pose.center(), pose.outwards(&direction).normalize()))
+            let direction = self.lenses[view.lens].unproject(&observation.pixel)?;
+            Some((pose.center(), pose.direction_to_world(&direction).normalize()))
         };
-        track.seen.iter().filter_map(ray).collect()
+        track.observations.iter().filter_map(ray).collect()
     }
 
     /// Triangulates a track from the pair of rays, at a sufficient angle, whose point agrees with
     /// the most observations.
-    fn triangulated(&self, track: &CandidateTrack) -> Option<Vector3<f64>> {
+    fn triangulate(&self, track: &CandidateTrack) -> Option<Vector3<f64>> {
         let rays = self.rays(track);
         let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
         for i in 0..rays.len() {
@@ -66,11 +66,11 @@ impl Solver<'_> {
         }
         // Try the widest angles first.
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-        let widest = libm::cos(self.options.angle.to_radians());
+        let widest = libm::cos(self.options.min_angle.to_radians());
         let mut best: Option<(usize, Vector3<f64>)> = None;
-        for (_, i, j) in pairs.iter().take(TRIED).filter(|pair| pair.0 < widest) {
+        for (_, i, j) in pairs.iter().take(MAX_RAY_PAIRS).filter(|pair| pair.0 < widest) {
             let Some(point) = nearest_to_rays(&[rays[*i], rays[*j]]) else { continue };
-            let count = track.seen.iter().filter(|seen| self.fits(&point, seen)).count();
+            let count = track.observations.iter().filter(|observation| self.fits(&point, observation)).count();
             if count >= 2 && best.is_none_or(|best| count > best.0) {
                 best = Some((count, point));
             }
@@ -83,22 +83,26 @@ impl Solver<'_> {
 
     /// Drops observations with large residuals, and points with fewer than two observations or a
     /// small angle between their rays. Returns the number of dropped observations.
-    pub(super) fn drop_misfits(&mut self) -> usize {
+    pub(super) fn drop_outliers(&mut self) -> usize {
         let mut dropped = 0;
-        let widest = libm::cos(self.options.angle.to_radians());
+        let widest = libm::cos(self.options.min_angle.to_radians());
         for t in 0..self.tracks.len() {
             let track = &self.tracks[t];
             let Some(position) = track.position else { continue };
-            let fits: Vec<bool> = track.seen.iter().map(|seen| self.fits(&position, seen)).collect();
+            let fits: Vec<bool> =
+                track.observations.iter().map(|observation| self.fits(&position, observation)).collect();
             let known = |(seen, fits): (&Observation, &bool)| {
                 let pose = self.views[seen.view].pose.as_ref().filter(|_| *fits)?;
                 Some((position - pose.center()).normalize())
             };
-            let rays: Vec<Vector3<f64>> = track.seen.iter().zip(&fits).filter_map(known).collect();
+            let rays: Vec<Vector3<f64>> = track.observations.iter().zip(&fits).filter_map(known).collect();
             let wide = rays.iter().enumerate().any(|(i, a)| rays[i + 1..].iter().any(|b| a.dot(b) < widest));
-            let registered = |seen: &Observation| self.views[seen.view].pose.is_some();
-            let gone =
-                track.seen.iter().zip(track.fits.iter().zip(&fits)).filter(|(s, (a, b))| registered(s) && **a && !**b);
+            let registered = |observation: &Observation| self.views[observation.view].pose.is_some();
+            let gone = track
+                .observations
+                .iter()
+                .zip(track.fits.iter().zip(&fits))
+                .filter(|(s, (a, b))| registered(s) && **a && !**b);
             dropped += gone.count();
             let track = &mut self.tracks[t];
             track.fits = fits;

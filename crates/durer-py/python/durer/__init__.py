@@ -29,14 +29,14 @@ __all__ = [
 ]  # fmt: skip
 
 #: Modules that are imported on first access, because they are rarely used or need other packages.
-_LATER = ("embreex", "farm", "open3d", "trimesh", "vision", "widget")
+_LAZY_MODULES = ("embreex", "farm", "open3d", "trimesh", "vision", "widget")
 
 
 def __getattr__(name: str) -> Any:
-    if name in _LATER:
+    if name in _LAZY_MODULES:
         return importlib.import_module(f".{name}", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *_LATER])
+    return sorted([*globals(), *_LAZY_MODULES])

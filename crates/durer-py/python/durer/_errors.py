@@ -33,7 +33,7 @@ class SceneError(_durer.SceneError):
 SceneError.__module__ = "durer"
 
 
-def spoken(work: Callable[[], T]) -> T:
+def with_python_names(work: Callable[[], T]) -> T:
     """Calls `work`, and replaces `--option-name` by `option_name` in the messages of its errors."""
     try:
         return work()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from ._arrays import Bools, Doubles, Floats, Places, finite
+from ._arrays import Bools, Doubles, Floats, Points, finite
 
 #: Distance from the origin, as a multiple of the mesh's extent, beyond which vertices are stored
 #: relative to the mesh's centre. At this distance, five of the 24 bits of single precision are
@@ -13,7 +13,7 @@ from ._arrays import Bools, Doubles, Floats, Places, finite
 FAR = 32
 
 
-def _center(vertices: Places) -> Doubles:
+def _center(vertices: Points) -> Doubles:
     """Returns the centre of the vertices' bounds along the axes along which it is far away, and 0
     along the others. The centre is rounded to single precision, so subtracting it from
     single-precision coordinates is exact."""
@@ -28,7 +28,7 @@ def _center(vertices: Places) -> Doubles:
     return np.where(is_far, middle, 0).astype(np.float64)
 
 
-def centered(given: Places) -> tuple[Floats, Doubles]:
+def centered(given: Points) -> tuple[Floats, Doubles]:
     """Returns a single-precision copy of the vertices relative to a centre, and the centre."""
     center = _center(given)
     with np.errstate(over="ignore", invalid="ignore"):

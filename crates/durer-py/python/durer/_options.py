@@ -17,7 +17,7 @@ Pairs = list[tuple[str, str]]
 
 
 @dataclass(frozen=True)
-class Statement:
+class OptionInfo:
     """Description of a render option, from the library's table."""
 
     help: str
@@ -29,7 +29,7 @@ class Statement:
     group: str
 
 
-STATEMENTS = {name: Statement(help, value, words, group) for name, help, value, words, group in _durer.options()}
+OPTIONS = {name: OptionInfo(help, value, words, group) for name, help, value, words, group in _durer.options()}
 
 #: Old names of options and their current names.
 _ALIASES = {"weight": "min-throughput", "noise": "noise-threshold", "time": "time-limit"}
@@ -47,15 +47,15 @@ def option_name(keyword: str) -> str:
 
 def is_reading(keyword: str) -> bool:
     """Returns True if a keyword affects how a scene is read."""
-    stated = STATEMENTS.get(option_name(keyword))
-    return stated is not None and stated.group == "reading"
+    info = OPTIONS.get(option_name(keyword))
+    return info is not None and info.group == "reading"
 
 
 def is_work(keyword: str) -> bool:
     """Returns True if a keyword does not change the finished image, such as the number of threads.
     `shard` does change it."""
     name = option_name(keyword)
-    return name in STATEMENTS and STATEMENTS[name].group == "work" and not name.startswith("shard")
+    return name in OPTIONS and OPTIONS[name].group == "work" and not name.startswith("shard")
 
 
 def pairs(options: Mapping[str, Any], reading: bool) -> Pairs:
@@ -65,8 +65,8 @@ def pairs(options: Mapping[str, Any], reading: bool) -> Pairs:
     found: Pairs = []
     for keyword, value in options.items():
         name = option_name(keyword)
-        if name not in STATEMENTS or is_reading(name) != reading and (name, reading) != ("size", True):
-            known = [n.replace("-", "_") for n in STATEMENTS if is_reading(n) == reading]
+        if name not in OPTIONS or is_reading(name) != reading and (name, reading) != ("size", True):
+            known = [n.replace("-", "_") for n in OPTIONS if is_reading(n) == reading]
             near = difflib.get_close_matches(keyword, known, 1)
             hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
             raise TypeError(f"there is no option {keyword}: {hint}")
@@ -74,16 +74,16 @@ def pairs(options: Mapping[str, Any], reading: bool) -> Pairs:
     return found
 
 
-def parsed(words: Optional[Sequence[str]]) -> Pairs:
+def parse_words(words: Optional[Sequence[str]]) -> Pairs:
     """Converts command line options, as written after `durer render SCENE`, to pairs."""
     found: Pairs = []
     rest = iter(words or [])
     for word in rest:
         name, equals, text = word.removeprefix("--").partition("=")
         name = _ALIASES.get(name, name)
-        if not word.startswith("--") or name not in STATEMENTS:
+        if not word.startswith("--") or name not in OPTIONS:
             raise ValueError(f"{word} is not an option of a render")
-        value = STATEMENTS[name].value
+        value = OPTIONS[name].value
         if not equals and value == "on|off":
             text = "on"
         elif not equals and value is not None:
@@ -96,7 +96,7 @@ def parsed(words: Optional[Sequence[str]]) -> Pairs:
 def _texts(keyword: str, name: str, value: Any) -> list[str]:
     """Returns the value of a keyword as texts: none if the option is not set, several if it is
     repeated."""
-    takes = STATEMENTS[name].value
+    takes = OPTIONS[name].value
     if name == "studio" and value in (None, False, True):
         return [] if value else ["none"]
     if value is None or value is False and takes is None:

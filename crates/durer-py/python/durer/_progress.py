@@ -12,15 +12,15 @@ Progress: TypeAlias = Union[None, bool, Watch]
 
 
 #: Number of items below which an operation finishes so quickly that no progress is shown.
-_LITTLE = 1 << 14
+_MIN_ITEMS = 1 << 14
 
 
-def watch(progress: Progress, count: int = _LITTLE) -> Optional[Watch]:
+def watch(progress: Progress, count: int = _MIN_ITEMS) -> Optional[Watch]:
     """Returns the progress callback: `progress` if it is a function, otherwise one that draws a
     line on the terminal; None if there are few items or no terminal."""
     if callable(progress):
         return progress
-    if progress is False or progress is None and count < _LITTLE or progress is None and not sys.stderr.isatty():
+    if progress is False or progress is None and count < _MIN_ITEMS or progress is None and not sys.stderr.isatty():
         return None
     start = time.monotonic()
 

@@ -1,10 +1,10 @@
 // The browser side of `durer.widget.Explorer`: shows the image, and sends drags, wheel turns, keys
 // and clicks.
 const element = (name, inside, text) => {
-  const made = document.createElement(name);
-  if (text !== undefined) made.textContent = text;
-  inside.append(made);
-  return made;
+  const child = document.createElement(name);
+  if (text !== undefined) child.textContent = text;
+  inside.append(child);
+  return child;
 };
 
 // Adds a node of the explanation: its display colour, its description, and its terms below it.
@@ -22,28 +22,28 @@ const branch = (node, inside, open) => {
 
 function render({ model, el }) {
   el.classList.add("durer");
-  const image = element("img", el), word = element("p", el), tree = element("div", el);
+  const image = element("img", el), status = element("p", el), tree = element("div", el);
   Object.assign(image, { tabIndex: 0, draggable: false, alt: "the scene: drag or use the arrow keys to orbit, plus and minus to zoom, click a pixel to explain it" });
-  word.setAttribute("role", "status");
+  status.setAttribute("role", "status");
   const draw = () => {
     URL.revokeObjectURL(image.src);
     image.src = URL.createObjectURL(new Blob([model.get("picture")], { type: "image/png" }));
   };
-  const tell = () => {
-    const told = model.get("told");
+  const show = () => {
+    const explanation = model.get("explanation");
     tree.replaceChildren();
-    word.textContent = model.get("word");
-    if (told.terms) branch(told, tree, true);
+    status.textContent = model.get("status");
+    if (explanation.terms) branch(explanation, tree, true);
   };
   // Send one request at a time, and accumulate further input until it is answered.
-  let busy = false, turn = [0, 0], nearer = 1, ask = null;
+  let busy = false, turn = [0, 0], zoom = 1, ask = null;
   const send = () => {
-    if (busy || (!turn[0] && !turn[1] && nearer === 1 && !ask)) return;
+    if (busy || (!turn[0] && !turn[1] && zoom === 1 && !ask)) return;
     busy = true;
-    model.send({ turn, nearer, ask });
-    turn = [0, 0]; nearer = 1; ask = null;
+    model.send({ turn, zoom, ask });
+    turn = [0, 0]; zoom = 1; ask = null;
   };
-  const made = () => { busy = false; send(); };
+  const handled = () => { busy = false; send(); };
   const drag = (x, y) => { turn = [turn[0] + x, turn[1] + y]; send(); };
   let held = null;
   image.addEventListener("pointerdown", e => { held = { x: e.clientX, y: e.clientY, far: 0 }; image.setPointerCapture(e.pointerId); });
@@ -60,21 +60,21 @@ function render({ model, el }) {
     if (held && held.far < 4) { ask = [(e.clientX - box.left) / box.width, (e.clientY - box.top) / box.height]; send(); }
     held = null;
   });
-  image.addEventListener("wheel", e => { e.preventDefault(); nearer *= Math.exp(e.deltaY / 800); send(); }, { passive: false });
+  image.addEventListener("wheel", e => { e.preventDefault(); zoom *= Math.exp(e.deltaY / 800); send(); }, { passive: false });
   image.addEventListener("keydown", e => {
     const keys = { ArrowLeft: [-0.05, 0], ArrowRight: [0.05, 0], ArrowUp: [0, -0.05], ArrowDown: [0, 0.05] };
     if (keys[e.key]) { e.preventDefault(); drag(...keys[e.key]); }
-    if (e.key === "+" || e.key === "-") { nearer *= e.key === "+" ? 0.9 : 1.1; send(); }
+    if (e.key === "+" || e.key === "-") { zoom *= e.key === "+" ? 0.9 : 1.1; send(); }
   });
   model.on("change:picture", draw);
-  model.on("change:told", tell);
-  model.on("change:word", tell);
-  model.on("change:made", made);
+  model.on("change:explanation", show);
+  model.on("change:status", show);
+  model.on("change:handled", handled);
   draw();
-  tell();
+  show();
   return () => {
     URL.revokeObjectURL(image.src);
-    model.off("change:picture", draw); model.off("change:told", tell); model.off("change:word", tell); model.off("change:made", made);
+    model.off("change:picture", draw); model.off("change:explanation", show); model.off("change:status", show); model.off("change:handled", handled);
   };
 }
 

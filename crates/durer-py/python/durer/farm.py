@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Iterable, Iterator, Optional, Sequence, Union
 
 from . import _durer
-from ._options import Pairs, parsed
+from ._options import Pairs, parse_words
 from ._progress import Progress, watch
 from .world import Part, PathLike, Pictures, World, load
 
@@ -32,7 +32,7 @@ def _files(world: World) -> dict[str, bytes]:
 
 
 @functools.lru_cache(maxsize=4)
-def _opened(files: tuple[tuple[str, bytes], ...], reading: tuple[tuple[str, str], ...]) -> _durer.World:
+def _load(files: tuple[tuple[str, bytes], ...], reading: tuple[tuple[str, str], ...]) -> _durer.World:
     """Loads a scene from its files. The cache makes each worker load it once."""
     with tempfile.TemporaryDirectory() as folder:
         for name, content in files:
@@ -44,20 +44,20 @@ def _opened(files: tuple[tuple[str, bytes], ...], reading: tuple[tuple[str, str]
 
 def shard(files: tuple[tuple[str, bytes], ...], reading: tuple[tuple[str, str], ...], options: Pairs, index: int, count: int) -> bytes:
     """Renders one shard in a worker, and returns its part as bytes."""
-    world = _opened(files, reading)
+    world = _load(files, reading)
     own = [*options, ("threads", "1"), ("shard", f"{index}/{count}")]
     part = world.part(own)
     world.render(part, own, None)
     return part.write()
 
 
-def _whole(names: Sequence[str], contents: Sequence[bytes], reading: tuple[tuple[str, str], ...], options: Pairs, index: int, count: int) -> bytes:
+def _shard_task(names: Sequence[str], contents: Sequence[bytes], reading: tuple[tuple[str, str], ...], options: Pairs, index: int, count: int) -> bytes:
     """Renders one shard, with the contents of each file as a separate argument, so that Dask sends
     each file once."""
     return shard(tuple(zip(names, contents)), reading, options, index, count)
 
 
-def _given(content: bytes) -> bytes:
+def _file_task(content: bytes) -> bytes:
     """Returns `content`: the task that holds a file's contents on the cluster."""
     return content
 
@@ -66,10 +66,10 @@ class _Frame:
     """An image whose shards are being rendered by the workers."""
 
     def __init__(
-        self, world: World, client: Any, shards: int, asked: Pairs, sent: dict[bytes, Any]
+        self, world: World, client: Any, shards: int, pairs: Pairs, sent: dict[bytes, Any]
     ) -> None:
         # Report wrong options before anything is sent.
-        world._world.part([*asked, ("shard", f"1/{shards}")])
+        world._world.part([*pairs, ("shard", f"1/{shards}")])
         files = _files(world)
         # Each file is a task that returns its contents, which Dask can run again. Scattered data
         # would be lost with the worker that has the only copy. The tasks are held until the end,
@@ -78,14 +78,14 @@ class _Frame:
             warnings.filterwarnings("ignore", "Sending large graph")
             for content in files.values():
                 if content not in sent:
-                    sent[content] = client.submit(_given, content, key=f"durer-file-{uuid.uuid4().hex}")
+                    sent[content] = client.submit(_file_task, content, key=f"durer-file-{uuid.uuid4().hex}")
         self.contents = contents = [sent[content] for content in files.values()]
         # Task names are unique to this run, so that tasks of earlier runs do not interfere.
         name = f"durer-{world.digest[:12]}-{uuid.uuid4().hex[:12]}"
         self.client = client
         self.futures = [
             client.submit(
-                _whole, list(files), contents, tuple(world._reading), asked, index, shards, key=(name, index)
+                _shard_task, list(files), contents, tuple(world._reading), pairs, index, shards, key=(name, index)
             )
             for index in range(1, shards + 1)
         ]
@@ -119,11 +119,11 @@ def render(
     from distributed import as_completed
 
     if isinstance(scene, World):
-        world, asked = scene, [*scene._all(options), *parsed(words)]
+        world, pairs = scene, [*scene._all(options), *parse_words(words)]
     else:
         world = load(scene, words=words)
-        asked = world._all(options)
-    frame = _Frame(world, client, shards, asked, {})
+        pairs = world._all(options)
+    frame = _Frame(world, client, shards, pairs, {})
     shown = watch(progress)
     try:
         for done, _ in enumerate(as_completed(frame.futures), 1):  # type: ignore[no-untyped-call, unused-ignore]

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _durer
-from ._arrays import Bools, Doubles, Floats, Ints, Places, rows, vectors
+from ._arrays import Bools, Doubles, Floats, Ints, Points, as_vectors, rows
 
 #: Type of the array elements that `Mesh.ray` and `Scene.ray` return.
 RECORD = np.dtype(
@@ -18,7 +18,7 @@ RECORD = np.dtype(
 )
 
 
-class _Source(Protocol):
+class _Target(Protocol):
     """The mesh or scene that was queried."""
 
     _tree: _durer.Tree
@@ -26,13 +26,13 @@ class _Source(Protocol):
     _far: bool
 
 
-class _Met:
+class _SurfaceHits:
     """Attributes of hits that are computed on demand: points, normals, and origins of secondary
     rays."""
 
     triangle: Ints
     uv: Floats
-    _source: _Source
+    _source: _Target
     _threads: Optional[int]
 
     def _flat(self, shape: tuple[int, ...]) -> tuple[Optional[Ints], Ints, Floats]:
@@ -41,18 +41,18 @@ class _Met:
         raise NotImplementedError
 
     @cached_property
-    def point(self) -> Places:
+    def point(self) -> Points:
         """Hit points, interpolated from the triangles' corners; NaN for misses. Float32, or float64
         if the mesh or scene is far from the origin. Use `leave` for origins of secondary rays."""
         shape, source = self.triangle.shape, self._source
-        return _durer.met_points(source._tree, self._flat(shape), source._far, self._threads).reshape(*shape, 3)
+        return _durer.hit_points(source._tree, self._flat(shape), source._far, self._threads).reshape(*shape, 3)
 
     @cached_property
     def normal(self) -> Floats:
         """Unit normals of the triangles, on the side from which the mesh's corners are
         counterclockwise (outwards), also for mirrored instances; 0 for misses."""
         shape = self.triangle.shape
-        return _durer.met_normals(self._source._tree, self._flat(shape), self._threads).reshape(*shape, 3)
+        return _durer.hit_normals(self._source._tree, self._flat(shape), self._threads).reshape(*shape, 3)
 
     def leave(self, directions: npt.ArrayLike) -> Doubles:
         """Returns origins for secondary rays in the given directions. Each origin is off the
@@ -64,7 +64,7 @@ class _Met:
         misses, and rays from there hit nothing. The result is float64, because single precision is
         not enough in scenes and far from the origin.
         """
-        ways = vectors("directions", directions)
+        ways = as_vectors("directions", directions)
         try:
             shape = np.broadcast_shapes(self.triangle.shape, ways.shape[:-1])
         except ValueError:
@@ -72,7 +72,7 @@ class _Met:
                 f"directions must have a shape that fits {(*self.triangle.shape, 3)}, but has {ways.shape}"
             ) from None
         ways = rows(np.broadcast_to(ways, (*shape, 3)), 3)
-        return _durer.met_leave(self._source._tree, self._flat(shape), ways, self._threads).reshape(*shape, 3)
+        return _durer.secondary_origins(self._source._tree, self._flat(shape), ways, self._threads).reshape(*shape, 3)
 
 
 def _row(array: Any, shape: tuple[int, ...]) -> Any:
@@ -80,7 +80,7 @@ def _row(array: Any, shape: tuple[int, ...]) -> Any:
 
 
 @dataclass(frozen=True, eq=False)
-class Hits(_Met):
+class Hits(_SurfaceHits):
     """First hits of rays with a mesh or a scene. All arrays have the shape of the rays, for example
     (n,), followed by the components of vectors. Hits can be indexed like arrays of that shape:
     `hits[hits.hit]`, `hits[:, None]`."""
@@ -92,7 +92,7 @@ class Hits(_Met):
     #: Second and third barycentric coordinates: the point is (1 - u - v) a + u b + v c.
     uv: Floats
     _objects: Optional[Ints]
-    _source: _Source
+    _source: _Target
     _threads: Optional[int] = None
 
     @property
@@ -131,7 +131,7 @@ class Hits(_Met):
 
 
 @dataclass(frozen=True, eq=False)
-class AllHits(_Met):
+class AllHits(_SurfaceHits):
     """All hits of rays with a mesh or a scene, ray by ray, sorted by distance."""
 
     #: For each hit, the index of its ray; ascending.
@@ -143,7 +143,7 @@ class AllHits(_Met):
     triangle: Ints
     object: Ints
     uv: Floats
-    _source: _Source
+    _source: _Target
     _threads: Optional[int] = None
 
     @property

@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _durer
-from ._arrays import places, rows
+from ._arrays import as_points, rows
 from .hits import Hits
-from .rays import Mesh, Scene, _Rays, rays_of
+from .rays import Mesh, Scene, _Rays, split_rays
 
 _Answers = dict[str, npt.NDArray[Any]]
 
@@ -39,7 +39,7 @@ class RaycastingScene:
         self._scene = None
         return len(self._meshes) - 1
 
-    def _asked(self) -> _Rays:
+    def _built(self) -> _Rays:
         if self._scene is None:
             self._scene = self._meshes[0] if len(self._meshes) == 1 else Scene(self._meshes)
         return self._scene
@@ -51,7 +51,7 @@ class RaycastingScene:
 
     def cast_rays(self, rays: npt.ArrayLike, nthreads: int = 0) -> _Answers:
         """Returns the first hit of each ray."""
-        hits: Hits = self._asked().closest(*rays_of(rays), threads=nthreads or self._threads)
+        hits: Hits = self._built().closest(*split_rays(rays), threads=nthreads or self._threads)
         return {
             "t_hit": hits.t,
             "geometry_ids": self._ids(hits.object),
@@ -64,15 +64,15 @@ class RaycastingScene:
         self, rays: npt.ArrayLike, tnear: float = 0.0, tfar: float = np.inf, nthreads: int = 0
     ) -> npt.NDArray[np.bool_]:
         """Returns True for each ray that hits anything."""
-        return self._asked().occluded(*rays_of(rays), tnear, tfar, threads=nthreads or self._threads)
+        return self._built().occluded(*split_rays(rays), tnear, tfar, threads=nthreads or self._threads)
 
     def count_intersections(self, rays: npt.ArrayLike, nthreads: int = 0) -> npt.NDArray[np.int32]:
         """Returns the number of triangles that each ray crosses."""
-        return self._asked().count(*rays_of(rays), threads=nthreads or self._threads)
+        return self._built().count(*split_rays(rays), threads=nthreads or self._threads)
 
     def list_intersections(self, rays: npt.ArrayLike, nthreads: int = 0) -> _Answers:
         """Returns all hits of all rays."""
-        hits = self._asked().all_hits(*rays_of(rays), threads=nthreads or self._threads)
+        hits = self._built().all_hits(*split_rays(rays), threads=nthreads or self._threads)
         return {
             "ray_splits": hits.offsets,
             "ray_ids": hits.ray,
@@ -84,10 +84,10 @@ class RaycastingScene:
 
     def compute_closest_points(self, query_points: npt.ArrayLike, nthreads: int = 0) -> _Answers:
         """Returns the point on the surface nearest to each query point."""
-        scene = self._asked()
+        scene = self._built()
         near = scene.nearest(query_points, threads=nthreads or self._threads)
         met = (near.object.reshape(-1), near.triangle.reshape(-1), rows(near.uv.astype(np.float32), 2))
-        normal = _durer.met_normals(scene._tree, met, nthreads or self._threads)
+        normal = _durer.hit_normals(scene._tree, met, nthreads or self._threads)
         return {
             "points": near.point.astype(np.float32),
             "geometry_ids": self._ids(near.object),
@@ -98,7 +98,7 @@ class RaycastingScene:
 
     def compute_distance(self, query_points: npt.ArrayLike, nthreads: int = 0) -> npt.NDArray[np.float32]:
         """Returns the distance of each point from the surface."""
-        return self._asked().distance(query_points, threads=nthreads or self._threads).astype(np.float32)
+        return self._built().distance(query_points, threads=nthreads or self._threads).astype(np.float32)
 
     def compute_signed_distance(
         self, query_points: npt.ArrayLike, nthreads: int = 0, nsamples: int = 1
@@ -117,7 +117,7 @@ class RaycastingScene:
     def _inside(self, query_points: npt.ArrayLike, nthreads: int) -> npt.NDArray[np.bool_]:
         """Returns which points are inside, by the parity of all crossings. As in Open3D, a point
         inside two meshes counts as outside."""
-        points, threads = places("query_points", query_points), nthreads or self._threads
+        points, threads = as_points("query_points", query_points), nthreads or self._threads
         inside = np.zeros(points.shape[:-1], np.bool_)
         for mesh in self._meshes:
             inside ^= mesh.contains(points, threads=threads)

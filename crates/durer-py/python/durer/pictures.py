@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _durer
-from ._arrays import Floats, seen
+from ._arrays import Floats, as_array
 from .world import PathLike, Pictures
 
 
@@ -50,7 +50,7 @@ def _scaled(name: str, value: Any) -> tuple[Floats, bool]:
         return np.ascontiguousarray(value["color"]), False
     if isinstance(value, (str, os.PathLike)):
         return read(value)
-    array = seen(name, value)
+    array = as_array(name, value)
     if array.ndim != 3 or array.shape[2] not in (3, 4):
         raise ValueError(f"{name} must have the shape (height, width, 3), but has {array.shape}")
     display = array.dtype == np.uint8

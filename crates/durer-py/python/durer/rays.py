@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _durer
-from ._arrays import Bools, Doubles, Floats, Ints, Places, indices, matrix, places, rows, scalars, seen, vectors
+from ._arrays import Bools, Doubles, Floats, Ints, Points, as_array, as_indices, as_matrix, as_points, as_scalars, as_vectors, rows
 from ._mesh import FAR, centered, open_edges
 from ._progress import Progress, watch
 from .hits import AllHits, Hits, Nearest
@@ -18,13 +18,13 @@ from .hits import AllHits, Hits, Nearest
 Preset: TypeAlias = Literal["fast", "balanced", "best"]
 
 #: Rays for the native module: their number, origins, directions, t_min and t_max.
-Asked: TypeAlias = tuple[int, Places, Floats, Floats, Floats]
+RayArrays: TypeAlias = tuple[int, Points, Floats, Floats, Floats]
 
 
-def asked(origins: Any, directions: Any, t_min: Any, t_max: Any) -> tuple[tuple[int, ...], Asked]:
+def check_rays(origins: Any, directions: Any, t_min: Any, t_max: Any) -> tuple[tuple[int, ...], RayArrays]:
     """Checks the arguments of a ray query. Returns the broadcast shape of the rays, and their
     arrays."""
-    starts, ways = places("origins", origins), vectors("directions", directions)
+    starts, ways = as_points("origins", origins), as_vectors("directions", directions)
     shape = starts.shape[:-1]
     if starts.shape != ways.shape:
         try:
@@ -34,7 +34,7 @@ def asked(origins: Any, directions: Any, t_min: Any, t_max: Any) -> tuple[tuple[
                 f"origins and directions must have shapes that fit together, but have {starts.shape} and {ways.shape}"
             ) from None
     starts, ways = (_spread(array, shape) for array in (starts, ways))
-    return shape, (math.prod(shape), starts, ways, scalars("t_min", t_min, shape), scalars("t_max", t_max, shape))
+    return shape, (math.prod(shape), starts, ways, as_scalars("t_min", t_min, shape), as_scalars("t_max", t_max, shape))
 
 
 def _spread(array: Any, shape: tuple[int, ...]) -> Any:
@@ -75,8 +75,8 @@ class _Rays:
         progress: Progress = None,
     ) -> Hits:
         """Returns the first hit of each ray."""
-        shape, rays = asked(origins, directions, t_min, t_max)
-        t, triangle, objects, uv = self._tree.closest(rays, threads_asked(threads), watch(progress, rays[0]))
+        shape, rays = check_rays(origins, directions, t_min, t_max)
+        t, triangle, objects, uv = self._tree.closest(rays, check_threads(threads), watch(progress, rays[0]))
         objects = None if objects is None else objects.reshape(shape)
         return Hits(t.reshape(shape), triangle.reshape(shape), uv.reshape(*shape, 2), objects, self, threads)
 
@@ -97,8 +97,8 @@ class _Rays:
     ) -> Bools:
         """Returns True for each ray that hits anything. Faster than `closest`. To test whether two
         points see each other, use their difference as the direction and `t_max` 1."""
-        shape, rays = asked(origins, directions, t_min, t_max)
-        return self._tree.occluded(rays, threads_asked(threads), watch(progress, rays[0])).reshape(shape)
+        shape, rays = check_rays(origins, directions, t_min, t_max)
+        return self._tree.occluded(rays, check_threads(threads), watch(progress, rays[0])).reshape(shape)
 
     def count(
         self,
@@ -112,8 +112,8 @@ class _Rays:
     ) -> Ints:
         """Returns the number of triangles that each ray crosses, which is exact even through edges
         and vertices."""
-        shape, rays = asked(origins, directions, t_min, t_max)
-        return self._tree.count(rays, threads_asked(threads), watch(progress, rays[0])).reshape(shape)
+        shape, rays = check_rays(origins, directions, t_min, t_max)
+        return self._tree.count(rays, check_threads(threads), watch(progress, rays[0])).reshape(shape)
 
     def all_hits(
         self,
@@ -126,8 +126,8 @@ class _Rays:
         progress: Progress = None,
     ) -> AllHits:
         """Returns all hits of each ray, sorted by distance."""
-        shape, rays = asked(origins, directions, t_min, t_max)
-        count, (t, triangle, object, uv) = self._tree.all_hits(rays, threads_asked(threads), watch(progress, rays[0]))
+        shape, rays = check_rays(origins, directions, t_min, t_max)
+        count, (t, triangle, object, uv) = self._tree.all_hits(rays, check_threads(threads), watch(progress, rays[0]))
         ray = np.repeat(np.arange(len(count)), count)
         return AllHits(ray, count.reshape(shape), t, triangle, object, uv.reshape(-1, 2), self, threads)
 
@@ -137,8 +137,8 @@ class _Rays:
         """Returns True for each point, of shape (..., 3), that is inside, by the parity of
         crossings, which is exact for closed meshes. In a scene, a point is inside if any object
         contains it."""
-        at = places("points", points)
-        answer = self._tree.contains(rows(at, 3), threads_asked(threads), watch(progress))
+        at = as_points("points", points)
+        answer = self._tree.contains(rows(at, 3), check_threads(threads), watch(progress))
         return answer.reshape(at.shape[:-1])
 
     def nearest(
@@ -164,7 +164,7 @@ class _Rays:
         return distance
 
     @property
-    def bounds(self) -> Places:
+    def bounds(self) -> Points:
         """Lower and upper corner of the bounding box, of shape (2, 3). For a scene, the union of
         the transformed boxes of its meshes, which can be larger than the tightest box."""
         return np.array(self._tree.bounds(), np.float32)
@@ -175,7 +175,7 @@ class _Rays:
         return self._tree.bytes()
 
 
-def threads_asked(threads: Optional[int]) -> Optional[int]:
+def check_threads(threads: Optional[int]) -> Optional[int]:
     if threads is not None and (not isinstance(threads, (int, np.integer)) or threads < 1):
         raise ValueError(f"threads must be 1 or more, a whole number, or None for all, but is {threads!r}")
     return threads
@@ -206,31 +206,31 @@ class Mesh(_Rays):
         *,
         threads: Optional[int] = None,
     ) -> None:
-        given = places("vertices", vertices)
+        given = as_points("vertices", vertices)
         if given.ndim != 2:
             raise ValueError(f"vertices must have the shape (n, 3), but has {given.shape}")
-        self._build(*centered(given), indices("faces", faces), preset, threads)
+        self._build(*centered(given), as_indices("faces", faces), preset, threads)
 
     def _build(
         self, own: Floats, center: Doubles, faces: npt.NDArray[np.uint32], preset: Preset, threads: Optional[int] = None
     ) -> None:
-        self._hold(own, center, faces, preset)
-        self._tree = _durer.Tree.mesh(own, faces, tuple(center.tolist()), preset, threads_asked(threads))
+        self._set(own, center, faces, preset)
+        self._tree = _durer.Tree.from_mesh(own, faces, tuple(center.tolist()), preset, check_threads(threads))
 
-    def _hold(self, own: Floats, center: Doubles, faces: npt.NDArray[np.uint32], preset: Preset) -> None:
+    def _set(self, own: Floats, center: Doubles, faces: npt.NDArray[np.uint32], preset: Preset) -> None:
         own.setflags(write=False)
         faces.setflags(write=False)
         self._own, self._center, self.faces, self._preset = own, center, faces, preset
         self._far = bool(center.any())
 
     @staticmethod
-    def _again(own: Floats, center: Doubles, faces: npt.NDArray[np.uint32], preset: Preset) -> Mesh:
+    def _restore(own: Floats, center: Doubles, faces: npt.NDArray[np.uint32], preset: Preset) -> Mesh:
         mesh = Mesh.__new__(Mesh)
         mesh._build(own, center, faces, preset)
         return mesh
 
     def __reduce__(self) -> Any:
-        return Mesh._again, (self._own, self._center, self.faces, self._preset)
+        return Mesh._restore, (self._own, self._center, self.faces, self._preset)
 
     def __repr__(self) -> str:
         return f"<Mesh of {len(self.faces)} triangles>"
@@ -239,7 +239,7 @@ class Mesh(_Rays):
         """Returns the mesh with moved vertices, which must have the same number. Its tree is a
         refitted copy of this mesh's tree. Refitting is much faster than building, but rays become
         slower the farther vertices move. The results are those of a new mesh."""
-        given = places("vertices", vertices)
+        given = as_points("vertices", vertices)
         if given.shape != self._own.shape:
             raise ValueError(f"vertices must have the shape {self._own.shape}, but has {given.shape}")
         own, center = centered(given)
@@ -249,12 +249,12 @@ class Mesh(_Rays):
         if not (np.isfinite(own).all() and np.isfinite(self._own).all()):
             mesh._build(own, center, self.faces, self._preset)
             return mesh
-        mesh._hold(own, center, self.faces, self._preset)
+        mesh._set(own, center, self.faces, self._preset)
         mesh._tree = self._tree.refitted(own, self.faces, tuple(center.tolist()))
         return mesh
 
     @cached_property
-    def vertices(self) -> Places:
+    def vertices(self) -> Points:
         """Vertices as used by queries, of shape (n, 3): float32, or float64 if they are far from
         the origin."""
         if not self._far:
@@ -264,7 +264,7 @@ class Mesh(_Rays):
         return vertices
 
     @property
-    def bounds(self) -> Places:
+    def bounds(self) -> Points:
         bounds = np.array(self._tree.bounds(), np.float32)
         return bounds + self._center if self._far else bounds
 
@@ -278,9 +278,9 @@ class Mesh(_Rays):
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> Nearest:
-        at = places("points", points)
+        at = as_points("points", points)
         shape = at.shape[:-1]
-        found = self._tree.nearest(rows(at, 3), within, threads_asked(threads), watch(progress))
+        found = self._tree.nearest(rows(at, 3), within, check_threads(threads), watch(progress))
         distance, triangle, point, uv = found
         triangle = triangle.reshape(shape)
         objects = np.where(triangle >= 0, np.int32(0), np.int32(-1))
@@ -292,7 +292,7 @@ class Mesh(_Rays):
         """Returns points on the surface as hits with `t` 0, which have `point`, `normal` and
         `leave`. A point is given by its triangle, of shape (...), and by u and v, of shape (...,
         2). Use it, for example, to start rays at nearest points or at vertices."""
-        triangles, places = np.asarray(seen("triangle", triangle), np.int32), vectors("uv", uv, 2)
+        triangles, places = np.asarray(as_array("triangle", triangle), np.int32), as_vectors("uv", uv, 2)
         if bool((triangles >= len(self.faces)).any()) or triangles.shape != places.shape[:-1]:
             raise ValueError(f"there are {len(self.faces)} triangles, and each place must have one of them with u and v")
         return Hits(np.zeros(triangles.shape, np.float32), triangles, places, None, self)
@@ -314,7 +314,7 @@ class Mesh(_Rays):
         """Unit normals of all triangles; 0 for triangles without area."""
         count = len(self.faces)
         all = (None, np.arange(count, dtype=np.int32), np.zeros((count, 2), np.float32))
-        return _durer.met_normals(self._tree, all, None).reshape(-1, 3)
+        return _durer.hit_normals(self._tree, all, None).reshape(-1, 3)
 
 
 Placed: TypeAlias = Union[Mesh, tuple[Mesh, npt.ArrayLike]]
@@ -344,11 +344,11 @@ class Scene(_Rays):
             if not isinstance(mesh, Mesh):
                 raise TypeError(f"object {i} must be a Mesh or a pair of a Mesh and a matrix, but is {type(mesh).__name__}")
             meshes.append(mesh)
-            matrices.append(matrix(f"the matrix of object {i}", place))
+            matrices.append(as_matrix(f"the matrix of object {i}", place))
         self.meshes = tuple(meshes)
         self.matrices = np.array(matrices, np.float64).reshape(-1, 3, 4)
         trees = [mesh._tree for mesh in self.meshes]
-        self._tree = _durer.Tree.placed(trees, rows(self.matrices, 12))
+        self._tree = _durer.Tree.from_instances(trees, rows(self.matrices, 12))
         least, greatest = self._tree.bounds()
         size = max((b - a for a, b in zip(least, greatest)), default=0.0)
         self._far = bool(self.meshes) and max(map(abs, [*least, *greatest])) > FAR * size >= 0
@@ -394,9 +394,9 @@ class Scene(_Rays):
     nearest.__doc__ = (_Rays.nearest.__doc__ or "") + " The first such query joins all objects into one mesh."
 
 
-def rays_of(value: Any) -> tuple[Floats, Floats]:
+def split_rays(value: Any) -> tuple[Floats, Floats]:
     """Splits Open3D's rays of six numbers into origins and directions."""
-    array = seen("rays", value)
+    array = as_array("rays", value)
     if array.ndim == 0 or array.shape[-1] != 6:
         raise ValueError(f"rays must have the shape (..., 6), but has {array.shape}")
     array = np.asarray(array, np.float32)

@@ -8,7 +8,7 @@ from typing import Any, Iterable, Mapping, Optional, TypeVar, Union
 import numpy as np
 import numpy.typing as npt
 
-from ._arrays import finite, matrix, seen
+from ._arrays import as_array, as_matrix, finite
 from .rays import Mesh
 
 Self = TypeVar("Self", bound="Object")
@@ -47,7 +47,7 @@ class Thing:
             return str(numbers[id(value)])
         if isinstance(value, (int, np.integer)) and not isinstance(value, bool):
             return str(int(value))
-        array = seen(f"{self.word}: {name}", value)
+        array = as_array(f"{self.word}: {name}", value)
         if array.ndim == 0:
             return number(array)
         if array.ndim == 1 and array.shape == (3,):
@@ -202,10 +202,10 @@ class Moved(Object):
     """Object with a transform."""
 
     def __init__(self, item: Union[Object, Mesh], place: npt.ArrayLike) -> None:
-        array = seen("place", place)
+        array = as_array("place", place)
         if array.shape == (3,):
             array = np.concatenate([np.eye(3), array[:, None]], axis=1)
-        self.item, self.matrix = item, matrix("place", array)
+        self.item, self.matrix = item, as_matrix("place", array)
         self.material = None if isinstance(item, Mesh) else item.material
 
     def write(self, writer: Writer, material: Optional[Material]) -> str:

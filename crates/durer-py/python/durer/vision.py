@@ -8,7 +8,7 @@ from typing import Union
 import numpy as np
 import numpy.typing as npt
 
-from ._arrays import Bools, Doubles, Floats, Ints, Places, seen
+from ._arrays import Bools, Doubles, Floats, Ints, Points, as_array
 from .rays import Mesh, Scene
 
 
@@ -28,7 +28,7 @@ class View:
     #: Index of the triangle, -1 for misses.
     triangles: Ints
     #: Point in world space; NaN for misses.
-    points: Places
+    points: Points
 
 
 def _zeros() -> Doubles:
@@ -60,7 +60,7 @@ class Camera:
         self._coefficients()
 
     def _inner(self) -> Doubles:
-        inner = np.asarray(seen("intrinsics", self.intrinsics), np.float64)
+        inner = np.asarray(as_array("intrinsics", self.intrinsics), np.float64)
         if inner.shape != (3, 3):
             raise ValueError(f"intrinsics must have the shape (3, 3), but has {inner.shape}")
         if not np.isfinite(inner).all() or (inner[2] != (0, 0, 1)).any() or inner[1, 0] != 0:
@@ -70,7 +70,7 @@ class Camera:
         return inner
 
     def _outer(self) -> tuple[Doubles, Doubles]:
-        outer = np.asarray(seen("extrinsics", self.extrinsics), np.float64)
+        outer = np.asarray(as_array("extrinsics", self.extrinsics), np.float64)
         if outer.shape not in ((3, 4), (4, 4)):
             raise ValueError(f"extrinsics must have the shape (3, 4) or (4, 4), but has {outer.shape}")
         if not np.isfinite(outer).all() or len(outer) == 4 and (outer[3] != (0, 0, 0, 1)).any():
@@ -81,7 +81,7 @@ class Camera:
         return turn, outer[:3, 3]
 
     def _coefficients(self) -> Doubles:
-        given = np.asarray(seen("distortion", self.distortion), np.float64).reshape(-1)
+        given = np.asarray(as_array("distortion", self.distortion), np.float64).reshape(-1)
         if len(given) not in (0, 4, 5, 8):
             raise ValueError(f"distortion must be 4, 5 or 8 numbers, but is {len(given)}")
         if not np.isfinite(given).all():
@@ -101,7 +101,7 @@ class Camera:
         """Returns the pixel coordinates x and y of world points of shape (..., 3); NaN for points
         behind the camera."""
         turn, shift = self._outer()
-        local = np.asarray(seen("points", points), np.float64) @ turn.T + shift
+        local = np.asarray(as_array("points", points), np.float64) @ turn.T + shift
         with np.errstate(divide="ignore", invalid="ignore"):
             z = np.where(local[..., 2] > 0, local[..., 2], np.nan)
             x, y = self._distorted(local[..., 0] / z, local[..., 1] / z)

@@ -53,7 +53,7 @@ class _Camera:
             raise ValueError(f"a camera without `{name}` cannot orbit: {' '.join(self.block.split())[:60]}")
         return np.array(found[1].split(), np.float64)
 
-    def go(self, right: float, down: float, nearer: float) -> None:
+    def go(self, right: float, down: float, zoom: float) -> None:
         """Orbits around the target by fractions of half a turn, and zooms."""
         up, away = _unit(self.up), _unit(self.eye - self.target)
         height = np.degrees(np.arcsin(np.clip(away @ up, -1, 1)))
@@ -62,7 +62,7 @@ class _Camera:
         side = np.cross(up, _unit(level) if np.linalg.norm(level) > 1e-6 else _unit(np.cross(up, [up[1], up[2], up[0]])))
         turned = -np.pi * right
         level = np.cos(turned) * np.cross(side, up) + np.sin(turned) * side
-        self.far *= float(np.clip(nearer, 0.01, 100))
+        self.far *= float(np.clip(zoom, 0.01, 100))
         angle = np.radians(height)
         self.eye = self.target + self.far * (np.cos(angle) * level + np.sin(angle) * up)
         self.along = _unit(self.target - self.eye)
@@ -98,11 +98,11 @@ class Explorer(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
     #: The rendered image as PNG.
     picture = traitlets.Bytes(b"").tag(sync=True)
     #: Text of the status line, or of an error.
-    word = traitlets.Unicode("").tag(sync=True)
+    status = traitlets.Unicode("").tag(sync=True)
     #: The explanation as a tree of nodes with `text`, `color` for CSS, `value` and `terms`.
-    told = traitlets.Dict({}).tag(sync=True)
+    explanation = traitlets.Dict({}).tag(sync=True)
     #: Number of requests from the page that were handled.
-    made = traitlets.Int(0).tag(sync=True)
+    handled = traitlets.Int(0).tag(sync=True)
 
     def __init__(self, world: World, *, size: tuple[int, int] = (480, 360), samples: int = 4, **options: Any) -> None:
         super().__init__()
@@ -111,55 +111,55 @@ class Explorer(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
         #: The world as currently shown; `explorer.world.save(folder)` saves it.
         self.world = world
         self._draw()
-        self.on_msg(self._told_of)
+        self.on_msg(self._on_message)
 
     def _draw(self) -> None:
         pictures = self.world.render(size=self._size, samples=self._samples, progress=False, **self._options)
         self.picture = pictures._repr_png_()
         at = ", ".join(f"{x:.4g}" for x in self._camera.eye)
-        self.told, self.word = {}, f"seen from ({at})"
+        self.explanation, self.status = {}, f"seen from ({at})"
 
-    def _told_of(self, _: Any, wish: dict[str, Any], __: Any) -> None:
-        self._hear(wish)
+    def _on_message(self, _: Any, request: dict[str, Any], __: Any) -> None:
+        self._handle(request)
 
-    def _hear(self, wish: dict[str, Any]) -> None:
-        """Handles a request from the page. `turn` and `nearer` move the camera; `ask` explains the
+    def _handle(self, request: dict[str, Any]) -> None:
+        """Handles a request from the page. `turn` and `zoom` move the camera; `ask` explains the
         pixel at fractions of the width and height."""
         try:
-            (right, down), nearer, ask = wish["turn"], wish["nearer"], wish["ask"]
-            if right or down or nearer != 1:
-                self._camera.go(right, down, nearer)
+            (right, down), zoom, ask = request["turn"], request["zoom"], request["ask"]
+            if right or down or zoom != 1:
+                self._camera.go(right, down, zoom)
                 self.world = self.world.rewritten(self._camera.scene())
                 self._draw()
             if ask is not None:
                 width, height = self._size
                 self.explain(min(int(ask[0] * width), width - 1), min(int(ask[1] * height), height - 1))
         except Exception as error:
-            self.word = f"{type(error).__name__}: {error.args[0] if error.args else error}"
+            self.status = f"{type(error).__name__}: {error.args[0] if error.args else error}"
         finally:
-            self.made += 1
+            self.handled += 1
 
     def explain(self, x: int, y: int) -> dict[str, Any]:
         """Explains a pixel by the ray through its centre. Returns the explanation and shows it on
         the page."""
         answer = self.world.explain(x, y, size=self._size, samples=1, **self._options)
         samples = [sample["light"] for sample in answer["pixel"]["samples"] if sample["light"] is not None]
-        self.told = _told(samples[0], answer) if samples else {}
-        self.word = f"pixel {x}, {y}" if samples else f"pixel {x}, {y}: the camera sees nothing there"
-        return self.told
+        self.explanation = _node(samples[0], answer) if samples else {}
+        self.status = f"pixel {x}, {y}" if samples else f"pixel {x}, {y}: the camera sees nothing there"
+        return self.explanation
 
 
-def _told(node: dict[str, Any], answer: dict[str, Any]) -> dict[str, Any]:
+def _node(node: dict[str, Any], answer: dict[str, Any]) -> dict[str, Any]:
     """Converts a node of an explanation to the form that the page shows."""
     # Spectral values have four numbers and no display colour.
     value = [float(x or 0) for x in node["value"]]
     screen = [255 * (1.055 * x ** (1 / 2.4) - 0.055 if x > 0.0031308 else 12.92 * x) for x in np.clip(value, 0, 1)]
     color = f"rgb({', '.join(str(round(x)) for x in screen)})" if len(value) == 3 else "transparent"
-    text = f"{_named(node['what'], answer)}: {' '.join(f'{x:.3g}' for x in value)}"
-    return {"text": text, "color": color, "value": value, "terms": [_told(term, answer) for term in node["terms"]]}
+    text = f"{_describe(node['what'], answer)}: {' '.join(f'{x:.3g}' for x in value)}"
+    return {"text": text, "color": color, "value": value, "terms": [_node(term, answer) for term in node["terms"]]}
 
 
-def _named(what: dict[str, Any], answer: dict[str, Any]) -> str:
+def _describe(what: dict[str, Any], answer: dict[str, Any]) -> str:
     """Returns a short description of a node."""
 
     def name(kind: str, number: Optional[Any]) -> str:

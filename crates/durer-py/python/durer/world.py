@@ -14,18 +14,18 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _durer
-from ._arrays import Bools, Doubles, Floats, Ints, vectors
-from ._errors import SceneError, spoken
-from ._options import STATEMENTS, Pairs, is_reading, is_work, pairs, parsed
+from ._arrays import Bools, Doubles, Floats, Ints, as_vectors
+from ._errors import SceneError, with_python_names
+from ._options import OPTIONS, Pairs, is_reading, is_work, pairs, parse_words
 from ._progress import Progress, watch
-from .rays import Mesh, asked, threads_asked
+from .rays import Mesh, check_rays, check_threads
 from .things import Camera, Group, Light, Object, Thing, Writer, ply
 from .words import Background, PhongMaterial
 
 PathLike: TypeAlias = Union[str, "os.PathLike[str]"]
 
 #: Images of single numbers, whose three channels are equal.
-_SINGLE = {"depth", "object", "material", "sample-count", "variance", "cost"}
+_SCALAR_IMAGES = {"depth", "object", "material", "sample-count", "variance", "cost"}
 
 
 class Pictures(dict[str, Floats]):
@@ -41,7 +41,7 @@ class Pictures(dict[str, Floats]):
         self._alpha: dict[str, Optional[npt.NDArray[np.float32]]] = {}
         for name, width, height, values, alpha in part._part.pictures(False):
             picture = values.reshape(height, width, 3)
-            self[name] = picture[..., 0].copy() if name in _SINGLE else picture
+            self[name] = picture[..., 0].copy() if name in _SCALAR_IMAGES else picture
             self._alpha[name] = alpha
             if alpha is not None and "alpha" not in self:
                 self["alpha"] = alpha.reshape(height, width)
@@ -192,7 +192,7 @@ class Surfaces:
         """Returns origins for secondary rays in the given directions; see `Hits.leave`. On a solid
         with several parts, a point that is closer to an edge than its precision can get an origin
         on the other side of that edge."""
-        ways = vectors("directions", directions)
+        ways = as_vectors("directions", directions)
         try:
             ways = np.broadcast_to(ways, self.point.shape)
         except ValueError:
@@ -250,7 +250,7 @@ class World:
         own: Pairs = [],
     ) -> None:
         self.path, self._text, self._given, self._reading = path, text, given, [*pairs(reading, True), *own]
-        self._world = spoken(lambda: _durer.World(path, text, given, self._reading))
+        self._world = with_python_names(lambda: _durer.World(path, text, given, self._reading))
 
     @classmethod
     def load(cls, path: PathLike, *, words: Optional[Sequence[str]] = None, **reading: Any) -> World:
@@ -262,7 +262,7 @@ class World:
         those about rendering apply to all renders of the world. Raises SceneError with file, line
         and column."""
         world = cls.__new__(cls)
-        world._load(Path(path), None, [], reading, parsed(words))
+        world._load(Path(path), None, [], reading, parse_words(words))
         return world
 
     @classmethod
@@ -273,10 +273,10 @@ class World:
         return world
 
     def __reduce__(self) -> Any:
-        return World._again, (self.path, self._text, self._given, self._reading)
+        return World._restore, (self.path, self._text, self._given, self._reading)
 
     @staticmethod
-    def _again(path: Path, text: Optional[bytes], given: list[tuple[str, bytes]], reading: Pairs) -> World:
+    def _restore(path: Path, text: Optional[bytes], given: list[tuple[str, bytes]], reading: Pairs) -> World:
         world = World.__new__(World)
         world._load(path, text, given, {}, reading)
         return world
@@ -284,7 +284,7 @@ class World:
     def rewritten(self, text: str) -> World:
         """Returns the world of another text, in the same folder, with the same meshes and
         options."""
-        return World._again(self.path, text.encode(), self._given, self._reading)
+        return World._restore(self.path, text.encode(), self._given, self._reading)
 
     @property
     def text(self) -> str:
@@ -331,7 +331,7 @@ class World:
         """Returns an empty part with these render options; `shard=(3, 16)` makes it the third of
         sixteen shards."""
         given = self._all(options)
-        part = Part(spoken(lambda: self._world.part(given)))
+        part = Part(with_python_names(lambda: self._world.part(given)))
         part._options = {name: value for name, value in options.items() if not is_work(name)}
         return part
 
@@ -424,8 +424,8 @@ class World:
     ) -> Surfaces:
         """Returns the first hit of each ray with any object, including spheres and solids, as when
         rendering. Arguments are those of `Mesh.closest`."""
-        shape, rays = asked(origins, directions, t_min, t_max)
-        ids, values, places = self._world.closest(rays, threads_asked(threads), watch(progress))
+        shape, rays = check_rays(origins, directions, t_min, t_max)
+        ids, values, places = self._world.closest(rays, check_threads(threads), watch(progress))
         whole, other, place = ids.reshape(-1, 3), values.reshape(-1, 10), places.reshape(*shape, 4)
 
         def one(column: npt.NDArray[Any]) -> Any:
@@ -449,8 +449,8 @@ class World:
         progress: Progress = None,
     ) -> Bools:
         """Returns True for each ray that hits anything, including glass."""
-        shape, rays = asked(origins, directions, t_min, t_max)
-        return self._world.occluded(rays, threads_asked(threads), watch(progress)).reshape(shape)
+        shape, rays = check_rays(origins, directions, t_min, t_max)
+        return self._world.occluded(rays, check_threads(threads), watch(progress)).reshape(shape)
 
     def explain(self, x: int, y: int, **options: Any) -> dict[str, Any]:
         """Explains a pixel's colour as a tree of terms that sum to it; see docs/explain.md. Pass
@@ -459,14 +459,14 @@ class World:
             if not isinstance(value, (int, np.integer)) or not 0 <= value < 1 << 32:
                 raise ValueError(f"{name} must be the number of a pixel, 0 or more, but is {value!r}")
         given = self._all(options)
-        answer: dict[str, Any] = json.loads(spoken(lambda: self._world.explain(given, (int(x), int(y)))))
+        answer: dict[str, Any] = json.loads(with_python_names(lambda: self._world.explain(given, (int(x), int(y)))))
         return answer
 
     def check(self, **options: Any) -> list[dict[str, Any]]:
         """Returns likely mistakes in the scene, causes before consequences, as `durer check --json`
         lists them."""
         given = self._all(options)
-        found: list[dict[str, Any]] = json.loads(spoken(lambda: self._world.check(given)))
+        found: list[dict[str, Any]] = json.loads(with_python_names(lambda: self._world.check(given)))
         return found
 
     def _repr_png_(self) -> bytes:
@@ -493,7 +493,7 @@ def check(path: PathLike, **options: Any) -> list[dict[str, Any]]:
 
 def options() -> dict[str, str]:
     """Returns the options of `World.render` with their help."""
-    return {name.replace("-", "_"): stated.help for name, stated in STATEMENTS.items() if stated.group != "reading"}
+    return {name.replace("-", "_"): info.help for name, info in OPTIONS.items() if info.group != "reading"}
 
 
 def kinds() -> dict[str, str]:

@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Key of a cached mesh or picture: the file or the memory contents that it was read from.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Origin {
+pub(super) enum AssetKey {
     /// A file with its modification stamp.
     File(Stamp),
     /// Bytes or numbers in memory.
@@ -29,21 +29,21 @@ pub struct AssetCache(Mutex<CacheEntries>);
 struct CacheEntries {
     /// Dialect rules that the meshes were built with.
     rules: Option<DialectRules>,
-    meshes: Items<Origin, Arc<MeshTree>>,
-    pictures: Items<(Origin, Encoding), Texture>,
+    meshes: AssetTable<AssetKey, Arc<MeshTree>>,
+    pictures: AssetTable<(AssetKey, Encoding), Texture>,
 }
 
 /// Cached meshes or pictures, by key, with counts of those built and reused.
 #[derive(Debug)]
-struct Items<K, V> {
-    all: HashMap<K, Item<V>>,
-    made: usize,
+struct AssetTable<K, V> {
+    all: HashMap<K, CachedAsset<V>>,
+    built: usize,
     reused: usize,
 }
 
 /// Cached mesh or picture, with the hash of the file that it was read from.
 #[derive(Clone, Debug)]
-pub(super) struct Item<V> {
+pub(super) struct CachedAsset<V> {
     pub value: V,
     pub digest: Option<Digest>,
     /// True if the current or most recent compilation uses the item.
@@ -52,21 +52,21 @@ pub(super) struct Item<V> {
 
 /// Numbers of meshes and pictures that the latest compilation built and took from the cache.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Reuse {
+pub struct CacheStatistics {
     /// Number of items that were read and built.
-    pub made: usize,
+    pub built: usize,
     /// Number of items that were reused.
     pub reused: usize,
 }
 
-impl<K, V> Default for Items<K, V> {
+impl<K, V> Default for AssetTable<K, V> {
     fn default() -> Self {
-        Items { all: HashMap::new(), made: 0, reused: 0 }
+        AssetTable { all: HashMap::new(), built: 0, reused: 0 }
     }
 }
 
-impl<K: Eq + Hash, V: Clone> Items<K, V> {
-    fn get(&mut self, key: &K) -> Option<Item<V>> {
+impl<K: Eq + Hash, V: Clone> AssetTable<K, V> {
+    fn get(&mut self, key: &K) -> Option<CachedAsset<V>> {
         let item = self.all.get_mut(key)?;
         self.reused += usize::from(!item.used);
         item.used = true;
@@ -74,24 +74,24 @@ impl<K: Eq + Hash, V: Clone> Items<K, V> {
     }
 
     fn put(&mut self, key: K, value: V, digest: Option<Digest>) {
-        self.made += 1;
-        self.all.insert(key, Item { value, digest, used: true });
+        self.built += 1;
+        self.all.insert(key, CachedAsset { value, digest, used: true });
     }
 
     fn begin(&mut self) {
-        (self.made, self.reused) = (0, 0);
+        (self.built, self.reused) = (0, 0);
         self.all.values_mut().for_each(|item| item.used = false);
     }
 }
 
 impl AssetCache {
-    fn inside(&self) -> MutexGuard<'_, CacheEntries> {
+    fn lock(&self) -> MutexGuard<'_, CacheEntries> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Starts a compilation. Clears the cache if the rules differ, since meshes depend on them.
     pub(super) fn begin(&self, rules: &DialectRules) {
-        let mut inside = self.inside();
+        let mut inside = self.lock();
         if inside.rules.as_ref() != Some(rules) {
             *inside = CacheEntries { rules: Some(rules.clone()), ..CacheEntries::default() };
         }
@@ -101,34 +101,37 @@ impl AssetCache {
 
     /// Ends a compilation and drops the items that it did not use.
     pub(super) fn finish(&self) {
-        let mut inside = self.inside();
+        let mut inside = self.lock();
         inside.meshes.all.retain(|_, item| item.used);
         inside.pictures.all.retain(|_, item| item.used);
     }
 
     /// Returns the cached mesh with this key.
-    pub(super) fn mesh(&self, origin: &Origin) -> Option<Item<Arc<MeshTree>>> {
-        self.inside().meshes.get(origin)
+    pub(super) fn mesh(&self, origin: &AssetKey) -> Option<CachedAsset<Arc<MeshTree>>> {
+        self.lock().meshes.get(origin)
     }
 
     /// Adds a mesh.
-    pub(super) fn keep_mesh(&self, origin: Origin, mesh: &Arc<MeshTree>, digest: Option<Digest>) {
-        self.inside().meshes.put(origin, Arc::clone(mesh), digest);
+    pub(super) fn keep_mesh(&self, origin: AssetKey, mesh: &Arc<MeshTree>, digest: Option<Digest>) {
+        self.lock().meshes.put(origin, Arc::clone(mesh), digest);
     }
 
     /// Returns the cached picture with this key and encoding.
-    pub(super) fn picture(&self, origin: &Origin, encoding: Encoding) -> Option<Item<Texture>> {
-        self.inside().pictures.get(&(origin.clone(), encoding))
+    pub(super) fn picture(&self, origin: &AssetKey, encoding: Encoding) -> Option<CachedAsset<Texture>> {
+        self.lock().pictures.get(&(origin.clone(), encoding))
     }
 
     /// Adds a picture.
-    pub(super) fn keep_picture(&self, origin: Origin, encoding: Encoding, texture: &Texture, digest: Option<Digest>) {
-        self.inside().pictures.put((origin, encoding), texture.clone(), digest);
+    pub(super) fn keep_picture(&self, origin: AssetKey, encoding: Encoding, texture: &Texture, digest: Option<Digest>) {
+        self.lock().pictures.put((origin, encoding), texture.clone(), digest);
     }
 
     /// Returns how many meshes and pictures the latest compilation built and reused.
-    pub fn reuse(&self) -> Reuse {
-        let inside = self.inside();
-        Reuse { made: inside.meshes.made + inside.pictures.made, reused: inside.meshes.reused + inside.pictures.reused }
+    pub fn statistics(&self) -> CacheStatistics {
+        let inside = self.lock();
+        CacheStatistics {
+            built: inside.meshes.built + inside.pictures.built,
+            reused: inside.meshes.reused + inside.pictures.reused,
+        }
     }
 }

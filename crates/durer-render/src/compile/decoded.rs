@@ -26,7 +26,7 @@ pub(super) fn decode(
     diagnostics: &mut Diagnostics,
 ) -> Option<Texture> {
     let raster = Encoded::open(bytes, path).and_then(|encoded| encoded.read_raster(memory));
-    match used(name, path, raster, diagnostics)? {
+    match value_or_report(name, path, raster, diagnostics)? {
         Raster::Eight(picture) => {
             let texture = Texture::new(picture.width, picture.height, picture.pixels)?.with_alpha(Some(picture.alpha));
             Some(if srgb { texture.with_decoding(image::decode_srgb) } else { texture })
@@ -39,7 +39,7 @@ pub(super) fn decode(
             Some(Texture::from_floats(picture.width, picture.height, picture.pixels)?.with_opacity(alpha))
         }
         Raster::Float(mut picture, mut alpha) => {
-            if let Some(message) = mend(&mut picture.pixels, picture.width, path) {
+            if let Some(message) = replace_invalid_texels(&mut picture.pixels, picture.width, path) {
                 diagnostics.push(Diagnostic::warning(message).code("bad-texels").at(name.span));
             }
             alpha.iter_mut().filter(|a| !a.is_finite()).for_each(|a| *a = 1.0);
@@ -54,7 +54,7 @@ const BRIGHTEST: f32 = 65_504.0;
 
 /// Replaces NaN texels by 0 and clamps infinite ones to [`BRIGHTEST`]. Returns a warning text if
 /// there were any.
-pub(super) fn mend(texels: &mut [Vec3], width: u32, path: &str) -> Option<String> {
+pub(super) fn replace_invalid_texels(texels: &mut [Vec3], width: u32, path: &str) -> Option<String> {
     let (mut count, mut first) = (0_usize, None);
     for (i, texel) in texels.iter_mut().enumerate().filter(|(_, texel)| !texel.is_finite()) {
         count += 1;
@@ -72,7 +72,7 @@ pub(super) fn mend(texels: &mut [Vec3], width: u32, path: &str) -> Option<String
 }
 
 /// Returns a picture that was read, or reports the error at the file name in the scene.
-pub(super) fn used<T>(
+pub(super) fn value_or_report<T>(
     name: &FileName,
     path: &str,
     read: Result<T, ImageError>,

@@ -1,8 +1,8 @@
 //! Loader for the files that a scene names. Each file is read and decoded once.
 
 use super::Resources;
-use super::cache::Origin;
-use super::decoded::{Encoding, decode, mend, used};
+use super::cache::AssetKey;
+use super::decoded::{Encoding, decode, replace_invalid_texels, value_or_report};
 use crate::world::MeshTree;
 use durer_bvh::BuildQuality;
 use durer_diag::{Diagnostic, Diagnostics, Severity, format_bytes_down, format_bytes_up};
@@ -23,7 +23,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Temporary memory in bytes per triangle for a mesh's BVH and its construction.
-const TREE_BYTES: u64 = 200;
+const BVH_BYTES_PER_TRIANGLE: u64 = 200;
 /// Temporary memory in bytes per height while normals are computed: two triangles with three corner
 /// normals each, and again in vertex order.
 const HEIGHT_BYTES: u64 = 112;
@@ -50,7 +50,7 @@ pub(super) struct Loader<'r> {
     /// Decoded pictures with mipmaps.
     pub(super) mipmapped: HashMap<PictureKey, Option<Texture>>,
     /// Pictures decoded in parallel before they are needed.
-    pub(super) ahead: HashMap<PictureKey, Texture>,
+    pub(super) predecoded: HashMap<PictureKey, Texture>,
     pub(super) textures: Vec<Texture>,
 }
 
@@ -65,7 +65,7 @@ impl<'r> Loader<'r> {
             map_numbers: HashMap::new(),
             decoded: HashMap::new(),
             mipmapped: HashMap::new(),
-            ahead: HashMap::new(),
+            predecoded: HashMap::new(),
             textures: Vec::new(),
         }
     }
@@ -88,7 +88,7 @@ impl<'r> Loader<'r> {
         if let Some(known) = known {
             self.remember(&name.path, origin.as_ref(), known.digest);
             let mesh = &known.value.mesh;
-            let needed = mesh.bytes() as u64 + TREE_BYTES * mesh.len() as u64;
+            let needed = mesh.bytes() as u64 + BVH_BYTES_PER_TRIANGLE * mesh.len() as u64;
             let tree = self.charge(name, needed, diagnostics).then_some(known.value);
             self.meshes.insert(name.path.clone(), tree.clone());
             return tree;
@@ -99,7 +99,7 @@ impl<'r> Loader<'r> {
             None => self.mesh_file(name, diagnostics).map(Arc::new),
         };
         let mesh = mesh.filter(|data| {
-            let needed = data.bytes() as u64 + TREE_BYTES * data.triangles.len() as u64;
+            let needed = data.bytes() as u64 + BVH_BYTES_PER_TRIANGLE * data.triangles.len() as u64;
             self.charge(name, needed, diagnostics)
         });
         let tree = mesh.map(|mut data| {
@@ -129,14 +129,14 @@ impl<'r> Loader<'r> {
 
     /// Returns the cache key of a file or asset: the hash of data in memory, or else the stamp of
     /// the file. `None` if caching is off.
-    pub(super) fn origin(&self, path: &str, memory: impl FnOnce() -> Option<Digest>) -> Option<Origin> {
+    pub(super) fn origin(&self, path: &str, memory: impl FnOnce() -> Option<Digest>) -> Option<AssetKey> {
         self.resources.cache?;
-        memory().map(Origin::Memory).or_else(|| self.resources.source.stamp(path).map(Origin::File))
+        memory().map(AssetKey::Memory).or_else(|| self.resources.source.stamp(path).map(AssetKey::File))
     }
 
     /// Records a file as read although its contents came from the cache.
-    pub(super) fn remember(&self, path: &str, origin: Option<&Origin>, digest: Option<Digest>) {
-        if let (Some(Origin::File(stamp)), Some(digest)) = (origin, digest) {
+    pub(super) fn remember(&self, path: &str, origin: Option<&AssetKey>, digest: Option<Digest>) {
+        if let (Some(AssetKey::File(stamp)), Some(digest)) = (origin, digest) {
             self.resources.source.record_unchanged(path, stamp, digest);
         }
     }
@@ -173,7 +173,7 @@ impl<'r> Loader<'r> {
     pub(super) fn height_field(&mut self, field: &HeightField, diagnostics: &mut Diagnostics) -> Option<Arc<MeshTree>> {
         let name = &field.picture;
         let bytes = self.read(name, "height image", diagnostics)?;
-        let encoded = used(name, &name.path, Encoded::open(&bytes, &name.path), diagnostics)?;
+        let encoded = value_or_report(name, &name.path, Encoded::open(&bytes, &name.path), diagnostics)?;
         let (width, height) = encoded.size();
         let mut refuse = |message: String| diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
         if width < 2 || height < 2 || width * height > HeightField::MAX_PIXELS {
@@ -184,7 +184,7 @@ impl<'r> Loader<'r> {
             return None;
         }
         let picture = encoded.read(self.resources.memory, image::decode_linear);
-        let picture = used(name, &name.path, picture, diagnostics)?;
+        let picture = value_or_report(name, &name.path, picture, diagnostics)?;
         let mut refuse = |message: String| diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
         let heights: Vec<f32> = picture.pixels.iter().map(|pixel| (pixel.x + pixel.y + pixel.z) / 3.0).collect();
         drop(picture);
@@ -338,12 +338,12 @@ impl<'r> Loader<'r> {
             Some(PictureBytes::Memory(_, bytes)) => bytes.clone(),
             _ => self.read(name, "environment", diagnostics)?,
         };
-        let encoded = used(name, &name.path, Encoded::open(&bytes, &name.path), diagnostics)?;
+        let encoded = value_or_report(name, &name.path, Encoded::open(&bytes, &name.path), diagnostics)?;
         let picture = encoded.read_for(Environment::BUILD_BYTES_PER_TEXEL, self.resources.memory, image::decode_srgb);
-        let mut picture = used(name, &name.path, picture, diagnostics)?;
+        let mut picture = value_or_report(name, &name.path, picture, diagnostics)?;
         let (width, height) = (picture.width, picture.height);
         let (turn, scale) = written.environment_transform();
-        if let Some(message) = mend(&mut picture.pixels, width, &name.path) {
+        if let Some(message) = replace_invalid_texels(&mut picture.pixels, width, &name.path) {
             diagnostics.push(Diagnostic::warning(message).code("bad-texels").at(name.span));
         }
         let environment = Environment::new(width, height, picture.pixels, turn, scale);

@@ -36,7 +36,7 @@ pub(super) fn compile(
                 }
                 _ => None,
             };
-            Material::Solid(solid.clone(), to_pattern, picture)
+            Material::Mix(solid.clone(), to_pattern, picture)
         }
         scene::Material::Principled(layers) => {
             let maps = loader.maps(layers, diagnostics);
@@ -56,7 +56,7 @@ pub(super) fn compile(
                 tinted: true,
                 emission: (radiance.max_element() > 0.0).then_some(emission),
                 principled: Some(Arc::new(Principled {
-                    written: layers.clone(),
+                    definition: layers.clone(),
                     maps,
                     parameters: Parameters::of(layers),
                     tables,

@@ -12,8 +12,10 @@ mod solids;
 #[doc(hidden)]
 pub mod testing;
 
-use crate::world::{Accel, Assets, Contents, CourseHits, Geometry, Matrix, Object, Phong, SmallWorld, Vectors, World};
-pub use cache::{AssetCache, Reuse};
+use crate::world::{
+    Accel, Assets, Contents, CourseAccel, Geometry, Matrix, Object, Phong, SmallWorld, VectorLibrary, World,
+};
+pub use cache::{AssetCache, CacheStatistics};
 use durer_bvh::{Bvh, Grid, PrimitivePacks};
 use durer_diag::{Diagnostic, Diagnostics, Files, Span};
 use durer_scene::asset::AssetDecoder;
@@ -105,7 +107,7 @@ pub fn compile(
         diagnostics: &mut own,
         material_count: materials.len() as u32,
         plain_needed: false,
-        bare: None,
+        without_material: None,
         transforms: 0,
         matrices: Some(Vec::new()),
         open_edges: HashMap::new(),
@@ -119,7 +121,7 @@ pub fn compile(
             flattener.diagnostics.push(warning.code("no-objects"));
         }
     }
-    flattener.warn_of_bare();
+    flattener.warn_without_material();
     let SceneFlattener { objects, plain_needed, .. } = flattener;
     let mut compiled = materials;
     if plain_needed {
@@ -168,7 +170,7 @@ pub fn compile(
         // With `path`, a scene without a background is lit only by the lights that it defines. (The
         // Whitted integrator takes no light from the background.) Models have a grey background
         // instead.
-        dark: scene.up.is_none()
+        is_black_for_paths: scene.up.is_none()
             && environment.is_none()
             && scene.background == scene::Background::default()
             && !scene.background_span.has_position()
@@ -196,38 +198,38 @@ pub fn compile(
 pub fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>> {
     let objects = world.objects();
     if let Some(rules) = world.hit_rules() {
-        let accel = Accel::Course(CourseHits::new(rules, objects));
-        (world.packs, world.small_world, world.loose) = (PrimitivePacks::default(), None, Vec::new());
+        let accel = Accel::Course(CourseAccel::new(rules, objects));
+        (world.packs, world.small_world, world.outside_accel) = (PrimitivePacks::default(), None, Vec::new());
         (world.accel, world.spheres) = (accel, Vec::new());
         return Ok(());
     }
     let mut boxes: Vec<Option<Aabb>> = objects.iter().map(Object::bounds).collect();
     let bounded = || objects.iter().zip(&boxes).filter(|(_, bounds)| bounds.is_some());
     let (simple, others): (Vec<u32>, Vec<u32>) =
-        (0..objects.len() as u32).partition(|&i| objects[i as usize].simple().is_some());
-    let work: usize = objects.iter().filter_map(Object::simple).sum();
+        (0..objects.len() as u32).partition(|&i| objects[i as usize].packing_cost().is_some());
+    let work: usize = objects.iter().filter_map(Object::packing_cost).sum();
     let packed = |numbers: &[u32]| {
         let mut packs = PrimitivePacks::default();
         numbers.iter().for_each(|&i| objects[i as usize].add_to(&mut packs, i));
         packs
     };
-    let is_few = kind == AccelKind::Bvh && others.len() <= FEW && work <= FEW_SIMPLE;
+    let is_few = kind == AccelKind::Bvh && others.len() <= MAX_LINEAR_OBJECTS && work <= MAX_LINEAR_COST;
     let few = is_few.then(|| SmallWorld { simple: packed(&simple), others });
-    let of_one_ray = || bounded().filter_map(|(object, _)| object.simple_for_one_ray());
+    let of_one_ray = || bounded().filter_map(|(object, _)| object.single_ray_packing_cost());
     if kind == AccelKind::Bvh
-        && bounded().count() - of_one_ray().count() <= FEW
-        && of_one_ray().sum::<usize>() <= FEW_SIMPLE
+        && bounded().count() - of_one_ray().count() <= MAX_LINEAR_OBJECTS
+        && of_one_ray().sum::<usize>() <= MAX_LINEAR_COST
     {
         boxes.fill(None);
     }
     let mut loose: Vec<u32> = (0_u32..).zip(&boxes).filter(|(_, b)| b.is_none()).map(|(i, _)| i).collect();
-    let is_simple = |&i: &u32| objects[i as usize].simple_for_one_ray().is_some();
-    let mut together: Vec<u32> = loose.iter().copied().filter(is_simple).collect();
-    match together.len() >= MIN_PACKED {
+    let is_simple = |&i: &u32| objects[i as usize].single_ray_packing_cost().is_some();
+    let mut packed_indices: Vec<u32> = loose.iter().copied().filter(is_simple).collect();
+    match packed_indices.len() >= MIN_PACKED {
         true => loose.retain(|i| !is_simple(i)),
-        false => together.clear(),
+        false => packed_indices.clear(),
     }
-    let packs = packed(&together);
+    let packs = packed(&packed_indices);
     let accel = build_accel(world, kind, boxes)?;
     let spheres = match &accel {
         Accel::Bvh(bvh) if objects.iter().any(|object| object.sphere().radius > 0.0) => {
@@ -235,15 +237,16 @@ pub fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>
         }
         _ => Vec::new(),
     };
-    (world.packs, world.small_world, world.loose, world.accel, world.spheres) = (packs, few, loose, accel, spheres);
+    (world.packs, world.small_world, world.outside_accel, world.accel, world.spheres) =
+        (packs, few, loose, accel, spheres);
     Ok(())
 }
 
 /// Maximum number of other objects for which linear search is faster than a tree.
-const FEW: usize = 2;
+const MAX_LINEAR_OBJECTS: usize = 2;
 /// Maximum total cost of simple shapes, in sphere tests, for which linear search is faster than a
 /// tree. Simple shapes are tested eight at a time, or against eight rays.
-const FEW_SIMPLE: usize = 16;
+const MAX_LINEAR_COST: usize = 16;
 
 /// Minimum number of simple shapes for which tests of eight at a time are faster than single tests.
 const MIN_PACKED: usize = 4;
@@ -323,7 +326,7 @@ fn outliers(boxes: &[Aabb]) -> Vec<usize> {
 
 /// Warns if the sun is below the horizon.
 fn check_sun(scene: &Scene, diagnostics: &mut Diagnostics) {
-    let low = |way: Vec3| -fp::asin(way.normalize_or(Vec3::Y).y).to_degrees();
+    let low = |direction: Vec3| -fp::asin(direction.normalize_or(Vec3::Y).y).to_degrees();
     if let Some(way) = scene.background.sun()
         && low(way) > 0.0
     {
@@ -367,12 +370,12 @@ fn check_camera(scene: &Scene, pose: durer_scene::camera::Pose, diagnostics: &mu
 /// Returns the sun of a clear sky as a directional light.
 fn sun(background: &scene::Background) -> Option<Light> {
     // The CIE standard skies use the sun's position but have no direct sunlight.
-    let way = background.sun().filter(|_| background.cie_sky.is_none() && !background.is_night())?;
-    let sky = Sky::new(way, background.turbidity());
+    let to_sun = background.sun().filter(|_| background.cie_sky.is_none() && !background.is_night())?;
+    let sky = Sky::new(to_sun, background.turbidity());
     let (turn, scale) = background.environment_transform();
     let (sin, cos) = fp::sin_cos_degrees(f64::from(-turn));
     let [sin, cos] = [sin, cos].map(|x| x as f32);
-    let way = Vec3::new(cos * way.x + sin * way.z, way.y.max(0.0), cos * way.z - sin * way.x);
+    let way = Vec3::new(cos * to_sun.x + sin * to_sun.z, to_sun.y.max(0.0), cos * to_sun.z - sin * to_sun.x);
     // Light colours are the radiance of a white matte surface, which is illuminance divided by pi.
     let color = scale * sky.sun() / std::f32::consts::PI;
     Some(DirectionalLight { direction: -way, color, spread: Some(SUN_RADIUS), ..Default::default() }.into())
@@ -433,7 +436,7 @@ struct SceneFlattener<'a, 'r> {
     /// True if some object needs the default material, which is added after all others.
     plain_needed: bool,
     /// First object without a material, and the number of such objects.
-    bare: Option<(Span, usize)>,
+    without_material: Option<(Span, usize)>,
     /// Number of transforms around the current object.
     transforms: u32,
     /// Matrices of these transforms as an official program multiplies them, outermost first. `None`
@@ -451,8 +454,8 @@ fn is_nodes(rules: &DialectRules) -> bool {
 
 impl SceneFlattener<'_, '_> {
     /// Warns once about all objects without a material.
-    fn warn_of_bare(&mut self) {
-        let Some((span, count)) = self.bare else { return };
+    fn warn_without_material(&mut self) {
+        let Some((span, count)) = self.without_material else { return };
         let mut message = "this object has no material and is rendered in plain grey".to_string();
         match count {
             1 => {}
@@ -479,7 +482,7 @@ impl SceneFlattener<'_, '_> {
             ObjectKind::Group(group) => self.group(group, to_world),
             ObjectKind::Transform(ops, inner) => {
                 self.transforms += 1;
-                let vectors = rules::hit_rules(self.rules).map_or(Vectors::Vecmath, |rules| rules.vectors);
+                let vectors = rules::hit_rules(self.rules).map_or(VectorLibrary::Vecmath, |rules| rules.vectors);
                 let own = Matrix::of(ops, rules::matrix_rules(self.rules), vectors);
                 self.matrices.iter_mut().for_each(|matrices| matrices.push(own));
                 self.object(inner, to_world * self.product(ops));
@@ -556,7 +559,7 @@ impl SceneFlattener<'_, '_> {
             Some(index) if index < self.material_count => index,
             index => {
                 if index.is_none() {
-                    self.bare.get_or_insert((object.span, 0)).1 += 1;
+                    self.without_material.get_or_insert((object.span, 0)).1 += 1;
                 }
                 self.plain_needed = true;
                 self.material_count
@@ -580,8 +583,8 @@ impl SceneFlattener<'_, '_> {
         let Some(rules) = rules::hit_rules(self.rules) else { return Vec::new() };
         match (&self.matrices, rules.vectors) {
             (None, _) => vec![Matrix::from(to_world)],
-            (Some(matrices), Vectors::Vecmath) => matrices.clone(),
-            (Some(matrices), Vectors::Glm) => {
+            (Some(matrices), VectorLibrary::Vecmath) => matrices.clone(),
+            (Some(matrices), VectorLibrary::Glm) => {
                 vec![matrices.iter().fold(Matrix::IDENTITY, |outer, inner| outer.times(inner, rules.vectors))]
             }
         }

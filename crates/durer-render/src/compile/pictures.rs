@@ -1,9 +1,9 @@
 //! Loading of material textures. Each picture is decoded once even if several textures use it.
 
-use super::cache::Origin;
+use super::cache::AssetKey;
 use super::decoded::{Encoding, decode};
 use super::files::{Loader, PictureKey};
-use crate::world::{Map, Maps};
+use crate::world::{MaterialTextures, ParameterTexture};
 use durer_diag::Diagnostics;
 use durer_image::Encoded;
 use durer_scene::describe::FileName;
@@ -23,7 +23,7 @@ impl Loader<'_> {
         if let Some(known) = self.map_numbers.get(&key) {
             return *known;
         }
-        let (bytes, mapping) = self.found(name);
+        let (bytes, mapping) = self.locate(name);
         let texture = match mapping.mipmaps {
             true => self.mipmapped(name, bytes, encoding, diagnostics),
             false => self.picture(name, bytes, encoding, diagnostics),
@@ -42,7 +42,7 @@ impl Loader<'_> {
     }
 
     /// Returns where a picture's bytes are, and how the picture is mapped to a surface.
-    fn found(&self, name: &FileName) -> (PictureBytes, Mapping) {
+    fn locate(&self, name: &FileName) -> (PictureBytes, Mapping) {
         if let Some(asset) = self.assets.pictures.get(&name.path) {
             return (asset.bytes.clone(), asset.mapping);
         }
@@ -57,7 +57,7 @@ impl Loader<'_> {
         let mut left = self.resources.memory;
         let (mut packed, mut seen) = (Vec::new(), HashSet::new());
         for (name, encoding) in materials.flat_map(pictures) {
-            let (bytes, _) = self.found(name);
+            let (bytes, _) = self.locate(name);
             let key: PictureKey = (bytes.path().into(), encoding);
             // Several materials can use the same picture.
             if !seen.insert(key.clone()) {
@@ -86,14 +86,14 @@ impl Loader<'_> {
             let texture = decode(&name, &key.0, &bytes, key.1 == Encoding::Srgb, memory, &mut Diagnostics::default())?;
             Some((key, texture))
         });
-        self.ahead = decoded.collect();
+        self.predecoded = decoded.collect();
     }
 
     /// Returns the textures of a principled material. Reports errors and omits the textures
     /// concerned.
-    pub(super) fn maps(&mut self, layers: &PrincipledMaterial, diagnostics: &mut Diagnostics) -> Maps {
+    pub(super) fn maps(&mut self, layers: &PrincipledMaterial, diagnostics: &mut Diagnostics) -> MaterialTextures {
         let mut one = |name: Option<&FileName>, encoding| name.and_then(|name| self.map(name, encoding, diagnostics));
-        let mut maps = Maps {
+        let mut maps = MaterialTextures {
             base_color: one(layers.base_color_texture.as_ref(), Encoding::Srgb),
             emission: one(layers.emission_texture.as_ref(), Encoding::Srgb),
             opacity: one(layers.opacity_texture.as_ref(), Encoding::Linear),
@@ -104,7 +104,7 @@ impl Loader<'_> {
         };
         for (row, textured) in TEXTURE_FIELDS.iter().enumerate() {
             if let Some(texture) = one((textured.texture_file)(layers), encoding_of(textured)) {
-                maps.parameters.push(Map { row, texture, channel: None });
+                maps.parameters.push(ParameterTexture { row, texture, channel: None });
             }
         }
         if let Some(texture) = one(layers.metallic_roughness_texture.as_ref(), Encoding::Linear) {
@@ -114,7 +114,7 @@ impl Loader<'_> {
                     "base_metalness_texture" => Channel::Blue,
                     _ => continue,
                 };
-                maps.parameters.push(Map { row, texture, channel: Some(channel) });
+                maps.parameters.push(ParameterTexture { row, texture, channel: Some(channel) });
             }
         }
         maps
@@ -140,7 +140,7 @@ impl Loader<'_> {
             self.decoded.insert(key, texture.clone());
             return texture;
         }
-        let texture = match self.ahead.remove(&key) {
+        let texture = match self.predecoded.remove(&key) {
             Some(texture) => Some(texture),
             None => {
                 let bytes = match bytes {
@@ -180,7 +180,7 @@ impl Loader<'_> {
     }
 
     /// Returns the cache key of a picture if caching is on.
-    fn picture_origin(&self, bytes: &PictureBytes) -> Option<Origin> {
+    fn picture_origin(&self, bytes: &PictureBytes) -> Option<AssetKey> {
         match bytes {
             PictureBytes::File(path) => self.origin(path, || None),
             PictureBytes::Memory(path, bytes) => self.origin(path, || Some(Digest::of(bytes))),

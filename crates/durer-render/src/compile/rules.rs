@@ -1,7 +1,7 @@
 //! Translation of a dialect into rules for each part of the renderer. Only the scene's compilation
 //! depends on dialects; later code uses these rules.
 
-use crate::world::{Contents, DisplayRules, Epsilon, HitRules, ShadingRules, Vectors};
+use crate::world::{Contents, DisplayRules, Epsilon, HitRules, ShadingRules, VectorLibrary};
 use durer_scene::camera::{CameraRules, RayArithmetic, UpRule};
 use durer_scene::dialect::{Arithmetic, DialectRules, Falloff, Quirk};
 use durer_scene::light::{DirectionalLight, Illuminate as _, Light, PointLight};
@@ -42,15 +42,15 @@ pub fn matrix_rules(rules: &DialectRules) -> MatrixRules {
 pub fn hit_rules(rules: &DialectRules) -> Option<HitRules> {
     let vectors = match rules.arithmetic {
         Arithmetic::Own => return None,
-        Arithmetic::Of2012 | Arithmetic::Of2016 => Vectors::Vecmath,
-        Arithmetic::Of2020 => Vectors::Glm,
+        Arithmetic::Of2012 | Arithmetic::Of2016 => VectorLibrary::Vecmath,
+        Arithmetic::Of2020 => VectorLibrary::Glm,
     };
     Some(HitRules {
         vectors,
         triangle_matrix: rules.arithmetic == Arithmetic::Of2012,
         tied_triangles: rules.has(Quirk::TiedTriangles),
         closed_planes: rules.has(Quirk::ClosedPlanes),
-        closed_spheres: vectors == Vectors::Glm,
+        closed_spheres: vectors == VectorLibrary::Glm,
         raw_normals: rules.has(Quirk::RawNormals),
         octree: rules.has(Quirk::OctreeHoles),
     })
@@ -61,8 +61,8 @@ pub fn shading_rules(rules: &DialectRules) -> ShadingRules {
     let official = rules.is_bit_compatible();
     ShadingRules {
         epsilon: rules.epsilon.map(match rules.has(Quirk::MovedStarts) {
-            true => Epsilon::Along,
-            false => Epsilon::Least,
+            true => Epsilon::OffsetOrigin,
+            false => Epsilon::MinT,
         }),
         points_on_ray: official,
         one_medium: official,

@@ -2,7 +2,7 @@
 
 use super::SceneFlattener;
 use crate::world::csg::Csg;
-use crate::world::solid::Solid;
+use crate::world::solid::CsgTree;
 use crate::world::{Geometry, Object};
 use durer_diag::{Diagnostic, Span};
 use durer_scene::math::Vec3;
@@ -23,7 +23,7 @@ impl SceneFlattener<'_, '_> {
         if self.diagnostics.error_count() > errors {
             return;
         }
-        solid.into_iter().flat_map(Solid::pieces).for_each(|piece| self.piece(piece, span));
+        solid.into_iter().flat_map(CsgTree::pieces).for_each(|piece| self.piece(piece, span));
         if self.objects.len() == before && self.diagnostics.error_count() == errors {
             let message = format!("this `{}` is empty: its parts do not overlap", operation.keyword());
             self.diagnostics.push(Diagnostic::warning(message).code("empty-solid").at(span));
@@ -47,8 +47,8 @@ impl SceneFlattener<'_, '_> {
     }
 
     /// Adds a piece of a solid, disjoint from the others, as an object.
-    fn piece(&mut self, piece: Solid, span: Span) {
-        if let Solid::Operand(object) = piece {
+    fn piece(&mut self, piece: CsgTree, span: Span) {
+        if let CsgTree::Operand(object) = piece {
             return self.objects.push(Arc::unwrap_or_clone(object));
         }
         let (count, material) = {
@@ -79,16 +79,16 @@ impl SceneFlattener<'_, '_> {
     }
 
     /// Compiles the parts of a solid. Parts with errors are missing from the result.
-    fn solids(&mut self, parts: &[scene::Object], to_world: DAffine3) -> Vec<Solid> {
+    fn solids(&mut self, parts: &[scene::Object], to_world: DAffine3) -> Vec<CsgTree> {
         parts.iter().filter_map(|part| self.closed(part, to_world)).collect()
     }
 
     /// Compiles a part of a solid. The part must be closed. Returns `None` after an error.
-    fn closed(&mut self, part: &scene::Object, to_world: DAffine3) -> Option<Solid> {
+    fn closed(&mut self, part: &scene::Object, to_world: DAffine3) -> Option<CsgTree> {
         match &part.node {
             ObjectKind::Group(group) => {
                 self.check_group(group, part.span);
-                Some(Solid::any(self.solids(&group.objects, to_world)))
+                Some(CsgTree::union(self.solids(&group.objects, to_world)))
             }
             ObjectKind::Transform(ops, inner) => self.closed(inner, to_world * self.product(ops)),
             ObjectKind::Solid(operation, parts) => {
@@ -97,14 +97,14 @@ impl SceneFlattener<'_, '_> {
             }
             ObjectKind::Primitive(shape) => {
                 self.check_shape(shape, part.span);
-                self.shape(part, to_world).map(|object| Solid::Operand(Arc::new(object)))
+                self.shape(part, to_world).map(|object| CsgTree::Operand(Arc::new(object)))
             }
             ObjectKind::Mesh(_) | ObjectKind::HeightField(_) | ObjectKind::Voxels(..) => {
                 let object = self.shape(part, to_world)?;
                 if let ObjectKind::Mesh(mesh) = &part.node {
                     self.check_mesh(&object, &mesh.obj_file.path, part.span);
                 }
-                Some(Solid::Operand(Arc::new(object)))
+                Some(CsgTree::Operand(Arc::new(object)))
             }
         }
     }
@@ -139,17 +139,17 @@ impl SceneFlattener<'_, '_> {
 }
 
 /// Combines solids with an operation; `None` if there are none.
-fn joined(operation: CsgOperation, mut parts: Vec<Solid>) -> Option<Solid> {
+fn joined(operation: CsgOperation, mut parts: Vec<CsgTree>) -> Option<CsgTree> {
     if parts.is_empty() {
         return None;
     }
     Some(match operation {
-        CsgOperation::Union | CsgOperation::Merge => Solid::any(parts),
-        CsgOperation::Intersection => Solid::all(parts, Vec::new()),
-        CsgOperation::Xor => Solid::odd(parts),
+        CsgOperation::Union | CsgOperation::Merge => CsgTree::union(parts),
+        CsgOperation::Intersection => CsgTree::intersection(parts, Vec::new()),
+        CsgOperation::Xor => CsgTree::xor(parts),
         CsgOperation::Difference => {
             let first = parts.remove(0);
-            Solid::all(vec![first], parts)
+            CsgTree::intersection(vec![first], parts)
         }
     })
 }

@@ -182,7 +182,7 @@ fn a_picture_multiplies_the_share_of_a_mix() {
     let world = world.unwrap_or_else(|| panic!("{found:?}"));
     for (x, share) in [(1.0, 0.8), (3.0, 0.2)] {
         let at = world.intersect(&Ray::new(Vec3::new(x, 0.5, 5.0), Vec3::NEG_Z), &mut ()).unwrap();
-        let parts = world.parts(&at);
+        let parts = world.materials_at(&at);
         let shares: Vec<f32> = parts.iter().map(|part| part.share).collect();
         assert!((shares[0] - share).abs() < 1e-6 && (shares[1] - 1.0 + share).abs() < 1e-6, "{shares:?}");
         assert_eq!(parts[0].phong.diffuse, Vec3::X);
@@ -240,7 +240,7 @@ fn tables_of_a_material_are_computed_before_rays_are_traced() {
         let lanes = durer_scene::spectrum::Lanes::Rgb;
         let wo = Vec3::new(0.6, 0.0, 0.8);
         for inside in [false, true] {
-            let eta = if inside { 1.0 / own.written.specular_ior } else { own.written.specular_ior };
+            let eta = if inside { 1.0 / own.definition.specular_ior } else { own.definition.specular_ior };
             let view = durer_scene::bsdf::layers::View { lanes: &lanes, wo, normal: Vec3::Z, inside, eta };
             durer_scene::bsdf::layers::push_lobes(&mut Default::default(), 1.0, &own.parameters, &own.tables, view);
         }
@@ -249,7 +249,7 @@ fn tables_of_a_material_are_computed_before_rays_are_traced() {
 }
 
 #[test]
-fn what_reaches_far_beyond_the_others_is_no_part_of_a_grid() {
+fn outlying_objects_are_excluded_from_the_grid() {
     let balls: String = (0..500).map(|i| format!("Sphere {{ center {} {} 0 radius 0.4 }} ", i % 25, i / 25)).collect();
     for far in ["Cylinder { base 0 0 -3 top 0 0.1 -1.2e15 radius 1 }", "Sphere { center 0 1e12 -9 radius 7e11 }"] {
         let text = format!("{CAMERA}Group {{ {far} {balls} }}");

@@ -4,7 +4,7 @@
 //! samples. Floating-point files contain the values unchanged. For eight-bit files, values are
 //! mapped to display colours from 0 to 1.
 
-use super::false_color::LightScale;
+use super::false_color::FalseColorScale;
 use super::{Film, luminance_of};
 use crate::world::{DisplayRules, SurfaceInteraction};
 use durer_bvh::TraversalStats;
@@ -42,7 +42,7 @@ impl AovInput {
 
 /// Colour statistics of one pixel (sample count, mean and variance) for AOVs, computed on demand.
 #[derive(Clone, Copy, Debug)]
-pub struct Sums<'a> {
+pub struct PixelStatistics<'a> {
     /// The film and pixel coordinates; `None` if the pixel has no samples yet.
     pub pixel: Option<(&'a Film, u32, u32)>,
     /// Magnitude of the sample weights relative to their mean; see [`Film::variance`].
@@ -51,7 +51,7 @@ pub struct Sums<'a> {
     pub lumens: Option<Vec3>,
 }
 
-impl Sums<'_> {
+impl PixelStatistics<'_> {
     /// Returns the number of samples.
     pub fn samples(&self) -> u64 {
         self.pixel.map_or(0, |(film, x, y)| film.samples(x, y))
@@ -82,20 +82,20 @@ pub struct Display {
     /// Depths shown as black and white. `None` uses the minimum and maximum of the picture.
     pub depth_range: Option<(f32, f32)>,
     /// Scale of values for false-colour pictures.
-    pub light_scale: LightScale,
+    pub light_scale: FalseColorScale,
     /// Bounds of the values at pixels with a hit.
-    pub hits: Aabb,
+    pub hit_bounds: Aabb,
     /// Bounds of the values of all pixels.
-    pub all: Aabb,
+    pub all_bounds: Aabb,
 }
 
 /// Function that computes an AOV's value at a pixel, from a ray or from the colour samples.
 #[derive(Clone, Copy, Debug)]
-pub enum Value {
+pub enum AovFunction {
     /// Uses the ray through the pixel's centre.
     Ray(fn(&AovInput) -> Vec3),
     /// Uses the statistics of the colour samples.
-    Sums(fn(&Sums) -> Vec3),
+    Sums(fn(&PixelStatistics) -> Vec3),
 }
 
 /// Entry of the table of arbitrary output variables (AOVs) such as `depth` and `normals`.
@@ -106,7 +106,7 @@ pub struct Aov {
     /// Description for the help.
     pub doc: &'static str,
     /// Value at a pixel, as it is written to floating-point files.
-    pub value: Value,
+    pub value: AovFunction,
     /// Maps a value to a display colour; the flag is true for hits.
     pub picture: fn(Vec3, bool, &Display) -> Color,
     /// True if the display colour depends on the values of other pixels.
@@ -143,7 +143,7 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "depth",
         doc: "ray parameter t of the first hit, which is a distance for camera rays; 0 for a miss",
-        value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(f32::INFINITY, |at| at.hit.t))),
+        value: AovFunction::Ray(|input| Vec3::splat(input.hit.map_or(f32::INFINITY, |at| at.hit.t))),
         picture: depth_picture,
         relative: true,
         unit: None,
@@ -151,7 +151,7 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "normals",
         doc: "shading normal, in world space",
-        value: Value::Ray(|seen| of_surface(seen, |s| s.n_shade)),
+        value: AovFunction::Ray(|input| of_surface(input, |s| s.n_shade)),
         picture: normal_picture,
         // One quirk shows the normal of the previous hit at misses.
         relative: true,
@@ -160,7 +160,7 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "geometric-normals",
         doc: "geometric normal, in world space",
-        value: Value::Ray(|seen| of_surface(seen, |s| s.n_geo)),
+        value: AovFunction::Ray(|input| of_surface(input, |s| s.n_geo)),
         picture: normal_picture,
         relative: false,
         unit: None,
@@ -168,9 +168,9 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "position",
         doc: "hit point, in world space; as a picture, relative to the bounds of all hit points",
-        value: Value::Ray(|seen| of_surface(seen, |s| s.position)),
+        value: AovFunction::Ray(|input| of_surface(input, |s| s.position)),
         picture: |p, hit, display| {
-            let (size, min) = (display.hits.size(), display.hits.min);
+            let (size, min) = (display.hit_bounds.size(), display.hit_bounds.min);
             let one = |axis: usize| if size[axis] > 0.0 { (p[axis] - min[axis]) / size[axis] } else { 0.5 };
             if hit { Vec3::new(one(0), one(1), one(2)) } else { Vec3::ZERO }
         },
@@ -180,7 +180,7 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "uv",
         doc: "texture coordinates in red and green, 0 if there are none; as a picture, their fractional part",
-        value: Value::Ray(|seen| of_surface(seen, |s| s.uv.get().unwrap_or_default().extend(0.0))),
+        value: AovFunction::Ray(|input| of_surface(input, |s| s.uv.get().unwrap_or_default().extend(0.0))),
         picture: |uv, _, _| uv - uv.floor(),
         relative: false,
         unit: None,
@@ -188,7 +188,7 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "barycentric",
         doc: "barycentric coordinates on triangles, 0 on other shapes",
-        value: Value::Ray(|seen| of_surface(seen, |s| s.barycentric)),
+        value: AovFunction::Ray(|input| of_surface(input, |s| s.barycentric)),
         picture: |b, _, _| b,
         relative: false,
         unit: None,
@@ -196,7 +196,7 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "albedo",
         doc: "diffuse colour with textures and patterns, without lighting; 0 for a miss",
-        value: Value::Ray(|seen| seen.albedo),
+        value: AovFunction::Ray(|input| input.albedo),
         picture: |albedo, _, _| albedo,
         relative: false,
         unit: None,
@@ -204,7 +204,7 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "object",
         doc: "index of the object, -1 for a miss; as a picture, one colour per object",
-        value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(-1.0, |at| at.hit.object as f32))),
+        value: AovFunction::Ray(|input| Vec3::splat(input.hit.map_or(-1.0, |at| at.hit.object as f32))),
         picture: |id, hit, _| if hit { id_color(id.x) } else { Vec3::ZERO },
         relative: false,
         unit: None,
@@ -212,7 +212,7 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "material",
         doc: "index of the material, -1 for a miss; as a picture, one colour per material",
-        value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(-1.0, |at| at.material as f32))),
+        value: AovFunction::Ray(|input| Vec3::splat(input.hit.map_or(-1.0, |at| at.material as f32))),
         picture: |id, hit, _| if hit { id_color(id.x) } else { Vec3::ZERO },
         relative: false,
         unit: None,
@@ -220,7 +220,7 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "luminance",
         doc: "luminance of the colour, in cd/m^2 if the scene's light is in cd/m^2 or in watts; as a picture, false colours with a scale",
-        value: Value::Sums(|sums| Vec3::splat(sums.luminance() as f32)),
+        value: AovFunction::Sums(|sums| Vec3::splat(sums.luminance() as f32)),
         picture: light_picture,
         relative: true,
         unit: Some("cd/m2"),
@@ -228,7 +228,7 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "illuminance",
         doc: "illuminance of the surface by path tracing, in lux if the scene's light is in cd/m^2 or in watts; as a picture, false colours with a scale",
-        value: Value::Ray(|seen| Vec3::splat(seen.illuminance)),
+        value: AovFunction::Ray(|input| Vec3::splat(input.illuminance)),
         picture: |value, hit, display| if hit { light_picture(value, hit, display) } else { Vec3::ZERO },
         relative: true,
         unit: Some("lux"),
@@ -236,7 +236,7 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "sample-count",
         doc: "number of samples of the pixel; as a picture, a heat map",
-        value: Value::Sums(|sums| Vec3::splat(sums.samples() as f32)),
+        value: AovFunction::Sums(|sums| Vec3::splat(sums.samples() as f32)),
         picture: heat_picture,
         relative: true,
         unit: None,
@@ -244,7 +244,7 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "variance",
         doc: "estimated variance of the mean luminance, infinite for one sample; as a picture, a heat map of its square root, up to 0.1",
-        value: Value::Sums(|sums| Vec3::splat(sums.variance() as f32)),
+        value: AovFunction::Sums(|sums| Vec3::splat(sums.variance() as f32)),
         picture: |variance, _, _| heat(variance.x.sqrt() * 10.0),
         relative: false,
         unit: None,
@@ -252,7 +252,7 @@ pub static AOVS: &[Aov] = &[
     Aov {
         name: "cost",
         doc: "number of box and shape tests of the pixel, secondary rays included; as a picture, a heat map",
-        value: Value::Ray(|seen| Vec3::splat((seen.counts.nodes + seen.counts.primitive_tests) as f32)),
+        value: AovFunction::Ray(|input| Vec3::splat((input.counts.nodes + input.counts.primitive_tests) as f32)),
         picture: heat_picture,
         relative: true,
         unit: None,
@@ -274,18 +274,18 @@ fn light_picture(value: Vec3, _: bool, display: &Display) -> Color {
 
 /// Converts a count to a heat-map colour, relative to the maximum of the picture.
 fn heat_picture(value: Vec3, _: bool, display: &Display) -> Color {
-    heat(value.x / display.all.max.x.max(1.0))
+    heat(value.x / display.all_bounds.max.x.max(1.0))
 }
 
 /// Returns an attribute of the surface that was hit; zero for a miss.
-fn of_surface(seen: &AovInput, value: impl Fn(&SurfacePoint) -> Vec3) -> Vec3 {
-    seen.hit.map_or(Vec3::ZERO, |at| value(&at.surface))
+fn of_surface(input: &AovInput, value: impl Fn(&SurfacePoint) -> Vec3) -> Vec3 {
+    input.hit.map_or(Vec3::ZERO, |at| value(&at.surface))
 }
 
 /// Converts a depth to a grey, as the dialect does.
 fn depth_picture(depth: Vec3, hit: bool, display: &Display) -> Color {
     let rules = display.rules;
-    let (least, greatest) = (display.hits.min.x, display.hits.max.x);
+    let (least, greatest) = (display.hit_bounds.min.x, display.hit_bounds.max.x);
     let (min, max) = match display.depth_range {
         // Truncate the range to integers, unless its ends would become equal.
         Some((min, max)) if rules.whole_depths && min.trunc() != max.trunc() => (min.trunc(), max.trunc()),

@@ -5,7 +5,7 @@
 //! -2, ... (zigzag), so that small magnitudes are short.
 
 /// Appends an unsigned integer to `out`.
-pub fn put(out: &mut Vec<u8>, mut number: u128) {
+pub fn write_unsigned(out: &mut Vec<u8>, mut number: u128) {
     while number > 0x7f {
         out.push(number as u8 | 0x80);
         number >>= 7;
@@ -14,25 +14,25 @@ pub fn put(out: &mut Vec<u8>, mut number: u128) {
 }
 
 /// Appends a signed integer to `out`.
-pub fn put_signed(out: &mut Vec<u8>, number: i128) {
-    put(out, ((number << 1) ^ (number >> 127)) as u128);
+pub fn write_signed(out: &mut Vec<u8>, number: i128) {
+    write_unsigned(out, ((number << 1) ^ (number >> 127)) as u128);
 }
 
 /// Reader of encoded integers and floats from untrusted bytes. Returns `None` for truncated or
 /// invalid data and never panics.
 #[derive(Clone, Copy, Debug)]
-pub struct Bytes<'a>(pub &'a [u8]);
+pub struct ByteReader<'a>(pub &'a [u8]);
 
-impl<'a> Bytes<'a> {
+impl<'a> ByteReader<'a> {
     /// Takes the next `count` bytes.
     pub fn take(&mut self, count: usize) -> Option<&'a [u8]> {
-        let (taken, rest) = self.0.split_at_checked(count)?;
+        let (bytes, rest) = self.0.split_at_checked(count)?;
         self.0 = rest;
-        Some(taken)
+        Some(bytes)
     }
 
     /// Reads an unsigned integer; `None` if it does not fit into `T`.
-    pub fn whole<T: TryFrom<u128>>(&mut self) -> Option<T> {
+    pub fn read_unsigned<T: TryFrom<u128>>(&mut self) -> Option<T> {
         let mut number = 0_u128;
         for shift in (0..128).step_by(7) {
             let byte = self.take(1)?[0];
@@ -48,7 +48,7 @@ impl<'a> Bytes<'a> {
 
     /// Reads a signed integer; `None` if it does not fit into `T`.
     pub fn signed<T: TryFrom<i128>>(&mut self) -> Option<T> {
-        let number: u128 = self.whole()?;
+        let number: u128 = self.read_unsigned()?;
         ((number >> 1) as i128 ^ -((number & 1) as i128)).try_into().ok()
     }
 
@@ -69,19 +69,19 @@ mod tests {
             let numbers: Vec<_> = numbers.into_iter().map(|(u, i, s)| (u >> s, i >> s)).collect();
             let mut out = Vec::new();
             for &(whole, signed) in &numbers {
-                put(&mut out, whole);
-                put_signed(&mut out, signed);
+                write_unsigned(&mut out, whole);
+                write_signed(&mut out, signed);
             }
-            let mut bytes = Bytes(&out);
+            let mut bytes = ByteReader(&out);
             for &(whole, signed) in &numbers {
-                prop_assert_eq!((bytes.whole(), bytes.signed()), (Some(whole), Some(signed)));
+                prop_assert_eq!((bytes.read_unsigned(), bytes.signed()), (Some(whole), Some(signed)));
             }
-            prop_assert!(bytes.0.is_empty() && bytes.whole::<u8>().is_none());
+            prop_assert!(bytes.0.is_empty() && bytes.read_unsigned::<u8>().is_none());
         }
 
         #[test]
         fn arbitrary_bytes_are_read_or_rejected(junk in prop::collection::vec(any::<u8>(), 0..60)) {
-            let mut bytes = Bytes(&junk);
+            let mut bytes = ByteReader(&junk);
             while bytes.signed::<i64>().is_some() {}
             let _ = (bytes.float(), bytes.take(usize::MAX));
         }

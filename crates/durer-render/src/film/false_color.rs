@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Range of luminance or illuminance that a false-colour picture shows, linear or logarithmic.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LightScale {
+pub struct FalseColorScale {
     /// Value shown in the first colour, dark blue.
     pub low: f32,
     /// Value shown in the last colour, red. Must be greater than `low`.
@@ -15,18 +15,18 @@ pub struct LightScale {
     pub logarithmic: bool,
 }
 
-impl LightScale {
+impl FalseColorScale {
     /// Returns a linear scale from 0 to the 98th percentile of the positive values. With the
     /// maximum instead, a visible emitter would leave no colours for the rest.
-    pub fn over(values: impl Iterator<Item = f32>) -> Self {
+    pub fn from_values(values: impl Iterator<Item = f32>) -> Self {
         let mut all: Vec<f32> = values.filter(|value| value.is_finite() && *value > 0.0).collect();
         all.sort_by(f32::total_cmp);
         let high = all.get(all.len() * 49 / 50).copied().unwrap_or(1.0);
-        LightScale { low: 0.0, high, logarithmic: false }
+        FalseColorScale { low: 0.0, high, logarithmic: false }
     }
 
     /// Returns the position of a value on the scale, from 0 to 1.
-    pub fn place(&self, value: f32) -> f32 {
+    pub fn position(&self, value: f32) -> f32 {
         let share = match self.logarithmic {
             true if value <= 0.0 => 0.0,
             true => fp::ln(value / self.low) / fp::ln(self.high / self.low),
@@ -35,7 +35,7 @@ impl LightScale {
         share.clamp(0.0, 1.0)
     }
 
-    /// Returns the value at a position from 0 to 1, the inverse of [`LightScale::place`].
+    /// Returns the value at a position from 0 to 1, the inverse of [`FalseColorScale::position`].
     fn value(&self, place: f32) -> f32 {
         match self.logarithmic {
             true => self.low * fp::exp(place * fp::ln(self.high / self.low)),
@@ -53,14 +53,14 @@ impl LightScale {
             Vec3::new(1.0, 0.85, 0.0),
             Vec3::new(0.9, 0.02, 0.02),
         ];
-        let place = self.place(value) * (STEPS.len() - 1) as f32;
+        let place = self.position(value) * (STEPS.len() - 1) as f32;
         let step = (place as usize).min(STEPS.len() - 2);
         STEPS[step].lerp(STEPS[step + 1], place - step as f32)
     }
 
     /// Draws a legend with numbers and unit along the right edge of a picture, if the picture is
     /// large enough.
-    pub fn draw(&self, pixels: &mut [Color], width: usize, unit: &str) {
+    pub fn draw_legend(&self, pixels: &mut [Color], width: usize, unit: &str) {
         const ROWS: usize = 8;
         let height = pixels.len() / width.max(1);
         let labels: Vec<String> = (0..=ROWS).map(|i| number(self.value(1.0 - i as f32 / ROWS as f32))).collect();
@@ -142,20 +142,23 @@ mod tests {
 
     #[test]
     fn positions_and_values_are_inverse() {
-        for scale in [LightScale::over([250.0].into_iter()), LightScale { low: 0.5, high: 5e4, logarithmic: true }] {
+        for scale in [
+            FalseColorScale::from_values([250.0].into_iter()),
+            FalseColorScale { low: 0.5, high: 5e4, logarithmic: true },
+        ] {
             for i in 0..=10 {
                 let place = i as f32 / 10.0;
-                assert!((scale.place(scale.value(place)) - place).abs() < 1e-5);
+                assert!((scale.position(scale.value(place)) - place).abs() < 1e-5);
             }
             // Values outside the range get the colours at its ends.
             assert_eq!(scale.color(-1.0), scale.color(scale.low));
             assert_eq!(scale.color(f32::INFINITY), scale.color(scale.high));
         }
         // All decades have equal length.
-        let scale = LightScale { low: 1.0, high: 1e4, logarithmic: true };
-        assert!((scale.place(10.0) - 0.25).abs() < 1e-6 && (scale.place(100.0) - 0.5).abs() < 1e-6);
-        assert_eq!(LightScale::over([f32::NAN, 0.0].into_iter()).high, 1.0);
-        assert_eq!(LightScale::over((1..=100).map(|i| i as f32)).high, 99.0);
+        let scale = FalseColorScale { low: 1.0, high: 1e4, logarithmic: true };
+        assert!((scale.position(10.0) - 0.25).abs() < 1e-6 && (scale.position(100.0) - 0.5).abs() < 1e-6);
+        assert_eq!(FalseColorScale::from_values([f32::NAN, 0.0].into_iter()).high, 1.0);
+        assert_eq!(FalseColorScale::from_values((1..=100).map(|i| i as f32)).high, 99.0);
     }
 
     #[test]
@@ -171,16 +174,16 @@ mod tests {
     fn scale_stays_at_the_border_and_skips_small_pictures() {
         let (width, height) = (320, 200);
         let mut pixels = vec![Color::splat(0.25); width * height];
-        LightScale::over([1000.0].into_iter()).draw(&mut pixels, width, "cd/m2");
+        FalseColorScale::from_values([1000.0].into_iter()).draw_legend(&mut pixels, width, "cd/m2");
         let touched = |x: usize| (0..height).any(|y| pixels[y * width + x] != Color::splat(0.25));
         assert!(touched(width - 1) && touched(width - 20) && !touched(width / 2));
         // The bar runs from red at the top to dark blue.
         let column: Vec<Color> = (0..height).map(|y| pixels[y * width + width - 29]).collect();
-        let scale = LightScale::over([1.0].into_iter());
+        let scale = FalseColorScale::from_values([1.0].into_iter());
         assert!(column.iter().any(|color| (*color - scale.color(1.0)).length() < 0.05), "{column:?}");
         assert!(column.iter().any(|color| (*color - scale.color(0.0)).length() < 0.05));
         let mut small = vec![Color::splat(0.25); 40 * 30];
-        LightScale::over([1000.0].into_iter()).draw(&mut small, 40, "lux");
+        FalseColorScale::from_values([1000.0].into_iter()).draw_legend(&mut small, 40, "lux");
         assert!(small.iter().all(|color| *color == Color::splat(0.25)));
     }
 }

@@ -1,7 +1,7 @@
 //! Film with exact sums: samples are added as integers, so the result does not depend on the order
 //! of adding and merging.
 
-use super::bytes::{Bytes, put, put_signed};
+use super::bytes::{ByteReader, write_signed, write_unsigned};
 use durer_scene::math::{Color, LUMINANCE_F64, Vec3};
 
 #[cfg(test)]
@@ -48,8 +48,8 @@ impl Pixel {
     #[inline]
     pub(super) fn add_any(&mut self, color: Color, share: f32, weight: f32) -> bool {
         // Fast path: almost all samples are small.
-        if share == 1.0 && Small::holds(color, weight) {
-            let mut small = Small::default();
+        if share == 1.0 && SmallSums::fits(color, weight) {
+            let mut small = SmallSums::default();
             small.add(color, weight);
             self.add_small(&small);
             return true;
@@ -90,8 +90,8 @@ impl Pixel {
             && within(self.squares, luminance * luminance)
     }
 
-    /// Adds the sums of a [`Small`].
-    fn add_small(&mut self, small: &Small) {
+    /// Adds the sums of a [`SmallSums`].
+    fn add_small(&mut self, small: &SmallSums) {
         self.color.iter_mut().zip(small.color).for_each(|(sum, c)| *sum = sum.wrapping_add(c.into()));
         self.luminance = self.luminance.wrapping_add(small.luminance);
         self.squares = self.squares.wrapping_add(small.squares);
@@ -123,7 +123,7 @@ impl Pixel {
             let color = Color::from(color);
             return (Pixel::of_single(color) == *self).then_some(color);
         }
-        // Same arithmetic as in `Small::add`.
+        // Same arithmetic as in `SmallSums::add`.
         let is_same = rgb.iter().zip(&self.color).all(|(c, &sum)| i128::from((c * COLOR_SCALE) as i64) == sum)
             && whole_number(luminance(rgb) * LUMINANCE_SCALE) == self.luminance
             && i128::from(self.luminance) * i128::from(self.luminance) == self.squares;
@@ -167,7 +167,7 @@ impl Pixel {
 /// coverage, colours below [`SMALL_COLOR`] and weights of at most 1. Equal to [`Pixel::add`] but
 /// faster.
 #[derive(Default)]
-struct Small {
+struct SmallSums {
     color: [i64; 3],
     squares: i128,
     luminance: i64,
@@ -175,10 +175,10 @@ struct Small {
     samples: u64,
 }
 
-impl Small {
+impl SmallSums {
     /// Returns true if a sample is small enough for exact sums in 64 bits.
     #[inline(always)]
-    fn holds(color: Color, weight: f32) -> bool {
+    fn fits(color: Color, weight: f32) -> bool {
         color.x.abs() + color.y.abs() + color.z.abs() < SMALL_COLOR && weight.abs() <= 1.0
     }
 
@@ -197,11 +197,11 @@ impl Small {
     }
 }
 
-/// Bound on |red| + |green| + |blue| of samples in [`Small`]. With weights up to 1, products of
+/// Bound on |red| + |green| + |blue| of samples in [`SmallSums`]. With weights up to 1, products of
 /// colour and weight are below 2^51 units.
 const SMALL_COLOR: f32 = 8.0;
 
-/// Maximum number of samples in [`Small`] for which the sums of products fit in 64 bits.
+/// Maximum number of samples in [`SmallSums`] for which the sums of products fit in 64 bits.
 const MOST_SMALL: usize = 1 << 11;
 
 const COLOR_SCALE: f64 = (1_u64 << 48) as f64;
@@ -226,7 +226,7 @@ pub struct Rejected {
 }
 
 /// Number of rejected samples whose positions are kept.
-const REMEMBERED: usize = 16;
+const MAX_LISTED_REJECTED: usize = 16;
 
 /// Error from merging a film that is not inside the window of the target film.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -253,21 +253,21 @@ impl Film {
 
     /// Adds a sample with a weight (magnitude up to 2^10) to a pixel. Panics outside the window.
     pub fn add(&mut self, x: u32, y: u32, sample: u32, color: Color, weight: f32) {
-        self.add_if_seen(x, y, sample, Some(color), weight);
+        self.add_optional(x, y, sample, Some(color), weight);
     }
 
     /// Adds a sample. A `color` of `None` is transparent: it lowers the pixel's coverage.
-    pub fn add_if_seen(&mut self, x: u32, y: u32, sample: u32, color: Option<Color>, weight: f32) {
-        self.add_covering(x, y, sample, color.map_or((Color::ZERO, 0.0), |color| (color, 1.0)), weight);
+    pub fn add_optional(&mut self, x: u32, y: u32, sample: u32, color: Option<Color>, weight: f32) {
+        self.add_with_coverage(x, y, sample, color.map_or((Color::ZERO, 0.0), |color| (color, 1.0)), weight);
     }
 
     /// Adds consecutive samples of one pixel with full coverage; `weights` has one weight per
     /// colour.
-    pub fn add_seen(&mut self, x: u32, y: u32, first: u32, colors: &[Color], weights: &[f32]) {
-        let holds = |&(color, weight): &(&Color, &f32)| Small::holds(*color, *weight);
+    pub fn add_samples(&mut self, x: u32, y: u32, first: u32, colors: &[Color], weights: &[f32]) {
+        let holds = |&(color, weight): &(&Color, &f32)| SmallSums::fits(*color, *weight);
         let small = colors.iter().zip(weights).take(MOST_SMALL).take_while(holds).count();
         // There are no calls in this loop, so that the sums stay in registers.
-        let mut sums = Small::default();
+        let mut sums = SmallSums::default();
         for (&color, &weight) in colors[..small].iter().zip(&weights[..small]) {
             sums.add(color, weight);
         }
@@ -279,7 +279,7 @@ impl Film {
     }
 
     /// Adds a sample that covers a share of the pixel, from 0 to 1.
-    pub fn add_covering(&mut self, x: u32, y: u32, sample: u32, (color, share): (Color, f32), weight: f32) {
+    pub fn add_with_coverage(&mut self, x: u32, y: u32, sample: u32, (color, share): (Color, f32), weight: f32) {
         if !self.pixel_mut(x, y).add_any(color, share, weight) {
             self.reject(Rejected { y, x, sample });
         }
@@ -294,9 +294,9 @@ impl Film {
     fn reject(&mut self, what: Rejected) {
         self.rejected += 1;
         let place = self.first_rejected.partition_point(|old| *old <= what);
-        if place < REMEMBERED {
+        if place < MAX_LISTED_REJECTED {
             self.first_rejected.insert(place, what);
-            self.first_rejected.truncate(REMEMBERED);
+            self.first_rejected.truncate(MAX_LISTED_REJECTED);
         }
     }
 
@@ -333,26 +333,26 @@ impl Film {
     /// equal bytes.
     pub fn write(&self, out: &mut Vec<u8>) {
         for pixel in &self.pixels {
-            put(out, pixel.samples.into());
-            put_signed(out, pixel.weight.into());
+            write_unsigned(out, pixel.samples.into());
+            write_signed(out, pixel.weight.into());
             // The difference is usually zero, which takes one byte.
-            put_signed(out, i128::from(pixel.weight) - i128::from(pixel.covered));
-            pixel.color.iter().for_each(|&sum| put_signed(out, sum));
-            put_signed(out, pixel.luminance.into());
-            put_signed(out, pixel.squares);
+            write_signed(out, i128::from(pixel.weight) - i128::from(pixel.covered));
+            pixel.color.iter().for_each(|&sum| write_signed(out, sum));
+            write_signed(out, pixel.luminance.into());
+            write_signed(out, pixel.squares);
         }
-        put(out, self.rejected.into());
-        put(out, self.first_rejected.len() as u128);
+        write_unsigned(out, self.rejected.into());
+        write_unsigned(out, self.first_rejected.len() as u128);
         for Rejected { y, x, sample } in &self.first_rejected {
-            [y, x, sample].into_iter().for_each(|&number| put(out, number.into()));
+            [y, x, sample].into_iter().for_each(|&number| write_unsigned(out, number.into()));
         }
     }
 
     /// Reads bytes that [`Film::write`] wrote into an empty film with the same window. Returns
     /// `None` for invalid bytes, or if no `most_samples` samples per pixel could give these sums.
-    pub fn read(mut self, bytes: &mut Bytes, most_samples: u32) -> Option<Self> {
+    pub fn read(mut self, bytes: &mut ByteReader, most_samples: u32) -> Option<Self> {
         for pixel in &mut self.pixels {
-            pixel.samples = bytes.whole()?;
+            pixel.samples = bytes.read_unsigned()?;
             pixel.weight = bytes.signed()?;
             pixel.covered = pixel.weight.checked_sub(bytes.signed()?)?;
             for sum in &mut pixel.color {
@@ -364,13 +364,13 @@ impl Film {
                 return None;
             }
         }
-        self.rejected = bytes.whole()?;
-        let remembered: usize = bytes.whole()?;
-        if remembered as u64 > self.rejected || remembered > REMEMBERED {
+        self.rejected = bytes.read_unsigned()?;
+        let remembered: usize = bytes.read_unsigned()?;
+        if remembered as u64 > self.rejected || remembered > MAX_LISTED_REJECTED {
             return None;
         }
         for _ in 0..remembered {
-            let (y, x, sample) = (bytes.whole()?, bytes.whole()?, bytes.whole()?);
+            let (y, x, sample) = (bytes.read_unsigned()?, bytes.read_unsigned()?, bytes.read_unsigned()?);
             self.first_rejected.push(Rejected { y, x, sample });
         }
         self.first_rejected.is_sorted().then_some(self)

@@ -7,19 +7,19 @@ use durer_scene::math::Color;
 #[derive(Clone, Debug, PartialEq)]
 pub enum PackedFilm {
     /// Colours only: each pixel has one sample with weight 1 and full coverage.
-    Single(Box<[Color]>),
+    OneSample(Box<[Color]>),
     /// [`PackedFilm::Small`] where all samples have weight 1, as with filters without negative
     /// lobes.
-    Even(Box<[EqualWeights]>),
+    UnitWeights(Box<[EqualWeights]>),
     /// Colour sums fit in 64 bits, and all samples have full coverage.
-    Small(Box<[Small]>),
+    Small(Box<[CompactPixel]>),
     /// The film as it is.
-    Whole(Box<Film>),
+    Unpacked(Box<Film>),
 }
 
 /// Sums of one pixel in [`PackedFilm::Small`]; coverage equals the weight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Small {
+pub struct CompactPixel {
     color: [i64; 3],
     /// Lower and upper half; as an `i128` it would need padding.
     squares: [u64; 2],
@@ -28,11 +28,11 @@ pub struct Small {
     samples: u32,
 }
 
-impl Small {
+impl CompactPixel {
     fn of(pixel: &Pixel) -> Option<Self> {
         let [r, g, b] = pixel.color;
         (pixel.covered == pixel.weight).then_some(())?;
-        Some(Small {
+        Some(CompactPixel {
             color: [r.try_into().ok()?, g.try_into().ok()?, b.try_into().ok()?],
             squares: words(pixel.squares),
             luminance: pixel.luminance,
@@ -58,8 +58,8 @@ impl Small {
     }
 }
 
-/// Sums of one pixel in [`PackedFilm::Even`], where the weight equals the number of samples. Stored
-/// as 32-bit words to avoid padding.
+/// Sums of one pixel in [`PackedFilm::UnitWeights`], where the weight equals the number of samples.
+/// Stored as 32-bit words to avoid padding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EqualWeights {
     color: [[u32; 2]; 3],
@@ -70,7 +70,7 @@ pub struct EqualWeights {
 
 impl EqualWeights {
     fn of(pixel: &Pixel) -> Option<Self> {
-        let Small { color, squares: [low, high], luminance, weight, samples } = Small::of(pixel)?;
+        let CompactPixel { color, squares: [low, high], luminance, weight, samples } = CompactPixel::of(pixel)?;
         let [low, middle] = halves(low);
         let squares = [low, middle, high.try_into().ok()?];
         (weight == i64::from(samples) * WEIGHT_ONE).then_some(())?;
@@ -85,7 +85,7 @@ impl EqualWeights {
     fn pixel(&self) -> Pixel {
         let whole = |[low, high]: [u32; 2]| u64::from(high) << 32 | u64::from(low);
         let [low, middle, high] = self.squares;
-        Small {
+        CompactPixel {
             color: self.color.map(|sum| whole(sum) as i64),
             squares: [whole([low, middle]), high.into()],
             luminance: whole(self.luminance) as i64,
@@ -103,11 +103,11 @@ fn halves(number: u64) -> [u32; 2] {
 
 /// Converts all pixels of a film. Returns `None` if one cannot be converted.
 fn all<T>(film: &Film, smaller: impl Fn(&Pixel) -> Option<T>) -> Option<Vec<T>> {
-    let mut made = Vec::with_capacity(film.pixels.len());
+    let mut packed = Vec::with_capacity(film.pixels.len());
     for pixel in &film.pixels {
-        made.push(smaller(pixel)?);
+        packed.push(smaller(pixel)?);
     }
-    Some(made)
+    Some(packed)
 }
 
 /// Returns the lower and the upper 64 bits.
@@ -120,19 +120,19 @@ impl PackedFilm {
     /// that is wide enough for it from the start, which avoids memory fragmentation.
     pub fn new(film: Film, samples: u32) -> Self {
         if film.rejected() > 0 {
-            return PackedFilm::Whole(Box::new(film));
+            return PackedFilm::Unpacked(Box::new(film));
         }
         if samples == 1
             && let Some(singles) = all(&film, Pixel::single)
         {
-            return PackedFilm::Single(singles.into());
+            return PackedFilm::OneSample(singles.into());
         }
         if let Some(even) = all(&film, EqualWeights::of) {
-            return PackedFilm::Even(even.into());
+            return PackedFilm::UnitWeights(even.into());
         }
-        match all(&film, Small::of) {
+        match all(&film, CompactPixel::of) {
             Some(small) => PackedFilm::Small(small.into()),
-            None => PackedFilm::Whole(Box::new(film)),
+            None => PackedFilm::Unpacked(Box::new(film)),
         }
     }
 
@@ -144,43 +144,43 @@ impl PackedFilm {
             film
         };
         match self {
-            PackedFilm::Single(colors) => film(colors.iter().copied().map(Pixel::of_single).collect()),
-            PackedFilm::Even(pixels) => film(pixels.iter().map(EqualWeights::pixel).collect()),
-            PackedFilm::Small(pixels) => film(pixels.iter().map(Small::pixel).collect()),
-            PackedFilm::Whole(film) => Film::clone(film),
+            PackedFilm::OneSample(colors) => film(colors.iter().copied().map(Pixel::of_single).collect()),
+            PackedFilm::UnitWeights(pixels) => film(pixels.iter().map(EqualWeights::pixel).collect()),
+            PackedFilm::Small(pixels) => film(pixels.iter().map(CompactPixel::pixel).collect()),
+            PackedFilm::Unpacked(film) => Film::clone(film),
         }
     }
 
     /// Calls `offer` with the mean and coverage of each pixel, row by row. They equal
     /// [`Film::resolve`] and [`Film::coverage`].
-    pub fn means(&self, mut offer: impl FnMut(Color, f32)) {
+    pub fn for_each_mean(&self, mut offer: impl FnMut(Color, f32)) {
         let mut offer_pixel = |pixel: &Pixel| offer(pixel.mean(), pixel.coverage());
         match self {
-            PackedFilm::Single(colors) => colors.iter().for_each(|&color| offer(color, 1.0)),
-            PackedFilm::Even(pixels) => pixels.iter().for_each(|even| offer_pixel(&even.pixel())),
+            PackedFilm::OneSample(colors) => colors.iter().for_each(|&color| offer(color, 1.0)),
+            PackedFilm::UnitWeights(pixels) => pixels.iter().for_each(|even| offer_pixel(&even.pixel())),
             PackedFilm::Small(pixels) => pixels.iter().for_each(|small| offer_pixel(&small.pixel())),
-            PackedFilm::Whole(film) => film.pixels.iter().for_each(offer_pixel),
+            PackedFilm::Unpacked(film) => film.pixels.iter().for_each(offer_pixel),
         }
     }
 
     /// Returns true if all pixels have full coverage.
-    pub fn is_covered(&self) -> bool {
+    pub fn has_full_coverage(&self) -> bool {
         match self {
-            PackedFilm::Single(_) | PackedFilm::Even(_) | PackedFilm::Small(_) => true,
-            PackedFilm::Whole(film) => film.pixels.iter().all(|pixel| pixel.coverage() == 1.0),
+            PackedFilm::OneSample(_) | PackedFilm::UnitWeights(_) | PackedFilm::Small(_) => true,
+            PackedFilm::Unpacked(film) => film.pixels.iter().all(|pixel| pixel.coverage() == 1.0),
         }
     }
 
     /// Returns the film if it is stored unpacked, as every film with rejected samples is.
-    pub fn with_rejected(&self) -> Option<&Film> {
+    pub fn unpacked(&self) -> Option<&Film> {
         match self {
-            PackedFilm::Whole(film) => Some(film),
-            PackedFilm::Single(..) | PackedFilm::Even(_) | PackedFilm::Small(_) => None,
+            PackedFilm::Unpacked(film) => Some(film),
+            PackedFilm::OneSample(..) | PackedFilm::UnitWeights(_) | PackedFilm::Small(_) => None,
         }
     }
 
     /// Returns the usual size in bytes of a packed pixel with `samples` samples.
     pub fn pixel_bytes(samples: u32) -> u64 {
-        (if samples == 1 { size_of::<Color>() } else { size_of::<Small>() }) as u64
+        (if samples == 1 { size_of::<Color>() } else { size_of::<CompactPixel>() }) as u64
     }
 }

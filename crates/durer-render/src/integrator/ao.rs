@@ -5,7 +5,7 @@
 
 use super::spawn::spawn_ray;
 use super::trace::{HitRecord, NodeId, RayKind, TermKind, TraceListener};
-use super::{Integrate, IntegratorContext, Parameters};
+use super::{Integrate, IntegratorContext, IntegratorOptions};
 use crate::world::World;
 use durer_scene::bsdf::{Frame, warp};
 use durer_scene::describe::{Constraint, described};
@@ -23,11 +23,11 @@ described! {
 
 impl Copy for AoParameters {}
 
-impl Parameters for AoParameters {
+impl IntegratorOptions for AoParameters {
     type Integrator<'w> = AmbientOcclusion<'w>;
 
-    fn over(self, setup: IntegratorContext<'_>) -> AmbientOcclusion<'_> {
-        AmbientOcclusion { world: setup.world, radius: self.radius.unwrap_or(f32::INFINITY) }
+    fn create(self, context: IntegratorContext<'_>) -> AmbientOcclusion<'_> {
+        AmbientOcclusion { world: context.world, radius: self.radius.unwrap_or(f32::INFINITY) }
     }
 }
 
@@ -43,34 +43,34 @@ pub struct AmbientOcclusion<'w> {
 impl Integrate for AmbientOcclusion<'_> {
     /// Traces one random direction from the camera ray's hit. Returns 0 if it is occluded and 1 if
     /// it is not, or if the camera ray hits nothing.
-    fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
-        let node = tally.begin(NodeId::ROOT, || TermKind::Ray {
+    fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, listener: &mut T) -> Color {
+        let node = listener.begin(NodeId::ROOT, || TermKind::Ray {
             from: RayKind::Camera,
             ray: ray.into(),
             weight: 1.0,
             hit: None,
             bounce: None,
         });
-        let color = self.trace(&ray.into(), id, node, tally);
-        tally.end(node, Color::ONE, Color::ONE, color);
+        let color = self.trace(&ray.into(), id, node, listener);
+        listener.end(node, Color::ONE, Color::ONE, color);
         color
     }
 }
 
 impl AmbientOcclusion<'_> {
-    fn trace<T: TraceListener>(&self, ray: &Ray64, id: SampleId, node: NodeId, tally: &mut T) -> Color {
+    fn trace<T: TraceListener>(&self, ray: &Ray64, id: SampleId, node: NodeId, listener: &mut T) -> Color {
         let mut color = Color::ONE;
-        if let Some(at) = self.world.intersect(ray, tally) {
+        if let Some(at) = self.world.intersect(ray, listener) {
             let (surface, inside) = (&at.surface, at.inside());
             let n = if inside { -surface.n_geo } else { surface.n_geo };
-            tally.hit(node, || HitRecord::new(self.world, &at, n, inside, false));
+            listener.hit(node, || HitRecord::new(self.world, &at, n, inside, false));
             let dir = Frame::around(n).to_world(warp::cosine_hemisphere(id.pair(0)));
-            if self.world.occluded(spawn_ray(surface, dir, self.radius, None), tally) {
+            if self.world.occluded(spawn_ray(surface, dir, self.radius, None), listener) {
                 color = Color::ZERO;
             }
         }
-        let sky = tally.begin(node, || TermKind::Sky);
-        tally.end(sky, Color::ONE, Color::ONE, color);
+        let sky = listener.begin(node, || TermKind::Sky);
+        listener.end(sky, Color::ONE, Color::ONE, color);
         color
     }
 }

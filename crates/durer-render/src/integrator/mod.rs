@@ -15,29 +15,29 @@ use durer_scene::describe::{Describe, DescribedKind, described_list};
 use durer_scene::math::{Color, Ray, Ray64};
 use durer_scene::sampler::SampleId;
 use durer_scene::spectrum::ColorMode;
-pub use path::{Direct, Path, PathOptions, PhotonParameters, Photons};
+pub use path::{DirectSampling, Path, PathOptions, PhotonParameters, PhotonTracer};
 use std::sync::atomic::AtomicBool;
 pub use trace::{NodeId, TraceListener, TraceNode, TraceRecorder, Tree};
-pub use whitted::{Whitted, WhittedOptions, WhittedParameters, refract};
+pub use whitted::{RenderSettings, Whitted, WhittedParameters, refract};
 
 /// Options of one kind of integrator, which create it for a world. The command line gets the
 /// integrator's name and its options from [`Describe`].
-pub trait Parameters: Describe + Copy {
-    /// Integrator that these parameters create.
+pub trait IntegratorOptions: Describe + Copy {
+    /// Integrator that these options create.
     type Integrator<'w>: Integrate;
 
     /// True if the radiance depends on random numbers, so that each pixel needs many samples.
-    const IS_RANDOM: bool = true;
+    const IS_STOCHASTIC: bool = true;
 
     /// True if the integrator has work to do before the samples of a pass: see
     /// [`Integrate::prepare`].
     const PREPARES: bool = false;
 
     /// Creates the integrator for a world.
-    fn over(self, setup: IntegratorContext<'_>) -> Self::Integrator<'_>;
+    fn create(self, context: IntegratorContext<'_>) -> Self::Integrator<'_>;
 
     /// Returns the path tracing options, or `None` if the integrator does not trace paths.
-    fn transport(&self) -> Option<PathOptions> {
+    fn path_options(&self) -> Option<PathOptions> {
         None
     }
 }
@@ -48,7 +48,7 @@ pub struct IntegratorContext<'w> {
     /// World to render.
     pub world: &'w World,
     /// Settings common to all integrators, such as the maximum depth.
-    pub settings: WhittedOptions,
+    pub settings: RenderSettings,
     /// Footprint of a camera sample, for texture filtering. `None` if there are no pixels.
     pub cone: Option<RayCone>,
     /// Seed for random numbers that do not belong to a sample, such as those of photons.
@@ -60,7 +60,7 @@ pub struct IntegratorContext<'w> {
 /// Integrator: computes the radiance along camera rays.
 pub trait Integrate {
     /// Returns the radiance along a camera ray. `id` selects the random numbers.
-    fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color;
+    fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, listener: &mut T) -> Color;
 
     /// Computes the radiance of a batch of neighbouring camera rays. Results are the same as for
     /// one ray at a time. `begin` is called with the index of each ray before it is shaded and
@@ -69,10 +69,10 @@ pub trait Integrate {
         &self,
         rays: &[Ray64],
         begin: impl Fn(usize) -> SampleId,
-        tally: &mut T,
+        listener: &mut T,
         colors: &mut [Color],
     ) {
-        one_by_one(self, rays, begin, tally, colors);
+        one_by_one(self, rays, begin, listener, colors);
     }
 
     /// Prepares the samples with this index, on all threads, before they are taken.
@@ -84,11 +84,11 @@ fn one_by_one<T: TraceListener>(
     integrator: &(impl Integrate + ?Sized),
     rays: &[Ray64],
     begin: impl Fn(usize) -> SampleId,
-    tally: &mut T,
+    listener: &mut T,
     colors: &mut [Color],
 ) {
     for (i, (ray, color)) in rays.iter().zip(colors).enumerate() {
-        *color = integrator.radiance(&ray.rounded, begin(i), tally);
+        *color = integrator.radiance(&ray.rounded, begin(i), listener);
     }
 }
 
@@ -96,40 +96,40 @@ macro_rules! delegate {
     ($($variant:ident),+) => {
         impl IntegratorKind {
             /// Returns the path tracing options, or `None` if the integrator does not trace paths.
-            pub fn transport(self) -> Option<PathOptions> {
-                match self { $(IntegratorKind::$variant(it) => it.transport(),)+ }
+            pub fn path_options(self) -> Option<PathOptions> {
+                match self { $(IntegratorKind::$variant(it) => it.path_options(),)+ }
             }
 
             /// Returns true if the radiance depends on random numbers.
-            pub fn is_random(self) -> bool {
-                fn of<P: Parameters>(_: P) -> bool { P::IS_RANDOM }
+            pub fn is_stochastic(self) -> bool {
+                fn of<P: IntegratorOptions>(_: P) -> bool { P::IS_STOCHASTIC }
                 match self { $(IntegratorKind::$variant(it) => of(it),)+ }
             }
 
             /// Returns true if the integrator has work to do before the samples of a pass.
             pub fn prepares(self) -> bool {
-                fn of<P: Parameters>(_: P) -> bool { P::PREPARES }
+                fn of<P: IntegratorOptions>(_: P) -> bool { P::PREPARES }
                 match self { $(IntegratorKind::$variant(it) => of(it),)+ }
             }
 
             /// Creates the integrator for a world.
-            pub fn over(self, setup: IntegratorContext<'_>) -> Integrator<'_> {
-                match self { $(IntegratorKind::$variant(it) => Integrator::$variant(it.over(setup)),)+ }
+            pub fn create(self, context: IntegratorContext<'_>) -> Integrator<'_> {
+                match self { $(IntegratorKind::$variant(it) => Integrator::$variant(it.create(context)),)+ }
             }
         }
 
         impl Integrate for Integrator<'_> {
-            fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
-                match self { $(Integrator::$variant(it) => Integrate::radiance(it, ray, id, tally),)+ }
+            fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, listener: &mut T) -> Color {
+                match self { $(Integrator::$variant(it) => Integrate::radiance(it, ray, id, listener),)+ }
             }
             fn radiances<T: TraceListener>(
                 &self,
                 rays: &[Ray64],
                 begin: impl Fn(usize) -> SampleId,
-                tally: &mut T,
+                listener: &mut T,
                 colors: &mut [Color],
             ) {
-                match self { $(Integrator::$variant(it) => it.radiances(rays, begin, tally, colors),)+ }
+                match self { $(Integrator::$variant(it) => it.radiances(rays, begin, listener, colors),)+ }
             }
             fn prepare(&self, sample: u32) {
                 match self { $(Integrator::$variant(it) => it.prepare(sample),)+ }
@@ -142,14 +142,14 @@ macro_rules! integrators {
     ($($variant:ident($type:ty),)+) => {
         described_list! {
             /// Kind of integrator that renders a picture, with its own options.
-            IntegratorKind: Parameters => delegate { $($variant($type),)+ }
+            IntegratorKind: IntegratorOptions => delegate { $($variant($type),)+ }
         }
 
         /// Integrator for one world, of any kind.
         #[derive(Clone, Debug)]
         pub enum Integrator<'w> {
             $(#[doc = concat!("Integrator for `", stringify!($variant), "`.")]
-            $variant(<$type as Parameters>::Integrator<'w>),)+
+            $variant(<$type as IntegratorOptions>::Integrator<'w>),)+
         }
     };
 }
@@ -175,7 +175,7 @@ impl IntegratorKind {
 
     /// Path tracing with default options.
     pub const PATH: IntegratorKind =
-        IntegratorKind::Path(PathOptions { clamp: None, color: ColorMode::Rgb, direct: Direct::Both });
+        IntegratorKind::Path(PathOptions { clamp: None, color: ColorMode::Rgb, direct: DirectSampling::Both });
 
     /// Returns the integrator's name on the command line.
     pub fn name(&self) -> &'static str {

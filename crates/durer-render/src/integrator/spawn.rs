@@ -21,13 +21,13 @@ use glam::DVec3;
 #[inline(always)]
 pub fn spawn_ray(surface: &SurfacePoint, dir: Vec3, t_max: f32, epsilon: Option<Epsilon>) -> Ray64 {
     match epsilon {
-        Some(Epsilon::Least(t_min)) => return Ray64::new(surface.point(), dir, t_min, t_max),
-        Some(Epsilon::Along(way)) => {
+        Some(Epsilon::MinT(t_min)) => return Ray64::new(surface.point(), dir, t_min, t_max),
+        Some(Epsilon::OffsetOrigin(way)) => {
             return Ray { t_max, ..Ray::new(surface.position + way * dir, dir) }.into();
         }
         None => {}
     }
-    from(surface, Vec3::ZERO, dir, t_max, dir.dot(surface.n_geo) < 0.0)
+    offset_ray(surface, Vec3::ZERO, dir, t_max, dir.dot(surface.n_geo) < 0.0)
 }
 
 /// Creates a shadow ray to a light at some distance, like [`spawn_ray`]. Without an `epsilon`, it
@@ -38,7 +38,7 @@ pub fn spawn_ray(surface: &SurfacePoint, dir: Vec3, t_max: f32, epsilon: Option<
 pub fn to_light(surface: &SurfacePoint, dir: Vec3, distance: f32, epsilon: Option<Epsilon>) -> Ray64 {
     match epsilon {
         Some(_) => spawn_ray(surface, dir, distance, epsilon),
-        None => from_bent_surface(surface, dir, distance, dir.dot(surface.n_shade) < 0.0),
+        None => from_curved_surface(surface, dir, distance, dir.dot(surface.n_shade) < 0.0),
     }
 }
 
@@ -46,28 +46,28 @@ pub fn to_light(surface: &SurfacePoint, dir: Vec3, distance: f32, epsilon: Optio
 /// surface, the ray is aimed again at the point. A parallel ray would miss it and could end behind
 /// an inclined light.
 pub fn to_point(surface: &SurfacePoint, dir: Vec3, distance: f32) -> Ray64 {
-    let ray = from_bent_surface(surface, dir, distance, dir.dot(surface.n_geo) < 0.0);
+    let ray = from_curved_surface(surface, dir, distance, dir.dot(surface.n_geo) < 0.0);
     if surface.shadow_offsets == [Vec3::ZERO; 2] || !distance.is_finite() {
         return ray;
     }
-    let way = surface.point() + f64::from(distance) * dir.as_dvec3() - ray.origin();
-    let length = way.length();
-    Ray64::new(ray.origin(), (way / length).as_vec3(), 0.0, length as f32 * (1.0 - gamma(4))).on_side(ray.side)
+    let offset = surface.point() + f64::from(distance) * dir.as_dvec3() - ray.origin();
+    let length = offset.length();
+    Ray64::new(ray.origin(), (offset / length).as_vec3(), 0.0, length as f32 * (1.0 - gamma(4))).on_side(ray.side)
 }
 
 /// Creates a ray from the curved surface, on the side of its normals or, if `behind`, the other
 /// side.
 #[inline(always)]
-fn from_bent_surface(surface: &SurfacePoint, dir: Vec3, distance: f32, behind: bool) -> Ray64 {
+fn from_curved_surface(surface: &SurfacePoint, dir: Vec3, distance: f32, behind: bool) -> Ray64 {
     let [front, back] = surface.shadow_offsets;
     let lift = if behind { back } else { front };
-    from(surface, lift, dir, distance - lift.dot(dir), behind)
+    offset_ray(surface, lift, dir, distance - lift.dot(dir), behind)
 }
 
 /// Creates a ray from a point lifted off the surface, on the side of the geometric normal or, if
 /// `behind`, the other side.
 #[inline(always)]
-fn from(surface: &SurfacePoint, lift: Vec3, dir: Vec3, t_max: f32, behind: bool) -> Ray64 {
+fn offset_ray(surface: &SurfacePoint, lift: Vec3, dir: Vec3, t_max: f32, behind: bool) -> Ray64 {
     let side = if behind { -surface.n_geo } else { surface.n_geo };
     let ray = Ray64::new(offset_ray_origin(surface, lift, side), dir, 0.0, t_max);
     surface.solid.map_or(ray, |solid| ray.on_side(StartSide::of(solid, behind)))

@@ -27,7 +27,7 @@ pub trait TraceListener: TraversalCounter {
     /// Sets the meaning of the lanes of all terms; the default is RGB.
     fn lanes(&mut self, _lanes: &Lanes) {}
     /// Adds a term below `parent` and returns its node. Siblings are ordered by when they begin.
-    fn begin(&mut self, _parent: NodeId, _what: impl FnOnce() -> TermKind) -> NodeId {
+    fn begin(&mut self, _parent: NodeId, _kind: impl FnOnce() -> TermKind) -> NodeId {
         NodeId::NONE
     }
     /// Records the hit of a ray term.
@@ -104,12 +104,12 @@ impl TermValue {
     }
 
     /// Returns true if every lane equals `number`.
-    pub fn is(&self, number: f32) -> bool {
+    pub fn equals(&self, number: f32) -> bool {
         self.numbers().iter().all(|x| *x == number)
     }
 
     /// Combines two values lane by lane.
-    fn with(self, other: TermValue, apply: impl FnOnce(Spectrum, Spectrum) -> Spectrum) -> Self {
+    fn zip_with(self, other: TermValue, apply: impl FnOnce(Spectrum, Spectrum) -> Spectrum) -> Self {
         let both = apply(self.spectrum(), other.spectrum());
         match (self, other) {
             (TermValue::Color(_), TermValue::Color(_)) => TermValue::Color(both.truncate()),
@@ -121,14 +121,14 @@ impl TermValue {
 impl std::ops::Mul for TermValue {
     type Output = TermValue;
     fn mul(self, other: TermValue) -> TermValue {
-        self.with(other, |a, b| a * b)
+        self.zip_with(other, |a, b| a * b)
     }
 }
 
 impl std::ops::Add for TermValue {
     type Output = TermValue;
     fn add(self, other: TermValue) -> TermValue {
-        self.with(other, |a, b| a + b)
+        self.zip_with(other, |a, b| a + b)
     }
 }
 
@@ -152,11 +152,11 @@ impl Tree {
     /// Computes the ray's colour from the terms. It equals the pixel's colour bit for bit.
     ///
     /// For a path, adds throughput · value of each light source in the order in which the path
-    /// finds them; see [`TraceNode::added`]. The values of rays in such a tree have rounding
-    /// errors. Other integrators report no throughput; for them, sums the terms of each node, see
-    /// [`TraceNode::sum`].
+    /// finds them; see [`TraceNode::path_contribution`]. The values of rays in such a tree have
+    /// rounding errors. Other integrators report no throughput; for them, sums the terms of each
+    /// node, see [`TraceNode::sum`].
     pub fn sum(&self) -> Color {
-        self.color(self.root.added().unwrap_or_else(|| self.root.sum()))
+        self.color(self.root.path_contribution().unwrap_or_else(|| self.root.sum()))
     }
 }
 
@@ -164,7 +164,8 @@ impl Tree {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TraceNode {
     /// Kind of the term.
-    pub what: TermKind,
+    #[serde(rename = "what")]
+    pub kind: TermKind,
     /// Factor by which the value contributes to the parent node.
     pub factor: TermValue,
     /// Factor by which the sum of `terms` is multiplied.
@@ -175,7 +176,7 @@ pub struct TraceNode {
     /// source, its own value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub throughput: Option<TermValue>,
-    /// Terms that are summed, in order of addition. Empty if `what` tells how the value is
+    /// Terms that are summed, in order of addition. Empty if `kind` tells how the value is
     /// computed.
     pub terms: Vec<TraceNode>,
 }
@@ -183,14 +184,14 @@ pub struct TraceNode {
 impl TraceNode {
     /// Returns a path node's contribution to the pixel: throughput · value, summed in order over
     /// the light sources below. `None` for integrators that report no throughput.
-    pub fn added(&self) -> Option<TermValue> {
+    pub fn path_contribution(&self) -> Option<TermValue> {
         self.throughput.map(|_| self.add_sources(TermValue::Color(Color::ZERO)))
     }
 
     /// Adds throughput · value of each light source below to `sum`, in order.
     fn add_sources(&self, sum: TermValue) -> TermValue {
-        match (&self.what, self.throughput) {
-            (TermKind::Ray { .. } | TermKind::OneWavelength { .. }, _) => {
+        match (&self.kind, self.throughput) {
+            (TermKind::Ray { .. } | TermKind::Dispersion { .. }, _) => {
                 self.terms.iter().fold(sum, |sum, term| term.add_sources(sum))
             }
             (_, Some(throughput)) => sum + throughput * self.value,
@@ -386,7 +387,8 @@ pub enum TermKind {
     },
     /// Dispersion by glass. Only the hero wavelength continues, and the factor makes up for the
     /// other three.
-    OneWavelength {
+    #[serde(rename = "one_wavelength")]
+    Dispersion {
         /// Wavelength in nanometres.
         nm: f32,
     },
@@ -437,12 +439,14 @@ pub enum TermKind {
         total: bool,
     },
     /// A ray that is not traced because its weight is too small.
-    Cut {
+    #[serde(rename = "cut")]
+    BelowMinWeight {
         /// Weight of the ray.
         weight: f32,
     },
     /// Reflected and transmitted light that the maximum depth cuts off.
-    Spent,
+    #[serde(rename = "spent")]
+    DepthLimit,
 }
 
 impl TermKind {
@@ -495,16 +499,16 @@ impl TraceListener for TraceRecorder {
         self.lanes = *lanes;
     }
 
-    fn begin(&mut self, parent: NodeId, what: impl FnOnce() -> TermKind) -> NodeId {
+    fn begin(&mut self, parent: NodeId, kind: impl FnOnce() -> TermKind) -> NodeId {
         let [one, zero] = [Color::ONE, Color::ZERO].map(TermValue::Color);
         let node =
-            TraceNode { what: what(), factor: one, scale: one, value: zero, throughput: None, terms: Vec::new() };
+            TraceNode { kind: kind(), factor: one, scale: one, value: zero, throughput: None, terms: Vec::new() };
         self.nodes.push((parent, node));
         NodeId(self.nodes.len() as u32 - 1)
     }
 
     fn hit(&mut self, node: NodeId, hit: impl FnOnce() -> HitRecord) {
-        if let Some((_, TraceNode { what: TermKind::Ray { hit: place, .. }, .. })) = self.nodes.get_mut(node.0 as usize)
+        if let Some((_, TraceNode { kind: TermKind::Ray { hit: place, .. }, .. })) = self.nodes.get_mut(node.0 as usize)
         {
             *place = Some(Box::new(hit()));
         }

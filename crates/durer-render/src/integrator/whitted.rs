@@ -7,11 +7,11 @@
 //! Source: Turner Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23(6), 1980,
 //! with the terms of the course's assignments.
 
-use super::media::Passage;
+use super::media::MediumTransition;
 use super::trace::{HitRecord, NodeId, RayKind, TermKind, TraceListener};
-use super::{Integrate, IntegratorContext, Parameters};
+use super::{Integrate, IntegratorContext, IntegratorOptions};
 use crate::world::{MAX_BATCH, Material, SurfaceInteraction, WeightedMaterial, World};
-use direct::{Direct, take_powers};
+use direct::{LightTerms, compute_powers};
 use durer_scene::describe::described;
 use durer_scene::dialect::set;
 use durer_scene::light::LightLiSample;
@@ -27,7 +27,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 /// Light transport settings of a render, used by all integrators: depth, shadows and secondary
 /// rays.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct WhittedOptions {
+pub struct RenderSettings {
     /// Maximum depth of secondary rays; 0 gives direct light only.
     pub bounces: u32,
     /// True if objects cast shadows.
@@ -42,10 +42,11 @@ pub struct WhittedOptions {
     pub refraction: bool,
     /// Minimum weight of a ray in the pixel. The weight is the largest component of the throughput;
     /// in the course's programs, it is the length.
-    pub least_weight: f32,
+    #[serde(rename = "least_weight")]
+    pub min_weight: f32,
 }
 
-impl WhittedOptions {
+impl RenderSettings {
     /// Greatest maximum depth that a render job can have.
     pub const MAX_BOUNCES: u32 = 256;
 }
@@ -57,12 +58,12 @@ described! {
 
 impl Copy for WhittedParameters {}
 
-impl Parameters for WhittedParameters {
+impl IntegratorOptions for WhittedParameters {
     type Integrator<'w> = Whitted<'w>;
 
-    const IS_RANDOM: bool = false;
+    const IS_STOCHASTIC: bool = false;
 
-    fn over(self, IntegratorContext { world, settings, cancel, .. }: IntegratorContext<'_>) -> Whitted<'_> {
+    fn create(self, IntegratorContext { world, settings, cancel, .. }: IntegratorContext<'_>) -> Whitted<'_> {
         Whitted { world, settings, cancel }
     }
 }
@@ -73,7 +74,7 @@ pub struct Whitted<'w> {
     /// World to render.
     pub world: &'w World,
     /// Depth, shadows and secondary rays.
-    pub settings: WhittedOptions,
+    pub settings: RenderSettings,
     /// Cancellation flag. Once it is set, no more rays are traced and results are meaningless. It
     /// is needed because a single pixel that shows many mirrors can take a long time.
     pub cancel: Option<&'w AtomicBool>,
@@ -85,7 +86,7 @@ struct ShadedMaterial<'w> {
     /// Diffuse colour, computed once for all lights.
     diffuse: Color,
     /// Terms of the light that is being added.
-    direct: Direct,
+    direct: LightTerms,
 }
 
 /// Surface point that the Whitted integrator shades, one per hit of a batch.
@@ -94,7 +95,7 @@ struct ShadingPoint {
     segment: u32,
     at: SurfaceInteraction,
     /// Refraction through the surface.
-    passage: Passage,
+    transition: MediumTransition,
     /// Normal used for lighting.
     n: Vec3,
     /// True if the official program leaves the point black.
@@ -108,7 +109,7 @@ struct ShadingPoint {
 }
 
 /// Materials of all points of a batch, ordered by point.
-type Parts<'w> = SmallVec<[ShadedMaterial<'w>; MAX_BATCH]>;
+type ShadedMaterials<'w> = SmallVec<[ShadedMaterial<'w>; MAX_BATCH]>;
 
 /// Thread-local buffers that are reused for each batch of camera rays.
 struct Scratch {
@@ -123,7 +124,7 @@ impl Default for Scratch {
         let point = || ShadingPoint {
             segment: 0,
             at: SurfaceInteraction::NOWHERE,
-            passage: Passage::default(),
+            transition: MediumTransition::default(),
             n: Vec3::ZERO,
             black: false,
             first_part: 0,
@@ -152,40 +153,40 @@ struct Side {
 }
 
 impl Integrate for Whitted<'_> {
-    fn radiance<T: TraceListener>(&self, ray: &Ray, _: SampleId, tally: &mut T) -> Color {
-        self.radiance(ray, tally)
+    fn radiance<T: TraceListener>(&self, ray: &Ray, _: SampleId, listener: &mut T) -> Color {
+        self.radiance(ray, listener)
     }
 
     fn radiances<T: TraceListener>(
         &self,
         rays: &[Ray64],
         begin: impl Fn(usize) -> SampleId,
-        tally: &mut T,
+        listener: &mut T,
         colors: &mut [Color],
     ) {
         let begin = |ray| {
             begin(ray);
         };
-        self.trace(rays, begin, tally, colors);
+        self.trace(rays, begin, listener, colors);
     }
 }
 
 impl<'w> Whitted<'w> {
     /// Returns the radiance along a camera ray.
-    pub fn radiance<T: TraceListener>(&self, ray: &Ray, tally: &mut T) -> Color {
+    pub fn radiance<T: TraceListener>(&self, ray: &Ray, listener: &mut T) -> Color {
         let mut color = [Color::ZERO];
-        self.trace(&[ray.into()], |_| {}, tally, &mut color);
+        self.trace(&[ray.into()], |_| {}, listener, &mut color);
         color[0]
     }
 
     /// Traces camera rays and their secondary rays in batches. For each batch, finds the first
     /// hits, lights them and spawns secondary rays. `begin` is called with the index of the camera
     /// ray that is worked on.
-    fn trace<T: TraceListener>(&self, rays: &[Ray64], begin: impl Fn(usize), tally: &mut T, colors: &mut [Color]) {
+    fn trace<T: TraceListener>(&self, rays: &[Ray64], begin: impl Fn(usize), listener: &mut T, colors: &mut [Color]) {
         SCRATCH.with_borrow_mut(|Scratch { queue, points, rays: batch_rays }| {
             queue.clear();
             for (camera, ray) in rays.iter().enumerate() {
-                let node = tally.begin(NodeId::ROOT, || TermKind::Ray {
+                let node = listener.begin(NodeId::ROOT, || TermKind::Ray {
                     from: RayKind::Camera,
                     ray: ray.into(),
                     weight: 1.0,
@@ -202,13 +203,13 @@ impl<'w> Whitted<'w> {
                 }
                 let mut parts = SmallVec::new();
                 let batch = &batch[..count];
-                let count = self.hit(batch, batch_rays, (queue, points, &mut parts), &begin, colors, tally);
+                let count = self.hit(batch, batch_rays, (queue, points, &mut parts), &begin, colors, listener);
                 let points = &mut points[..count];
-                self.shade(points, batch_rays, &mut parts, queue, tally);
+                self.shade(points, batch_rays, &mut parts, queue, listener);
                 for point in points {
                     begin(queue.segment(point.segment).camera as usize);
                     let parts = &parts[point.first_part..][..point.parts];
-                    self.secondary(point, parts, queue, colors, tally);
+                    self.secondary(point, parts, queue, colors, listener);
                 }
             }
         });
@@ -220,10 +221,10 @@ impl<'w> Whitted<'w> {
         &self,
         batch: &[u32],
         rays: &mut [Ray64; MAX_BATCH],
-        (queue, points, parts): (&mut Queue, &mut [ShadingPoint], &mut Parts<'w>),
+        (queue, points, parts): (&mut Queue, &mut [ShadingPoint], &mut ShadedMaterials<'w>),
         begin: &impl Fn(usize),
         colors: &mut [Color],
-        tally: &mut T,
+        listener: &mut T,
     ) -> usize {
         let (rays, mut found) = (&mut rays[..batch.len()], [None; MAX_BATCH]);
         for (ray, &number) in rays.iter_mut().zip(batch) {
@@ -231,41 +232,41 @@ impl<'w> Whitted<'w> {
             *ray = segment.ray;
             ray.rounded.t_min = segment.t_min;
         }
-        self.world.first_hits(rays, &mut found[..batch.len()], tally);
+        self.world.first_hits(rays, &mut found[..batch.len()], listener);
         let mut count = 0;
         for (&number, found) in batch.iter().zip(found) {
             let segment = queue.segment(number);
             begin(segment.camera as usize);
             let Some(hit) = found else {
-                let sky = self.world.sky(segment.ray.dir());
-                let node = tally.begin(segment.node, || TermKind::Sky);
-                tally.end(node, Color::ONE, Color::ONE, sky);
-                queue.finish(number, sky, colors, tally);
+                let sky = self.world.background_radiance(segment.ray.dir());
+                let node = listener.begin(segment.node, || TermKind::Sky);
+                listener.end(node, Color::ONE, Color::ONE, sky);
+                queue.finish(number, sky, colors, listener);
                 continue;
             };
             let point = &mut points[count];
             self.world.intersect_into(&segment.ray, hit, &mut point.at);
-            match self.passage(&point.at, &segment.media) {
-                Some(Passage { hidden: true, behind, .. }) => {
+            match self.transition(&point.at, &segment.media) {
+                Some(MediumTransition { displaced: true, behind, .. }) => {
                     (segment.media, segment.t_min) = (behind, hit.t);
                     queue.push_again(number);
                     continue;
                 }
-                Some(passage) => point.passage = passage,
-                None => point.passage = Passage::default(),
+                Some(transition) => point.transition = transition,
+                None => point.transition = MediumTransition::default(),
             }
             let Side { n, from_behind, black } = self.side(&point.at);
-            tally.hit(segment.node, || HitRecord::new(self.world, &point.at, n, from_behind, black));
+            listener.hit(segment.node, || HitRecord::new(self.world, &point.at, n, from_behind, black));
             (point.segment, point.n, point.black) = (number, n, black);
             point.first_part = parts.len();
             let lit = |part: WeightedMaterial<'w>| {
                 let diffuse = self.world.diffuse_color(part.phong, &point.at.surface);
-                ShadedMaterial { part, diffuse, direct: Direct::default() }
+                ShadedMaterial { part, diffuse, direct: LightTerms::default() }
             };
             match &self.world.materials()[point.at.material as usize] {
                 // Fast path: most points have one material.
                 Material::Phong(phong) => parts.push(lit(WeightedMaterial { phong, share: 1.0 })),
-                Material::Solid(..) => parts.extend(self.world.parts(&point.at).into_iter().map(lit)),
+                Material::Mix(..) => parts.extend(self.world.materials_at(&point.at).into_iter().map(lit)),
             }
             point.parts = parts.len() - point.first_part;
             count += 1;
@@ -281,7 +282,7 @@ impl<'w> Whitted<'w> {
         shadows: &mut [Ray64; MAX_BATCH],
         parts: &mut [ShadedMaterial],
         queue: &mut Queue,
-        tally: &mut T,
+        listener: &mut T,
     ) {
         for point in &mut *points {
             point.color = Color::ZERO;
@@ -290,11 +291,11 @@ impl<'w> Whitted<'w> {
             }
             let node = queue.segment(point.segment).node;
             for ShadedMaterial { part, diffuse, .. } in &parts[point.first_part..][..point.parts] {
-                let met = part.phong.ambient.unwrap_or(*diffuse);
+                let reflectance = part.phong.ambient.unwrap_or(*diffuse);
                 let ambient = part.share * self.world.ambient();
-                let node = tally.begin(node, || TermKind::Ambient { share: part.share });
-                tally.end(node, ambient, Color::ONE, met);
-                point.color += ambient * met;
+                let node = listener.begin(node, || TermKind::Ambient { share: part.share });
+                listener.end(node, ambient, Color::ONE, reflectance);
+                point.color += ambient * reflectance;
             }
         }
         // Points that the light may reach: their index, and the light as seen from there.
@@ -303,33 +304,33 @@ impl<'w> Whitted<'w> {
             let mut count = 0;
             for (i, point) in points.iter_mut().enumerate().filter(|(_, point)| !point.black) {
                 let SurfaceInteraction { ray, surface, .. } = &point.at;
-                let seen = self.world.illuminate(number, surface.point());
+                let light_sample = self.world.illuminate(number, surface.point());
                 let mut dark = true;
                 for ShadedMaterial { part, diffuse, direct } in &mut parts[point.first_part..][..point.parts] {
-                    *direct = Direct::of(part.phong, *diffuse, point.n, ray.dir(), &seen);
+                    *direct = LightTerms::of(part.phong, *diffuse, point.n, ray.dir(), &light_sample);
                     dark &= direct.is_dark(part.phong);
                 }
                 // Only listeners need the visibility of a light that adds nothing. The exception is
                 // an infinite light: times 0 it is NaN, as in the official programs.
-                let adds_nothing = dark && seen.color.is_finite() || seen.color == Color::ZERO;
+                let adds_nothing = dark && light_sample.color.is_finite() || light_sample.color == Color::ZERO;
                 if adds_nothing && !T::LISTENS {
                     continue;
                 }
-                shadows[count] = self.shadow_ray(surface, number, &seen);
-                lit[count] = (i, seen);
+                shadows[count] = self.shadow_ray(surface, number, &light_sample);
+                lit[count] = (i, light_sample);
                 count += 1;
             }
             let lit = &lit[..count];
             let mut shares = [Color::ONE; MAX_BATCH];
             if self.settings.shadows {
-                self.visible(&mut shadows[..count], &mut shares[..count], tally);
+                self.visible(&mut shadows[..count], &mut shares[..count], listener);
             }
             let arriving = lit.iter().zip(shares).filter(|(_, share)| *share != Color::ZERO);
-            take_powers(points, parts, arriving.map(|(&(i, _), _)| i));
+            compute_powers(points, parts, arriving.map(|(&(i, _), _)| i));
             for (&(i, ref seen), share) in lit.iter().zip(shares) {
                 let point = &mut points[i];
                 let parts = &parts[point.first_part..][..point.parts];
-                self.add_light(point, parts, (number, seen, share), queue, tally);
+                self.add_light(point, parts, (number, seen, share), queue, listener);
             }
         }
     }
@@ -342,7 +343,7 @@ impl<'w> Whitted<'w> {
         parts: &[ShadedMaterial],
         (number, seen, visible): (usize, &LightLiSample, Color),
         queue: &mut Queue,
-        tally: &mut T,
+        listener: &mut T,
     ) {
         for ShadedMaterial { part, diffuse, direct } in parts {
             let share = part.share;
@@ -351,22 +352,22 @@ impl<'w> Whitted<'w> {
             let color = if dark { Color::ZERO } else { direct.color(part.phong, seen) };
             if T::LISTENS {
                 let parent = queue.segment(point.segment).node;
-                let node = tally.begin(parent, || {
+                let node = listener.begin(parent, || {
                     let shadow = self.settings.shadows.then(|| self.shadow(&point.at.surface, number, seen, visible));
                     let (to_light, distance) = (seen.to_light, seen.distance);
                     TermKind::Light { light: number, to_light, distance, share, shadow }
                 });
                 if !dark {
-                    direct.report(part.phong, *diffuse, node, tally);
+                    direct.report(part.phong, *diffuse, node, listener);
                 }
-                tally.end(node, share * visible, seen.color, color);
+                listener.end(node, share * visible, seen.color, color);
             }
             point.color += share * visible * color;
         }
     }
 
     /// Returns true if secondary rays should still be traced.
-    fn goes_on(&self, bounces: u32) -> bool {
+    fn continues(&self, bounces: u32) -> bool {
         bounces > 0 && !self.cancel.is_some_and(|cancel| cancel.load(Relaxed))
     }
 
@@ -391,7 +392,7 @@ impl<'w> Whitted<'w> {
     /// Returns the albedo: the diffuse colour at a hit, averaged over its materials by their
     /// shares.
     pub fn albedo(&self, at: &SurfaceInteraction) -> Color {
-        let parts = self.world.parts(at);
+        let parts = self.world.materials_at(at);
         parts.iter().map(|part| part.share * self.world.diffuse_color(part.phong, &at.surface)).sum()
     }
 }

@@ -1,7 +1,7 @@
 //! Adaptive sampling, second step: decides the number of samples of each pixel after the pilot.
 
-use super::Crop;
-use super::allocation::{around, divided};
+use super::PixelRect;
+use super::allocation::{distribute, neighbor_variances};
 use super::part::PartialRender;
 use std::sync::Arc;
 
@@ -17,19 +17,22 @@ impl PartialRender {
         let mut variances = vec![0.0; window.pixels() as usize];
         for (index, block) in blocks.iter().enumerate() {
             let Some(own) = &block.variances else { return false };
-            let places = self.blocks.rect(index).places();
+            let places = self.blocks.rect(index).pixel_positions();
             places.zip(own.iter()).for_each(|((x, y), &variance)| variances[window.index(x, y)] = variance);
         }
-        let mut deviations = around(&variances, window.width as usize);
+        let mut deviations = neighbor_variances(&variances, window.width as usize);
         deviations.iter_mut().for_each(|variance| *variance = variance.sqrt());
         let mut targets = vec![0; deviations.len()];
         for color in 0..2 {
             let is_of_color = |&(x, y): &(u32, u32)| (x ^ y) & 1 == color;
-            let pixels: Vec<usize> = window.places().filter(is_of_color).map(|(x, y)| window.index(x, y)).collect();
+            let pixels: Vec<usize> =
+                window.pixel_positions().filter(is_of_color).map(|(x, y)| window.index(x, y)).collect();
             let own: Vec<f32> = pixels.iter().map(|&pixel| deviations[pixel]).collect();
-            pixels.iter().zip(divided(&own, samples)).for_each(|(&pixel, target)| targets[pixel] = target);
+            pixels.iter().zip(distribute(&own, samples)).for_each(|(&pixel, target)| targets[pixel] = target);
         }
-        let of_block = |rect: Crop| -> Arc<[u32]> { rect.places().map(|(x, y)| targets[window.index(x, y)]).collect() };
+        let of_block = |rect: PixelRect| -> Arc<[u32]> {
+            rect.pixel_positions().map(|(x, y)| targets[window.index(x, y)]).collect()
+        };
         for (index, block) in self.state().samples.iter_mut().enumerate() {
             block.targets = Some(of_block(self.blocks.rect(index)));
         }
@@ -37,9 +40,9 @@ impl PartialRender {
     }
 
     /// Returns the number of samples decided for a pixel of the window, or `None` if undecided.
-    pub(super) fn target(&self, x: u32, y: u32) -> Option<u32> {
-        let (state, index) = (self.state(), self.blocks.at(x, y));
-        let pixel = self.blocks.rect(index).places().position(|place| place == (x, y))?;
+    pub(super) fn sample_target(&self, x: u32, y: u32) -> Option<u32> {
+        let (state, index) = (self.state(), self.blocks.index_at(x, y));
+        let pixel = self.blocks.rect(index).pixel_positions().position(|place| place == (x, y))?;
         Some(state.samples.get(index)?.targets.as_ref()?[pixel])
     }
 }

@@ -14,7 +14,7 @@ use std::array::from_fn;
 /// Position, weight and camera ray of one sample of a pixel.
 pub(super) struct PixelSample {
     /// Position in the picture, in pixels from the upper left corner.
-    pub(super) place: Vec2,
+    pub(super) film_position: Vec2,
     /// Position on the lens, in [0,1)^2.
     pub(super) lens: Vec2,
     /// Weight of the sample in the pixel.
@@ -95,12 +95,12 @@ impl SampleGroup for Batch {
 }
 
 /// Group of [`BATCH`] consecutive samples of one pixel.
-pub(super) struct Row<'a> {
+pub(super) struct PixelRun<'a> {
     pub(super) pixel: &'a Pixel,
     pub(super) first: u32,
 }
 
-impl SampleGroup for Row<'_> {
+impl SampleGroup for PixelRun<'_> {
     #[inline(always)]
     fn len(&self) -> usize {
         BATCH
@@ -118,27 +118,27 @@ impl SampleGroup for Row<'_> {
 }
 
 /// Generator of the camera rays for a job's samples.
-pub(super) struct Aim<'a> {
+pub(super) struct CameraRays<'a> {
     world: &'a World,
     job: &'a Job,
     pub(super) raster: Raster,
-    warp: Option<FilterSampler>,
+    filter_sampler: Option<FilterSampler>,
     has_aperture: bool,
 }
 
-impl<'a> Aim<'a> {
+impl<'a> CameraRays<'a> {
     pub(super) fn new(world: &'a World, job: &'a Job) -> Self {
-        let warp = match job.sampling {
+        let filter_sampler = match job.sampling {
             Sampling::Filtered { filter, .. } => Some(filter.sampler()),
             _ => None,
         };
         let raster = raster(world, job.width, job.height);
-        Aim { world, job, raster, warp, has_aperture: world.camera().has_aperture() }
+        CameraRays { world, job, raster, filter_sampler, has_aperture: world.camera().has_aperture() }
     }
 
     /// Returns the magnitude of the sample weights.
     pub(super) fn gain(&self) -> f32 {
-        self.warp.as_ref().map_or(1.0, FilterSampler::gain)
+        self.filter_sampler.as_ref().map_or(1.0, FilterSampler::gain)
     }
 
     /// Returns the position and random sequence of a pixel.
@@ -150,32 +150,32 @@ impl<'a> Aim<'a> {
     /// Generates a sample. Only for sampling methods whose samples affect their own pixel alone.
     pub(super) fn sample(&self, pixel: &Pixel, sample: u32) -> PixelSample {
         let middle = Vec2::splat(0.5);
-        let (place, lens, weight) = match (self.job.sampling, &self.warp) {
-            (Sampling::Filtered { .. }, Some(warp)) => {
-                let (offset, weight) = warp.sample(pixel.positions.point(sample));
+        let (film_position, lens, weight) = match (self.job.sampling, &self.filter_sampler) {
+            (Sampling::Filtered { .. }, Some(filter_sampler)) => {
+                let (offset, weight) = filter_sampler.sample(pixel.positions.point(sample));
                 let lens = if self.has_aperture { pixel.id.sequence(LENS_DIMENSION).point(sample) } else { middle };
                 (pixel.center + offset, lens, weight)
             }
             (Sampling::Course2004 { sampler, samples, .. }, _) => {
-                return self.kept((sampler, sampler.round_up(samples)), pixel.x, pixel.y, sample).0;
+                return self.spread_sample((sampler, sampler.round_up(samples)), pixel.x, pixel.y, sample).0;
             }
             // One ray through the centres of the pixel and the lens.
             _ => (pixel.center, middle, 1.0),
         };
-        let at = CameraSample { point: self.raster.point(place), pixel: pixel.point, lens };
-        PixelSample { place, lens, weight, ray: self.world.camera().ray(self.world.camera_frame(), &at) }
+        let at = CameraSample { point: self.raster.point(film_position), pixel: pixel.point, lens };
+        PixelSample { film_position, lens, weight, ray: self.world.camera().ray(self.world.camera_frame(), &at) }
     }
 
     /// Generates the rays and weights of a group of samples. The results equal those of
-    /// [`Aim::sample`].
-    pub(super) fn several(&self, of: &impl SampleGroup, mut take: impl FnMut(usize, Option<Ray>, f32)) {
+    /// [`CameraRays::sample`].
+    pub(super) fn sample_group(&self, of: &impl SampleGroup, mut take: impl FnMut(usize, Option<Ray>, f32)) {
         let mut take = |i: usize, ray, weight| {
             if i < of.len() {
                 take(i, ray, weight);
             }
         };
-        match (&self.warp, self.job.sampling) {
-            (Some(warp), _) => run_plain(AimKernel { aim: self, warp, of, take }),
+        match (&self.filter_sampler, self.job.sampling) {
+            (Some(filter_sampler), _) => run_plain(AimKernel { aim: self, filter_sampler, of, take }),
             (None, Sampling::Center) => {
                 let points = [0, 1].map(|axis| from_fn(|i| of.pixel(i).point[axis]));
                 self.rays(of, points, [[0.5; BATCH]; 2], |i, ray| take(i, ray, 1.0));
@@ -204,18 +204,24 @@ impl<'a> Aim<'a> {
 
     /// Generates a sample that a filter spreads over several pixels. Also returns its position in
     /// its pixel.
-    pub(super) fn kept(&self, (sampler, samples): (Sampler, u32), x: u32, y: u32, sample: u32) -> (PixelSample, Vec2) {
+    pub(super) fn spread_sample(
+        &self,
+        (sampler, samples): (Sampler, u32),
+        x: u32,
+        y: u32,
+        sample: u32,
+    ) -> (PixelSample, Vec2) {
         let position = sampler.pixel_position(self.job.seed, x, y, sample, samples);
-        let (place, lens) = (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample));
-        let ray = camera_ray(self.world, &self.raster, (x, y), place, lens);
-        (PixelSample { place, lens, weight: 1.0, ray }, position)
+        let (film_position, lens) = (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample));
+        let ray = camera_ray(self.world, &self.raster, (x, y), film_position, lens);
+        (PixelSample { film_position, lens, weight: 1.0, ray }, position)
     }
 
     /// Generates the sample of a sub-pixel, for the course of 2012.
     pub(super) fn sub_pixel(&self, grid: &SubPixels, raster: &Raster, (x, y): (u32, u32)) -> PixelSample {
         let (place, lens) = (grid.place(self.job.seed, (x, y)), self.lens(Sampler::Random, x, y, 0));
         let ray = camera_ray(self.world, raster, (x, y), place, lens);
-        PixelSample { place: place / grid.scale() as f32, lens, weight: 1.0, ray }
+        PixelSample { film_position: place / grid.scale() as f32, lens, weight: 1.0, ray }
     }
 
     /// Returns a sample's position on the lens. For a pinhole camera, it is the centre.
@@ -229,8 +235,8 @@ impl<'a> Aim<'a> {
 
 /// SIMD kernel that generates the samples of a group for sampling with a reconstruction filter.
 struct AimKernel<'a, S, F> {
-    aim: &'a Aim<'a>,
-    warp: &'a FilterSampler,
+    aim: &'a CameraRays<'a>,
+    filter_sampler: &'a FilterSampler,
     of: &'a S,
     take: F,
 }
@@ -240,12 +246,12 @@ impl<S: SampleGroup, F: FnMut(usize, Option<Ray>, f32)> PlainKernel for AimKerne
 
     #[inline(always)]
     fn run(self) {
-        let AimKernel { aim, warp, of, mut take } = self;
+        let AimKernel { aim, filter_sampler, of, mut take } = self;
         let (mut numbers, mut sequences) = ([0; BATCH], [of.pixel(0).positions; BATCH]);
         for i in 0..BATCH {
             (numbers[i], sequences[i]) = (of.number(i), of.pixel(i).positions);
         }
-        let (offsets, weights) = warp.samples(&Sequence::points(&sequences, &numbers));
+        let (offsets, weights) = filter_sampler.samples(&Sequence::points(&sequences, &numbers));
         let mut places = [[0.0; BATCH]; 2];
         for axis in 0..2 {
             for i in 0..BATCH {

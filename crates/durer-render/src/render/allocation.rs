@@ -21,19 +21,19 @@
 mod tests;
 
 use super::job::Job;
-use super::{Crop, Sampling};
+use super::{PixelRect, Sampling};
 use crate::film::{Film, luminance_of};
 use durer_scene::sampler::Sampler;
 use std::sync::Arc;
 
 /// Minimum average number of samples per pixel with which adaptive sampling is allowed.
-pub const LEAST_ADAPTIVE: u32 = 16;
+pub const MIN_ADAPTIVE_SAMPLES: u32 = 16;
 
 /// Minimum number of samples in half of the pilot.
 const LEAST_HALF: u32 = 4;
 
 /// Maximum number of samples of a pixel, as a multiple of the average.
-const MOST_TIMES: u32 = 64;
+const MAX_RATIO: u32 = 64;
 
 /// Maximum number of samples of a pixel. A film can hold this many of any brightness.
 const MOST: u32 = 1 << 20;
@@ -53,8 +53,8 @@ pub(super) fn pilot(samples: u32) -> u32 {
 }
 
 /// Returns the maximum number of samples of a pixel. `samples` is the average number.
-pub(super) fn most(samples: u32) -> u32 {
-    samples.saturating_mul(MOST_TIMES).min(MOST.max(samples))
+pub(super) fn max_samples(samples: u32) -> u32 {
+    samples.saturating_mul(MAX_RATIO).min(MOST.max(samples))
 }
 
 /// Returns how many samples a pixel has when the average so far is `end` of `samples`: the pilot
@@ -69,7 +69,7 @@ pub(super) fn count(samples: u32, target: u32, end: u32) -> u32 {
 }
 
 /// Returns the reason why a job cannot be sampled adaptively, or `None` if it can.
-pub(super) fn refusal(job: &Job, is_whole: bool) -> Option<String> {
+pub(super) fn reason_against(job: &Job, is_whole: bool) -> Option<String> {
     let is_spread = match job.sampling {
         // `Center` is rejected below because it has only one sample.
         Sampling::Center | Sampling::Filtered { .. } => true,
@@ -81,8 +81,8 @@ pub(super) fn refusal(job: &Job, is_whole: bool) -> Option<String> {
         "this sampling cannot be adaptive: its samples affect several pixels, or cover a pixel evenly only \
          when all are taken"
             .into()
-    } else if samples < LEAST_ADAPTIVE {
-        format!("adaptive sampling needs at least {LEAST_ADAPTIVE} samples per pixel, not {samples}")
+    } else if samples < MIN_ADAPTIVE_SAMPLES {
+        format!("adaptive sampling needs at least {MIN_ADAPTIVE_SAMPLES} samples per pixel, not {samples}")
     } else if job.method.prepares() {
         "photon mapping cannot be adaptive: each set of photons serves one sample of every pixel".into()
     } else if job.noise.is_some() {
@@ -98,18 +98,18 @@ pub(super) fn refusal(job: &Job, is_whole: bool) -> Option<String> {
 /// Returns the variance of each pixel's mean luminance in a block after the pilot. `half` contains
 /// the first half of the pilot samples, `all` all of them. The square of half the difference
 /// between the two independent halves is an unbiased estimate.
-pub(super) fn variances(half: &Film, all: &Film, rect: Crop) -> Arc<[f32]> {
+pub(super) fn variances(half: &Film, all: &Film, rect: PixelRect) -> Arc<[f32]> {
     let luminance = |film: &Film, (x, y)| luminance_of(film.resolve(x, y));
     let square = |place| {
         let moved = luminance(all, place) - luminance(half, place);
         (moved * moved) as f32
     };
-    rect.places().map(square).map(|square| if square.is_finite() { square } else { 0.0 }).collect()
+    rect.pixel_positions().map(square).map(|square| if square.is_finite() { square } else { 0.0 }).collect()
 }
 
 /// Estimates the variance of each pixel's mean from its neighbours of the other checkerboard
 /// colour.
-pub(super) fn around(variances: &[f32], width: usize) -> Vec<f32> {
+pub(super) fn neighbor_variances(variances: &[f32], width: usize) -> Vec<f32> {
     let (height, reach) = (variances.len() / width, WEIGHTS.len() / 2);
     let mut row = vec![(0.0_f32, 0.0_f32); width];
     let mut found = Vec::with_capacity(variances.len());
@@ -134,8 +134,8 @@ pub(super) fn around(variances: &[f32], width: usize) -> Vec<f32> {
 
 /// Distributes an average of `samples` per pixel in proportion to the standard deviations. Each
 /// pixel gets at least the pilot samples. Samples above the maximum of all pixels are not taken.
-pub(super) fn divided(deviations: &[f32], samples: u32) -> Vec<u32> {
-    let (least, most) = (f64::from(pilot(samples)), f64::from(most(samples)));
+pub(super) fn distribute(deviations: &[f32], samples: u32) -> Vec<u32> {
+    let (least, most) = (f64::from(pilot(samples)), f64::from(max_samples(samples)));
     let wanted = |factor: f64, deviation: f32| (factor * f64::from(deviation)).clamp(least, most);
     let all = deviations.len() as f64 * f64::from(samples);
     // Find the greatest factor within the budget by bisection. The bits of positive floats are

@@ -1,6 +1,6 @@
 //! Rendering of pictures that are larger than memory, in bands of rows that are written and freed.
 
-use super::{BLOCK, Control, Crop, Job, PartialRender, RenderError, RenderOutcome, Shard, Statistics};
+use super::{BLOCK, Control, Job, PartialRender, PixelRect, RenderError, RenderOutcome, Shard, Statistics};
 use crate::world::World;
 use durer_image::{Format, ImageError, RowLayout, WriteOptions};
 use durer_scene::source::Digest;
@@ -8,11 +8,11 @@ use std::io::{self, Write};
 use std::sync::atomic::Ordering::Relaxed;
 
 /// Maximum size of a band in bytes. Larger bands would not be faster.
-const ENOUGH: u64 = 256 << 20;
+const MAX_BAND_BYTES: u64 = 256 << 20;
 
 /// Render job whose colour picture is rendered in bands of rows to save memory.
 #[derive(Debug)]
-pub struct Bands {
+pub struct BandedRender {
     job: Job,
     /// Number of rows in a band, a multiple of [`BLOCK`].
     rows: u32,
@@ -32,7 +32,7 @@ pub enum BandsError {
     Io(#[from] io::Error),
 }
 
-impl Bands {
+impl BandedRender {
     /// Divides a job's picture into bands of at most `memory` bytes each.
     ///
     /// # Errors
@@ -51,13 +51,13 @@ impl Bands {
         }
         let window = job.window();
         let bytes = |rows: u32| {
-            let crop = Crop { height: rows.min(window.height), ..window };
+            let crop = PixelRect { height: rows.min(window.height), ..window };
             PartialRender::bytes_needed(&Job { crop: Some(crop), ..job.clone() }, Shard::WHOLE)
         };
-        let fitting = memory.min(ENOUGH) / bytes(1).max(1) / u64::from(BLOCK) * u64::from(BLOCK);
+        let fitting = memory.min(MAX_BAND_BYTES) / bytes(1).max(1) / u64::from(BLOCK) * u64::from(BLOCK);
         match u32::try_from(fitting).unwrap_or(u32::MAX / BLOCK * BLOCK) {
             0 => Err(RenderError::Memory { needed: bytes(BLOCK), allowed: memory }),
-            rows => Ok(Bands { job: job.clone(), rows }),
+            rows => Ok(BandedRender { job: job.clone(), rows }),
         }
     }
 
@@ -67,19 +67,19 @@ impl Bands {
     }
 
     /// Returns the bands from top to bottom. They end at block boundaries of the full picture.
-    fn crops(&self) -> Vec<Crop> {
+    fn crops(&self) -> Vec<PixelRect> {
         let window = self.job.window();
         let (mut crops, mut top, end) = (Vec::new(), window.top, window.top + window.height);
         while top < end {
             let next = (top / BLOCK * BLOCK).saturating_add(self.rows).min(end);
-            crops.push(Crop { top, height: next - top, ..window });
+            crops.push(PixelRect { top, height: next - top, ..window });
             top = next;
         }
         crops
     }
 
     /// Returns the job of one band.
-    fn band(&self, crop: Crop) -> Job {
+    fn band(&self, crop: PixelRect) -> Job {
         Job { crop: Some(crop), ..self.job.clone() }
     }
 
@@ -101,9 +101,9 @@ impl Bands {
         // Full coverage is known only at the end, so write an alpha channel unless the camera sees
         // something everywhere.
         let (width, height, display) = (window.width, window.height, options.display);
-        let strip = RowLayout { width, height, alpha: !sees_all(world, &self.job), display };
+        let strip = RowLayout { width, height, alpha: !has_all_rays(world, &self.job), display };
         let samples = u64::from(self.job.sampling.samples());
-        control.all.store(window.pixels().saturating_mul(samples), Relaxed);
+        control.total_work.store(window.pixels().saturating_mul(samples), Relaxed);
         let mut crops = self.crops();
         if bottom_up {
             crops.reverse();
@@ -128,7 +128,7 @@ impl Bands {
 
 /// Returns true if the camera has a ray at all points of a grid over the window, including its
 /// corners.
-fn sees_all(world: &World, job: &Job) -> bool {
+fn has_all_rays(world: &World, job: &Job) -> bool {
     const ACROSS: u32 = 256;
     let (window, raster) = (job.window(), super::raster(world, job.width, job.height));
     let place =

@@ -4,7 +4,7 @@
 //! 8 x 8 pixels, whose corners are at multiples of 8 in the full picture. The tile size therefore
 //! does not affect the result.
 
-use super::Crop;
+use super::PixelRect;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -18,7 +18,7 @@ pub const BLOCK: u32 = 8;
 /// window's edges can be smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Blocks {
-    window: Crop,
+    window: PixelRect,
     /// Column and row of the first block, counted in blocks from the corner of the full picture.
     first: (u32, u32),
     columns: u32,
@@ -27,7 +27,7 @@ pub struct Blocks {
 
 impl Blocks {
     /// Returns the blocks of a non-empty window.
-    pub fn new(window: Crop) -> Self {
+    pub fn new(window: PixelRect) -> Self {
         let first = (window.left / BLOCK, window.top / BLOCK);
         let columns = (window.left + window.width).div_ceil(BLOCK) - first.0;
         let rows = (window.top + window.height).div_ceil(BLOCK) - first.1;
@@ -40,7 +40,7 @@ impl Blocks {
     }
 
     /// Returns the rectangle of pixels in a block.
-    pub fn rect(&self, index: usize) -> Crop {
+    pub fn rect(&self, index: usize) -> PixelRect {
         let (column, row) = (index as u32 % self.columns + self.first.0, index as u32 / self.columns + self.first.1);
         let side = |block: u32, start: u32, length: u32| {
             let from = (block * BLOCK).max(start);
@@ -48,7 +48,7 @@ impl Blocks {
         };
         let (left, width) = side(column, self.window.left, self.window.width);
         let (top, height) = side(row, self.window.top, self.window.height);
-        Crop { left, top, width, height }
+        PixelRect { left, top, width, height }
     }
 
     /// Iterates over the rows of blocks; each item is the range of block indices in a row.
@@ -58,7 +58,7 @@ impl Blocks {
     }
 
     /// Returns the index of the block that contains a pixel of the window.
-    pub fn at(&self, x: u32, y: u32) -> usize {
+    pub fn index_at(&self, x: u32, y: u32) -> usize {
         (y / BLOCK - self.first.1) as usize * self.columns as usize + (x / BLOCK - self.first.0) as usize
     }
 

@@ -2,8 +2,8 @@
 //!
 //! The mean of n samples has a standard error. Photon mapping also has a bias, since it averages
 //! over a neighbourhood. The bias is estimated from the same photons with a second-order kernel
-//! (see [`crate::integrator::Photons::corrected`]). Let M be the mean, C the corrected mean and s
-//! the standard error of C. At some confidence, the true value is within t s of C, where t is
+//! (see [`crate::integrator::PhotonTracer::corrected`]). Let M be the mean, C the corrected mean
+//! and s the standard error of C. At some confidence, the true value is within t s of C, where t is
 //! Student's quantile with n - 1 degrees of freedom. It is therefore within |M - C| + t s of M.
 //!
 //! Source: Hachisuka, Jarosz and Jensen, *A Progressive Error Estimation Framework for Photon
@@ -13,9 +13,9 @@
 //! within the radius: at the sharp edge of a caustic, about six tenths of the bias are found.
 
 use super::part::PartialRender;
-use super::run::whole;
+use super::run::render_all;
 use super::{Control, Job, RenderError};
-use crate::film::aov::{Sums, heat};
+use crate::film::aov::{PixelStatistics, heat};
 use crate::integrator::{IntegratorKind, PhotonParameters};
 use crate::world::World;
 use durer_image::{Image, Layer};
@@ -41,7 +41,7 @@ pub struct ErrorBound {
 
 impl ErrorBound {
     /// Computes the bound from a pixel's samples and from its bias-corrected samples.
-    pub(super) fn new(own: &Sums, corrected: &Sums) -> Self {
+    pub(super) fn new(own: &PixelStatistics, corrected: &PixelStatistics) -> Self {
         let (luminance, without) = (own.luminance(), corrected.luminance());
         let standard_error = corrected.variance().sqrt();
         let bias = luminance - without;
@@ -87,7 +87,7 @@ fn student(freedom: f64) -> f64 {
 }
 
 /// Returns the bias-corrected variant of an integrator, or `None` if it is unbiased.
-pub(super) fn corrected(method: IntegratorKind) -> Option<IntegratorKind> {
+pub(super) fn bias_corrected(method: IntegratorKind) -> Option<IntegratorKind> {
     match method {
         IntegratorKind::Photons(photons) => {
             Some(IntegratorKind::Photons(PhotonParameters { corrected: true, ..photons }))
@@ -105,12 +105,12 @@ impl PartialRender {
     /// [`RenderError`] as for the picture itself. [`RenderError::Diagram`] for photons with a noise
     /// threshold or a time limit.
     pub fn error(&self, world: &World, threads: Option<usize>) -> Result<[Layer; 2], RenderError> {
-        let made = |job: &Job| whole(world, job, &Control { threads, ..Control::default() });
+        let made = |job: &Job| render_all(world, job, &Control { threads, ..Control::default() });
         let job = Job { color: true, aovs: Vec::new(), ..self.job.clone() };
         let own = if self.job.wants_samples() { None } else { Some(made(&job)?) };
         let own = own.as_ref().unwrap_or(self);
         let all = u64::from(job.sampling.samples()) * job.window().pixels();
-        let other = match corrected(job.method) {
+        let other = match bias_corrected(job.method) {
             Some(_) if job.noise.is_some() || job.sampling.is_local() && own.statistics().samples != all => {
                 let message = "the photon error needs a fixed number of samples: set --samples, without \
                                --noise-threshold and --time-limit";
@@ -138,8 +138,8 @@ impl PartialRender {
             let rect = self.blocks.rect(index);
             let Some(film) = block.film(rect) else { continue };
             let twin = other.as_ref().and_then(|other| other.samples[index].film(rect));
-            for (x, y) in rect.places() {
-                let sums = |film| Sums { pixel: Some((film, x, y)), gain, lumens: None };
+            for (x, y) in rect.pixel_positions() {
+                let sums = |film| PixelStatistics { pixel: Some((film, x, y)), gain, lumens: None };
                 let bound = ErrorBound::new(&sums(&film), &sums(twin.as_ref().unwrap_or(&film))).bound;
                 bounds[window.index(x, y)] = bound as f32;
             }

@@ -11,11 +11,11 @@ pub struct Control {
     pub threads: Option<usize>,
     /// Width and height of a tile in pixels, rounded up to a multiple of 8. Each thread works on
     /// one tile at a time. `None` for automatic.
-    pub tile: Option<u32>,
+    pub tile_size: Option<u32>,
     /// Time after which no more samples are taken, provided that every pixel has one.
-    pub time: Option<Duration>,
+    pub time_limit: Option<Duration>,
     /// Number of tiles after which the render stops as if cancelled. For tests of resuming.
-    pub most_tiles: Option<u64>,
+    pub max_tiles: Option<u64>,
     /// Interval at which the callback is asked to save a checkpoint.
     pub save_every: Option<Duration>,
     /// Memory limit in bytes; `None` for no limit.
@@ -23,13 +23,14 @@ pub struct Control {
     /// Set by the caller to cancel the render.
     pub cancel: AtomicBool,
     /// Total number of samples and data rays in the render; see [`super::PartialRender::work`].
-    pub all: AtomicU64,
+    pub total_work: AtomicU64,
     /// Number of finished samples and data rays.
-    pub done: AtomicU64,
+    pub done_work: AtomicU64,
     /// Number of rays traced so far.
     pub rays: AtomicU64,
-    /// True if `all` is the total for several renders, whose work accumulates in `done`.
-    pub goes_on: bool,
+    /// True if `total_work` is the total for several renders, whose work accumulates in
+    /// `done_work`.
+    pub accumulates: bool,
 }
 
 /// Point at which a call of [`super::PartialRender::render_to`] stops.

@@ -1,10 +1,10 @@
 //! Sampling methods of the course, Fall 2004 and 2012, in which samples also affect other pixels.
 
 use super::aim::PixelSample;
-use super::error::MAX_KEPT;
-use super::samples::{Cancelled, SampleCursor, Samples};
+use super::error::MAX_STORED;
+use super::samples::{Cancelled, SampleCursor, SampleSource};
 use super::sub_pixels::SubPixels;
-use super::{Control, Crop, Job, RenderError, Sampling};
+use super::{Control, Job, PixelRect, RenderError, Sampling};
 use crate::film::course::{CourseFilter, StoredSample, StoredSamples};
 use crate::integrator::Integrate;
 use crate::threads;
@@ -26,19 +26,19 @@ pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<Sto
     };
     let samples = sampler.round_up(samples);
     let count = job.whole().pixels().saturating_mul(samples.into());
-    if count > MAX_KEPT {
+    if count > MAX_STORED {
         return Err(RenderError::TooManySamples(count));
     }
     let work = || {
         let (at, mut rays) = (Cell::new((0, 0, None)), RayCount::default());
-        let source = Samples::new(world, job, &control.cancel);
+        let source = SampleSource::new(world, job, &control.cancel);
         source.stored(&SubPixelPicture::default(), job.whole(), (sampler, samples), &at, |_, _| true, &mut rays)
     };
     threads::install(control.threads, work).map_err(|Cancelled| RenderError::Cancelled)
 }
 
 /// Returns the memory in bytes for the samples of a tile, if samples affect other pixels; else 0.
-pub(super) fn kept_bytes(job: &Job, side: u32) -> u64 {
+pub(super) fn stored_bytes(job: &Job, side: u32) -> u64 {
     match job.sampling {
         Sampling::Course2004 { sampler, samples, filter: Some(filter) } => {
             let across = u64::from(side) + 2 * u64::from(filter.support());
@@ -58,27 +58,27 @@ pub(super) fn kept_bytes(job: &Job, side: u32) -> u64 {
 struct SubPixelPicture {
     mask: bool,
     /// True if the camera had no ray for some sample.
-    blind: Cell<bool>,
+    misses_ray: Cell<bool>,
 }
 
 /// Returns a pixel's coverage from its value in the mask. Sums of filter weights are inexact, so
 /// almost full coverage counts as full.
-pub(super) fn share(white: Color) -> f32 {
+pub(super) fn coverage_of(white: Color) -> f32 {
     if white.x > 1.0 - 1e-6 { 1.0 } else { white.x.max(0.0) }
 }
 
-impl Samples<'_> {
+impl SampleSource<'_> {
     /// Returns the finished pixels of a rectangle with their coverage, for sampling methods whose
     /// samples affect other pixels. Also takes the samples that it needs around the rectangle.
     pub(super) fn finished(
         &self,
-        part: Crop,
+        part: PixelRect,
         at: &SampleCursor,
         rays: &mut RayCount,
     ) -> Result<Vec<(Color, f32)>, Cancelled> {
         let show = SubPixelPicture::default();
         let colors = self.shown(&show, part, at, rays)?;
-        if !show.blind.get() {
+        if !show.misses_ray.get() {
             return Ok(colors.into_iter().map(|color| (color, 1.0)).collect());
         }
         let mask = self.shown(
@@ -87,14 +87,14 @@ impl Samples<'_> {
             at,
             &mut RayCount::default(),
         )?;
-        Ok(colors.into_iter().zip(mask).map(|(color, white)| (color, share(white))).collect())
+        Ok(colors.into_iter().zip(mask).map(|(color, white)| (color, coverage_of(white))).collect())
     }
 
     /// Renders the colours of a rectangle, or its mask.
     fn shown(
         &self,
         show: &SubPixelPicture,
-        part: Crop,
+        part: PixelRect,
         at: &SampleCursor,
         rays: &mut RayCount,
     ) -> Result<Vec<Color>, Cancelled> {
@@ -109,7 +109,7 @@ impl Samples<'_> {
 
     /// Returns the colour of a stored sample, or its value in the mask.
     fn kept(&self, show: &SubPixelPicture, aim: &PixelSample, id: SampleId, rays: &mut RayCount) -> Color {
-        show.blind.set(show.blind.get() || aim.ray.is_none());
+        show.misses_ray.set(show.misses_ray.get() || aim.ray.is_none());
         let light = |ray| if show.mask { Vec3::ONE } else { self.integrator.radiance(&ray, id, rays) };
         aim.ray.map_or(Vec3::ZERO, light)
     }
@@ -118,14 +118,14 @@ impl Samples<'_> {
     fn course_2004(
         &self,
         show: &SubPixelPicture,
-        part: Crop,
+        part: PixelRect,
         sampling: (Sampler, u32),
         filter: CourseFilter,
         at: &SampleCursor,
         rays: &mut RayCount,
     ) -> Result<Vec<Color>, Cancelled> {
         let around = part.grown(filter.support(), self.job.whole());
-        let stored = self.stored(show, around, sampling, at, |x, y| part.holds(x, y), rays)?;
+        let stored = self.stored(show, around, sampling, at, |x, y| part.contains(x, y), rays)?;
         let from = (part.left - around.left, part.top - around.top);
         stored.try_reconstruct(filter, from, (part.width, part.height), || self.check())
     }
@@ -135,7 +135,7 @@ impl Samples<'_> {
     fn stored(
         &self,
         show: &SubPixelPicture,
-        part: Crop,
+        part: PixelRect,
         sampling: (Sampler, u32),
         at: &SampleCursor,
         counted: impl Fn(u32, u32) -> bool,
@@ -145,7 +145,7 @@ impl Samples<'_> {
             self.check()?;
             let (x, y) = (part.left + column, part.top + row);
             at.set((x, y, Some(sample)));
-            let (aim, position) = self.aim.kept(sampling, x, y, sample);
+            let (aim, position) = self.aim.spread_sample(sampling, x, y, sample);
             let mut own = RayCount::default();
             let color = self.kept(show, &aim, SampleId::new(self.job.seed, (x, y), sample), &mut own);
             rays.0 += if counted(x, y) { own.0 } else { 0 };
@@ -158,7 +158,7 @@ impl Samples<'_> {
     fn course_2012(
         &self,
         show: &SubPixelPicture,
-        part: Crop,
+        part: PixelRect,
         (jitter, blurred): (bool, bool),
         at: &SampleCursor,
         rays: &mut RayCount,
@@ -166,16 +166,16 @@ impl Samples<'_> {
         let grid = SubPixels::new(self.job, part, jitter, blurred);
         let raster = grid.raster(self.world);
         let mut pixels = Vec::with_capacity(grid.around.pixels() as usize);
-        for (x, y) in grid.around.places() {
+        for (x, y) in grid.around.pixel_positions() {
             self.check()?;
             let pixel = grid.pixel((x, y));
             at.set((pixel.0, pixel.1, None));
             let mut own = RayCount::default();
             let id = SampleId::new(self.job.seed, pixel, grid.number((x, y)));
             pixels.push(self.kept(show, &self.aim.sub_pixel(&grid, &raster, (x, y)), id, &mut own));
-            rays.0 += if grid.inner.holds(x, y) { own.0 } else { 0 };
+            rays.0 += if grid.inner.contains(x, y) { own.0 } else { 0 };
         }
-        let pixels = grid.develop(pixels);
+        let pixels = grid.blurred_mean(pixels);
         self.check()?;
         Ok(pixels)
     }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Rectangle of pixels in a picture, such as the part to render or a block. Coordinates are
 /// measured from the picture's upper left corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Crop {
+pub struct PixelRect {
     /// First column.
     pub left: u32,
     /// First row.
@@ -16,10 +16,10 @@ pub struct Crop {
     pub height: u32,
 }
 
-impl Crop {
+impl PixelRect {
     /// Returns the rectangle of a single pixel.
-    pub fn pixel((left, top): (u32, u32)) -> Crop {
-        Crop { left, top, width: 1, height: 1 }
+    pub fn pixel((left, top): (u32, u32)) -> PixelRect {
+        PixelRect { left, top, width: 1, height: 1 }
     }
 
     /// Returns the number of pixels.
@@ -28,23 +28,23 @@ impl Crop {
     }
 
     /// Returns the smallest rectangle that contains both.
-    pub fn around(self, other: Crop) -> Crop {
+    pub fn union(self, other: PixelRect) -> PixelRect {
         let (left, top) = (self.left.min(other.left), self.top.min(other.top));
         let right = (self.left + self.width).max(other.left + other.width);
         let bottom = (self.top + self.height).max(other.top + other.height);
-        Crop { left, top, width: right - left, height: bottom - top }
+        PixelRect { left, top, width: right - left, height: bottom - top }
     }
 
     /// Returns the rectangle grown by some pixels on each side, clipped to the picture `within`.
-    pub fn grown(self, by: u32, within: Crop) -> Crop {
+    pub fn grown(self, by: u32, within: PixelRect) -> PixelRect {
         let (left, top) = (self.left.saturating_sub(by), self.top.saturating_sub(by));
         let right = self.left.saturating_add(self.width).saturating_add(by).min(within.width);
         let bottom = self.top.saturating_add(self.height).saturating_add(by).min(within.height);
-        Crop { left, top, width: right - left, height: bottom - top }
+        PixelRect { left, top, width: right - left, height: bottom - top }
     }
 
     /// Returns true if the rectangle contains a pixel.
-    pub fn holds(self, x: u32, y: u32) -> bool {
+    pub fn contains(self, x: u32, y: u32) -> bool {
         x.wrapping_sub(self.left) < self.width && y.wrapping_sub(self.top) < self.height
     }
 
@@ -54,7 +54,7 @@ impl Crop {
     }
 
     /// Iterates over the pixels in reading order.
-    pub fn places(self) -> impl Iterator<Item = (u32, u32)> {
+    pub fn pixel_positions(self) -> impl Iterator<Item = (u32, u32)> {
         (self.top..self.top + self.height).flat_map(move |y| (self.left..self.left + self.width).map(move |x| (x, y)))
     }
 }

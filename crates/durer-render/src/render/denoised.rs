@@ -38,9 +38,9 @@ impl PartialRender {
     pub fn noisy(&self, world: &World, threads: Option<usize>) -> Result<NoisyPicture, RenderError> {
         let aovs = GUIDES.iter().filter_map(|name| Aov::from_name(name)).collect();
         let job = Job { color: false, aovs, noise: None, adaptive: false, ..self.job.clone() };
-        let seen = render(world, &job, &Control { threads, ..Control::default() })?;
+        let rendered = render(world, &job, &Control { threads, ..Control::default() })?;
         let guide = |name: &str| -> Vec<Vec3> {
-            let layer = seen.layers.iter().find(|layer| layer.name == name);
+            let layer = rendered.layers.iter().find(|layer| layer.name == name);
             layer.map(|layer| layer.image.pixels.clone()).unwrap_or_default()
         };
         let [albedo, normal, position] = GUIDES.map(guide);

@@ -5,7 +5,7 @@ use durer_image::ImageError;
 use durer_scene::math::Vec2;
 
 /// Maximum number of samples stored at once for a diagram.
-pub(super) const MAX_KEPT: u64 = 1 << 27;
+pub(super) const MAX_STORED: u64 = 1 << 27;
 
 /// Error from rendering a picture or a part of it.
 #[derive(Debug, thiserror::Error)]
@@ -24,7 +24,7 @@ pub enum RenderError {
     #[error("the crop must be inside the picture of {0} x {1} pixels")]
     CropOutside(u32, u32),
     /// A diagram of samples would have to store too many.
-    #[error("too many samples for a diagram: {0}, but at most {MAX_KEPT} are allowed")]
+    #[error("too many samples for a diagram: {0}, but at most {MAX_STORED} are allowed")]
     TooManySamples(u64),
     /// The diagram cannot be drawn.
     #[error("{0}")]

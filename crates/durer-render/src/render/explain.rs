@@ -2,21 +2,21 @@
 
 pub mod check;
 mod course;
+mod derivations;
 mod firefly;
 mod numbers;
-mod origins;
 mod text;
 
 use super::aim::PixelSample;
 use super::allocation::pilot;
-use super::confidence::{ErrorBound, corrected};
+use super::confidence::{ErrorBound, bias_corrected};
 use super::control::RunLimit;
-use super::samples::Samples;
+use super::samples::SampleSource;
 use super::stale;
 pub use super::sub_pixels::SubPixels;
-use super::{Blocks, Control, Crop, Job, PartialRender, RenderError, Sampling, Shard, raster, render};
+use super::{Blocks, Control, Job, PartialRender, PixelRect, RenderError, Sampling, Shard, raster, render};
 use crate::film::Film;
-use crate::film::aov::{Aov, Sums};
+use crate::film::aov::{Aov, PixelStatistics};
 use crate::integrator::{Integrate, Integrator, TraceRecorder, Tree};
 use crate::world::World;
 use durer_scene::math::{Color, Ray, Vec2, Vec3};
@@ -24,7 +24,7 @@ use durer_scene::sampler::SampleId;
 pub use numbers::number;
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
-pub use text::{ExplainOptions, Names, TextLine, ray_text};
+pub use text::{ExplainOptions, SceneNames, TextLine, ray_text};
 
 /// Explanation of a pixel's colour for `durer explain`: its samples with everything that
 /// contributed to them.
@@ -39,9 +39,9 @@ pub struct Explanation {
     /// Coverage.
     pub coverage: f32,
     /// How the samples are combined; see [`Explanation::sum`].
-    pub mean: Mean,
+    pub mean: SampleCombination,
     /// Samples of the pixel, in the order of summation.
-    pub samples: Vec<SampleAccount>,
+    pub samples: Vec<ExplainedSample>,
     /// Colour that the quirk `stale-texels` of an official program adds.
     pub stale_texels: Option<Color>,
     /// Bound on the pixel's error, for path tracing with more than one sample.
@@ -51,12 +51,13 @@ pub struct Explanation {
 /// How the samples of an explained pixel are combined into its colour.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
-pub enum Mean {
+pub enum SampleCombination {
     /// Weighted mean of the pixel's own samples, by the film's exact sums.
     Own,
     /// Fall 2004: weighted mean of the samples of this pixel and its neighbours, summed in double
     /// precision.
-    Around,
+    #[serde(rename = "around")]
+    Neighbors,
     /// Fall 2012: sub-pixels are blurred along rows, then along columns, and then averaged. The
     /// samples' weights include all three steps.
     SubPixels(SubPixels),
@@ -64,7 +65,7 @@ pub enum Mean {
 
 /// Sample of an explained pixel, with the trace of its light.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SampleAccount {
+pub struct ExplainedSample {
     /// Column and row of the pixel that the sample belongs to, usually the explained one.
     pub of: (u32, u32),
     /// Index in that pixel.
@@ -85,20 +86,20 @@ impl Explanation {
     pub fn sum(&self) -> (Color, f32) {
         let mut film = Film::window(self.x, self.y, 1, 1);
         let light =
-            |s: &SampleAccount| s.light.as_ref().map(|light| light.sum() + self.stale_texels.unwrap_or_default());
-        if self.mean == Mean::Own {
+            |s: &ExplainedSample| s.light.as_ref().map(|light| light.sum() + self.stale_texels.unwrap_or_default());
+        if self.mean == SampleCombination::Own {
             for s in &self.samples {
-                film.add_if_seen(self.x, self.y, s.sample, light(s), s.weight);
+                film.add_optional(self.x, self.y, s.sample, light(s), s.weight);
             }
         } else {
             let finished = course::finished(&self.mean, &self.samples, light);
-            film.add_covering(self.x, self.y, 0, finished, 1.0);
+            film.add_with_coverage(self.x, self.y, 0, finished, 1.0);
         }
         (film.resolve(self.x, self.y), film.coverage(self.x, self.y))
     }
 
     /// Returns the index of the first sample with the greatest weight.
-    pub fn heaviest(&self) -> usize {
+    pub fn max_weight_index(&self) -> usize {
         (1..self.samples.len())
             .fold(0, |best, i| if self.samples[i].weight > self.samples[best].weight { i } else { best })
     }
@@ -123,7 +124,7 @@ fn trace_tree(integrator: &Integrator, ray: &Ray, id: SampleId) -> Option<Tree> 
 /// [`RenderError`] if the pixel is outside the picture, or if rendering to find the adaptive sample
 /// count fails.
 pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, RenderError> {
-    explain_of(world, job, (x, y), None)
+    explain_samples(world, job, (x, y), None)
 }
 
 /// Explains a pixel whose number of samples may be known. If it is not, a noise threshold makes it
@@ -132,7 +133,7 @@ pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, 
 ///
 /// # Errors
 /// See [`explain`].
-pub fn explain_of(
+pub fn explain_samples(
     world: &World,
     job: &Job,
     (x, y): (u32, u32),
@@ -143,25 +144,25 @@ pub fn explain_of(
         return Err(RenderError::CropOutside(job.width, job.height));
     }
     let (stop, mut stale_texels) = (AtomicBool::new(false), None);
-    let source = Samples::without_quirks(world, job, &stop);
+    let source = SampleSource::without_quirks(world, job, &stop);
     let integrator = job.integrator(world, None);
     let account = |of, sample, aim: PixelSample| {
         let id = SampleId::new(job.seed, of, sample);
         let light = aim.ray.and_then(|ray| trace_tree(&integrator, &ray, id));
-        SampleAccount { of, sample, place: aim.place, lens: aim.lens, weight: aim.weight, light }
+        ExplainedSample { of, sample, place: aim.film_position, lens: aim.lens, weight: aim.weight, light }
     };
     let (mean, samples) = match job.sampling {
         Sampling::Course2004 { sampler, samples, filter: Some(filter) } => {
             course::around(&source, job, (x, y), (sampler, samples, filter), account)
         }
         Sampling::Course2012 { jitter, blur } => {
-            let grid = SubPixels::new(job, Crop::pixel((x, y)), jitter, blur);
+            let grid = SubPixels::new(job, PixelRect::pixel((x, y)), jitter, blur);
             course::sub_pixels(&source, world, grid, account)
         }
         _ => {
             let count = samples.map_or_else(|| count(world, job, (x, y)), Ok)?;
             let own = (0..count).map(|sample| account((x, y), sample, source.aim(x, y, sample)));
-            (Mean::Own, own.collect())
+            (SampleCombination::Own, own.collect())
         }
     };
     if stale::applies(world, job) {
@@ -170,7 +171,10 @@ pub fn explain_of(
     let mut explanation =
         Explanation { x, y, color: Vec3::ZERO, coverage: 1.0, mean, samples, stale_texels, error: None };
     (explanation.color, explanation.coverage) = explanation.sum();
-    if explanation.mean == Mean::Own && explanation.samples.len() > 1 && job.method.transport().is_some() {
+    if explanation.mean == SampleCombination::Own
+        && explanation.samples.len() > 1
+        && job.method.path_options().is_some()
+    {
         explanation.error = Some(error(world, job, &source, &explanation));
     }
     Ok(explanation)
@@ -178,22 +182,22 @@ pub fn explain_of(
 
 /// Returns the error bound of a pixel from its samples and, for photons, from their bias-corrected
 /// versions.
-fn error(world: &World, job: &Job, source: &Samples, explanation: &Explanation) -> ErrorBound {
+fn error(world: &World, job: &Job, source: &SampleSource, explanation: &Explanation) -> ErrorBound {
     let Explanation { x, y, ref samples, .. } = *explanation;
-    let film = |color: &dyn Fn(&SampleAccount) -> Option<Color>| {
+    let film = |color: &dyn Fn(&ExplainedSample) -> Option<Color>| {
         let mut film = Film::window(x, y, 1, 1);
-        samples.iter().for_each(|s| film.add_if_seen(x, y, s.sample, color(s), s.weight));
+        samples.iter().for_each(|s| film.add_optional(x, y, s.sample, color(s), s.weight));
         film
     };
     let own = film(&|s| s.light.as_ref().map(Tree::sum));
-    let twin = corrected(job.method).map(|method| {
+    let twin = bias_corrected(job.method).map(|method| {
         let integrator = Job { method, ..job.clone() }.integrator(world, None);
         film(&|s| {
             let ray = source.aim(x, y, s.sample).ray?;
             Some(integrator.radiance(&ray, SampleId::new(job.seed, (x, y), s.sample), &mut ()))
         })
     });
-    let sums = |film| Sums { pixel: Some((film, x, y)), gain: source.gain(), lumens: None };
+    let sums = |film| PixelStatistics { pixel: Some((film, x, y)), gain: source.gain(), lumens: None };
     ErrorBound::new(&sums(&own), &sums(twin.as_ref().unwrap_or(&own)))
 }
 
@@ -201,18 +205,18 @@ fn error(world: &World, job: &Job, source: &Samples, explanation: &Explanation) 
 /// find it; with adaptive sampling, renders the pilot of the full picture.
 fn count(world: &World, job: &Job, (x, y): (u32, u32)) -> Result<u32, RenderError> {
     let samples = job.sampling.samples();
-    let window = if job.window().holds(x, y) { job.window() } else { job.whole() };
+    let window = if job.window().contains(x, y) { job.window() } else { job.whole() };
     if job.adaptive {
         let part = PartialRender::new(world, &Job { crop: Some(window), ..job.clone() }, Shard::WHOLE)?;
         part.render_to(world, &Control::default(), &mut |_, _| {}, RunLimit::Samples(pilot(samples)))?;
         part.allocate();
-        return Ok(part.target(x, y).unwrap_or(samples));
+        return Ok(part.sample_target(x, y).unwrap_or(samples));
     }
     if job.noise.is_none() {
         return Ok(samples);
     }
     let blocks = Blocks::new(window);
-    let block = blocks.rect(blocks.at(x, y));
+    let block = blocks.rect(blocks.index_at(x, y));
     let aovs = Aov::from_name("sample-count").into_iter().collect();
     let counted = render(world, &Job { crop: Some(block), color: false, aovs, ..job.clone() }, &Control::default())?;
     Ok(counted.layers[0].image.get(x - block.left, y - block.top).map_or(0, |count| count.x as u32))

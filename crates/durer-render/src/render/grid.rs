@@ -37,7 +37,7 @@ pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image
         let Some(ray) = center_ray(world, &raster, (i % job.width, i / job.width)) else { return Ok(Vec3::ZERO) };
         Ok(match &grid {
             Some(grid) => cell_color(world, grid, &ray),
-            None => world.sky(ray.dir),
+            None => world.background_radiance(ray.dir),
         })
     };
     let colors =
@@ -78,9 +78,9 @@ fn cell_color(world: &World, grid: &Grid, ray: &Ray) -> Color {
         found = Some((cell, count));
         f32::NEG_INFINITY
     });
-    let Some((cell, count)) = found else { return world.sky(ray.dir) };
+    let Some((cell, count)) = found else { return world.background_radiance(ray.dir) };
     let bounds = grid.cell_bounds(cell);
-    let Some((enter, _)) = bounds.clip(ray.origin, ray.dir) else { return world.sky(ray.dir) };
+    let Some((enter, _)) = bounds.clip(ray.origin, ray.dir) else { return world.background_radiance(ray.dir) };
     let point = ray.at(enter);
     // The ray enters through the face whose plane is closest to the point, measured in cells.
     let from_center = (point - bounds.center()) / bounds.size();
@@ -88,8 +88,8 @@ fn cell_color(world: &World, grid: &Grid, ray: &Ray) -> Color {
     let normal = Vec3::AXES[axis] * from_center[axis].signum();
     let color = COLORS[(count - 1).min(COLORS.len() - 1)];
     let lit = world.lights().iter().map(|light| {
-        let seen = light.illuminate(point.as_dvec3());
-        normal.dot(seen.to_light).max(0.0) * seen.color
+        let light_sample = light.illuminate(point.as_dvec3());
+        normal.dot(light_sample.to_light).max(0.0) * light_sample.color
     });
     color * (world.ambient() + lit.sum::<Color>())
 }

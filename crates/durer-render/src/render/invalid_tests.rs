@@ -5,8 +5,8 @@ use crate::compile::testing::read;
 use crate::compile::{AccelKind, Resources, compile};
 use crate::film::Filter;
 use crate::film::course::CourseFilter;
-use crate::film::false_color::LightScale;
-use crate::integrator::{IntegratorKind, WhittedOptions};
+use crate::film::false_color::FalseColorScale;
+use crate::integrator::{IntegratorKind, RenderSettings};
 use durer_diag::{Diagnostics, Files};
 use durer_formats::Decoder;
 use durer_formats::folder::FolderSource;
@@ -92,16 +92,16 @@ fn invalid_jobs_are_rejected() {
     assert!(course(CourseFilter::Tent { radius: 0.0 }).validate().is_ok());
     let found = refused(course(CourseFilter::Box { radius: -1.0 }));
     assert_eq!(found, "the filter's radius -1 must be from 0 to 64");
-    let settings = |change: fn(&mut WhittedOptions)| {
+    let settings = |change: fn(&mut RenderSettings)| {
         let mut job = small();
         change(&mut job.settings);
         job
     };
     assert_eq!(refused(settings(|it| it.bounces = 1_000_000)), "bounces 1000000 must be at most 256");
-    assert!(refused(settings(|it| it.least_weight = f32::NAN)).contains("throughput NaN"));
+    assert!(refused(settings(|it| it.min_weight = f32::NAN)).contains("throughput NaN"));
     assert_eq!(refused(Job { noise: Some(0.0), ..small() }), "the noise threshold 0 must be more than 0");
     assert!(refused(Job { depth_range: Some((1.0, 1.0)), ..small() }).contains("two different"));
-    let light_scale = Some(LightScale { low: 0.0, high: 1.0, logarithmic: true });
+    let light_scale = Some(FalseColorScale { low: 0.0, high: 1.0, logarithmic: true });
     assert!(refused(Job { light_scale, ..small() }).contains("from 0 to 1"));
     let mut method = IntegratorKind::PATH;
     let clamp = method.fields().iter().position(|field| field.name == "clamp").expect("path tracing has `clamp`");

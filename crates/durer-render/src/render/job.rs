@@ -1,14 +1,14 @@
 //! Render job: everything besides the scene that determines a picture.
 
-use super::crop::Crop;
+use super::camera_rays::raster;
+use super::crop::PixelRect;
 use super::error::RenderError;
-use super::eye::raster;
 use super::passes;
 use crate::film::Filter;
-use crate::film::aov::{Aov, Value};
+use crate::film::aov::{Aov, AovFunction};
 use crate::film::course::CourseFilter;
-use crate::film::false_color::LightScale;
-use crate::integrator::{Integrator, IntegratorContext, IntegratorKind, WhittedOptions};
+use crate::film::false_color::FalseColorScale;
+use crate::integrator::{Integrator, IntegratorContext, IntegratorKind, RenderSettings};
 use crate::world::World;
 use durer_scene::camera::RayCone;
 use durer_scene::describe::DescribedKind;
@@ -83,7 +83,7 @@ pub struct Job {
     /// Height of the full picture in pixels.
     pub height: u32,
     /// Rectangle to render; `None` for the full picture.
-    pub crop: Option<Crop>,
+    pub crop: Option<PixelRect>,
     /// Seed of the random numbers.
     pub seed: u64,
     /// Sampling method for the colour picture.
@@ -99,7 +99,7 @@ pub struct Job {
     #[serde(default)]
     pub method: IntegratorKind,
     /// Settings shared by all integrators.
-    pub settings: WhittedOptions,
+    pub settings: RenderSettings,
     /// True to render the colour picture.
     pub color: bool,
     /// AOVs to render.
@@ -110,7 +110,7 @@ pub struct Job {
     pub depth_range: Option<(f32, f32)>,
     /// Range of false-colour pictures; `None` for 0 to a percentile of the picture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub light_scale: Option<LightScale>,
+    pub light_scale: Option<FalseColorScale>,
 }
 
 /// Serializes AOVs by their names.
@@ -128,14 +128,14 @@ fn named_aovs<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<&'static
 impl Default for Job {
     /// Colour picture of 512 x 512 pixels, one ray per pixel, with shadows and up to eight bounces.
     fn default() -> Self {
-        let settings = WhittedOptions {
+        let settings = RenderSettings {
             bounces: 8,
             shadows: true,
             shade_back: true,
             transparent_shadows: false,
             reflection: true,
             refraction: true,
-            least_weight: 1.0 / 256.0,
+            min_weight: 1.0 / 256.0,
         };
         Job {
             width: 512,
@@ -163,7 +163,7 @@ impl Job {
 
     /// Checks all values: the size is at least 1 x 1, samples are from 1 to [`Job::MAX_SAMPLES`],
     /// the filter's radius is above 0 and at most [`Job::MAX_FILTER_RADIUS`], and the depth is at
-    /// most [`WhittedOptions::MAX_BOUNCES`]. Also checks thresholds, scales and the integrator's
+    /// most [`RenderSettings::MAX_BOUNCES`]. Also checks thresholds, scales and the integrator's
     /// options. [`PartialRender::new`](super::PartialRender::new) calls this first.
     ///
     /// # Errors
@@ -200,12 +200,12 @@ impl Job {
                 return refuse(format!("the filter's radius {size} must be from 0 to {}", Job::MAX_FILTER_RADIUS));
             }
         }
-        let WhittedOptions { bounces, least_weight, .. } = self.settings;
-        if bounces > WhittedOptions::MAX_BOUNCES {
-            return refuse(format!("bounces {bounces} must be at most {}", WhittedOptions::MAX_BOUNCES));
+        let RenderSettings { bounces, min_weight, .. } = self.settings;
+        if bounces > RenderSettings::MAX_BOUNCES {
+            return refuse(format!("bounces {bounces} must be at most {}", RenderSettings::MAX_BOUNCES));
         }
-        if !(least_weight >= 0.0 && least_weight.is_finite()) {
-            return refuse(format!("the minimum throughput {least_weight} must not be less than 0"));
+        if !(min_weight >= 0.0 && min_weight.is_finite()) {
+            return refuse(format!("the minimum throughput {min_weight} must not be less than 0"));
         }
         if let Some(noise) = self.noise.filter(|noise| !(*noise > 0.0 && noise.is_finite())) {
             return refuse(format!("the noise threshold {noise} must be more than 0"));
@@ -221,7 +221,7 @@ impl Job {
         {
             return refuse(format!("the depths {min} and {max} must be two different finite numbers"));
         }
-        if let Some(LightScale { low, high, logarithmic }) = self.light_scale {
+        if let Some(FalseColorScale { low, high, logarithmic }) = self.light_scale {
             let least = if logarithmic { f32::MIN_POSITIVE } else { 0.0 };
             if !(low >= least && high > low && high.is_finite()) {
                 return refuse(format!("false colours cannot range from {low} to {high}"));
@@ -231,13 +231,13 @@ impl Job {
     }
 
     /// Returns the rectangle to render.
-    pub fn window(&self) -> Crop {
+    pub fn window(&self) -> PixelRect {
         self.crop.unwrap_or(self.whole())
     }
 
     /// Returns the rectangle of the full picture.
-    pub fn whole(&self) -> Crop {
-        Crop { left: 0, top: 0, width: self.width, height: self.height }
+    pub fn whole(&self) -> PixelRect {
+        PixelRect { left: 0, top: 0, width: self.width, height: self.height }
     }
 
     /// Returns the names of the job's pictures, in order.
@@ -251,12 +251,12 @@ impl Job {
         let raster = raster(world, self.width, self.height);
         let area = raster.pixel_area() / self.sampling.samples() as f32;
         let cone = RayCone::new(world.camera(), world.camera_frame(), area);
-        self.method.over(IntegratorContext { world, settings: self.settings, cone, seed: self.seed, cancel })
+        self.method.create(IntegratorContext { world, settings: self.settings, cone, seed: self.seed, cancel })
     }
 
     /// Returns true if colour samples are needed, for the colour picture or for an AOV.
     pub fn wants_samples(&self) -> bool {
-        self.color || self.aovs.iter().any(|aov| matches!(aov.value, Value::Sums(_)))
+        self.color || self.aovs.iter().any(|aov| matches!(aov.value, AovFunction::Sums(_)))
     }
 
     /// Returns the AOVs that need rays through the pixels' centres, with their functions.
@@ -264,18 +264,19 @@ impl Job {
         &self,
     ) -> impl Iterator<Item = (&'static Aov, fn(&crate::film::aov::AovInput) -> durer_scene::math::Vec3)> {
         self.aovs.iter().filter_map(|aov| match aov.value {
-            Value::Ray(value) => Some((*aov, value)),
-            Value::Sums(_) => None,
+            AovFunction::Ray(value) => Some((*aov, value)),
+            AovFunction::Sums(_) => None,
         })
     }
 
     /// Returns the rectangle for these rays: the full picture if an AOV depends on all its pixels.
-    pub fn ray_window(&self) -> Crop {
+    pub fn ray_window(&self) -> PixelRect {
         if self.ray_aovs().any(|(aov, _)| aov.relative) { self.whole() } else { self.window() }
     }
 
     /// Returns true if the noise threshold stops a block after `samples` samples per pixel.
-    pub(super) fn is_done(&self, film: &crate::film::Film, rect: Crop, samples: u32, gain: f32) -> bool {
-        self.noise.is_some_and(|noise| samples >= passes::LEAST && passes::error(film, rect, gain) <= f64::from(noise))
+    pub(super) fn is_done(&self, film: &crate::film::Film, rect: PixelRect, samples: u32, gain: f32) -> bool {
+        self.noise
+            .is_some_and(|noise| samples >= passes::MIN_SAMPLES && passes::error(film, rect, gain) <= f64::from(noise))
     }
 }

@@ -4,7 +4,7 @@ use super::allocation::{self, count, half, pilot};
 use super::blocks::{Blocks, Shard, ShardBy};
 use super::error::RenderError;
 use super::passes::{self, Passes};
-use super::{Crop, Job, Sampling};
+use super::{Job, PixelRect, Sampling};
 use crate::film::{Film, PackedFilm, Rejected};
 use crate::world::{DisplayRules, World};
 use durer_image::{can_allocate, checked_count};
@@ -26,7 +26,7 @@ pub struct PartialRender {
     pub(super) blocks: Blocks,
     /// Blocks of the window for centre rays.
     pub(super) ray_blocks: Blocks,
-    state: Mutex<State>,
+    state: Mutex<PartialState>,
     /// Number of times that `state` was locked.
     #[cfg(test)]
     pub(super) locked: std::sync::atomic::AtomicU64,
@@ -34,7 +34,7 @@ pub struct PartialRender {
 
 /// Results of a [`PartialRender`] so far, block by block.
 #[derive(Clone, Debug, Default)]
-pub(super) struct State {
+pub(super) struct PartialState {
     /// Colour samples of each block.
     pub(super) samples: Vec<BlockSamples>,
     /// Results of the centre rays of each block; `None` if not yet traced.
@@ -76,7 +76,7 @@ impl BlockSamples {
     }
 
     /// Returns the unpacked film of the block, if there is one.
-    pub(super) fn film(&self, Crop { left, top, width, height }: Crop) -> Option<Film> {
+    pub(super) fn film(&self, PixelRect { left, top, width, height }: PixelRect) -> Option<Film> {
         self.film.as_ref().map(|film| film.film([left, top, width, height]))
     }
 }
@@ -85,7 +85,7 @@ impl BlockSamples {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct BlockAovs {
     /// Outcome of the ray of each pixel.
-    pub(super) found: Vec<PrimaryHit>,
+    pub(super) hits: Vec<PrimaryHit>,
     /// Values of all pixels for the first AOV, then for the second, and so on.
     pub(super) values: Vec<Vec3>,
     /// Number of rays traced for the values.
@@ -97,7 +97,7 @@ pub(super) struct BlockAovs {
 #[repr(u8)]
 pub(super) enum PrimaryHit {
     /// The camera has no ray there.
-    Blind,
+    NoRay,
     /// The ray hits nothing.
     Nothing,
     /// The ray hits something.
@@ -154,7 +154,7 @@ impl PartialRender {
         let (blocks, ray_blocks) = (Blocks::new(window), Blocks::new(job.ray_window()));
         check_shard(&job, shard, blocks.count())?;
         if job.adaptive
-            && let Some(why) = allocation::refusal(&job, shard == Shard::WHOLE)
+            && let Some(why) = allocation::reason_against(&job, shard == Shard::WHOLE)
         {
             return Err(RenderError::Adaptive(why));
         }
@@ -166,7 +166,7 @@ impl PartialRender {
         }
         let sampled = BlockSamples { from, to: from, ..BlockSamples::default() };
         let rays = if job.ray_aovs().next().is_some() { vec![None; ray_blocks.count()] } else { Vec::new() };
-        let state = Mutex::new(State { samples: vec![sampled; count], rays });
+        let state = Mutex::new(PartialState { samples: vec![sampled; count], rays });
         Ok(PartialRender {
             job,
             shard,
@@ -201,7 +201,7 @@ impl PartialRender {
         identity(self.scene, &job_text(&self.job))
     }
 
-    pub(super) fn state(&self) -> MutexGuard<'_, State> {
+    pub(super) fn state(&self) -> MutexGuard<'_, PartialState> {
         #[cfg(test)]
         self.locked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
@@ -261,14 +261,14 @@ impl PartialRender {
         let state = self.state();
         let mut statistics = Statistics::default();
         for (index, block) in state.samples.iter().enumerate() {
-            let taken = block.total(&self.job, self.blocks.rect(index).pixels(), block.to);
+            let samples = block.total(&self.job, self.blocks.rect(index).pixels(), block.to);
             statistics.rays += block.rays;
             let Some(film) = &block.film else { continue };
-            let Some(film) = film.with_rejected() else {
-                statistics.samples += taken;
+            let Some(film) = film.unpacked() else {
+                statistics.samples += samples;
                 continue;
             };
-            statistics.samples += taken.saturating_sub(film.rejected());
+            statistics.samples += samples.saturating_sub(film.rejected());
             statistics.rejected = statistics.rejected.saturating_add(film.rejected());
             statistics.first_rejected.extend(film.first_rejected());
         }
@@ -314,7 +314,7 @@ impl PartialRender {
         // Exclude the cost, which depends on the acceleration structure.
         let names: Vec<&str> = self.job.ray_aovs().map(|(aov, _)| aov.name).collect();
         for block in state.rays.iter().flatten() {
-            let values = block.values.chunks(block.found.len()).zip(&names).filter(|(_, name)| **name != "cost");
+            let values = block.values.chunks(block.hits.len()).zip(&names).filter(|(_, name)| **name != "cost");
             for value in values.flat_map(|(values, _)| values).flat_map(|value| value.to_array()) {
                 hasher.update(&value.to_bits().to_le_bytes());
             }
@@ -337,8 +337,8 @@ impl PartialRender {
         let values = 12 * job.ray_aovs().count() as u64 + 1;
         // Colours with coverage, an eight-bit copy and the file. AOVs have both values and colours.
         let pictures = 24 * u64::from(job.color) + 40 * job.aovs.len() as u64;
-        let kept = pixels.saturating_mul(sums).saturating_add(rays.saturating_mul(values));
-        (kept / share).saturating_add(pixels.saturating_mul(pictures))
+        let stored = pixels.saturating_mul(sums).saturating_add(rays.saturating_mul(values));
+        (stored / share).saturating_add(pixels.saturating_mul(pictures))
     }
 }
 
@@ -378,7 +378,7 @@ fn check_shard(job: &Job, shard: Shard, blocks: usize) -> Result<(), RenderError
 }
 
 /// Creates a black film for a rectangle of the picture.
-pub(super) fn film_of(part: Crop) -> Film {
+pub(super) fn film_of(part: PixelRect) -> Film {
     Film::window(part.left, part.top, part.width, part.height)
 }
 

@@ -1,12 +1,12 @@
 //! Passes of a render, which determine the order of samples, and the noise estimate that stops it.
 
-use super::crop::Crop;
+use super::crop::PixelRect;
 use crate::clock::{Duration, Instant};
 use crate::film::{Film, luminance_of};
 use std::iter::Peekable;
 
 /// Minimum number of samples per pixel before the noise threshold can stop a block.
-pub const LEAST: u32 = 16;
+pub const MIN_SAMPLES: u32 = 16;
 
 /// Returns the number of samples per pixel after each pass: 1, 2, 4, 8, 16, 24, 32, 48, 64, 96 and
 /// so on, up to `samples`.
@@ -17,7 +17,7 @@ pub fn ends(samples: u32) -> impl Iterator<Item = u32> {
     let powers = (0..32).flat_map(|k| {
         let power = 1_u32 << k;
         // For large steps, also stop halfway to the next power of two.
-        [Some(power), (power >= LEAST).then(|| power.saturating_add(power / 2))]
+        [Some(power), (power >= MIN_SAMPLES).then(|| power.saturating_add(power / 2))]
     });
     powers.flatten().take_while(move |&end| end < samples).chain([samples])
 }
@@ -36,7 +36,7 @@ pub struct Passes<I: Iterator<Item = u32>> {
 }
 
 /// Duration below which passes are joined.
-const SOON: Duration = Duration::from_millis(100);
+const MIN_DURATION: Duration = Duration::from_millis(100);
 
 impl<I: Iterator<Item = u32>> Passes<I> {
     /// Creates passes that end at `ends` and start at sample `from`. Passes are joined if `joins`
@@ -56,7 +56,7 @@ impl<I: Iterator<Item = u32>> Iterator for Passes<I> {
         // Without a clock (on WebAssembly), the duration of a pass is unknown.
         if self.joins && samples > 0 && !cfg!(target_family = "wasm") {
             let each = now.duration_since(began) / samples;
-            let is_soon = |next: &u32| each.saturating_mul(next - done) < SOON;
+            let is_soon = |next: &u32| each.saturating_mul(next - done) < MIN_DURATION;
             while !self.kept.contains(&end)
                 && let Some(next) = self.ends.next_if(is_soon)
             {
@@ -75,12 +75,12 @@ impl<I: Iterator<Item = u32>> Iterator for Passes<I> {
 /// perception, and the error of sqrt(Y) is the error of Y divided by 2 sqrt(Y). Source: Dammertz et
 /// al., *A Hierarchical Automatic Stopping Condition for Monte Carlo Global Illumination*, WSCG
 /// 2010. Computed from exact sums in a fixed order.
-pub fn error(film: &Film, rect: Crop, gain: f32) -> f64 {
+pub fn error(film: &Film, rect: PixelRect, gain: f32) -> f64 {
     let square = |(x, y)| {
         let luminance = luminance_of(film.resolve(x, y)).max(1.0 / 256.0);
         film.variance(x, y, gain) / (4.0 * luminance)
     };
-    (rect.places().map(square).sum::<f64>() / rect.pixels() as f64).sqrt()
+    (rect.pixel_positions().map(square).sum::<f64>() / rect.pixels() as f64).sqrt()
 }
 
 #[cfg(test)]
@@ -107,7 +107,7 @@ mod tests {
         assert_eq!(Passes::new(ends(100), 0, true, [8, 24]).collect::<Vec<_>>(), [1, 8, 24, 100]);
         let mut slow = Passes::new(ends(8), 0, true, [0; 2]);
         let mut next = || {
-            std::thread::sleep(SOON);
+            std::thread::sleep(MIN_DURATION);
             slow.next()
         };
         assert_eq!([next(), next(), next(), next(), next()], [Some(1), Some(2), Some(4), Some(8), None]);
@@ -117,10 +117,10 @@ mod tests {
     /// (12 n).
     #[test]
     fn error_estimate_matches_the_error_of_the_mean() {
-        let rect = Crop { left: 0, top: 0, width: 8, height: 8 };
+        let rect = PixelRect { left: 0, top: 0, width: 8, height: 8 };
         let mut film = Film::new(8, 8);
         let n = 64;
-        for (x, y) in rect.places() {
+        for (x, y) in rect.pixel_positions() {
             (0..n).for_each(|s| film.add(x, y, s, Vec3::splat(random_2d(1, x, y, s, 0).x), 1.0));
         }
         let (estimate, truth) = (error(&film, rect, 1.0), (1.0 / (12.0 * f64::from(n)) / (4.0 * 0.5)).sqrt());
@@ -128,7 +128,7 @@ mod tests {
         // %.
         assert!((estimate / truth - 1.0).abs() < 0.05, "{estimate} {truth}");
         let mut flat = Film::new(8, 8);
-        for (x, y) in rect.places() {
+        for (x, y) in rect.pixel_positions() {
             (0..9).for_each(|s| flat.add(x, y, s, Vec3::splat(0.3), 1.0));
         }
         assert!(error(&flat, rect, 1.0) < 1e-4);

@@ -1,11 +1,11 @@
 //! Conversion of a render's sums and AOV values to pictures.
 
 use super::error::RenderError;
-use super::part::{PartialRender, PrimaryHit, State, Statistics, job_text};
-use super::{BandsError, Blocks, Crop};
+use super::part::{PartialRender, PartialState, PrimaryHit, Statistics, job_text};
+use super::{BandsError, Blocks, PixelRect};
 use crate::film::Film;
-use crate::film::aov::{Aov, Display, Sums, Value, fill_from_last_hit};
-use crate::film::false_color::LightScale;
+use crate::film::aov::{Aov, AovFunction, Display, PixelStatistics, fill_from_last_hit};
+use crate::film::false_color::FalseColorScale;
 use durer_image::{Display as ImageDisplay, Format, Image, Layer, RowLayout};
 use durer_scene::math::{Aabb, Color, Vec3};
 use rayon::prelude::*;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 /// Number of rows of blocks per thread that are converted at once when a picture is written in
 /// strips.
-const AT_ONCE: usize = 4;
+const ROWS_PER_THREAD: usize = 4;
 
 /// Finished pictures of a render, with statistics and file attributes.
 #[derive(Debug)]
@@ -52,24 +52,23 @@ impl PartialRender {
         let mut rays = 0..;
         for aov in &job.aovs {
             let values = match aov.value {
-                Value::Ray(_) => self.traced(&state, rays.next().unwrap_or_default()),
-                Value::Sums(value) => self.summed(&state, value),
+                AovFunction::Ray(_) => self.traced(&state, rays.next().unwrap_or_default()),
+                AovFunction::Sums(value) => self.summed(&state, value),
             };
             let (pictures, scale) = self.shown(aov, &values);
-            let (values, found): (Vec<Vec3>, Vec<PrimaryHit>) = values.into_iter().unzip();
-            let coverage: Vec<f32> =
-                found.iter().map(|found| f32::from(u8::from(*found != PrimaryHit::Blind))).collect();
-            let from = if matches!(aov.value, Value::Ray(_)) { job.ray_window() } else { window };
-            let coverage = cut(coverage, from, window);
+            let (values, hit): (Vec<Vec3>, Vec<PrimaryHit>) = values.into_iter().unzip();
+            let coverage: Vec<f32> = hit.iter().map(|found| f32::from(u8::from(*found != PrimaryHit::NoRay))).collect();
+            let from = if matches!(aov.value, AovFunction::Ray(_)) { job.ray_window() } else { window };
+            let coverage = crop_pixels(coverage, from, window);
             let layer = |pixels| -> Result<Layer, RenderError> {
-                let image = Image::from_pixels(window.width, window.height, cut(pixels, from, window))?;
+                let image = Image::from_pixels(window.width, window.height, crop_pixels(pixels, from, window))?;
                 Ok(Layer::data(aov.name, image).with_coverage(coverage.clone()))
             };
             rendered.layers.push(layer(values)?);
             let mut shown = layer(pictures)?;
             if let Some(unit) = aov.unit {
                 let width = window.width as usize;
-                scale.draw(&mut Arc::make_mut(&mut shown.image).pixels, width, unit);
+                scale.draw_legend(&mut Arc::make_mut(&mut shown.image).pixels, width, unit);
             }
             rendered.pictures.push(shown);
         }
@@ -100,7 +99,7 @@ impl PartialRender {
         out: &mut dyn Write,
         mut visit: impl FnMut(&[Color]),
     ) -> Result<(), BandsError> {
-        let (Crop { width, height, .. }, alpha) = (self.job.window(), !self.is_all_seen(&self.state()));
+        let (PixelRect { width, height, .. }, alpha) = (self.job.window(), !self.has_full_coverage(&self.state()));
         let strip = RowLayout { width, height, alpha, display };
         let bottom_up = format.rows.is_some_and(|rows| rows.bottom_up);
         format.write_rows(strip, out, |rows| {
@@ -112,8 +111,8 @@ impl PartialRender {
     }
 
     /// Returns true if all pixels have full coverage.
-    fn is_all_seen(&self, state: &State) -> bool {
-        state.samples.iter().all(|block| block.film.as_ref().is_some_and(|film| film.is_covered()))
+    fn has_full_coverage(&self, state: &PartialState) -> bool {
+        state.samples.iter().all(|block| block.film.as_ref().is_some_and(|film| film.has_full_coverage()))
     }
 
     /// Calls `strip` with the colours of some complete rows at a time, and with the coverage of
@@ -128,23 +127,23 @@ impl PartialRender {
         mut strip: impl FnMut(&[Color], &[f32]) -> Result<(), E>,
     ) -> Result<(), E> {
         let (state, rows): (_, Vec<_>) = (self.state(), self.blocks.rows().collect());
-        let is_seen = self.is_all_seen(&state);
+        let is_seen = self.has_full_coverage(&state);
         let mut offer = |rows: &[Range<usize>]| {
             let (colors, coverage) = self.colors_of(&state, rows, is_seen);
             strip(&colors, &coverage)
         };
-        let mut parts = rows.chunks(AT_ONCE * rayon::current_num_threads());
+        let mut parts = rows.chunks(ROWS_PER_THREAD * rayon::current_num_threads());
         if bottom_up { parts.rev().try_for_each(&mut offer) } else { parts.try_for_each(&mut offer) }
     }
 
     /// Returns colours and coverage of all pixels. Missing pixels are transparent. The coverage is
     /// empty if all pixels are fully covered.
-    fn colors(&self, state: &State) -> (Vec<Color>, Vec<f32>) {
-        self.colors_of(state, &self.blocks.rows().collect::<Vec<_>>(), self.is_all_seen(state))
+    fn colors(&self, state: &PartialState) -> (Vec<Color>, Vec<f32>) {
+        self.colors_of(state, &self.blocks.rows().collect::<Vec<_>>(), self.has_full_coverage(state))
     }
 
     /// Returns colours and coverage of some rows of blocks.
-    fn colors_of(&self, state: &State, rows: &[Range<usize>], is_seen: bool) -> (Vec<Color>, Vec<f32>) {
+    fn colors_of(&self, state: &PartialState, rows: &[Range<usize>], is_seen: bool) -> (Vec<Color>, Vec<f32>) {
         let window = self.job.window();
         // A row of blocks consists of complete rows of pixels.
         let pixels = |blocks: &Range<usize>| (self.blocks.rect(blocks.start).height * window.width) as usize;
@@ -157,11 +156,11 @@ impl PartialRender {
             Some((blocks, free_colors.split_off_mut(..pixels)?, free_coverage.split_off_mut(..covered)?))
         });
         strips.collect::<Vec<_>>().into_par_iter().for_each(|(blocks, colors, coverage)| {
-            let strip = Crop { top: self.blocks.rect(blocks.start).top, ..window };
+            let strip = PixelRect { top: self.blocks.rect(blocks.start).top, ..window };
             for index in blocks.clone() {
                 let Some(film) = &state.samples[index].film else { continue };
-                let mut places = self.blocks.rect(index).places();
-                film.means(|color, share| {
+                let mut places = self.blocks.rect(index).pixel_positions();
+                film.for_each_mean(|color, share| {
                     let Some(at) = places.next().map(|(x, y)| strip.index(x, y)) else { return };
                     colors[at] = color;
                     if let Some(own) = coverage.get_mut(at) {
@@ -188,19 +187,19 @@ impl PartialRender {
     }
 
     /// Returns the values of an AOV that uses the colour samples.
-    fn summed(&self, state: &State, value: fn(&Sums) -> Vec3) -> Vec<(Vec3, PrimaryHit)> {
+    fn summed(&self, state: &PartialState, value: fn(&PixelStatistics) -> Vec3) -> Vec<(Vec3, PrimaryHit)> {
         let (gain, lumens) = (self.gain(), self.display.lumens);
-        let none = value(&Sums { pixel: None, gain, lumens });
-        let mut pixels = vec![(none, PrimaryHit::Blind); self.job.window().pixels() as usize];
+        let none = value(&PixelStatistics { pixel: None, gain, lumens });
+        let mut pixels = vec![(none, PrimaryHit::NoRay); self.job.window().pixels() as usize];
         self.each_sampled(state, |index, film, x, y| {
-            let sums = Sums { pixel: Some((film, x, y)), gain, lumens };
+            let sums = PixelStatistics { pixel: Some((film, x, y)), gain, lumens };
             pixels[index] = (value(&sums), PrimaryHit::Hit);
         });
         pixels
     }
 
     /// Calls `visit` for each pixel that has samples.
-    fn each_sampled(&self, state: &State, mut visit: impl FnMut(usize, &Film, u32, u32)) {
+    fn each_sampled(&self, state: &PartialState, mut visit: impl FnMut(usize, &Film, u32, u32)) {
         let window = self.job.window();
         for index in 0..state.samples.len() {
             self.each_of_block(state, index, |film, x, y| visit(window.index(x, y), film, x, y));
@@ -208,21 +207,21 @@ impl PartialRender {
     }
 
     /// Calls `visit` for each pixel of a block, if the block has samples.
-    fn each_of_block(&self, state: &State, index: usize, mut visit: impl FnMut(&Film, u32, u32)) {
+    fn each_of_block(&self, state: &PartialState, index: usize, mut visit: impl FnMut(&Film, u32, u32)) {
         let rect = self.blocks.rect(index);
         if let Some(film) = state.samples[index].film(rect) {
-            rect.places().for_each(|(x, y)| visit(&film, x, y));
+            rect.pixel_positions().for_each(|(x, y)| visit(&film, x, y));
         }
     }
 
     /// Returns the values of an AOV that uses the centre rays.
-    fn traced(&self, state: &State, number: usize) -> Vec<(Vec3, PrimaryHit)> {
-        let (window, blocks): (Crop, &Blocks) = (self.job.ray_window(), &self.ray_blocks);
-        let mut pixels = vec![(Vec3::ZERO, PrimaryHit::Blind); window.pixels() as usize];
+    fn traced(&self, state: &PartialState, number: usize) -> Vec<(Vec3, PrimaryHit)> {
+        let (window, blocks): (PixelRect, &Blocks) = (self.job.ray_window(), &self.ray_blocks);
+        let mut pixels = vec![(Vec3::ZERO, PrimaryHit::NoRay); window.pixels() as usize];
         for (index, block) in state.rays.iter().enumerate() {
             let Some(block) = block else { continue };
-            let values = &block.values[number * block.found.len()..];
-            for ((x, y), value) in blocks.rect(index).places().zip(values.iter().zip(&block.found)) {
+            let values = &block.values[number * block.hits.len()..];
+            for ((x, y), value) in blocks.rect(index).pixel_positions().zip(values.iter().zip(&block.hits)) {
                 pixels[window.index(x, y)] = (*value.0, *value.1);
             }
         }
@@ -230,17 +229,20 @@ impl PartialRender {
     }
 
     /// Converts an AOV's values to display colours. Also returns the scale of false colours.
-    fn shown(&self, aov: &Aov, values: &[(Vec3, PrimaryHit)]) -> (Vec<Color>, LightScale) {
+    fn shown(&self, aov: &Aov, values: &[(Vec3, PrimaryHit)]) -> (Vec<Color>, FalseColorScale) {
         let light = aov.unit.map_or(&[][..], |_| values);
         let display = Display {
             rules: self.display,
             depth_range: self.job.depth_range,
-            light_scale: self.job.light_scale.unwrap_or_else(|| LightScale::over(light.iter().map(|value| value.0.x))),
-            hits: if aov.name == "depth" { seen_depths(values) } else { Aabb::around(of_hits(values)) },
-            all: Aabb::around(values.iter().map(|value| value.0)),
+            light_scale: self
+                .job
+                .light_scale
+                .unwrap_or_else(|| FalseColorScale::from_values(light.iter().map(|value| value.0.x))),
+            hit_bounds: if aov.name == "depth" { visible_depth_range(values) } else { Aabb::around(of_hits(values)) },
+            all_bounds: Aabb::around(values.iter().map(|value| value.0)),
         };
         let color = |&(value, found): &(Vec3, PrimaryHit)| match found {
-            PrimaryHit::Blind => Vec3::ZERO,
+            PrimaryHit::NoRay => Vec3::ZERO,
             _ => (aov.picture)(value, found == PrimaryHit::Hit, &display),
         };
         let mut picture: Vec<Color> = values.iter().map(color).collect();
@@ -262,7 +264,7 @@ fn of_hits(values: &[(Vec3, PrimaryHit)]) -> impl Iterator<Item = Vec3> {
 
 /// Returns the range of depths at hits, excluding the horizon of a plane. With it, everything else
 /// would be the same grey.
-fn seen_depths(values: &[(Vec3, PrimaryHit)]) -> Aabb {
+fn visible_depth_range(values: &[(Vec3, PrimaryHit)]) -> Aabb {
     let mut bounds = Aabb::around(of_hits(values));
     let mut depths: Vec<f32> = of_hits(values).map(|value| value.x).collect();
     depths.sort_by(f32::total_cmp);
@@ -276,6 +278,6 @@ fn seen_depths(values: &[(Vec3, PrimaryHit)]) -> Aabb {
 }
 
 /// Crops a picture from one rectangle to another.
-fn cut<T: Copy>(pixels: Vec<T>, from: Crop, to: Crop) -> Vec<T> {
-    if from == to { pixels } else { to.places().map(|(x, y)| pixels[from.index(x, y)]).collect() }
+fn crop_pixels<T: Copy>(pixels: Vec<T>, from: PixelRect, to: PixelRect) -> Vec<T> {
+    if from == to { pixels } else { to.pixel_positions().map(|(x, y)| pixels[from.index(x, y)]).collect() }
 }

@@ -1,6 +1,6 @@
 //! Profiling: times the samples of some pixels, and the intersections of their rays alone.
 
-use super::samples::Samples;
+use super::samples::SampleSource;
 use super::{Job, RenderError};
 use crate::clock::{Duration, Instant};
 use crate::integrator::trace::{NodeId, RayKind, RayRecord, TermKind};
@@ -22,7 +22,7 @@ pub struct Profile {
     /// Time for the samples on one thread.
     pub time: Duration,
     /// Part of the time that is needed to intersect the rays.
-    pub kernel: Duration,
+    pub intersection_time: Duration,
 }
 
 /// Listener that records all rays of an integrator, for profiling.
@@ -57,11 +57,11 @@ pub fn profile(world: &World, job: &Job, most: u64) -> Result<Option<Profile>, R
         return Ok(None);
     }
     let never = AtomicBool::new(false);
-    let samples = Samples::without_quirks(world, job, &never);
+    let samples = SampleSource::without_quirks(world, job, &never);
     samples.integrator.prepare(0);
     // An odd step rarely has a common factor with the width, so it reaches all columns.
     let step = (job.window().pixels() / most.max(1)).max(1) | 1;
-    let pixels: Vec<(u32, u32)> = job.window().places().step_by(step as usize).collect();
+    let pixels: Vec<(u32, u32)> = job.window().pixel_positions().step_by(step as usize).collect();
     let mut log = RayLog::default();
     for &(x, y) in &pixels {
         if let Some(ray) = samples.aim(x, y, 0).ray {
@@ -99,7 +99,7 @@ pub fn profile(world: &World, job: &Job, most: u64) -> Result<Option<Profile>, R
             ("shadow", count(None)),
         ],
         time: fastest(whole),
-        kernel: fastest(alone),
+        intersection_time: fastest(alone),
     }))
 }
 

@@ -46,11 +46,11 @@ impl ProgressiveRender {
     }
 
     /// Renders the next pass. Returns `None` once the picture is finished, or after a pass that
-    /// exceeded [`Control::time`].
+    /// exceeded [`Control::time_limit`].
     ///
     /// # Errors
     ///
-    /// [`RenderError::Cancelled`] after [`Control::cancel`] or [`Control::most_tiles`],
+    /// [`RenderError::Cancelled`] after [`Control::cancel`] or [`Control::max_tiles`],
     /// [`RenderError::OtherScene`], [`RenderError::Memory`] and [`RenderError::Panic`]. Finished
     /// work is kept, and the next call continues it.
     pub fn next_pass(&mut self, world: &World, control: &Control) -> Result<Option<Progress>, RenderError> {

@@ -1,9 +1,9 @@
 //! Replay of a single pixel or sample, to debug a panic or a rejected sample.
 
-use super::allocation::most;
+use super::allocation::max_samples;
 use super::error::RenderError;
-use super::samples::{SampleCursor, Samples};
-use super::{Control, Crop, Job, PartialRender, Shard, rays};
+use super::samples::{SampleCursor, SampleSource};
+use super::{Control, Job, PartialRender, PixelRect, Shard, center_rays};
 use crate::threads;
 use crate::world::World;
 use durer_bvh::RayCount;
@@ -27,22 +27,22 @@ pub fn replay(
 ) -> Result<Option<Color>, RenderError> {
     // This validates the job.
     PartialRender::new(world, job, Shard::WHOLE)?;
-    if !job.window().holds(x, y) {
+    if !job.window().contains(x, y) {
         return Err(RenderError::Shard(format!("the pixel {x},{y} is not in the picture")));
     }
     let samples = job.sampling.samples();
-    let samples = if job.adaptive { most(samples) } else { samples };
+    let samples = if job.adaptive { max_samples(samples) } else { samples };
     if sample.is_some_and(|sample| sample >= samples && job.sampling.is_local()) {
         return Err(RenderError::Shard(format!("the samples of a pixel are numbered from 0 to {}", samples - 1)));
     }
     let work = || {
         let (stop, at): (_, SampleCursor) = (AtomicBool::new(false), Cell::new((x, y, sample)));
-        let samples = Samples::new(world, job, &stop);
-        let (pixel, mut count) = (Crop::pixel((x, y)), RayCount::default());
+        let samples = SampleSource::new(world, job, &stop);
+        let (pixel, mut count) = (PixelRect::pixel((x, y)), RayCount::default());
         match sample {
             Some(sample) if job.sampling.is_local() => samples.sample(x, y, sample, &mut count).0,
             _ => {
-                let _ = rays::trace(world, job, &samples, pixel, &at);
+                let _ = center_rays::trace(world, job, &samples, pixel, &at);
                 match job.sampling.is_local() {
                     true => samples.sample(x, y, 0, &mut count).0,
                     false => samples.finished(pixel, &at, &mut count).ok().map(|pixels| pixels[0].0),

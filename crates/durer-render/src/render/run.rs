@@ -3,11 +3,11 @@
 
 use super::allocation::{half, pilot, variances};
 use super::control::RunLimit;
-use super::course::kept_bytes;
+use super::course::stored_bytes;
 use super::error::{Panicked, RenderError};
 use super::part::{BlockAovs, BlockSamples, PartialRender, film_of, passes_of};
-use super::samples::{Cancelled, SampleCursor, Samples};
-use super::{BLOCK, Control, Job, Rendered, Shard, rays};
+use super::samples::{Cancelled, SampleCursor, SampleSource};
+use super::{BLOCK, Control, Job, Rendered, Shard, center_rays};
 use crate::clock::{Duration, Instant};
 use crate::film::PackedFilm;
 use crate::integrator::Integrate;
@@ -35,7 +35,7 @@ fn usual_tile(job: &Job) -> u32 {
         return TILE;
     }
     let sides = std::iter::successors(Some(TILE_WITH_BORDER), |side| Some(side / 2)).take_while(|&side| side > BLOCK);
-    sides.chain([BLOCK]).find(|&side| kept_bytes(job, side) <= MAX_BYTES).unwrap_or(BLOCK)
+    sides.chain([BLOCK]).find(|&side| stored_bytes(job, side) <= MAX_BYTES).unwrap_or(BLOCK)
 }
 
 /// Interval at which the calling thread checks for cancellation and time limits.
@@ -69,11 +69,11 @@ pub enum RenderEvent {
 /// # Errors
 /// [`RenderError`]. Partial results are lost.
 pub fn render(world: &World, job: &Job, control: &Control) -> Result<Rendered, RenderError> {
-    whole(world, job, control)?.pictures()
+    render_all(world, job, control)?.pictures()
 }
 
 /// Renders all work of a job without converting it to pictures.
-pub(super) fn whole(world: &World, job: &Job, control: &Control) -> Result<PartialRender, RenderError> {
+pub(super) fn render_all(world: &World, job: &Job, control: &Control) -> Result<PartialRender, RenderError> {
     let part = PartialRender::new(world, job, Shard::WHOLE)?;
     match part.render(world, control, &mut |_, _| {})? {
         RenderOutcome::Finished | RenderOutcome::OutOfTime => Ok(part),
@@ -121,10 +121,10 @@ impl PartialRender {
         if self.scene != world.digest() || self.display != world.display_rules() {
             return Err(RenderError::OtherScene);
         }
-        let (pool, tile) = (threads::pool(control.threads), control.tile.unwrap_or(usual_tile(&self.job)));
+        let (pool, tile) = (threads::pool(control.threads), control.tile_size.unwrap_or(usual_tile(&self.job)));
         let threads = pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads);
-        let kept = kept_bytes(&self.job, tile).saturating_mul(threads as u64);
-        let needed = PartialRender::bytes_needed(&self.job, self.shard).saturating_add(kept);
+        let stored = stored_bytes(&self.job, tile).saturating_mul(threads as u64);
+        let needed = PartialRender::bytes_needed(&self.job, self.shard).saturating_add(stored);
         if let Some(allowed) = control.memory.filter(|&allowed| needed > allowed) {
             return Err(RenderError::Memory { needed, allowed });
         }
@@ -133,17 +133,17 @@ impl PartialRender {
         if done == 0 && !can_allocate(needed) {
             return Err(RenderError::NoMemory(needed));
         }
-        if control.goes_on {
-            control.done.fetch_add(done, Relaxed);
+        if control.accumulates {
+            control.done_work.fetch_add(done, Relaxed);
         } else {
-            control.all.store(all, Relaxed);
-            control.done.store(done, Relaxed);
+            control.total_work.store(all, Relaxed);
+            control.done_work.store(done, Relaxed);
         }
         let work = Work {
             part: self,
             world,
             control,
-            samples: Samples::new(world, &self.job, &stop),
+            samples: SampleSource::new(world, &self.job, &stop),
             stop: &stop,
             tile,
             tiles: AtomicU64::new(0),
@@ -151,7 +151,7 @@ impl PartialRender {
         };
         let whole = !self.job.sampling.is_local() || !self.job.wants_samples();
         let mut clock =
-            Clock { start, last: start, pause: Duration::ZERO, control, stop: &stop, whole, out_of_time: false };
+            Watcher { start, last: start, pause: Duration::ZERO, control, stop: &stop, whole, out_of_time: false };
         match pool {
             Some(pool) => pool.in_place_scope(|scope| {
                 let (finished, passes) = mpsc::channel();
@@ -193,7 +193,7 @@ impl PartialRender {
 }
 
 /// State of the calling thread while others render: it enforces limits and calls the callback.
-struct Clock<'a> {
+struct Watcher<'a> {
     start: Instant,
     /// Time of the last callback.
     last: Instant,
@@ -207,13 +207,13 @@ struct Clock<'a> {
     out_of_time: bool,
 }
 
-impl Clock<'_> {
+impl Watcher<'_> {
     /// Stops the render on cancellation or at the time limit, and reports that a save is due.
     fn poll(&mut self, part: &PartialRender, watch: &mut dyn FnMut(&PartialRender, RenderEvent)) {
         if self.control.cancel.load(Relaxed) {
             self.stop.store(true, Relaxed);
         }
-        let over = self.whole && self.control.time.is_some_and(|time| self.start.elapsed() >= time);
+        let over = self.whole && self.control.time_limit.is_some_and(|time| self.start.elapsed() >= time);
         if over && !self.stop.swap(true, Relaxed) {
             self.out_of_time = true;
         }
@@ -252,7 +252,7 @@ struct Work<'a> {
     part: &'a PartialRender,
     world: &'a World,
     control: &'a Control,
-    samples: Samples<'a>,
+    samples: SampleSource<'a>,
     stop: &'a AtomicBool,
     tile: u32,
     /// Number of tiles that were started.
@@ -269,11 +269,12 @@ impl Work<'_> {
         };
         let blocks: Vec<usize> = part.state().rays.iter().enumerate().filter_map(open).collect();
         let tiles = part.ray_blocks.tiles(blocks.into_iter(), self.tile);
-        self.each(&tiles, alone, |tile, at| {
-            let trace =
-                |&index: &usize| rays::trace(self.world, &part.job, &self.samples, part.ray_blocks.rect(index), at);
+        self.for_each_tile(&tiles, alone, |tile, at| {
+            let trace = |&index: &usize| {
+                center_rays::trace(self.world, &part.job, &self.samples, part.ray_blocks.rect(index), at)
+            };
             let traced = tile.iter().map(trace).collect::<Result<Vec<_>, _>>()?;
-            let pixels: usize = traced.iter().map(|block| block.found.len()).sum();
+            let pixels: usize = traced.iter().map(|block| block.hits.len()).sum();
             let rays = traced.iter().map(|block| block.rays).sum();
             let mut state = part.state();
             for (&index, block) in tile.iter().zip(traced) {
@@ -299,7 +300,7 @@ impl Work<'_> {
         };
         let blocks: Vec<usize> = part.state().samples.iter().enumerate().filter_map(open).collect();
         let tiles = part.blocks.tiles(blocks.into_iter(), self.tile);
-        self.each(&tiles, alone, |tile, at| {
+        self.for_each_tile(&tiles, alone, |tile, at| {
             if part.job.sampling.is_local() { self.sample(tile, end, at) } else { self.finish(tile, at) }
         });
     }
@@ -308,9 +309,9 @@ impl Work<'_> {
     fn sample(&self, tile: &[usize], end: u32, at: &SampleCursor) -> Result<(), Cancelled> {
         let part = self.part;
         let (adaptive, samples) = (part.job.adaptive, part.job.sampling.samples());
-        let mut made = Vec::with_capacity(tile.len());
+        let mut finished_blocks = Vec::with_capacity(tile.len());
         let (mut taken, mut traced) = (0, 0);
-        for (&index, mut block) in tile.iter().zip(self.taken(tile)) {
+        for (&index, mut block) in tile.iter().zip(self.block_copies(tile)) {
             let rect = part.blocks.rect(index);
             let mut film = block.film(rect).unwrap_or_else(|| film_of(rect));
             let is_half = adaptive && (block.to, end) == (half(samples), pilot(samples));
@@ -324,9 +325,9 @@ impl Work<'_> {
             block.rays += rays.0;
             block.variances = before.map(|half| variances(&half, &film, rect)).or(block.variances);
             (block.to, block.film) = (end, Some(Arc::new(PackedFilm::new(film, part.packed_samples()))));
-            made.push(block);
+            finished_blocks.push(block);
         }
-        self.keep(tile, made, taken, traced);
+        self.store(tile, finished_blocks, taken, traced);
         Ok(())
     }
 
@@ -335,40 +336,46 @@ impl Work<'_> {
     fn finish(&self, tile: &[usize], at: &SampleCursor) -> Result<(), Cancelled> {
         let blocks = &self.part.blocks;
         let rects: Vec<_> = tile.iter().map(|&index| blocks.rect(index)).collect();
-        let around = rects.iter().skip(1).fold(rects[0], |a, b| a.around(*b));
+        let around = rects.iter().skip(1).fold(rects[0], |a, b| a.union(*b));
         let at_once = around.pixels() == rects.iter().map(|rect| rect.pixels()).sum::<u64>();
         let mut rays = RayCount::default();
         let whole = if at_once { Some(self.samples.finished(around, at, &mut rays)?) } else { None };
-        let mut made = Vec::with_capacity(tile.len());
+        let mut finished_blocks = Vec::with_capacity(tile.len());
         let mut before = 0;
         for rect in &rects {
             let own = match &whole {
                 Some(pixels) => {
                     let pixel = |(x, y)| pixels[((y - around.top) * around.width + (x - around.left)) as usize];
-                    rect.places().map(pixel).collect()
+                    rect.pixel_positions().map(pixel).collect()
                 }
                 None => self.samples.finished(*rect, at, &mut rays)?,
             };
             let mut film = film_of(*rect);
-            rect.places().zip(own).for_each(|((x, y), seen)| film.add_covering(x, y, 0, seen, 1.0));
+            rect.pixel_positions().zip(own).for_each(|((x, y), seen)| film.add_with_coverage(x, y, 0, seen, 1.0));
             let film = Some(Arc::new(PackedFilm::new(film, 1)));
-            made.push(BlockSamples { from: 0, to: 1, rays: rays.0 - before, film, ..BlockSamples::default() });
+            finished_blocks.push(BlockSamples {
+                from: 0,
+                to: 1,
+                rays: rays.0 - before,
+                film,
+                ..BlockSamples::default()
+            });
             before = rays.0;
         }
-        self.keep(tile, made, around.pixels(), rays.0);
+        self.store(tile, finished_blocks, around.pixels(), rays.0);
         Ok(())
     }
 
     /// Returns copies of the blocks of a tile.
-    fn taken(&self, tile: &[usize]) -> Vec<BlockSamples> {
+    fn block_copies(&self, tile: &[usize]) -> Vec<BlockSamples> {
         let state = self.part.state();
         tile.iter().map(|&index| state.samples[index].clone()).collect()
     }
 
     /// Stores the blocks of a tile after more work was done on them.
-    fn keep(&self, tile: &[usize], mut made: Vec<BlockSamples>, done: u64, rays: u64) {
+    fn store(&self, tile: &[usize], mut finished_blocks: Vec<BlockSamples>, done: u64, rays: u64) {
         let mut state = self.part.state();
-        for (&index, block) in tile.iter().zip(&mut made) {
+        for (&index, block) in tile.iter().zip(&mut finished_blocks) {
             std::mem::swap(&mut state.samples[index], block);
         }
         // Free the replaced blocks after the lock is released.
@@ -378,20 +385,20 @@ impl Work<'_> {
 
     /// Adds to the progress counters.
     fn count(&self, done: u64, rays: u64) {
-        self.control.done.fetch_add(done, Relaxed);
+        self.control.done_work.fetch_add(done, Relaxed);
         self.control.rays.fetch_add(rays, Relaxed);
     }
 
     /// Renders tiles, in parallel if there are threads, until something stops the render. Turns a
     /// panic into an error that names the sample.
-    fn each(
+    fn for_each_tile(
         &self,
         tiles: &[Vec<usize>],
         alone: PollFn,
         make: impl Fn(&[usize], &SampleCursor) -> Result<(), Cancelled> + Sync,
     ) {
         let one = |tile: &Vec<usize>| {
-            if self.control.most_tiles.is_some_and(|most| self.tiles.fetch_add(1, Relaxed) >= most) {
+            if self.control.max_tiles.is_some_and(|most| self.tiles.fetch_add(1, Relaxed) >= most) {
                 self.stop.store(true, Relaxed);
             }
             self.samples.check()?;

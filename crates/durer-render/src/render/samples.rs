@@ -1,9 +1,9 @@
 //! Sampling of blocks, for all sampling methods.
 
-use super::aim::{Aim, BATCH, Batch, Pixel, PixelSample, Row, SampleGroup};
+use super::aim::{BATCH, Batch, CameraRays, Pixel, PixelRun, PixelSample, SampleGroup};
 use super::error::center;
 use super::stale;
-use super::{Crop, Job, Sampling};
+use super::{Job, PixelRect, Sampling};
 use crate::film::Film;
 use crate::integrator::{Integrate, Integrator, Whitted};
 use crate::world::{MAX_BATCH, World};
@@ -68,7 +68,7 @@ struct Run {
 }
 
 /// Maximum number of samples that are generated before they are traced.
-const ROOM: usize = MAX_BATCH + BATCH;
+const CAPACITY: usize = MAX_BATCH + BATCH;
 
 /// Buffer of samples with their camera rays, generated before they are traced together.
 struct SampleRays {
@@ -76,14 +76,14 @@ struct SampleRays {
     /// Number of samples.
     count: usize,
     /// Weight of each sample.
-    weights: [f32; ROOM],
+    weights: [f32; CAPACITY],
     /// Number of samples that have a camera ray.
-    seen: usize,
+    ray_count: usize,
     /// Camera ray of each of these samples.
-    rays: [Ray64; ROOM],
+    rays: [Ray64; CAPACITY],
     /// Index of the run and index in the pixel, for each of these samples.
-    of: [(u32, u32); ROOM],
-    colors: [Color; ROOM],
+    of: [(u32, u32); CAPACITY],
+    colors: [Color; CAPACITY],
 }
 
 impl Default for SampleRays {
@@ -92,11 +92,11 @@ impl Default for SampleRays {
         SampleRays {
             runs: Vec::new(),
             count: 0,
-            weights: [0.0; ROOM],
-            seen: 0,
-            rays: [ray; ROOM],
-            of: [(0, 0); ROOM],
-            colors: [Color::ZERO; ROOM],
+            weights: [0.0; CAPACITY],
+            ray_count: 0,
+            rays: [ray; CAPACITY],
+            of: [(0, 0); CAPACITY],
+            colors: [Color::ZERO; CAPACITY],
         }
     }
 }
@@ -104,7 +104,7 @@ impl Default for SampleRays {
 impl SampleRays {
     fn clear(&mut self) {
         self.runs.clear();
-        (self.count, self.seen) = (0, 0);
+        (self.count, self.ray_count) = (0, 0);
     }
 
     /// Returns the index of the run for a sample whose weight will be at index `place`. Starts a
@@ -120,15 +120,15 @@ impl SampleRays {
 }
 
 thread_local! {
-    static AIMED: RefCell<Option<Box<SampleRays>>> = RefCell::default();
+    static SAMPLE_RAYS: RefCell<Option<Box<SampleRays>>> = RefCell::default();
 }
 
 /// Source of the samples of a job: generates their camera rays, traces them and adds them to a
 /// film.
-pub(super) struct Samples<'a> {
+pub(super) struct SampleSource<'a> {
     pub(super) world: &'a World,
     pub(super) job: &'a Job,
-    pub(super) aim: Aim<'a>,
+    pub(super) aim: CameraRays<'a>,
     pub(super) whitted: Whitted<'a>,
     pub(super) integrator: Integrator<'a>,
     /// Contribution of the quirk in [`stale`] to each pixel of the full picture. Empty if it does
@@ -137,7 +137,7 @@ pub(super) struct Samples<'a> {
     stop: &'a AtomicBool,
 }
 
-impl<'a> Samples<'a> {
+impl<'a> SampleSource<'a> {
     pub(super) fn new(world: &'a World, job: &'a Job, stop: &'a AtomicBool) -> Self {
         let mut samples = Self::without_quirks(world, job, stop);
         if stale::applies(world, job) {
@@ -150,7 +150,7 @@ impl<'a> Samples<'a> {
     pub(super) fn without_quirks(world: &'a World, job: &'a Job, stop: &'a AtomicBool) -> Self {
         let whitted = Whitted { world, settings: job.settings, cancel: Some(stop) };
         let integrator = job.integrator(world, Some(stop));
-        Samples { world, job, aim: Aim::new(world, job), whitted, integrator, stale: Vec::new(), stop }
+        SampleSource { world, job, aim: CameraRays::new(world, job), whitted, integrator, stale: Vec::new(), stop }
     }
 
     /// Returns the magnitude of the sample weights.
@@ -168,14 +168,14 @@ impl<'a> Samples<'a> {
     pub(super) fn add(
         &self,
         film: &mut Film,
-        part: Crop,
+        part: PixelRect,
         ranges: impl Fn(usize) -> Range<u32>,
         at: &SampleCursor,
         rays: &mut RayCount,
     ) -> Result<(), Cancelled> {
         let mut batch = Batch::new(self.aim.pixel(part.left, part.top));
-        let mut aimed = AIMED.take().unwrap_or_default();
-        for (index, (x, y)) in part.places().enumerate() {
+        let mut buffer = SAMPLE_RAYS.take().unwrap_or_default();
+        for (index, (x, y)) in part.pixel_positions().enumerate() {
             let pixel = self.aim.pixel(x, y);
             let mut numbers = ranges(index);
             while !numbers.is_empty() {
@@ -183,63 +183,63 @@ impl<'a> Samples<'a> {
                 at.set((x, y, Some(first)));
                 if batch.len() == 0 && numbers.len() >= BATCH {
                     // Fast path: consecutive samples of one pixel share their data.
-                    self.aim_several(&Row { pixel: &pixel, first }, &mut aimed);
+                    self.aim_several(&PixelRun { pixel: &pixel, first }, &mut buffer);
                     numbers.start += BATCH as u32;
                 } else {
                     numbers.start += 1;
                     if !batch.push(&pixel, first) {
                         continue;
                     }
-                    self.aim_several(&batch, &mut aimed);
+                    self.aim_several(&batch, &mut buffer);
                     batch.clear();
                 }
-                if aimed.count >= MAX_BATCH {
-                    self.add_aimed(film, &mut aimed, at, rays)?;
+                if buffer.count >= MAX_BATCH {
+                    self.add_aimed(film, &mut buffer, at, rays)?;
                 }
             }
         }
-        self.aim_several(&batch, &mut aimed);
-        self.add_aimed(film, &mut aimed, at, rays)?;
-        AIMED.set(Some(aimed));
+        self.aim_several(&batch, &mut buffer);
+        self.add_aimed(film, &mut buffer, at, rays)?;
+        SAMPLE_RAYS.set(Some(buffer));
         // Results are meaningless after cancellation.
         self.check()
     }
 
     /// Generates the camera rays of a group of samples.
-    fn aim_several(&self, of: &impl SampleGroup, aimed: &mut SampleRays) {
-        let (start, mut runs) = (aimed.count, [0; BATCH]);
+    fn aim_several(&self, of: &impl SampleGroup, buffer: &mut SampleRays) {
+        let (start, mut runs) = (buffer.count, [0; BATCH]);
         for (i, run) in runs[..of.len()].iter_mut().enumerate() {
-            *run = aimed.run_of(of.pixel(i), of.number(i), start + i);
+            *run = buffer.run_of(of.pixel(i), of.number(i), start + i);
         }
-        self.aim.several(of, |i, ray, weight| {
+        self.aim.sample_group(of, |i, ray, weight| {
             if let Some(ray) = ray {
-                aimed.rays[aimed.seen] = Ray64::from(ray);
-                aimed.of[aimed.seen] = (runs[i], of.number(i));
-                aimed.seen += 1;
+                buffer.rays[buffer.ray_count] = Ray64::from(ray);
+                buffer.of[buffer.ray_count] = (runs[i], of.number(i));
+                buffer.ray_count += 1;
             }
-            aimed.weights[start + i] = weight;
+            buffer.weights[start + i] = weight;
         });
-        aimed.count += of.len();
+        buffer.count += of.len();
     }
 
     /// Traces the generated samples, adds them to the film and clears the buffer.
     fn add_aimed(
         &self,
         film: &mut Film,
-        aimed: &mut SampleRays,
+        buffer: &mut SampleRays,
         at: &SampleCursor,
         rays: &mut RayCount,
     ) -> Result<(), Cancelled> {
         self.check()?;
-        let SampleRays { runs, count, weights, seen, rays: aims, of, colors } = &mut *aimed;
-        let (of, colors) = (&of[..*seen], &mut colors[..*seen]);
+        let SampleRays { runs, count, weights, ray_count, rays: aims, of, colors } = &mut *buffer;
+        let (of, colors) = (&of[..*ray_count], &mut colors[..*ray_count]);
         let begin = |ray: usize| {
             let (run, sample) = of[ray];
             let Run { x, y, id, .. } = runs[run as usize];
             at.set((x, y, Some(sample)));
             id.with_sample(sample)
         };
-        self.integrator.radiances(&aims[..*seen], begin, rays, colors);
+        self.integrator.radiances(&aims[..*ray_count], begin, rays, colors);
         let mut next = 0;
         for (number, run) in runs.iter().enumerate() {
             let end = runs.get(number + 1).map_or(*count, |next| next.start);
@@ -251,16 +251,16 @@ impl<'a> Samples<'a> {
             }
             let weights = &weights[run.start..end];
             if own == weights.len() {
-                film.add_seen(run.x, run.y, run.first, colors, weights);
+                film.add_samples(run.x, run.y, run.first, colors, weights);
                 continue;
             }
-            let mut seen = of.iter().zip(&*colors).peekable();
+            let mut traced = of.iter().zip(&*colors).peekable();
             for (sample, &weight) in (run.first..).zip(weights) {
-                let color = seen.next_if(|((_, seen), _)| *seen == sample).map(|(_, &color)| color);
-                film.add_if_seen(run.x, run.y, sample, color, weight);
+                let color = traced.next_if(|((_, seen), _)| *seen == sample).map(|(_, &color)| color);
+                film.add_optional(run.x, run.y, sample, color, weight);
             }
         }
-        aimed.clear();
+        buffer.clear();
         Ok(())
     }
 

@@ -15,11 +15,11 @@
 //!
 //! Numbers are encoded as in [`crate::film::bytes`]. A text is its length followed by its bytes.
 
-use super::allocation::{half, most, pilot};
+use super::allocation::{half, max_samples, pilot};
 use super::part::{BlockAovs, BlockSamples, PartialRender, PrimaryHit, film_of, job_text};
 use super::{Job, RenderError, Shard};
 use crate::film::PackedFilm;
-use crate::film::bytes::{Bytes, put};
+use crate::film::bytes::{ByteReader, write_unsigned};
 use durer_image::Content;
 use durer_scene::math::Vec3;
 use durer_scene::source::Digest;
@@ -59,12 +59,12 @@ pub enum PartError {
 }
 
 fn put_text(out: &mut Vec<u8>, text: &str) {
-    put(out, text.len() as u128);
+    write_unsigned(out, text.len() as u128);
     out.extend(text.as_bytes());
 }
 
-fn text<'a>(bytes: &mut Bytes<'a>) -> Option<&'a str> {
-    let length = bytes.whole()?;
+fn text<'a>(bytes: &mut ByteReader<'a>) -> Option<&'a str> {
+    let length = bytes.read_unsigned()?;
     std::str::from_utf8(bytes.take(length)?).ok()
 }
 
@@ -74,7 +74,7 @@ const CHUNK: usize = 256;
 impl Content for PartialRender {
     /// Writes the part in chunks, because a complete copy would double the memory.
     fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
-        let (mut hasher, mut bytes) = (blake3::Hasher::new(), self.head());
+        let (mut hasher, mut bytes) = (blake3::Hasher::new(), self.header());
         let mut flush = |bytes: &mut Vec<u8>| {
             hasher.update(bytes);
             out.write_all(bytes)?;
@@ -89,12 +89,12 @@ impl Content for PartialRender {
             self.put_samples(blocks, &mut bytes);
             flush(&mut bytes)?;
         }
-        put(&mut bytes, 0);
+        write_unsigned(&mut bytes, 0);
         for blocks in chunks(rays) {
             self.put_rays(blocks, &mut bytes);
             flush(&mut bytes)?;
         }
-        put(&mut bytes, 0);
+        write_unsigned(&mut bytes, 0);
         flush(&mut bytes)?;
         out.write_all(hasher.finalize().as_bytes())
     }
@@ -118,9 +118,9 @@ impl PartialRender {
     }
 
     /// Returns everything that comes before the blocks.
-    fn head(&self) -> Vec<u8> {
+    fn header(&self) -> Vec<u8> {
         let mut out = PartialRender::MAGIC.to_vec();
-        put(&mut out, FORMAT.into());
+        write_unsigned(&mut out, FORMAT.into());
         put_text(&mut out, VERSION);
         out.extend(self.scene.0);
         put_text(&mut out, &job_text(&self.job));
@@ -135,10 +135,10 @@ impl PartialRender {
         for index in blocks {
             let block = &state.samples[index];
             if let Some(film) = block.film(self.blocks.rect(index)) {
-                put(out, index as u128 + 1);
+                write_unsigned(out, index as u128 + 1);
                 [block.from.into(), block.to.into(), u128::from(block.rays)]
                     .iter()
-                    .for_each(|&number| put(out, number));
+                    .for_each(|&number| write_unsigned(out, number));
                 let variances = block.variances.iter().flat_map(|variances| variances.iter());
                 out.extend(variances.flat_map(|variance| variance.to_le_bytes()));
                 film.write(out);
@@ -151,9 +151,9 @@ impl PartialRender {
         let state = self.state();
         for index in blocks {
             if let Some(block) = &state.rays[index] {
-                put(out, index as u128 + 1);
-                put(out, block.rays.into());
-                out.extend(block.found.iter().map(|&found| found as u8));
+                write_unsigned(out, index as u128 + 1);
+                write_unsigned(out, block.rays.into());
+                out.extend(block.hits.iter().map(|&found| found as u8));
                 out.extend(block.values.iter().flat_map(|v| v.to_array()).flat_map(f32::to_le_bytes));
             }
         }
@@ -172,8 +172,8 @@ impl PartialRender {
             return Err(PartError::Damaged);
         }
         let malformed = |what: &str| PartError::Malformed(what.into());
-        let mut rest = Bytes(&content[PartialRender::MAGIC.len().min(content.len())..]);
-        let (format, version): (Option<u32>, _) = (rest.whole(), text(&mut rest));
+        let mut rest = ByteReader(&content[PartialRender::MAGIC.len().min(content.len())..]);
+        let (format, version): (Option<u32>, _) = (rest.read_unsigned(), text(&mut rest));
         match (format, version) {
             (Some(FORMAT), Some(VERSION)) => {}
             (Some(_), Some(version)) => return Err(PartError::OtherVersion(version.into())),
@@ -200,11 +200,12 @@ impl PartialRender {
     }
 
     /// Reads the samples and centre-ray results of all blocks; `None` if they are invalid.
-    fn read_blocks(&self, mut rest: Bytes) -> Option<()> {
+    fn read_blocks(&self, mut rest: ByteReader) -> Option<()> {
         let (mut state, range) = (self.state(), self.shard.range(self.job.sampling.samples()));
-        while let number @ 1.. = rest.whole::<usize>()? {
+        while let number @ 1.. = rest.read_unsigned::<usize>()? {
             let block = state.samples.get_mut(number - 1).filter(|block| block.film.is_none())?;
-            let (from, to, rays): (u32, u32, u64) = (rest.whole()?, rest.whole()?, rest.whole()?);
+            let (from, to, rays): (u32, u32, u64) =
+                (rest.read_unsigned()?, rest.read_unsigned()?, rest.read_unsigned()?);
             if from != range.0 || to <= from || to > range.1 || !self.shard.has_block(number - 1) {
                 return None;
             }
@@ -213,11 +214,11 @@ impl PartialRender {
             let mut variances = None;
             if self.job.adaptive && to > half(samples) {
                 let mut variance = || rest.float().filter(|variance| variance.is_finite() && *variance >= 0.0);
-                variances = Some(rect.places().map(|_| variance()).collect::<Option<_>>()?);
+                variances = Some(rect.pixel_positions().map(|_| variance()).collect::<Option<_>>()?);
                 most_samples = match to.cmp(&pilot(samples)) {
                     Ordering::Less => return None,
                     Ordering::Equal => to,
-                    Ordering::Greater => most(samples),
+                    Ordering::Greater => max_samples(samples),
                 };
             }
             let film = film_of(rect).read(&mut rest, most_samples)?;
@@ -225,17 +226,17 @@ impl PartialRender {
             *block = BlockSamples { from, to, rays, variances, film, targets: None };
         }
         let pictures = self.job.ray_aovs().count();
-        while let number @ 1.. = rest.whole::<usize>()? {
+        while let number @ 1.. = rest.read_unsigned::<usize>()? {
             let block = state.rays.get_mut(number - 1).filter(|block| block.is_none())?;
-            let rays = rest.whole()?;
+            let rays = rest.read_unsigned()?;
             let pixels = self.ray_blocks.rect(number - 1).pixels() as usize;
-            let found = |&byte: &u8| {
-                [PrimaryHit::Blind, PrimaryHit::Nothing, PrimaryHit::Hit].into_iter().find(|f| *f as u8 == byte)
+            let hit_of = |&byte: &u8| {
+                [PrimaryHit::NoRay, PrimaryHit::Nothing, PrimaryHit::Hit].into_iter().find(|f| *f as u8 == byte)
             };
-            let found = rest.take(pixels)?.iter().map(found).collect::<Option<_>>()?;
+            let hits = rest.take(pixels)?.iter().map(hit_of).collect::<Option<_>>()?;
             let mut value = || Some(Vec3::new(rest.float()?, rest.float()?, rest.float()?));
             let values = (0..pixels * pictures).map(|_| value().filter(|v| v.is_finite())).collect::<Option<_>>()?;
-            *block = Some(Box::new(BlockAovs { found, values, rays }));
+            *block = Some(Box::new(BlockAovs { hits, values, rays }));
         }
         rest.0.is_empty().then_some(())
     }

@@ -1,6 +1,6 @@
 //! Sub-pixels of Fall 2012, assignment 5: 3 x 3 per pixel, jittered, blurred and averaged.
 
-use super::{Crop, Job, raster};
+use super::{Job, PixelRect, raster};
 use crate::film::course::{average_3x3, blur, jittered_position};
 use crate::world::World;
 use durer_scene::camera::Raster;
@@ -15,17 +15,17 @@ pub struct SubPixels {
     /// True if they are blurred.
     pub blurred: bool,
     /// Sub-pixels inside the rectangle.
-    pub inner: Crop,
+    pub inner: PixelRect,
     /// Sub-pixels that affect the rectangle's pixels.
-    pub around: Crop,
+    pub around: PixelRect,
     /// Sub-pixels of the full picture.
-    pub whole: Crop,
+    pub whole: PixelRect,
 }
 
 impl SubPixels {
-    pub(super) fn new(job: &Job, part: Crop, jitter: bool, blurred: bool) -> Self {
+    pub(super) fn new(job: &Job, part: PixelRect, jitter: bool, blurred: bool) -> Self {
         let scale = if jitter { 3 } else { 1 };
-        let scaled = |crop: Crop| Crop {
+        let scaled = |crop: PixelRect| PixelRect {
             left: crop.left * scale,
             top: crop.top * scale,
             width: crop.width * scale,
@@ -65,13 +65,13 @@ impl SubPixels {
 
     /// Blurs and averages the colours of all sub-pixels in `around`. Returns the rectangle's pixels
     /// in reading order.
-    pub(super) fn develop(&self, mut colors: Vec<Color>) -> Vec<Color> {
+    pub(super) fn blurred_mean(&self, mut colors: Vec<Color>) -> Vec<Color> {
         let (inner, around) = (self.inner, self.around);
         if self.blurred {
             colors = blur(&colors, around.width, around.height);
         }
         let index = |(x, y)| ((y - around.top) * around.width + (x - around.left)) as usize;
-        let colors: Vec<Color> = inner.places().map(|place| colors[index(place)]).collect();
+        let colors: Vec<Color> = inner.pixel_positions().map(|place| colors[index(place)]).collect();
         if self.jitter { average_3x3(&colors, inner.width, inner.height) } else { colors }
     }
 }

@@ -6,7 +6,7 @@ use crate::compile::{AccelKind, testing};
 use crate::film::aov::{AOVS, Aov};
 use crate::film::course::CourseFilter;
 use crate::film::{Film, Filter};
-use crate::integrator::{IntegratorKind, WhittedOptions};
+use crate::integrator::{IntegratorKind, RenderSettings};
 use crate::world::World;
 use durer_bvh::RayCount;
 use durer_image::{Depth, FORMATS, WriteOptions, read};
@@ -54,7 +54,7 @@ fn jobs() -> Vec<Job> {
     ];
     let aovs: Vec<&Aov> = AOVS.iter().filter(|aov| aov.name != "cost").collect();
     let mut jobs: Vec<Job> = samplings.map(|sampling| Job { sampling, aovs: aovs.clone(), ..small() }).into();
-    let crop = Some(Crop { left: 5, top: 3, width: 20, height: 21 });
+    let crop = Some(PixelRect { left: 5, top: 3, width: 20, height: 21 });
     jobs.push(Job { sampling: filtered(3), crop, aovs: aovs.clone(), ..small() });
     jobs.push(Job { sampling: filtered(64), noise: Some(0.02), aovs: aovs.clone(), ..small() });
     jobs.push(Job { sampling: filtered(40), adaptive: true, crop, aovs: aovs.clone(), ..small() });
@@ -64,7 +64,7 @@ fn jobs() -> Vec<Job> {
 }
 
 fn all(world: &World, job: &Job) -> PartialRender {
-    RenderVariant::PLAIN.make(world, job, &AtomicBool::new(false)).unwrap()
+    RenderVariant::PLAIN.render_job(world, job, &AtomicBool::new(false)).unwrap()
 }
 
 fn one_ray(x: u32) -> Digest {
@@ -79,7 +79,7 @@ fn film_does_not_depend_on_how_it_is_rendered() {
         let plain = all(&world, &job);
         for number in 0..8 {
             let way = RenderVariant::numbered(number, &job, 1);
-            let other = way.make(&world, &job, &AtomicBool::new(false)).unwrap();
+            let other = way.render_job(&world, &job, &AtomicBool::new(false)).unwrap();
             let difference = compare(&plain, &other);
             assert!(difference.is_none(), "{:?}, {way}: {difference:?}", job.sampling);
             // Compare the pictures and attributes too, not only the sums.
@@ -125,7 +125,7 @@ fn film_equals_the_sum_of_single_samples() {
     let [lights_3, lights_17] = [3, 17].map(|count| of_mesh.replace("Lights { numLights 1", &lights(count)));
     let (mut through, mut mirrors) = (small().settings, small().settings);
     (through.transparent_shadows, mirrors.bounces, mirrors.shade_back) = (true, 3, true);
-    let mut deep = WhittedOptions { bounces: 7, ..through };
+    let mut deep = RenderSettings { bounces: 7, ..through };
     (deep.reflection, deep.refraction) = (true, true);
     let own_rules = || Dialect::Durer.rules();
     // The camera has no rays at the corners.
@@ -138,7 +138,7 @@ fn film_equals_the_sum_of_single_samples() {
         (of_mesh.clone(), own_rules(), through),
         (of_mesh, own_rules(), deep),
         (of_balls.clone(), own_rules(), deep),
-        (of_balls.clone(), own_rules(), WhittedOptions { transparent_shadows: false, least_weight: 0.05, ..deep }),
+        (of_balls.clone(), own_rules(), RenderSettings { transparent_shadows: false, min_weight: 0.05, ..deep }),
         (of_balls, Dialect::F04.rules(), deep),
         (of_many, own_rules(), deep),
         (lights_3, own_rules(), small().settings),
@@ -151,8 +151,8 @@ fn film_equals_the_sum_of_single_samples() {
         let all_jobs = whitted.chain([(Job { sampling: filtered(5), ..small() }, IntegratorKind::PATH)]);
         for (job, method) in all_jobs.filter(|(job, _)| job.sampling.is_local()) {
             let job = Job { settings, method, ..job };
-            let samples = samples::Samples::new(&world, &job, &stop);
-            let part = Crop { left: 3, top: 2, width: 27, height: 25 };
+            let samples = samples::SampleSource::new(&world, &job, &stop);
+            let part = PixelRect { left: 3, top: 2, width: 27, height: 25 };
             let films = [(); 2].map(|()| Film::window(part.left, part.top, part.width, part.height));
             let [mut together, mut alone] = films;
             let (at, mut rays) = (Cell::new((0, 0, None)), [RayCount::default(); 2]);
@@ -162,10 +162,10 @@ fn film_equals_the_sum_of_single_samples() {
                 sampling => 1..sampling.samples().clamp(2, 7),
             };
             samples.add(&mut together, part, all, &at, &mut rays[0]).unwrap();
-            for (pixel, (x, y)) in part.places().enumerate() {
+            for (pixel, (x, y)) in part.pixel_positions().enumerate() {
                 for sample in all(pixel) {
                     let (color, weight) = samples.sample(x, y, sample, &mut rays[1]);
-                    alone.add_if_seen(x, y, sample, color, weight);
+                    alone.add_optional(x, y, sample, color, weight);
                 }
             }
             assert_eq!((&together, rays[0].0), (&alone, rays[1].0), "{text} {:?} {method:?}", job.sampling);
@@ -178,16 +178,16 @@ fn differences_are_found_and_described() {
     let world = world();
     let (a, b) = (all(&world, &small()), all(&world, &Job { seed: 1, ..small() }));
     assert!(compare(&a, &b).is_none(), "one ray through the centre uses no random numbers");
-    let b = all(&world, &Job { settings: WhittedOptions { shadows: false, ..small().settings }, ..small() });
+    let b = all(&world, &Job { settings: RenderSettings { shadows: false, ..small().settings }, ..small() });
     let difference = compare(&a, &b).unwrap();
-    assert!(difference.place.starts_with("pixel ") && difference.expected != difference.found, "{difference:?}");
+    assert!(difference.place.starts_with("pixel ") && difference.expected != difference.actual, "{difference:?}");
 }
 
 #[test]
 fn crop_equals_that_part_of_the_whole_picture() {
     let world = world();
-    let crop = Crop { left: 9, top: 11, width: 13, height: 10 };
-    let scale = crate::film::false_color::LightScale { low: 0.01, high: 2.0, logarithmic: true };
+    let crop = PixelRect { left: 9, top: 11, width: 13, height: 10 };
+    let scale = crate::film::false_color::FalseColorScale { low: 0.01, high: 2.0, logarithmic: true };
     for job in jobs().into_iter().filter(|job| job.noise.is_none() && !job.adaptive && job.crop.is_none()) {
         let job = Job { light_scale: Some(scale), ..job };
         let whole = all(&world, &job).pictures().unwrap();
@@ -195,7 +195,7 @@ fn crop_equals_that_part_of_the_whole_picture() {
         // The maxima of sample count and luminance are those of the crop. Here they equal those of
         // the full picture.
         for (whole, part) in whole.pictures.iter().zip(&part.pictures) {
-            for ((x, y), pixel) in crop.places().zip(&part.image.pixels) {
+            for ((x, y), pixel) in crop.pixel_positions().zip(&part.image.pixels) {
                 assert_eq!(whole.image.get(x, y), Some(*pixel), "{} {:?} {x},{y}", whole.name, job.sampling);
             }
         }
@@ -211,7 +211,7 @@ fn noise_threshold_controls_the_number_of_samples() {
     assert!(part.is_finished());
     let counts: Vec<f32> = part.pictures().unwrap().layers[1].image.pixels.iter().map(|p| p.x).collect();
     let (least, most) = counts.iter().fold((f32::MAX, 0.0_f32), |(a, b), &n| (a.min(n), b.max(n)));
-    assert!(least == passes::LEAST as f32 && most >= 3.0 * least, "{least} {most}");
+    assert!(least == passes::MIN_SAMPLES as f32 && most >= 3.0 * least, "{least} {most}");
     // The true error must be below the threshold. It is measured in sqrt(Y) against a picture with
     // many more samples.
     let truth = all(&world, &Job { sampling: filtered(1024), noise: None, ..job.clone() }).pictures().unwrap();
@@ -372,14 +372,14 @@ fn time_limit_and_cancel_stop_soon_and_the_callback_is_called() {
     };
     let part = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
     for save_every in [None, Some(Duration::from_millis(20))] {
-        let control = Control { time: Some(Duration::from_millis(300)), save_every, ..Control::default() };
+        let control = Control { time_limit: Some(Duration::from_millis(300)), save_every, ..Control::default() };
         assert_eq!(part.render(&world, &control, &mut watch).unwrap(), RenderOutcome::OutOfTime);
     }
     assert!(passes > 0 && saves > 0, "{passes} {saves}");
     assert!(part.is_whole() && !part.is_finished());
     // A time limit of zero gives a picture without holes, and no more than that.
     let hasty = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
-    let control = Control { time: Some(Duration::ZERO), ..Control::default() };
+    let control = Control { time_limit: Some(Duration::ZERO), ..Control::default() };
     assert_eq!(hasty.render(&world, &control, &mut |_, _| {}).unwrap(), RenderOutcome::OutOfTime);
     assert!(hasty.is_whole() && !hasty.is_finished());
     let control = Control::default();
@@ -445,16 +445,18 @@ fn files_have_attributes_of_job_and_scene() {
 #[test]
 fn bands_give_the_same_picture() {
     let world = world();
-    let crop = Some(Crop { left: 5, top: 3, width: 20, height: 24 });
+    let crop = Some(PixelRect { left: 5, top: 3, width: 20, height: 24 });
     for job in [Job { sampling: filtered(3), ..small() }, Job { sampling: filtered(3), crop, ..small() }, small()] {
         let window = job.window();
-        let one =
-            PartialRender::bytes_needed(&Job { crop: Some(Crop { height: 1, ..window }), ..job.clone() }, Shard::WHOLE);
+        let one = PartialRender::bytes_needed(
+            &Job { crop: Some(PixelRect { height: 1, ..window }), ..job.clone() },
+            Shard::WHOLE,
+        );
         let whole = all(&world, &job);
         let layer = whole.pictures().unwrap().pictures;
         // Bands of two rows of blocks, and a single band.
         for memory in [16 * one, u64::MAX] {
-            let bands = Bands::new(&job, memory).unwrap();
+            let bands = BandedRender::new(&job, memory).unwrap();
             for format in FORMATS.iter().filter(|format| format.rows.is_some()) {
                 let (mut in_bands, mut at_once) = (Vec::new(), Vec::new());
                 let options = WriteOptions::default();
@@ -469,18 +471,18 @@ fn bands_give_the_same_picture() {
                 assert_eq!(made.1, (!bottom_up).then(|| whole.hash()), "{name} {memory}");
             }
         }
-        assert!(matches!(Bands::new(&job, 7 * one), Err(RenderError::Memory { .. })));
+        assert!(matches!(BandedRender::new(&job, 7 * one), Err(RenderError::Memory { .. })));
     }
     let depth = Job { aovs: AOVS.iter().filter(|aov| aov.name == "depth").collect(), ..small() };
-    assert!(matches!(Bands::new(&depth, u64::MAX), Err(RenderError::Bands(_))));
+    assert!(matches!(BandedRender::new(&depth, u64::MAX), Err(RenderError::Bands(_))));
 }
 
 #[test]
 fn writing_row_by_row_gives_the_same_file() {
     let fisheye = TEXT.replace("PerspectiveCamera", "FisheyeCamera").replace("angle 40", "angle 180");
-    let crop = Some(Crop { left: 5, top: 3, width: 20, height: 24 });
+    let crop = Some(PixelRect { left: 5, top: 3, width: 20, height: 24 });
     let tall = Job { width: 5, height: 200, ..Job::default() };
-    for (text, job, most_tiles) in [
+    for (text, job, max_tiles) in [
         (TEXT, small(), None),
         (TEXT, Job { sampling: filtered(3), crop, ..small() }, None),
         (TEXT, tall, None),
@@ -490,11 +492,11 @@ fn writing_row_by_row_gives_the_same_file() {
     ] {
         let world = testing::read(text);
         let part = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
-        let control = Control { most_tiles, threads: Some(1), ..Control::default() };
+        let control = Control { max_tiles, threads: Some(1), ..Control::default() };
         part.render(&world, &control, &mut |_, _| {}).unwrap();
         let layers = part.pictures().unwrap().pictures;
         let is_open = layers[0].coverage.is_some();
-        assert_eq!(is_open, most_tiles.is_some() || text == fisheye);
+        assert_eq!(is_open, max_tiles.is_some() || text == fisheye);
         for format in FORMATS.iter().filter(|format| format.rows.is_some()) {
             let (mut by_rows, mut at_once, mut seen) = (Vec::new(), Vec::new(), Vec::new());
             part.write_colors(format, Default::default(), &mut by_rows, |colors| seen.extend_from_slice(colors))

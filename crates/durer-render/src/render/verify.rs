@@ -84,7 +84,7 @@ impl RenderVariant {
     ///
     /// # Errors
     /// [`VariantError`].
-    pub fn make(&self, world: &World, job: &Job, cancel: &AtomicBool) -> Result<PartialRender, VariantError> {
+    pub fn render_job(&self, world: &World, job: &Job, cancel: &AtomicBool) -> Result<PartialRender, VariantError> {
         let mut parts = Vec::new();
         for index in 1..=self.shards {
             let shard = Shard { index, count: self.shards, by: self.by };
@@ -113,8 +113,8 @@ impl RenderVariant {
             let control = Control {
                 // Use a different number of threads each time.
                 threads: Some(1 + (self.threads + round as usize - 1) % 7),
-                tile: Some(self.tile),
-                most_tiles: (round > 0).then_some(some),
+                tile_size: Some(self.tile),
+                max_tiles: (round > 0).then_some(some),
                 ..Control::default()
             };
             if let RenderOutcome::Panicked(panicked) = part.render(world, &control, &mut |_, _| {})? {
@@ -128,23 +128,23 @@ impl RenderVariant {
 
 /// Difference between the expected film and the film of a [`RenderVariant`].
 #[derive(Clone, Debug)]
-pub struct Difference {
+pub struct FilmDifference {
     /// Hash of the expected film.
     pub expected: Digest,
     /// Hash of the variant's film.
-    pub found: Digest,
+    pub actual: Digest,
     /// Description of the first pixel that differs, if a picture shows the difference.
     pub place: String,
 }
 
 /// Compares two films of the same job. Returns `None` if they are equal.
-pub fn compare(expected: &PartialRender, found: &PartialRender) -> Option<Difference> {
-    let (one, other) = (expected.hash(), found.hash());
+pub fn compare(expected: &PartialRender, actual: &PartialRender) -> Option<FilmDifference> {
+    let (one, other) = (expected.hash(), actual.hash());
     if one == other {
         return None;
     }
     let mut place = "no picture shows the difference".to_string();
-    if let (Ok(a), Ok(b)) = (expected.pictures(), found.pictures()) {
+    if let (Ok(a), Ok(b)) = (expected.pictures(), actual.pictures()) {
         let window = expected.job().window();
         for (a, b) in a.layers.iter().zip(&b.layers) {
             let pairs = a.image.pixels.iter().zip(&b.image.pixels).enumerate();
@@ -156,5 +156,5 @@ pub fn compare(expected: &PartialRender, found: &PartialRender) -> Option<Differ
             }
         }
     }
-    Some(Difference { expected: one, found: other, place })
+    Some(FilmDifference { expected: one, actual: other, place })
 }

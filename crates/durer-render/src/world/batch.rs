@@ -19,7 +19,7 @@ pub(crate) struct SmallWorld {
 }
 
 /// Number of rays below which each is traced alone.
-const FEWEST: usize = 3;
+const MIN_BATCH: usize = 3;
 
 /// Ray that hits nothing, for unused slots of a batch.
 const NOWHERE: Ray = Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::X) };
@@ -32,7 +32,7 @@ impl World {
         hits: &mut [Option<Hit>],
         counter: &mut T,
     ) {
-        if T::COUNTS_WORK || rays.len() < FEWEST || self.small_world.is_none() {
+        if T::COUNTS_WORK || rays.len() < MIN_BATCH || self.small_world.is_none() {
             return hits.iter_mut().zip(rays).for_each(|(hit, ray)| *hit = self.closest_along(ray, counter));
         }
         rays.iter().for_each(|_| counter.ray());
@@ -41,7 +41,7 @@ impl World {
 
     /// Computes whether up to [`MAX_BATCH`] rays are occluded.
     pub(crate) fn any_hits<T: TraversalCounter>(&self, rays: &[Ray64], blocked: &mut [bool], counter: &mut T) {
-        if T::COUNTS_WORK || rays.len() < FEWEST || self.small_world.is_none() {
+        if T::COUNTS_WORK || rays.len() < MIN_BATCH || self.small_world.is_none() {
             return blocked.iter_mut().zip(rays).for_each(|(hit, ray)| *hit = self.occluded_along(ray, counter));
         }
         rays.iter().for_each(|_| counter.ray());
@@ -61,26 +61,26 @@ impl World {
             }
         };
         let sound = |i: usize| durer_bvh::internal::is_valid(&rays[i].rounded);
-        small_world.intersect(rays, |i, met| hits[i] = met.map(|met| self.hit_of_pack(met, &rays[i])));
+        small_world.intersect(rays, |i, pack_hit| hits[i] = pack_hit.map(|met| self.hit_of_pack(met, &rays[i])));
         for &number in &small_world.others {
             let object = &self.objects()[number as usize];
             if let Geometry::Mesh(tree) = &object.geometry {
-                let mut found = [const { None::<TriangleHit> }; MAX_BATCH];
+                let mut triangle_hits = [const { None::<TriangleHit> }; MAX_BATCH];
                 let mut local = local_rays(object, rays.iter());
                 // Ties are broken by the order of hits, so a ray must be able to reach the `t` of
                 // its current hit.
                 for (local, hit) in local.iter_mut().zip(&*hits) {
                     local.t_max = hit.map_or(local.t_max, |hit| hit.t.next_up());
                 }
-                tree.bvh.closest_batch(&local[..rays.len()], &mut found[..rays.len()]);
-                for (best, found) in hits.iter_mut().zip(found) {
-                    offer(best, found.map(|h| Hit { t: h.t, uv: h.uv, object: number, part: h.triangle }));
+                tree.bvh.closest_batch(&local[..rays.len()], &mut triangle_hits[..rays.len()]);
+                for (best, hit) in hits.iter_mut().zip(triangle_hits) {
+                    offer(best, hit.map(|h| Hit { t: h.t, uv: h.uv, object: number, part: h.triangle }));
                 }
                 continue;
             }
             for i in (0..rays.len()).filter(|&i| sound(i)) {
-                let found = object.closest(number, &rays[i], false, &mut ());
-                offer(&mut hits[i], found.map(|(ShapeHit { t, uv }, part)| Hit { t, uv, object: number, part }));
+                let hit = object.closest(number, &rays[i], false, &mut ());
+                offer(&mut hits[i], hit.map(|(ShapeHit { t, uv }, part)| Hit { t, uv, object: number, part }));
             }
         }
     }
@@ -93,7 +93,7 @@ impl World {
             return;
         };
         let sound = |i: usize| durer_bvh::internal::is_valid(&rays[i].rounded);
-        small_world.intersect(rays, |i, met| blocked[i] = met.is_some());
+        small_world.intersect(rays, |i, pack_hit| blocked[i] = pack_hit.is_some());
         // Skip rays that are already occluded.
         let others = || small_world.others.iter().map(|&number| (number, &self.objects()[number as usize]));
         let is_mesh = |object: &Object| matches!(object.geometry, Geometry::Mesh(_));
@@ -109,10 +109,10 @@ impl World {
                 open[count] = i;
                 count += 1;
             }
-            let mut found = [false; MAX_BATCH];
+            let mut occluded = [false; MAX_BATCH];
             let local = local_rays(object, open[..count].iter().map(|&i| &rays[i]));
-            tree.bvh.occluded_batch(&local[..count], &mut found[..count]);
-            open[..count].iter().zip(found).for_each(|(&i, found)| blocked[i] = found);
+            tree.bvh.occluded_batch(&local[..count], &mut occluded[..count]);
+            open[..count].iter().zip(occluded).for_each(|(&i, found)| blocked[i] = found);
         }
     }
 
@@ -132,8 +132,8 @@ impl SmallWorld {
         }
         for start in (0..rays.len()).step_by(8) {
             let ray = |i: usize| rays.get(start + i).map_or(&NOWHERE, |ray| &ray.rounded);
-            let met = self.simple.closest_of_eight(from_fn(ray));
-            met.into_iter().enumerate().take(rays.len() - start).for_each(|(i, met)| take(start + i, met));
+            let pack_hits = self.simple.closest_of_eight(from_fn(ray));
+            pack_hits.into_iter().enumerate().take(rays.len() - start).for_each(|(i, hit)| take(start + i, hit));
         }
     }
 }

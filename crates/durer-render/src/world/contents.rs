@@ -23,7 +23,7 @@ pub struct Contents {
     /// Colour of rays that hit nothing.
     pub background: Color,
     /// True if paths see a black background because the scene defines none.
-    pub dark: bool,
+    pub is_black_for_paths: bool,
     /// Ambient light.
     pub ambient: Color,
     /// Lights.
@@ -70,13 +70,13 @@ impl World {
     /// computed from objects, such as the acceleration structure, does not change.
     pub fn edit(&mut self) -> &mut Contents {
         self.edited = true;
-        self.extents.clear();
+        self.half_areas.clear();
         &mut self.contents
     }
 
     /// Replaces the camera. The world's new hash is computed from the old one and the camera,
     /// without the cost of hashing objects.
-    pub fn look_through(&mut self, camera: Camera) {
+    pub fn set_camera(&mut self, camera: Camera) {
         let text = format!("{} {camera:?}", self.digest());
         self.contents.frame = CameraBasis::of(&camera, self.contents.camera_rules);
         self.contents.camera = camera;
@@ -121,7 +121,7 @@ impl World {
 
     /// Returns true if paths see a black background because the scene defines none.
     pub fn is_dark(&self) -> bool {
-        self.contents.dark
+        self.contents.is_black_for_paths
     }
 
     /// Returns the ambient light.

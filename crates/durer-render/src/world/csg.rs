@@ -17,9 +17,9 @@
 //! tolerance would lose corners near the edge and let light leak in.
 //!
 //! In the result, `part` is the index of a triangle or shape among those of all parts, with two
-//! flag bits: [`TURNED`] if the surface is inverted, and [`ENTERS`] if the ray enters the solid.
+//! flag bits: [`INVERTED`] if the surface is inverted, and [`ENTERS`] if the ray enters the solid.
 
-use super::solid::{BoolOp, Solid};
+use super::solid::{BoolOp, CsgTree};
 use super::{Geometry, Object, ShadingRules};
 use durer_bvh::{Bvh, TraversalCounter};
 use durer_scene::math::{Aabb, Ray, Ray64, Vec2, Vec3};
@@ -28,81 +28,81 @@ use std::cell::RefCell;
 use std::sync::Arc;
 
 /// Flag in a hit's part: the surface is inverted, as that of a subtracted part.
-pub const TURNED: u32 = 1 << 31;
+pub const INVERTED: u32 = 1 << 31;
 /// Flag in a hit's part: the ray enters the solid.
 pub const ENTERS: u32 = 1 << 30;
 
 /// Maximum number of bounded parts without a BVH over them.
-const FEW: usize = 8;
+const MAX_LINEAR_PARTS: usize = 8;
 
 /// Solid composed of several parts by boolean operations, prepared for ray intersection.
 #[derive(Debug)]
 pub struct Csg {
     /// Parts, in the order of the file.
-    leaves: Vec<Leaf>,
+    leaves: Vec<SolidPart>,
     /// Operations; the first one is the root.
-    joins: Vec<Join>,
+    joins: Vec<OperationNode>,
     /// Count of each operation outside of all parts: the number of its subtracted operands.
     start: Vec<u32>,
     /// Indices of the unbounded parts.
     unbounded: Vec<u32>,
     /// Indices of the bounded parts.
     bounded: Vec<u32>,
-    /// BVH over the bounded parts, if there are more than [`FEW`].
+    /// BVH over the bounded parts, if there are more than [`MAX_LINEAR_PARTS`].
     bvh: Option<Bvh>,
     bounds: Option<Aabb>,
     /// Largest tolerance for two parts to coincide, in world units.
-    slack: f32,
+    tolerance: f32,
 }
 
 /// Part of a solid, with its position in the tree of operations.
 #[derive(Debug)]
-struct Leaf {
+struct SolidPart {
     object: Arc<Object>,
     /// Axis of the part's shape, computed once.
     axis: Option<Axis>,
-    edge: Edge,
+    edge: ParentLink,
     /// Index of the part's first triangle or shape among those of all parts.
     first: u32,
     /// Minimum tolerance for the position of the part's surface, in world units.
-    slack: f32,
+    tolerance: f32,
     /// Bound on the rounding error of a crossing.
     rounding: f32,
 }
 
 /// Link from a part or operation to the operation above it in a solid's tree.
 #[derive(Clone, Copy, Debug)]
-struct Edge {
+struct ParentLink {
     /// Index of the parent operation.
     join: u32,
     /// True for a subtracted operand, which holds where the point is outside of it.
-    cut: bool,
+    is_subtracted: bool,
 }
 
 /// Boolean operation in a solid's tree.
 #[derive(Debug)]
-struct Join {
-    rule: BoolOp,
+struct OperationNode {
+    op: BoolOp,
     /// Number of operands.
     edges: u32,
     /// Link to the operation above; `None` for the root.
-    edge: Option<Edge>,
+    edge: Option<ParentLink>,
 }
 
-impl Join {
+impl OperationNode {
     /// Returns whether a point is inside the result, if it is inside `holding` operands.
     fn value(&self, holding: u32) -> bool {
-        match self.rule {
-            BoolOp::Any => holding > 0,
-            BoolOp::All => holding == self.edges,
-            BoolOp::Odd => holding % 2 == 1,
+        match self.op {
+            BoolOp::Union => holding > 0,
+            BoolOp::Intersection => holding == self.edges,
+            BoolOp::Xor => holding % 2 == 1,
         }
     }
 }
 
 /// Crossing of a ray's line with the surface of a part of a solid.
 #[derive(Clone, Copy, Debug)]
-struct Event {
+struct SurfaceCrossing {
     t: f64,
     leaf: u32,
     part: u32,
@@ -112,7 +112,7 @@ struct Event {
 /// Thread-local buffers for intersecting solids, reused for each ray.
 #[derive(Default)]
 struct Scratch {
-    events: Vec<Event>,
+    events: Vec<SurfaceCrossing>,
     state: State,
 }
 
@@ -150,7 +150,7 @@ impl Csg {
     pub const MAX_PARTS: u64 = ENTERS as u64 - 1;
 
     /// Prepares a solid for ray intersection.
-    pub fn new(solid: Solid) -> Self {
+    pub fn new(solid: CsgTree) -> Self {
         let bounds = solid.bounds();
         let mut csg = Csg {
             leaves: Vec::new(),
@@ -160,18 +160,18 @@ impl Csg {
             bounded: Vec::new(),
             bvh: None,
             bounds,
-            slack: 0.0,
+            tolerance: 0.0,
         };
         // A single part becomes an operation with one operand.
         let solid = match solid {
-            Solid::Operand(_) => Solid::Join { rule: BoolOp::Any, parts: vec![solid], cut: Vec::new() },
+            CsgTree::Operand(_) => CsgTree::Operation { op: BoolOp::Union, parts: vec![solid], subtracted: Vec::new() },
             join => join,
         };
         csg.add(solid, None);
-        csg.slack = csg.leaves.iter().map(|leaf| 2.0 * leaf.slack).fold(0.0, f32::max);
+        csg.tolerance = csg.leaves.iter().map(|leaf| 2.0 * leaf.tolerance).fold(0.0, f32::max);
         // Outside the solid's bounds, parts do not matter, except that they can coincide with parts
         // that do.
-        let margin = GRAZING as f32 * csg.slack;
+        let margin = GRAZING as f32 * csg.tolerance;
         let matters = bounds.map(|whole| Aabb { min: whole.min - margin, max: whole.max + margin });
         let mut boxes = Vec::new();
         for (i, leaf) in csg.leaves.iter().enumerate() {
@@ -183,28 +183,28 @@ impl Csg {
                 None => csg.unbounded.push(i as u32),
             }
         }
-        csg.bvh = (boxes.len() > FEW).then(|| Bvh::build(&boxes));
+        csg.bvh = (boxes.len() > MAX_LINEAR_PARTS).then(|| Bvh::build(&boxes));
         csg
     }
 
     /// Adds a part or an operation with all its operands.
-    fn add(&mut self, solid: Solid, edge: Option<Edge>) {
+    fn add(&mut self, solid: CsgTree, edge: Option<ParentLink>) {
         match (solid, edge) {
-            (Solid::Operand(object), Some(edge)) => {
+            (CsgTree::Operand(object), Some(edge)) => {
                 let first = self.leaves.last().map_or(0, |last| last.first + last.object.parts());
-                let slack = slack_of(&object);
+                let tolerance = tolerance_of(&object);
                 let size = object.bounds().map_or(0.0, |b| b.size().max_element());
                 let (axis, rounding) = (object.axis(), 4.0 * f32::EPSILON * size);
-                self.leaves.push(Leaf { object, axis, edge, first, slack, rounding });
+                self.leaves.push(SolidPart { object, axis, edge, first, tolerance, rounding });
             }
-            (Solid::Operand(_), None) => {}
-            (Solid::Join { rule, parts, cut }, edge) => {
+            (CsgTree::Operand(_), None) => {}
+            (CsgTree::Operation { op, parts, subtracted }, edge) => {
                 let join = self.joins.len() as u32;
-                self.joins.push(Join { rule, edges: (parts.len() + cut.len()) as u32, edge });
+                self.joins.push(OperationNode { op, edges: (parts.len() + subtracted.len()) as u32, edge });
                 // Outside of all parts, only subtracted operands hold.
-                self.start.push(cut.len() as u32);
-                parts.into_iter().for_each(|part| self.add(part, Some(Edge { join, cut: false })));
-                cut.into_iter().for_each(|part| self.add(part, Some(Edge { join, cut: true })));
+                self.start.push(subtracted.len() as u32);
+                parts.into_iter().for_each(|part| self.add(part, Some(ParentLink { join, is_subtracted: false })));
+                subtracted.into_iter().for_each(|part| self.add(part, Some(ParentLink { join, is_subtracted: true })));
             }
         }
     }
@@ -226,7 +226,7 @@ impl Csg {
 
     /// Returns the index of the hit triangle in its mesh, or 0 for other shapes.
     pub fn triangle(&self, part: u32) -> u32 {
-        (part & !(TURNED | ENTERS)) - self.leaves[self.leaf_of(part)].first
+        (part & !(INVERTED | ENTERS)) - self.leaves[self.leaf_of(part)].first
     }
 
     /// Returns the memory used in bytes, not counting meshes.
@@ -240,7 +240,7 @@ impl Csg {
 
     /// Returns the index of the leaf that a hit's part belongs to.
     fn leaf_of(&self, part: u32) -> usize {
-        let number = part & !(TURNED | ENTERS);
+        let number = part & !(INVERTED | ENTERS);
         // Fast path: if only shapes come before it, the index of the part is that of the leaf.
         let begins = |place: usize| self.leaves.get(place).is_some_and(|leaf| leaf.first == number);
         if begins(number as usize) && !begins(number as usize + 1) {
@@ -257,7 +257,7 @@ impl Csg {
         // The mesh itself may be inverted, so use the direction in which the ray crosses it.
         let turned = match leaf.object.geometry {
             Geometry::Mesh(_) => (surface.n_geo.dot(ray.dir()) < 0.0) != (part & ENTERS != 0),
-            _ => part & TURNED != 0,
+            _ => part & INVERTED != 0,
         };
         if !turned {
             return surface;
@@ -297,9 +297,9 @@ impl Csg {
     fn collect<T: TraversalCounter>(&self, ray: &Ray64, shrink: bool, scratch: &mut Scratch, counter: &mut T) -> f32 {
         let Scratch { events, .. } = scratch;
         events.clear();
-        let take = |i: u32, events: &mut Vec<Event>, counter: &mut T| {
-            let offer = &mut |t, uv, part| events.push(Event { t, leaf: i, part, uv });
-            let Leaf { object, axis, .. } = &self.leaves[i as usize];
+        let take = |i: u32, events: &mut Vec<SurfaceCrossing>, counter: &mut T| {
+            let offer = &mut |t, uv, part| events.push(SurfaceCrossing { t, leaf: i, part, uv });
+            let SolidPart { object, axis, .. } = &self.leaves[i as usize];
             object.crossings(axis.as_ref(), ray, counter, offer);
         };
         self.unbounded.iter().for_each(|&i| take(i, events, counter));
@@ -309,7 +309,7 @@ impl Csg {
             return f32::INFINITY;
         };
         // Crossings just outside the interval, within the tolerance, matter too.
-        let reach = self.slack + 4.0 * f32::EPSILON * ray.rounded.origin.abs().max_element();
+        let reach = self.tolerance + 4.0 * f32::EPSILON * ray.rounded.origin.abs().max_element();
         // The largest component is a lower bound on the direction's length that needs no square
         // root.
         let pad = GRAZING as f32 * reach / ray.dir().abs().max_element();
@@ -317,7 +317,7 @@ impl Csg {
         // The rounding error of the new origin is a thousandth of the pad.
         let Ray { origin, dir, t_min, t_max } = ray.rounded;
         let wide = Ray { origin: origin - pad * dir, dir, t_min, t_max: t_max + 2.0 * pad };
-        let shrink = shrink && self.joins[0].rule == BoolOp::Any;
+        let shrink = shrink && self.joins[0].op == BoolOp::Union;
         let mut complete = f32::INFINITY;
         bvh.traverse(&wide, counter, |item, t_max, counter| {
             let (i, from) = (self.bounded[bvh.primitive_indices()[item] as usize], events.len());
@@ -370,7 +370,7 @@ impl Csg {
         // Last crossing behind the origin that leads to the opposite side.
         let mut behind: Option<(ShapeHit, u32)> = None;
         let mut known = inside;
-        let (apart, speed) = self.apart(ray, events);
+        let (apart, speed) = self.coincidence_bound(ray, events);
         let mut from = 0;
         while from < events.len() {
             // Fast path: most crossings are far from the next one.
@@ -384,7 +384,7 @@ impl Csg {
                 whole ^= self.toggle(event.leaf, state);
             }
             if let (Some(inside), true) = (known, group[0].t <= 0.0) {
-                let leads = |event: &&Event| self.adds(event.leaf, state) != inside;
+                let leads = |event: &&SurfaceCrossing| self.adds(event.leaf, state) != inside;
                 behind = group.iter().rfind(leads).map(|event| self.change(event, state, !inside)).or(behind);
             }
             if whole == before {
@@ -410,9 +410,9 @@ impl Csg {
     }
 
     /// Returns the hit at a crossing. `whole` is the solid's bit after it.
-    fn change(&self, event: &Event, state: &State, whole: bool) -> (ShapeHit, u32) {
+    fn change(&self, event: &SurfaceCrossing, state: &State, whole: bool) -> (ShapeHit, u32) {
         let turned = state.inside[event.leaf as usize] != whole;
-        let bits = if turned { TURNED } else { 0 } | if whole { ENTERS } else { 0 };
+        let bits = if turned { INVERTED } else { 0 } | if whole { ENTERS } else { 0 };
         let part = (self.leaves[event.leaf as usize].first + event.part) | bits;
         (ShapeHit { t: event.t as f32, uv: event.uv }, part)
     }
@@ -422,8 +422,8 @@ impl Csg {
     fn adds(&self, leaf: u32, state: &State) -> bool {
         let mut adds = state.inside[leaf as usize];
         let mut edge = Some(self.leaves[leaf as usize].edge);
-        while let Some(Edge { join, cut }) = edge {
-            adds ^= cut;
+        while let Some(ParentLink { join, is_subtracted }) = edge {
+            adds ^= is_subtracted;
             edge = self.joins[join as usize].edge;
         }
         adds
@@ -438,7 +438,7 @@ impl Csg {
             let join = &self.joins[edge.join as usize];
             let count = &mut state.counts[edge.join as usize];
             let before = join.value(*count);
-            *count = if value != edge.cut { *count + 1 } else { *count - 1 };
+            *count = if value != edge.is_subtracted { *count + 1 } else { *count - 1 };
             value = join.value(*count);
             if value == before {
                 return false;
@@ -452,17 +452,17 @@ impl Csg {
 
     /// Returns an upper bound on the distance of coincident crossings (see [`Csg::coincide`]) and a
     /// lower bound on the length of the ray's direction.
-    fn apart(&self, ray: &Ray64, events: &[Event]) -> (f64, f64) {
+    fn coincidence_bound(&self, ray: &Ray64, events: &[SurfaceCrossing]) -> (f64, f64) {
         let (line, speed) = (ray.line(), f64::from(ray.dir().abs().max_element()));
         let farthest = events.first().map_or(0.0, |e| e.t.abs()) + events.last().map_or(0.0, |e| e.t.abs());
         let reach = line.origin.abs().max_element() + farthest * speed;
         // The factor 1.001 allows for different rounding there.
-        (1.001 * GRAZING * (f64::from(self.slack) + 4.0 * f64::from(f32::EPSILON) * reach), speed)
+        (1.001 * GRAZING * (f64::from(self.tolerance) + 4.0 * f64::from(f32::EPSILON) * reach), speed)
     }
 
     /// Returns the end of the group of crossings that coincide with the first one, each of a
     /// different part. See the start of this file.
-    fn coincident(&self, ray: &Ray64, events: &[Event], from: usize, state: &mut State) -> usize {
+    fn coincident(&self, ray: &Ray64, events: &[SurfaceCrossing], from: usize, state: &mut State) -> usize {
         state.last_group += 1;
         let State { groups, last_group: group, .. } = state;
         groups[events[from].leaf as usize] = *group;
@@ -478,15 +478,15 @@ impl Csg {
     }
 
     /// Returns true if two crossings coincide: see the start of this file.
-    fn coincide(&self, ray: &Ray64, a: &Event, b: &Event) -> bool {
+    fn coincide(&self, ray: &Ray64, a: &SurfaceCrossing, b: &SurfaceCrossing) -> bool {
         let line = ray.line();
         let speed = line.dir.length();
         let gap = (b.t - a.t) * speed;
-        let [s, u] = [a, b].map(|event| self.leaves[event.leaf as usize].slack);
-        let slack = f64::from(s + u) + 4.0 * f64::from(f32::EPSILON) * line.at(a.t).abs().max_element();
+        let [s, u] = [a, b].map(|event| self.leaves[event.leaf as usize].tolerance);
+        let tolerance = f64::from(s + u) + 4.0 * f64::from(f32::EPSILON) * line.at(a.t).abs().max_element();
         let [r, q] = [a, b].map(|event| self.leaves[event.leaf as usize].rounding);
-        if gap.is_nan() || gap <= f64::from(r + q).min(slack) || gap > GRAZING * slack {
-            return gap <= slack;
+        if gap.is_nan() || gap <= f64::from(r + q).min(tolerance) || gap > GRAZING * tolerance {
+            return gap <= tolerance;
         }
         let [m, n] = [a, b].map(|event| {
             let object = &self.leaves[event.leaf as usize].object;
@@ -496,13 +496,13 @@ impl Csg {
         });
         // A grazing ray covers more distance between two faces than their distance.
         let cosine = m.dot(line.dir).abs().max(n.dot(line.dir).abs()) / speed;
-        m.dot(n).abs() >= ALIKE && gap * cosine <= slack
+        m.dot(n).abs() >= MIN_COPLANAR_COSINE && gap * cosine <= tolerance
     }
 
     /// Returns the crossing with the visible surface, from a group that together changed the
     /// solid's bit.
-    fn choose<'e>(&self, events: &'e [Event], state: &mut State) -> &'e Event {
-        let mut could: Vec<&Event> = Vec::new();
+    fn choose<'e>(&self, events: &'e [SurfaceCrossing], state: &mut State) -> &'e SurfaceCrossing {
+        let mut could: Vec<&SurfaceCrossing> = Vec::new();
         // Crossings without which the change would not happen.
         for event in events {
             if self.toggle(event.leaf, state) {
@@ -535,15 +535,15 @@ const GRAZING: f64 = 1000.0;
 
 /// Cosine of the largest angle between coincident faces, 3.6 degrees. This is how much rounding of
 /// vertices at 10^6 can rotate faces of size 1 that should be in the same plane.
-const ALIKE: f64 = 0.998;
+const MIN_COPLANAR_COSINE: f64 = 0.998;
 
 /// Compares crossings by position on the line, then by part.
-fn order(a: &Event, b: &Event) -> std::cmp::Ordering {
+fn order(a: &SurfaceCrossing, b: &SurfaceCrossing) -> std::cmp::Ordering {
     a.t.total_cmp(&b.t).then(a.leaf.cmp(&b.leaf)).then(a.part.cmp(&b.part))
 }
 
 /// Returns the rounding error of an object's coordinates in world and in object space, times two.
-fn slack_of(object: &Object) -> f32 {
+fn tolerance_of(object: &Object) -> f32 {
     let (Some(world), Some(local)) = (object.bounds(), object.local_bounds()) else { return 0.0 };
     let reach = |b: Aabb| b.min.abs().max(b.max.abs());
     let moved = object.to_world.as_ref().map_or(Vec3::ZERO, |to_world| to_world.error_bound(reach(local)));

@@ -74,9 +74,9 @@ impl World {
         };
         let crossing = ShapeHit { t: hit.t, uv: hit.uv };
         let rules = self.shading_rules();
-        object.own_surface(ray, point, &crossing, hit.part, rules, &mut at.surface);
+        object.local_surface(ray, point, &crossing, hit.part, rules, &mut at.surface);
         (at.ray, at.hit, at.material, at.width) = (*ray, hit, self.material_of(&hit), 0.0);
-        object.place(&mut at.surface, ray, &crossing, rules);
+        object.transform_surface(&mut at.surface, ray, &crossing, rules);
         if let Some(n) = self.course_normal(&ray.rounded, &hit) {
             at.surface.n_shade = n;
         }

@@ -1,6 +1,6 @@
 //! Lookup of textures and vertex colours of principled materials.
 
-use super::material::{Maps, Principled};
+use super::material::{MaterialTextures, Principled};
 use super::{Geometry, SurfaceInteraction, World};
 use durer_scene::material::Parameters;
 use durer_scene::material::parameters::{TEXTURE_FIELDS, TextureEffect};
@@ -13,16 +13,16 @@ use std::borrow::Cow;
 impl World {
     /// Returns the parameters of a principled material at a hit, changed by textures and vertex
     /// colours. Without texture coordinates, textures are ignored.
-    pub fn parameters_at<'a>(&self, own: &'a Principled, at: &SurfaceInteraction) -> Cow<'a, Parameters> {
+    pub fn parameters_at<'a>(&self, principled: &'a Principled, at: &SurfaceInteraction) -> Cow<'a, Parameters> {
         let [r, g, b, _] = at.surface.color;
-        if own.maps.parameters.is_empty() && [r, g, b] == [1.0; 3] {
-            return Cow::Borrowed(&own.parameters);
+        if principled.maps.parameters.is_empty() && [r, g, b] == [1.0; 3] {
+            return Cow::Borrowed(&principled.parameters);
         }
-        let mut here = own.parameters;
+        let mut here = principled.parameters;
         here.base_color *= Vec3::new(r, g, b);
         // A texture that changes several parameters is looked up once.
         let mut last: Option<(u32, [f32; 4])> = None;
-        for map in &own.maps.parameters {
+        for map in &principled.maps.parameters {
             let known = last.filter(|(number, _)| *number == map.texture).map(|(_, texel)| texel);
             let Some(texel) = known.or_else(|| self.texel(Some(map.texture), at)) else { continue };
             last = Some((map.texture, texel));
@@ -36,7 +36,7 @@ impl World {
                 }
             }
         }
-        Cow::Owned(if own.maps.parameters.is_empty() { here } else { here.clamped() })
+        Cow::Owned(if principled.maps.parameters.is_empty() { here } else { here.clamped() })
     }
 
     /// Returns the value of a texture of numbers at a hit, from 0 to 1. 1 if there are no texture
@@ -48,48 +48,51 @@ impl World {
     }
 
     /// Returns the factor by which texture and vertex colours multiply the emission.
-    pub(super) fn emission_at(&self, own: &Principled, at: &SurfaceInteraction) -> Color {
-        let picture = self.texel(own.maps.emission, at).map_or(Color::ONE, |[r, g, b, _]| Color::new(r, g, b));
+    pub(super) fn emission_at(&self, principled: &Principled, at: &SurfaceInteraction) -> Color {
+        let picture = self.texel(principled.maps.emission, at).map_or(Color::ONE, |[r, g, b, _]| Color::new(r, g, b));
         let [r, g, b, _] = at.surface.color;
-        if own.written.emission_vertex_colors == Switch::On { picture * Color::new(r, g, b) } else { picture }
+        if principled.definition.emission_vertex_colors == Switch::On { picture * Color::new(r, g, b) } else { picture }
     }
 
     /// Returns the opacity at a hit: the product of parameter, vertex colours and textures, or 0 or
     /// 1 with a cutoff.
-    pub(super) fn opacity_at(&self, own: &Principled, at: &SurfaceInteraction) -> f32 {
-        let alpha = self.texel(own.maps.base_color, at).map_or(1.0, |texel| texel[3]);
-        let share = own.maps.opacity.and_then(|map| {
+    pub(super) fn opacity_at(&self, principled: &Principled, at: &SurfaceInteraction) -> f32 {
+        let alpha = self.texel(principled.maps.base_color, at).map_or(1.0, |texel| texel[3]);
+        let share = principled.maps.opacity.and_then(|map| {
             let texture = &self.textures()[map as usize];
             let usual = if texture.has_alpha() { Channel::Alpha } else { Channel::Red };
             let channel = texture.mapping().and_then(|mapping| mapping.channel).unwrap_or(usual);
             Some(channel.of(self.texel(Some(map), at)?))
         });
-        let opacity = own.written.opacity * at.surface.color[3] * alpha * share.unwrap_or(1.0);
-        own.written.opacity_cutoff.map_or(opacity, |least| f32::from(u8::from(opacity >= least)))
+        let opacity = principled.definition.opacity * at.surface.color[3] * alpha * share.unwrap_or(1.0);
+        principled.definition.opacity_cutoff.map_or(opacity, |least| f32::from(u8::from(opacity >= least)))
     }
 
     /// Returns true if a principled material can have an opacity below 1. Vertex colours, which can
     /// lower the opacity of any material, are not considered.
-    pub(super) fn is_cutout(&self, own: &Principled) -> bool {
-        own.written.opacity < 1.0 || own.written.opacity_cutoff.is_some() || self.has_holes(own)
+    pub(super) fn is_cutout(&self, principled: &Principled) -> bool {
+        principled.definition.opacity < 1.0
+            || principled.definition.opacity_cutoff.is_some()
+            || self.has_holes(principled)
     }
 
     /// Returns true if a texture controls the opacity.
-    pub(super) fn has_holes(&self, own: &Principled) -> bool {
-        own.maps.opacity.is_some() || own.maps.base_color.is_some_and(|map| self.textures()[map as usize].has_alpha())
+    pub(super) fn has_holes(&self, principled: &Principled) -> bool {
+        principled.maps.opacity.is_some()
+            || principled.maps.base_color.is_some_and(|map| self.textures()[map as usize].has_alpha())
     }
 
     /// Returns the texel of a texture at a hit, filtered over the sample's footprint.
     fn texel(&self, map: Option<u32>, at: &SurfaceInteraction) -> Option<[f32; 4]> {
         let texture = &self.textures()[map? as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
-        Some(texture.texel(&mapping, self.coordinates(texture, at)?, self.texels_seen(texture, &mapping, at)))
+        Some(texture.texel(&mapping, self.coordinates(texture, at)?, self.footprint_texels(texture, &mapping, at)))
     }
 
     /// Returns the width of the sample's footprint in texels, across its narrow direction. At
     /// grazing angles the footprint is longer in the other direction, which supersampling takes
     /// care of.
-    fn texels_seen(&self, texture: &Texture, mapping: &Mapping, at: &SurfaceInteraction) -> f32 {
+    fn footprint_texels(&self, texture: &Texture, mapping: &Mapping, at: &SurfaceInteraction) -> f32 {
         if at.width <= 0.0 || !texture.has_levels() {
             return 0.0;
         }
@@ -109,15 +112,15 @@ impl World {
 
     /// Returns the shading normal after the bump map and then the normal map; `None` if there is
     /// neither.
-    pub(super) fn mapped_normal(&self, maps: &Maps, at: &SurfaceInteraction) -> Option<Vec3> {
+    pub(super) fn mapped_normal(&self, maps: &MaterialTextures, at: &SurfaceInteraction) -> Option<Vec3> {
         let bumped = maps.bump.and_then(|map| self.bumped(map, maps.bump_height, at));
         let normal = bumped.unwrap_or(at.surface.n_shade);
-        maps.normal.and_then(|map| self.leaning(map, at, normal)).or(bumped)
+        maps.normal.and_then(|map| self.normal_mapped(map, at, normal)).or(bumped)
     }
 
     /// Applies a normal map. In it, x is along increasing u and y along increasing v, upwards in
     /// the picture.
-    fn leaning(&self, map: u32, at: &SurfaceInteraction, normal: Vec3) -> Option<Vec3> {
+    fn normal_mapped(&self, map: u32, at: &SurfaceInteraction, normal: Vec3) -> Option<Vec3> {
         let texture = &self.textures()[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
         let object = &self.objects()[at.hit.object as usize];
@@ -126,8 +129,8 @@ impl World {
         let grow = match &object.geometry {
             Geometry::Mesh(tree) => {
                 // Tangents in the file are relative to the normal in object space.
-                let own = object.to_world.as_ref().map_or(normal, |to_world| to_world.inverse_normal(normal));
-                let grow = tree.mesh.tangents(at.hit.part, at.surface.barycentric, own, mapping.second)?;
+                let local_normal = object.to_world.as_ref().map_or(normal, |to_world| to_world.inverse_normal(normal));
+                let grow = tree.mesh.tangents(at.hit.part, at.surface.barycentric, local_normal, mapping.second)?;
                 grow.map(|v| object.to_world.as_ref().map_or(v, |to_world| to_world.vector(v)))
             }
             _ => self.derivatives(at, mapping.second)?,
@@ -172,8 +175,8 @@ impl World {
         let step = 1e-3 * size;
         let here = surface.uv.get()?;
         // Texture coordinates of a nearby point, which a ray against the normal hits.
-        let beside = |way: Vec3| {
-            let mut ray = Ray::new(point + step * (way + normal), -normal);
+        let beside = |dir: Vec3| {
+            let mut ray = Ray::new(point + step * (dir + normal), -normal);
             ray.t_max = 2.0 * step;
             let crossing = shape.intersect(&ray)?;
             let uv = shape.surface(ray.at(crossing.t).as_dvec3(), &crossing).uv.get()?;
@@ -182,7 +185,7 @@ impl World {
             Some(Vec2::new(around(uv.x - here.x), around(uv.y - here.y)) / step)
         };
         let (a, b) = normal.any_orthonormal_pair();
-        let along = |way: Vec3| match (beside(way), beside(-way)) {
+        let along = |dir: Vec3| match (beside(dir), beside(-dir)) {
             (Some(after), Some(before)) => Some(0.5 * (after - before)),
             (after, before) => after.or(before.map(|before| -before)),
         };
@@ -200,14 +203,14 @@ impl World {
         let to_world = object.to_world.as_ref();
         let normal = to_world.map_or(surface.n_geo, |to_world| to_world.inverse_normal(surface.n_geo));
         let point = to_world.map_or(surface.position, |to_world| to_world.inverse_point(surface.position));
-        let own = match &object.geometry {
+        let local_tangent = match &object.geometry {
             Geometry::Mesh(tree) => tree.mesh.tangents(hit.part, surface.barycentric, normal, false).map(|[u, _]| u),
             Geometry::Primitive(shape) => shape.tangent(point),
             Geometry::Solid(_) => None,
         };
-        let own = own.filter(|u| u.cross(normal).length_squared() > 1e-12 * u.length_squared());
-        let own = own.unwrap_or_else(|| Vec3::Y.cross(normal));
-        to_world.map_or(own, |to_world| to_world.vector(own))
+        let tangent = local_tangent.filter(|u| u.cross(normal).length_squared() > 1e-12 * u.length_squared());
+        let tangent = tangent.unwrap_or_else(|| Vec3::Y.cross(normal));
+        to_world.map_or(tangent, |to_world| to_world.vector(tangent))
     }
 }
 

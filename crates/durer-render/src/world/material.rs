@@ -19,7 +19,7 @@ pub enum Material {
     Phong(Phong),
     /// A mix of two other materials. The matrix transforms world space to pattern space. The
     /// optional texture, by its index, multiplies the share of the first material.
-    Solid(PatternMaterial, glam::DAffine3, Option<u32>),
+    Mix(PatternMaterial, glam::DAffine3, Option<u32>),
 }
 
 /// Formula of a Phong material's highlight: Blinn's or Phong's.
@@ -36,7 +36,7 @@ pub enum HighlightModel {
 
 /// Textures of a principled material, by their indices in [`super::World::textures`].
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Maps {
+pub struct MaterialTextures {
     /// Base colour. Its alpha multiplies the opacity.
     pub base_color: Option<u32>,
     /// Multiplies the emission colour.
@@ -50,12 +50,12 @@ pub struct Maps {
     /// Height difference between bump values 1 and 0, in world units.
     pub bump_height: f32,
     /// Textures of other parameters.
-    pub parameters: Vec<Map>,
+    pub parameters: Vec<ParameterTexture>,
 }
 
 /// Texture of one parameter of a principled material, such as its roughness.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Map {
+pub struct ParameterTexture {
     /// Row in [`TEXTURE_FIELDS`](durer_scene::material::parameters::TEXTURE_FIELDS), which tells
     /// the parameter.
     pub row: usize,
@@ -69,9 +69,9 @@ pub struct Map {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Principled {
     /// Material as written in the scene.
-    pub written: PrincipledMaterial,
+    pub definition: PrincipledMaterial,
     /// Textures.
-    pub maps: Maps,
+    pub maps: MaterialTextures,
     /// Parameters before textures are applied.
     pub parameters: Parameters,
     /// Precomputed reflectances of the material's interfaces.
@@ -88,8 +88,8 @@ pub struct Principled {
 impl Principled {
     /// Returns true if some layer reflects or refracts light in a single direction. Ignores
     /// roughness textures.
-    pub fn has_single_directions(&self) -> bool {
-        let m = &self.written;
+    pub fn has_delta_lobes(&self) -> bool {
+        let m = &self.definition;
         let smooth = |roughness: f32| Ggx::new(roughness, 0.0).is_smooth();
         let skin = self.parameters.specular_roughness <= 0.0 || smooth(self.parameters.specular_roughness);
         skin && !self.interface || m.coat_weight > 0.0 && smooth(m.coat_roughness)
@@ -144,7 +144,7 @@ impl Phong {
     pub fn is_entered(&self) -> bool {
         match &self.principled {
             Some(own) => {
-                let m = &own.written;
+                let m = &own.definition;
                 m.walls == Walls::Solid && (m.transmission_weight > 0.0 || m.subsurface_weight > 0.0)
             }
             None => self.transparent != Color::ZERO,

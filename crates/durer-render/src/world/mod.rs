@@ -16,7 +16,7 @@ pub mod solid;
 
 pub(crate) use batch::{MAX_BATCH, SmallWorld};
 pub use contents::{Assets, Contents};
-pub use course::{CourseHits, HitRules, Matrix, Vectors};
+pub use course::{CourseAccel, HitRules, Matrix, VectorLibrary};
 use durer_bvh::{Bvh, Grid, PrimitivePacks, TraversalCounter};
 use durer_scene::light::{Illuminate as _, Light, LightLiSample};
 use durer_scene::material::{Pattern, PatternMaterial};
@@ -27,7 +27,10 @@ use durer_scene::texture::Texture;
 pub use emitters::LightSampler;
 use glam::DVec3;
 pub use interaction::SurfaceInteraction;
-pub use material::{Emission, HighlightModel, Map, Maps, Material, MaterialMix, Phong, Principled, WeightedMaterial};
+pub use material::{
+    Emission, HighlightModel, Material, MaterialMix, MaterialTextures, ParameterTexture, Phong, Principled,
+    WeightedMaterial,
+};
 pub use object::{Geometry, MeshTree, Object};
 pub use rules::{DisplayRules, Epsilon, ShadingRules};
 pub use shading::Shading;
@@ -50,15 +53,16 @@ pub struct World {
     has_sheets: bool,
     /// Indices of objects with an interior medium, in which a camera could be.
     bodies: Vec<u32>,
-    /// [`Object::extent`] of each object, computed at first use. Empty if light enters no object.
-    extents: Vec<OnceLock<Option<f32>>>,
+    /// [`Object::half_area`] of each object, computed at first use. Empty if light enters no
+    /// object.
+    half_areas: Vec<OnceLock<Option<f32>>>,
     /// Simple shapes outside the acceleration structure, tested eight at a time.
     pub(crate) packs: PrimitivePacks,
     /// Copy of all objects in a form for batches of rays, if there are few objects.
     pub(crate) small_world: Option<SmallWorld>,
     /// Other objects outside the acceleration structure: unbounded ones, or all if there are too
     /// few for a tree to be faster.
-    pub(crate) loose: Vec<u32>,
+    pub(crate) outside_accel: Vec<u32>,
     pub(crate) accel: Accel,
     /// Copies of the spheres in the BVH, in the order of its leaves, to save a lookup. Other
     /// objects have radius
@@ -83,7 +87,7 @@ pub enum Accel {
     /// No structure: every ray tests all objects.
     None,
     /// Tests every object, as an official program does.
-    Course(CourseHits),
+    Course(CourseAccel),
 }
 
 /// First intersection of a ray with a world: distance, object and part.
@@ -123,10 +127,10 @@ impl World {
             has_interfaces: false,
             has_sheets: false,
             bodies: Vec::new(),
-            extents: Vec::new(),
+            half_areas: Vec::new(),
             packs: PrimitivePacks::default(),
             small_world: None,
-            loose: Vec::new(),
+            outside_accel: Vec::new(),
             accel: Accel::None,
             spheres: Vec::new(),
         };
@@ -135,7 +139,7 @@ impl World {
         world.has_interfaces = world.finds_interfaces();
         world.has_sheets = world.finds_sheets();
         world.bodies = world.finds_bodies();
-        world.extents = world.forgotten_extents();
+        world.half_areas = world.empty_half_areas();
         world.emitters = LightSampler::new(&world);
         world
     }
@@ -213,11 +217,11 @@ impl World {
                 }
             }
         };
-        if let Some(met) = self.packs.closest(&ray.rounded, counter) {
-            let crossing = self.objects()[met.number as usize].crossing_at(met.t, ray);
-            offer(&mut best, ray, met.number, Some((crossing, 0)));
+        if let Some(pack_hit) = self.packs.closest(&ray.rounded, counter) {
+            let crossing = self.objects()[pack_hit.number as usize].crossing_at(pack_hit.t, ray);
+            offer(&mut best, ray, pack_hit.number, Some((crossing, 0)));
         }
-        for &object in &self.loose {
+        for &object in &self.outside_accel {
             let found = self.objects()[object as usize].closest(object, ray, false, counter);
             offer(&mut best, ray, object, found);
         }
@@ -288,7 +292,7 @@ impl World {
             return false;
         }
         if self.packs.occluded(outer, counter)
-            || self.loose.iter().any(|&i| self.objects()[i as usize].closest(i, ray, true, counter).is_some())
+            || self.outside_accel.iter().any(|&i| self.objects()[i as usize].closest(i, ray, true, counter).is_some())
         {
             return true;
         }
@@ -336,14 +340,14 @@ impl World {
         self.around(point, self.bodies.iter().copied(), Phong::is_entered)
     }
 
-    /// Returns [`Object::extent`] of an object, which is cached.
-    pub(crate) fn extent(&self, object: u32) -> Option<f32> {
-        let find = || self.objects()[object as usize].extent();
-        self.extents.get(object as usize).map_or_else(find, |extent| *extent.get_or_init(find))
+    /// Returns [`Object::half_area`] of an object, which is cached.
+    pub(crate) fn half_area(&self, object: u32) -> Option<f32> {
+        let find = || self.objects()[object as usize].half_area();
+        self.half_areas.get(object as usize).map_or_else(find, |area| *area.get_or_init(find))
     }
 
-    /// Returns an empty cache of [`Object::extent`].
-    fn forgotten_extents(&self) -> Vec<OnceLock<Option<f32>>> {
+    /// Returns an empty cache of [`Object::half_area`].
+    fn empty_half_areas(&self) -> Vec<OnceLock<Option<f32>>> {
         let enters = |material: &Material| matches!(material, Material::Phong(phong) if phong.is_entered());
         let wanted = if self.materials().iter().any(enters) { self.objects().len() } else { 0 };
         vec![OnceLock::new(); wanted]
@@ -408,15 +412,16 @@ impl World {
             Light::Point(emitter) => emitter.illuminate(point),
             emitter => emitter.illuminate(point),
         };
-        let mut seen = LightLiSample { to_light, distance, color };
+        let mut light_sample = LightLiSample { to_light, distance, color };
         if let Some(Some(profile)) = self.profiles().get(light) {
-            seen.color = profile.at(self.lights()[light].to_profile(-seen.to_light)) * seen.color;
+            light_sample.color =
+                profile.at(self.lights()[light].to_profile(-light_sample.to_light)) * light_sample.color;
         }
-        seen
+        light_sample
     }
 
     /// Returns the radiance of the background in a direction.
-    pub fn sky(&self, direction: Vec3) -> Color {
+    pub fn background_radiance(&self, direction: Vec3) -> Color {
         if let Some(environment) = self.environment() {
             return environment.at(direction);
         }
@@ -425,12 +430,12 @@ impl World {
 
     /// Returns the materials of a surface point with their shares.
     #[inline]
-    pub fn parts(&self, at: &SurfaceInteraction) -> MaterialMix<'_> {
+    pub fn materials_at(&self, at: &SurfaceInteraction) -> MaterialMix<'_> {
         let mut parts = MaterialMix::new();
         match &self.materials()[at.material as usize] {
             // Fast path: most materials are not mixtures.
             Material::Phong(phong) => parts.push(WeightedMaterial { phong, share: 1.0 }),
-            Material::Solid(..) => self.mix(at.material, at, 1.0, &mut parts),
+            Material::Mix(..) => self.mix(at.material, at, 1.0, &mut parts),
         }
         parts
     }
@@ -439,7 +444,7 @@ impl World {
     fn mix<'w>(&'w self, material: u32, at: &SurfaceInteraction, share: f32, parts: &mut MaterialMix<'w>) {
         match &self.materials()[material as usize] {
             Material::Phong(phong) => parts.push(WeightedMaterial { phong, share }),
-            Material::Solid(solid, to_pattern, picture) => {
+            Material::Mix(solid, to_pattern, picture) => {
                 let q = to_pattern.transform_point3(at.surface.position.as_dvec3()).as_vec3();
                 let pictured = picture.map_or(1.0, |picture| self.number_at(picture, at));
                 let weight = match solid {

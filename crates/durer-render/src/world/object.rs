@@ -153,7 +153,7 @@ impl Object {
     }
 
     /// Replaces the object's transform.
-    pub fn place_at(&mut self, place: DAffine3) {
+    pub fn set_transform(&mut self, place: DAffine3) {
         // First undo the move of the geometry to the origin.
         let centered = place * DAffine3::from_translation(self.center.as_dvec3());
         self.to_world = Affine::new(centered).filter(|affine| !affine.is_identity());
@@ -177,13 +177,13 @@ impl Object {
         rules: &ShadingRules,
     ) -> SurfacePoint {
         let mut surface = SurfacePoint::ZERO;
-        self.own_surface(ray, point, crossing, part, rules, &mut surface);
-        self.place(&mut surface, ray, crossing, rules);
+        self.local_surface(ray, point, crossing, part, rules, &mut surface);
+        self.transform_surface(&mut surface, ray, crossing, rules);
         surface
     }
 
     /// Computes the surface in object space or, for a solid, in world space.
-    pub(super) fn own_surface(
+    pub(super) fn local_surface(
         &self,
         ray: &Ray64,
         point: DVec3,
@@ -211,7 +211,13 @@ impl Object {
 
     /// Transforms a surface to world space in place, which avoids a slow copy.
     #[inline]
-    pub(super) fn place(&self, surface: &mut SurfacePoint, ray: &Ray64, crossing: &ShapeHit, rules: &ShadingRules) {
+    pub(super) fn transform_surface(
+        &self,
+        surface: &mut SurfacePoint,
+        ray: &Ray64,
+        crossing: &ShapeHit,
+        rules: &ShadingRules,
+    ) {
         if matches!(self.geometry, Geometry::Solid(_)) {
             return;
         }
@@ -298,7 +304,7 @@ impl Object {
 
     /// Returns the cost of intersecting the object, relative to a sphere, if it is a simple shape
     /// that can be packed with others. `None` for others and for transformed objects.
-    pub(crate) fn simple(&self) -> Option<usize> {
+    pub(crate) fn packing_cost(&self) -> Option<usize> {
         use Primitive::{Cuboid, Disc, Plane, Rectangle, Sphere};
         match &self.geometry {
             Geometry::Primitive(Plane(_) | Sphere(_)) if self.to_world.is_none() => Some(1),
@@ -307,10 +313,10 @@ impl Object {
         }
     }
 
-    /// Returns [`Object::simple`] for packs that are tested with a single ray. Excludes boxes: they
-    /// need six divisions each, so a tree is faster for them.
-    pub(crate) fn simple_for_one_ray(&self) -> Option<usize> {
-        self.simple().filter(|_| !matches!(&self.geometry, Geometry::Primitive(Primitive::Cuboid(_))))
+    /// Returns [`Object::packing_cost`] for packs that are tested with a single ray. Excludes
+    /// boxes: they need six divisions each, so a tree is faster for them.
+    pub(crate) fn single_ray_packing_cost(&self) -> Option<usize> {
+        self.packing_cost().filter(|_| !matches!(&self.geometry, Geometry::Primitive(Primitive::Cuboid(_))))
     }
 
     /// Returns the hit on a packed shape, given its distance.
@@ -358,7 +364,7 @@ impl Object {
 
     /// Returns half the surface area of the object's bounds; infinite for unbounded objects, `None`
     /// for open ones.
-    pub fn extent(&self) -> Option<f32> {
+    pub fn half_area(&self) -> Option<f32> {
         self.is_closed().then(|| self.bounds().map_or(f32::INFINITY, |bounds| bounds.half_area()))
     }
 
@@ -389,7 +395,7 @@ impl Object {
     /// Returns the bounds in world space, or `None` for an unbounded object.
     pub fn bounds(&self) -> Option<Aabb> {
         let local = self.local_bounds()?;
-        Some(if let Geometry::Solid(_) = self.geometry { local } else { self.moved(local) })
+        Some(if let Geometry::Solid(_) = self.geometry { local } else { self.world_bounds(local) })
     }
 
     /// Returns the bounds in object space or, for a solid, in world space.
@@ -418,7 +424,7 @@ impl Object {
 
     /// Returns a bound on the distance between the true surface and hits on it, due to rounding of
     /// coordinates.
-    pub(super) fn rounding(&self) -> f32 {
+    pub(super) fn rounding_error(&self) -> f32 {
         let reach = self.local_bounds().map_or(Vec3::ZERO, |b| b.min.abs().max(b.max.abs()));
         let error = match &self.to_world {
             Some(to_world) => 8.0 * to_world.point_error(reach, Vec3::ZERO),
@@ -437,7 +443,7 @@ impl Object {
     }
 
     /// Transforms bounds to world space.
-    fn moved(&self, bounds: Aabb) -> Aabb {
+    fn world_bounds(&self, bounds: Aabb) -> Aabb {
         match &self.to_world {
             Some(to_world) if !bounds.is_empty() => to_world.bounds(bounds),
             _ => bounds,

@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Epsilon {
     /// Only hits beyond this `t` count.
-    Least(f32),
+    MinT(f32),
     /// The origin is moved along the direction by this multiple of it.
-    Along(f32),
+    OffsetOrigin(f32),
 }
 
 /// Rules for intersection and for shading in the Whitted integrator, which the dialect determines.

@@ -49,7 +49,7 @@ impl Shading<'_> {
 /// In the plane of the geometric normal and `n`, let the view direction be (x, z) and the bent
 /// normal at angle a from the geometric one. The mirror direction then has the height x sin 2a + z
 /// cos 2a above the surface, which should be at least `least`.
-fn bent(n: Vec3, n_geo: Vec3, wo: Vec3) -> Vec3 {
+fn bend_normal(n: Vec3, n_geo: Vec3, wo: Vec3) -> Vec3 {
     let (cosine, z) = (n.dot(n_geo), wo.dot(n_geo).max(1e-6));
     let least = (0.9 * z).min(0.01);
     if 2.0 * n.dot(wo) * cosine - z >= least && cosine > 0.0 {
@@ -86,17 +86,17 @@ impl World {
     /// refraction behind the surface divided by that in front of it.
     pub fn shading(&self, at: &SurfaceInteraction, eta: f32, lanes: &Lanes) -> Shading<'_> {
         let (dir, surface, inside) = (at.ray.dir(), &at.surface, at.inside());
-        let parts = self.parts(at);
+        let parts = self.materials_at(at);
         // In a mixture, the first material with a normal or bump map determines the normal for all.
         let mut mapped = parts.iter().filter_map(|part| part.phong.principled.as_ref());
-        let mapped = mapped.find(|own| own.maps.normal.is_some() || own.maps.bump.is_some());
-        let n_shade = mapped.and_then(|own| self.mapped_normal(&own.maps, at)).unwrap_or(surface.n_shade);
+        let mapped = mapped.find(|principled| principled.maps.normal.is_some() || principled.maps.bump.is_some());
+        let n_shade = mapped.and_then(|principled| self.mapped_normal(&principled.maps, at)).unwrap_or(surface.n_shade);
         let [n, n_geo] = [n_shade, surface.n_geo].map(|n| if inside { -n } else { n });
         let wo = -dir.normalize_or(-n_geo);
         let n = n.normalize_or(n_geo);
-        let keeps = mapped.is_some_and(|own| own.written.normal_bending == Switch::Off);
+        let keeps = mapped.is_some_and(|principled| principled.definition.normal_bending == Switch::Off);
         let is_turned_away = keeps && n.dot(wo) <= 0.0;
-        let bent = if keeps && !is_turned_away { n } else { bent(n, n_geo, wo) };
+        let bent = if keeps && !is_turned_away { n } else { bend_normal(n, n_geo, wo) };
         let frame = self.frame(&parts, at, bent);
         let normal = if bent == n { Vec3::Z } else { frame.to_local(n) };
         let wo = frame.to_local(wo);
@@ -113,10 +113,10 @@ impl World {
                 continue;
             }
             match &part.phong.principled {
-                Some(own) if inside && own.written.backs == Backs::Black => {}
-                Some(own) => {
-                    let here = self.parameters_at(own, at);
-                    layers::push_lobes(bsdf, part.share, &here, &own.tables, view);
+                Some(principled) if inside && principled.definition.backs == Backs::Black => {}
+                Some(principled) => {
+                    let here = self.parameters_at(principled, at);
+                    layers::push_lobes(bsdf, part.share, &here, &principled.tables, view);
                 }
                 None => phong_lobes(bsdf, part, self.diffuse_color(part.phong, surface), view),
             }
@@ -131,9 +131,9 @@ impl World {
         if parts.iter().any(|part| part.phong.fibre.is_some()) {
             return Frame::along(n, self.tangent(at));
         }
-        let own = parts.iter().filter_map(|part| part.phong.principled.as_deref());
-        let long = own.filter(|own| own.parameters.specular_anisotropy > 0.0);
-        let mut long = long.map(|own| self.parameters_at(own, at));
+        let principled = parts.iter().filter_map(|part| part.phong.principled.as_deref());
+        let long = principled.filter(|principled| principled.parameters.specular_anisotropy > 0.0);
+        let mut long = long.map(|principled| self.parameters_at(principled, at));
         let Some(long) = long.find(|here| here.specular_anisotropy > 0.0) else { return Frame::around(n) };
         let frame = Frame::along(n, self.tangent(at));
         let (sin, cos) = fp::sin_cos_degrees(360.0 * f64::from(long.specular_rotation));
@@ -145,41 +145,43 @@ impl World {
     pub(super) fn emission_of(&self, material: u32) -> Option<Emission> {
         let Material::Phong(phong) = self.materials().get(material as usize)? else { return None };
         let emission = phong.emission.as_ref().filter(|emission| !emission.textured)?;
-        let Some(own) = &phong.principled else { return Some(*emission) };
-        let radiance = own.written.opacity * emission.radiance;
-        let chosen = radiance.max_element() > 0.0 && !self.has_holes(own) && own.written.opacity_cutoff.is_none();
+        let Some(principled) = &phong.principled else { return Some(*emission) };
+        let radiance = principled.definition.opacity * emission.radiance;
+        let chosen = radiance.max_element() > 0.0
+            && !self.has_holes(principled)
+            && principled.definition.opacity_cutoff.is_none();
         chosen.then_some(Emission { radiance, ..*emission })
     }
 
     /// Returns the radiance that a surface emits towards the ray's origin.
     pub fn emission(&self, at: &SurfaceInteraction) -> Color {
         let inside = at.inside();
-        let own = |phong: &Phong| {
+        let of_phong = |phong: &Phong| {
             let emission = phong.emission.as_ref().filter(|emission| emission.two_sided || !inside)?;
-            let own = phong.principled.as_ref().filter(|_| emission.textured);
-            Some(emission.radiance * own.map_or(Color::ONE, |own| self.emission_at(own, at)))
+            let principled = phong.principled.as_ref().filter(|_| emission.textured);
+            Some(emission.radiance * principled.map_or(Color::ONE, |principled| self.emission_at(principled, at)))
         };
         if !self.has_emission(at) {
             return Color::ZERO;
         }
-        let parts = self.parts(at);
-        parts.iter().filter_map(|part| own(part.phong).map(|light| part.share * light)).sum()
+        let parts = self.materials_at(at);
+        parts.iter().filter_map(|part| of_phong(part.phong).map(|light| part.share * light)).sum()
     }
 
     /// Returns the measured emission spectrum of a light or emissive surface, if it has one.
     pub fn illuminant(&self, light: LightId) -> Option<&Curve> {
         match light {
             LightId::Light(number) => self.illuminants().get(number as usize)?.as_deref(),
-            LightId::Surface(object, _) => self.own_illuminant(self.objects()[object as usize].material),
+            LightId::Surface(object, _) => self.material_illuminant(self.objects()[object as usize].material),
             LightId::Environment => None,
         }
     }
 
     /// Returns the measured emission spectrum of a material, if it has one.
-    pub fn own_illuminant(&self, material: u32) -> Option<&Curve> {
+    pub fn material_illuminant(&self, material: u32) -> Option<&Curve> {
         match &self.materials()[material as usize] {
             Material::Phong(phong) => phong.principled.as_ref()?.illuminant.as_deref(),
-            Material::Solid(..) => None,
+            Material::Mix(..) => None,
         }
     }
 
@@ -198,22 +200,23 @@ impl World {
     fn has_emission(&self, at: &SurfaceInteraction) -> bool {
         match &self.materials()[at.material as usize] {
             Material::Phong(phong) => phong.emission.is_some(),
-            Material::Solid(..) => true,
+            Material::Mix(..) => true,
         }
     }
 
     /// Returns the index of refraction behind a surface that light can enter. In a mixture, it is
     /// that of the material with the largest share. `None` if light cannot enter.
-    pub fn refracts(&self, at: &SurfaceInteraction, lanes: &Lanes) -> Option<f32> {
+    pub fn refraction_index(&self, at: &SurfaceInteraction, lanes: &Lanes) -> Option<f32> {
         let of = |phong: &Phong| {
-            let ior = || phong.principled.as_ref().map_or(phong.ior, |own| own.written.ior_at(lanes.hero()));
+            let ior =
+                || phong.principled.as_ref().map_or(phong.ior, |principled| principled.definition.ior_at(lanes.hero()));
             phong.is_entered().then(ior)
         };
         if !self.may_enter(at) {
             return None;
         }
         let mut most = (0.0, None);
-        for part in self.parts(at) {
+        for part in self.materials_at(at) {
             let ior = of(part.phong);
             most = if ior.is_some() && part.share > most.0 { (part.share, ior) } else { most };
         }
@@ -223,28 +226,28 @@ impl World {
     /// Returns true if the glass that was hit uses its index of refraction relative to air,
     /// whatever medium surrounds it.
     pub fn ignores_surroundings(&self, at: &SurfaceInteraction) -> bool {
-        let own = |phong: &Phong| {
+        let of_phong = |phong: &Phong| {
             let principled = phong.principled.as_ref();
-            principled.is_some_and(|own| own.written.surroundings == Surroundings::Ignored)
+            principled.is_some_and(|principled| principled.definition.surroundings == Surroundings::Ignored)
         };
-        self.parts(at).iter().any(|part| own(part.phong))
+        self.materials_at(at).iter().any(|part| of_phong(part.phong))
     }
 
     /// Returns the opacity at a hit, from 0 to 1.
     pub fn opacity(&self, at: &SurfaceInteraction) -> f32 {
-        let own = |phong: &Phong| match (&phong.fibre, &phong.principled) {
+        let of_phong = |phong: &Phong| match (&phong.fibre, &phong.principled) {
             // The hair model computes all scattering inside the fibre at the entry point.
             (Some(_), _) => f32::from(u8::from(!at.inside())),
-            (None, Some(own)) => self.opacity_at(own, at),
+            (None, Some(principled)) => self.opacity_at(principled, at),
             (None, None) => 1.0,
         };
-        self.parts(at).iter().map(|part| part.share * own(part.phong)).sum()
+        self.materials_at(at).iter().map(|part| part.share * of_phong(part.phong)).sum()
     }
 
     /// Returns true if a hit is on a hidden back, which is invisible to cameras and to lights
     /// without extent. `dir` is the direction of view.
     pub fn is_hidden(&self, dir: Vec3, at: &SurfaceInteraction) -> bool {
-        dir.dot(at.surface.n_geo) > 0.0 && self.parts(at).iter().all(|part| hides_backs(part.phong))
+        dir.dot(at.surface.n_geo) > 0.0 && self.materials_at(at).iter().all(|part| hides_backs(part.phong))
     }
 
     /// Returns true if the backs of some material are hidden.
@@ -254,13 +257,14 @@ impl World {
 
     /// Returns true if some material or mesh has an opacity below 1.
     pub(crate) fn finds_cutouts(&self) -> bool {
-        let own =
-            |phong: &Phong| phong.fibre.is_some() || phong.principled.as_ref().is_some_and(|own| self.is_cutout(own));
+        let of_phong = |phong: &Phong| {
+            phong.fibre.is_some() || phong.principled.as_ref().is_some_and(|principled| self.is_cutout(principled))
+        };
         let clear = |object: &Object| match &object.geometry {
             Geometry::Mesh(tree) => tree.mesh.colors().iter().any(|color| color[3] < 1.0),
             _ => false,
         };
-        self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if own(phong)))
+        self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if of_phong(phong)))
             || self.objects().iter().any(clear)
     }
 
@@ -269,40 +273,40 @@ impl World {
         let Some(object) = object else { return self.fog() };
         match &self.materials()[self.objects()[object as usize].material as usize] {
             Material::Phong(phong) => phong.principled.as_ref()?.medium.as_ref(),
-            Material::Solid(..) => None,
+            Material::Mix(..) => None,
         }
     }
 
     /// Returns true if light reaches a medium without refraction, so that its points can be lit
     /// directly. This holds for the air and for objects that only bound a medium.
-    pub fn is_open(&self, object: Option<u32>) -> bool {
-        object.is_none_or(|object| self.has_no_skin(self.objects()[object as usize].material))
+    pub fn is_directly_lit(&self, object: Option<u32>) -> bool {
+        object.is_none_or(|object| self.is_interface_material(self.objects()[object as usize].material))
     }
 
     /// Returns true if a surface has no effect when the indices of refraction on both sides are
     /// equal.
     pub fn is_interface(&self, at: &SurfaceInteraction) -> bool {
-        self.has_interfaces() && self.has_no_skin(at.material)
+        self.has_interfaces() && self.is_interface_material(at.material)
     }
 
     /// Returns true if a material only bounds a medium.
-    fn has_no_skin(&self, material: u32) -> bool {
+    fn is_interface_material(&self, material: u32) -> bool {
         matches!(&self.materials()[material as usize],
-            Material::Phong(phong) if phong.principled.as_ref().is_some_and(|own| own.interface))
+            Material::Phong(phong) if phong.principled.as_ref().is_some_and(|principled| principled.interface))
     }
 
     /// Returns true if some material only bounds a medium.
     pub(crate) fn finds_interfaces(&self) -> bool {
-        (0..self.materials().len() as u32).any(|material| self.has_no_skin(material))
+        (0..self.materials().len() as u32).any(|material| self.is_interface_material(material))
     }
 
     /// Returns the objects that paths can enter. Empty if no interior absorbs or scatters.
     pub(crate) fn finds_bodies(&self) -> Vec<u32> {
         let of = |number: u32| match &self.materials()[number as usize] {
             Material::Phong(phong) => Some(phong),
-            Material::Solid(..) => None,
+            Material::Mix(..) => None,
         };
-        let is_filled = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| own.medium.is_some());
+        let is_filled = |phong: &Phong| phong.principled.as_ref().is_some_and(|principled| principled.medium.is_some());
         if !(0..self.materials().len() as u32).filter_map(of).any(is_filled) {
             return Vec::new();
         }
@@ -313,8 +317,9 @@ impl World {
     /// Returns true if some material is a thin sheet that transmits light straight through.
     pub(crate) fn finds_sheets(&self) -> bool {
         let is_sheet = |m: &PrincipledMaterial| m.walls == Walls::Thin && m.transmission_weight > 0.0;
-        let own = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| is_sheet(&own.written));
-        self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if own(phong)))
+        let of_phong =
+            |phong: &Phong| phong.principled.as_ref().is_some_and(|principled| is_sheet(&principled.definition));
+        self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if of_phong(phong)))
     }
 
     /// Returns true if light may enter an object at a hit. This is a fast test that excludes most
@@ -324,16 +329,16 @@ impl World {
         match &self.materials()[at.material as usize] {
             Material::Phong(phong) => {
                 phong.transparent != Color::ZERO
-                    || phong.principled.as_ref().is_some_and(|own| own.written.has_subsurface())
+                    || phong.principled.as_ref().is_some_and(|principled| principled.definition.has_subsurface())
             }
-            Material::Solid(..) => true,
+            Material::Mix(..) => true,
         }
     }
 
     /// Returns true if the surface that was hit disperses light.
     pub fn disperses(&self, at: &SurfaceInteraction) -> bool {
-        let of = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| own.written.disperses());
-        self.may_enter(at) && self.parts(at).iter().any(|part| of(part.phong))
+        let of = |phong: &Phong| phong.principled.as_ref().is_some_and(|principled| principled.definition.disperses());
+        self.may_enter(at) && self.materials_at(at).iter().any(|part| of(part.phong))
     }
 }
 
@@ -369,7 +374,7 @@ fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, view: Vie
 
 /// Returns true if the backs of a material are invisible to cameras.
 fn hides_backs(phong: &Phong) -> bool {
-    phong.principled.as_ref().is_some_and(|own| own.written.backs == Backs::Hidden)
+    phong.principled.as_ref().is_some_and(|principled| principled.definition.backs == Backs::Hidden)
 }
 
 #[cfg(test)]

@@ -13,26 +13,26 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoolOp {
     /// At least one part.
-    Any,
+    Union,
     /// All parts, and none of the subtracted ones.
-    All,
+    Intersection,
     /// An odd number of parts.
-    Odd,
+    Xor,
 }
 
 /// CSG solid before it is prepared for rendering: a closed shape, or a boolean operation on solids.
 #[derive(Clone, Debug)]
-pub enum Solid {
+pub enum CsgTree {
     /// A closed shape or mesh, with its transform to world space.
     Operand(Arc<Object>),
     /// A boolean operation.
-    Join {
+    Operation {
         /// Which points belong to the result.
-        rule: BoolOp,
+        op: BoolOp,
         /// Operands, in the order of the file.
-        parts: Vec<Solid>,
-        /// Subtracted operands; only for [`BoolOp::All`].
-        cut: Vec<Solid>,
+        parts: Vec<CsgTree>,
+        /// Subtracted operands; only for [`BoolOp::Intersection`].
+        subtracted: Vec<CsgTree>,
     },
 }
 
@@ -43,62 +43,68 @@ const MAX_PAIRS: usize = 1 << 22;
 const MAX_COPIES: usize = 1 << 18;
 
 /// Solid with its bounds, which are `None` if it is unbounded.
-type Piece = (Solid, Option<Aabb>);
+type Piece = (CsgTree, Option<Aabb>);
 
-impl Solid {
+impl CsgTree {
     /// Returns the union of solids, which is empty if there are none.
-    pub fn any(parts: Vec<Solid>) -> Solid {
-        Solid::join(BoolOp::Any, parts)
+    pub fn union(parts: Vec<CsgTree>) -> CsgTree {
+        CsgTree::join(BoolOp::Union, parts)
     }
 
     /// Returns the solid of all points that are in an odd number of solids.
-    pub fn odd(parts: Vec<Solid>) -> Solid {
-        Solid::join(BoolOp::Odd, parts)
+    pub fn xor(parts: Vec<CsgTree>) -> CsgTree {
+        CsgTree::join(BoolOp::Xor, parts)
     }
 
     /// Returns the intersection of `parts` minus all solids in `cut`. Flattens nested intersections
     /// and subtractions.
-    pub fn all(parts: Vec<Solid>, cut: Vec<Solid>) -> Solid {
+    pub fn intersection(parts: Vec<CsgTree>, cut: Vec<CsgTree>) -> CsgTree {
         let (mut flat, mut flat_cut) = (Vec::new(), Vec::new());
         for part in parts {
             match part {
-                Solid::Join { rule: BoolOp::All, parts, cut } => {
+                CsgTree::Operation { op: BoolOp::Intersection, parts, subtracted } => {
                     flat.extend(parts);
-                    flat_cut.extend(cut);
+                    flat_cut.extend(subtracted);
                 }
                 other => flat.push(other),
             }
         }
         for part in cut {
             match part {
-                Solid::Join { rule: BoolOp::Any, parts, .. } => flat_cut.extend(parts),
+                CsgTree::Operation { op: BoolOp::Union, parts, .. } => flat_cut.extend(parts),
                 other => flat_cut.push(other),
             }
         }
         match (flat.len(), flat_cut.len()) {
             (1, 0) => flat.remove(0),
-            _ => Solid::Join { rule: BoolOp::All, parts: flat, cut: flat_cut },
+            _ => CsgTree::Operation { op: BoolOp::Intersection, parts: flat, subtracted: flat_cut },
         }
     }
 
     /// Creates an operation and flattens operands with the same operation.
-    fn join(rule: BoolOp, parts: Vec<Solid>) -> Solid {
+    fn join(rule: BoolOp, parts: Vec<CsgTree>) -> CsgTree {
         let mut flat = Vec::with_capacity(parts.len());
         for part in parts {
             match part {
-                Solid::Join { rule: inner, parts, .. } if inner == rule => flat.extend(parts),
+                CsgTree::Operation { op: inner, parts, .. } if inner == rule => flat.extend(parts),
                 other => flat.push(other),
             }
         }
-        if flat.len() == 1 { flat.remove(0) } else { Solid::Join { rule, parts: flat, cut: Vec::new() } }
+        if flat.len() == 1 {
+            flat.remove(0)
+        } else {
+            CsgTree::Operation { op: rule, parts: flat, subtracted: Vec::new() }
+        }
     }
 
     /// Returns the bounds, as tight as the operation allows. `None` if the solid is unbounded.
     pub fn bounds(&self) -> Option<Aabb> {
         match self {
-            Solid::Operand(object) => object.bounds(),
-            Solid::Join { rule: BoolOp::All, parts, .. } => parts.iter().map(Solid::bounds).fold(None, common),
-            Solid::Join { parts, .. } => {
+            CsgTree::Operand(object) => object.bounds(),
+            CsgTree::Operation { op: BoolOp::Intersection, parts, .. } => {
+                parts.iter().map(CsgTree::bounds).fold(None, common)
+            }
+            CsgTree::Operation { parts, .. } => {
                 parts.iter().try_fold(Aabb::EMPTY, |all, part| Some(all.union(part.bounds()?)))
             }
         }
@@ -107,23 +113,25 @@ impl Solid {
     /// Returns all shapes and meshes that the solid consists of.
     pub fn parts(&self) -> Vec<&Object> {
         match self {
-            Solid::Operand(object) => vec![object],
-            Solid::Join { parts, cut, .. } => parts.iter().chain(cut).flat_map(Solid::parts).collect(),
+            CsgTree::Operand(object) => vec![object],
+            CsgTree::Operation { parts, subtracted, .. } => {
+                parts.iter().chain(subtracted).flat_map(CsgTree::parts).collect()
+            }
         }
     }
 
     /// Divides the solid into disjoint pieces, ordered by their first parts. An empty solid has no
     /// pieces.
-    pub fn pieces(self) -> Vec<Solid> {
+    pub fn pieces(self) -> Vec<CsgTree> {
         self.boxed_pieces().into_iter().map(|piece| piece.0).collect()
     }
 
     /// Divides the solid into disjoint pieces with their bounds.
     fn boxed_pieces(self) -> Vec<Piece> {
         match self {
-            Solid::Operand(_) => vec![boxed(self)],
-            Solid::Join { rule: BoolOp::All, parts, cut } => intersected(parts, cut),
-            Solid::Join { rule, parts, .. } => {
+            CsgTree::Operand(_) => vec![boxed(self)],
+            CsgTree::Operation { op: BoolOp::Intersection, parts, subtracted } => intersected(parts, subtracted),
+            CsgTree::Operation { op, parts, .. } => {
                 // Keep the index of the part with each of its pieces.
                 let pieces: Vec<(usize, Piece)> = parts
                     .into_iter()
@@ -131,45 +139,45 @@ impl Solid {
                     .flat_map(|(i, part)| part.boxed_pieces().into_iter().map(move |piece| (i, piece)))
                     .collect();
                 let boxes: Vec<Option<Aabb>> = pieces.iter().map(|(_, piece)| piece.1).collect();
-                let mut clusters: Vec<Vec<(usize, Solid)>> = Vec::new();
+                let mut clusters: Vec<Vec<(usize, CsgTree)>> = Vec::new();
                 for ((part, (solid, _)), cluster) in pieces.into_iter().zip(clusters_of(&boxes)) {
                     clusters.resize_with(clusters.len().max(cluster + 1), Vec::new);
                     clusters[cluster].push((part, solid));
                 }
-                clusters.into_iter().map(|cluster| boxed(rejoined(rule, cluster))).collect()
+                clusters.into_iter().map(|cluster| boxed(rejoined(op, cluster))).collect()
             }
         }
     }
 }
 
 /// Computes the bounds of a solid.
-fn boxed(solid: Solid) -> Piece {
+fn boxed(solid: CsgTree) -> Piece {
     let bounds = solid.bounds();
     (solid, bounds)
 }
 
 /// Combines pieces of several parts into one solid. Pieces of the same part are disjoint.
-fn rejoined(rule: BoolOp, cluster: Vec<(usize, Solid)>) -> Solid {
-    let mut parts: Vec<(usize, Vec<Solid>)> = Vec::new();
+fn rejoined(op: BoolOp, cluster: Vec<(usize, CsgTree)>) -> CsgTree {
+    let mut parts: Vec<(usize, Vec<CsgTree>)> = Vec::new();
     for (part, solid) in cluster {
         match parts.last_mut().filter(|last| last.0 == part) {
             Some(last) => last.1.push(solid),
             None => parts.push((part, vec![solid])),
         }
     }
-    Solid::join(rule, parts.into_iter().map(|(_, pieces)| Solid::any(pieces)).collect())
+    CsgTree::join(op, parts.into_iter().map(|(_, pieces)| CsgTree::union(pieces)).collect())
 }
 
 /// Intersects each piece of the first part with the pieces of the other parts that it touches, and
 /// subtracts the pieces of `cut`.
-fn intersected(parts: Vec<Solid>, cut: Vec<Solid>) -> Vec<Piece> {
+fn intersected(parts: Vec<CsgTree>, subtracted: Vec<CsgTree>) -> Vec<Piece> {
     let mut parts = parts.into_iter();
-    let first = parts.next().map_or(Vec::new(), Solid::boxed_pieces);
+    let first = parts.next().map_or(Vec::new(), CsgTree::boxed_pieces);
     // Build the operations at the end, because adding part by part would take quadratic time.
-    let mut found: Vec<(Vec<Solid>, Option<Aabb>)> =
+    let mut found: Vec<(Vec<CsgTree>, Option<Aabb>)> =
         first.into_iter().map(|(solid, bounds)| (vec![solid], bounds)).collect();
-    let whole = |pieces: Vec<Piece>| Solid::any(pieces.into_iter().map(|piece| piece.0).collect());
-    let joined = |(all, bounds): (Vec<Solid>, Option<Aabb>)| (Solid::all(all, Vec::new()), bounds);
+    let whole = |pieces: Vec<Piece>| CsgTree::union(pieces.into_iter().map(|piece| piece.0).collect());
+    let joined = |(all, bounds): (Vec<CsgTree>, Option<Aabb>)| (CsgTree::intersection(all, Vec::new()), bounds);
     for part in parts {
         let others = part.boxed_pieces();
         let boxes: Vec<Option<Aabb>> = found.iter().map(|(_, bounds)| *bounds).collect();
@@ -178,8 +186,8 @@ fn intersected(parts: Vec<Solid>, cut: Vec<Solid>) -> Vec<Piece> {
             found = vec![(vec![one.0, other.0], common(one.1, other.1))];
             continue;
         };
-        let meet = |((mut all, bounds), near): ((Vec<Solid>, Option<Aabb>), Vec<usize>)| {
-            let (solid, others) = boxed(Solid::any(copies(&others, &near)));
+        let meet = |((mut all, bounds), near): ((Vec<CsgTree>, Option<Aabb>), Vec<usize>)| {
+            let (solid, others) = boxed(CsgTree::union(copies(&others, &near)));
             all.push(solid);
             (!near.is_empty()).then(|| (all, common(bounds, others)))
         };
@@ -188,16 +196,18 @@ fn intersected(parts: Vec<Solid>, cut: Vec<Solid>) -> Vec<Piece> {
     let mut found: Vec<Piece> = found.into_iter().map(joined).collect();
     found.retain(|(_, bounds)| bounds.is_none_or(|b| !b.is_empty()));
     let boxes: Vec<Option<Aabb>> = found.iter().map(|piece| piece.1).collect();
-    let cut: Vec<Piece> = cut.into_iter().flat_map(Solid::boxed_pieces).collect();
+    let cut: Vec<Piece> = subtracted.into_iter().flat_map(CsgTree::boxed_pieces).collect();
     let Some(near) = touching(&boxes, &cut) else {
-        return vec![boxed(Solid::all(vec![whole(found)], vec![whole(cut)]))];
+        return vec![boxed(CsgTree::intersection(vec![whole(found)], vec![whole(cut)]))];
     };
-    let cut_off = |((solid, bounds), near): (Piece, Vec<usize>)| (Solid::all(vec![solid], copies(&cut, &near)), bounds);
+    let cut_off = |((solid, bounds), near): (Piece, Vec<usize>)| {
+        (CsgTree::intersection(vec![solid], copies(&cut, &near)), bounds)
+    };
     found.into_iter().zip(near).map(cut_off).collect()
 }
 
 /// Returns copies of some pieces.
-fn copies(pieces: &[Piece], which: &[usize]) -> Vec<Solid> {
+fn copies(pieces: &[Piece], which: &[usize]) -> Vec<CsgTree> {
     which.iter().map(|&i| pieces[i].0.clone()).collect()
 }
 

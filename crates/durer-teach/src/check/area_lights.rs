@@ -65,7 +65,7 @@ fn is_clear(scout: &SceneProbe, object: u32) -> bool {
     match scout.world().materials().get(scout.world().objects()[object as usize].material as usize) {
         Some(Material::Phong(phong)) => {
             phong.transparent.max_element() > 0.0
-                || phong.principled.as_ref().is_some_and(|own| own.interface || own.written.opacity < 1.0)
+                || phong.principled.as_ref().is_some_and(|own| own.interface || own.definition.opacity < 1.0)
         }
         _ => false,
     }

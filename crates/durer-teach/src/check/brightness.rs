@@ -15,7 +15,7 @@ const SAMPLES: u32 = 16;
 /// probes.
 pub(super) fn light(grid: &ProbeGrid) -> (Vec<usize>, Vec<Color>) {
     let exposure = grid.subject.exposure;
-    let Some(transport) = grid.subject.job.method.transport() else {
+    let Some(transport) = grid.subject.job.method.path_options() else {
         return grid.probes.iter().enumerate().map(|(i, probe)| (i, exposure * probe.color)).unzip();
     };
     let job = grid.subject.job;

@@ -24,7 +24,7 @@ fn phongs<'s>(scout: &'s SceneProbe) -> impl Iterator<Item = (u32, &'s Spanned<W
     let both = scout.subject.scene.materials.iter().zip(compiled).enumerate();
     both.filter_map(|(i, (written, compiled))| match compiled {
         Material::Phong(phong) => Some((i as u32, written, phong)),
-        Material::Solid(..) => None,
+        Material::Mix(..) => None,
     })
 }
 
@@ -80,7 +80,7 @@ pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
     let old = scout.world().rules().is_bit_compatible();
     let counts = |color: Color| if old { color.length() } else { color.max_element() };
     // A colour below the minimum throughput is never traced, not even at the first bounce.
-    let cut = |phong: &Phong| counts(phong.reflective).max(counts(phong.transparent)) < settings.least_weight;
+    let cut = |phong: &Phong| counts(phong.reflective).max(counts(phong.transparent)) < settings.min_weight;
     let none = settings.bounces == 0;
     let bounces = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
     // If highlights and mirrors share one colour, it is meant as a mirror only if the material
@@ -103,7 +103,7 @@ pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
             format!(
                 "material {i} {what}, but its rays have a throughput of {}, and rays below {} are not traced",
                 super::finding::number(counts(phong.reflective).max(counts(phong.transparent))),
-                super::finding::number(settings.least_weight)
+                super::finding::number(settings.min_weight)
             ),
             "lower this limit: `--min-throughput 0.01` (in the course's programs `-weight 0.01`)".to_string(),
         ),
@@ -526,7 +526,7 @@ pub(super) fn unused(scout: &SceneProbe) -> Vec<Finding> {
     }
     // A mix refers only to earlier materials, so iterate backwards.
     for i in (0..world.materials().len()).rev() {
-        if let (Material::Solid(solid, ..), true) = (&world.materials()[i], used[i]) {
+        if let (Material::Mix(solid, ..), true) = (&world.materials()[i], used[i]) {
             solid.materials().into_iter().for_each(|part| used[part as usize] = true);
         }
     }

@@ -74,7 +74,7 @@ pub(super) fn mostly_black(scout: &SceneProbe) -> Vec<Finding> {
         };
         !dark
             && !world.may_emit(seen.material)
-            && !matches!(world.materials()[seen.material as usize], Material::Solid(..))
+            && !matches!(world.materials()[seen.material as usize], Material::Mix(..))
     };
     let own = scout
         .lit_probes()
@@ -112,7 +112,7 @@ pub(super) fn nothing_mirrored(scout: &SceneProbe) -> Vec<Finding> {
                 && phong.texture.is_none()
                 && phong.noise.is_none()
         }
-        Material::Solid(..) => false,
+        Material::Mix(..) => false,
     };
     let black = |probe: &Probe| probe.color.max_element() < BLACK;
     let mut seen = scout.seen().peekable();

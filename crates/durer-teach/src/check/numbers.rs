@@ -48,7 +48,7 @@ pub(super) fn not_finite(scout: &SceneProbe) -> Vec<Finding> {
 /// Follows the trace tree from a term down to the first term that is not finite.
 fn path(scout: &SceneProbe, node: &TraceNode, steps: &mut Vec<String>, place: &mut Option<Span>) {
     let names = scout.names();
-    match &node.what {
+    match &node.kind {
         TermKind::Ray { hit: Some(hit), .. } => {
             steps.push(format!("a ray that hits {}", names.object(hit.object)));
             *place = Some(scout.object_span(hit.object));

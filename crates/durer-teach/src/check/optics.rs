@@ -62,7 +62,7 @@ pub(super) fn wide_scatter(scout: &SceneProbe) -> Vec<Finding> {
 
 /// Reports dispersive glass in a picture that is not rendered spectrally.
 pub(super) fn no_spectrum(scout: &SceneProbe) -> Vec<Finding> {
-    let transport = scout.subject.job.method.transport();
+    let transport = scout.subject.job.method.path_options();
     if transport.is_none_or(|transport| transport.color == ColorMode::Spectral) {
         return Vec::new();
     }

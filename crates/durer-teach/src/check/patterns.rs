@@ -28,7 +28,7 @@ enum PatternSampler<'w> {
 impl PatternSampler<'_> {
     fn of(world: &World, material: u32) -> Option<PatternSampler<'_>> {
         match world.materials().get(material as usize)? {
-            Material::Solid(solid, to_pattern, _) => {
+            Material::Mix(solid, to_pattern, _) => {
                 Some(PatternSampler::Solid(solid, to_pattern, world.shading_rules().conic_rings))
             }
             Material::Phong(phong) => phong.noise.as_ref().map(PatternSampler::Noise),

@@ -44,14 +44,14 @@ pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
         && (world.background() == Color::ZERO || world.is_dark());
     let radiance = |material: &Compiled| match material {
         Compiled::Phong(phong) => phong.emission.as_ref().map(|emission| emission.radiance),
-        Compiled::Solid(..) => None,
+        Compiled::Mix(..) => None,
     };
     let of = |material: u32| world.materials().get(material as usize).and_then(radiance).unwrap_or_default();
     let emits = world.objects().iter().any(|object| of(object.material) != Color::ZERO)
         || world
             .objects()
             .iter()
-            .any(|object| matches!(world.materials().get(object.material as usize), Some(Compiled::Solid(..))))
+            .any(|object| matches!(world.materials().get(object.material as usize), Some(Compiled::Mix(..))))
             && world.materials().iter().any(|material| radiance(material).is_some());
     if !scout.is_physical() || !dark_sky || emits || world.lights().iter().any(|light| light.color() != Color::ZERO) {
         return Vec::new();

@@ -3,8 +3,8 @@
 use durer_diag::{Diagnostic, Files, Span};
 use durer_formats::course::place;
 use durer_render::integrator::trace::TermKind;
-use durer_render::integrator::{IntegratorKind, Tree, WhittedOptions};
-use durer_render::render::explain::{Names, explain_ray};
+use durer_render::integrator::{IntegratorKind, RenderSettings, Tree};
+use durer_render::render::explain::{SceneNames, explain_ray};
 use durer_render::render::{Job, center_ray, raster};
 use durer_render::world::{Material, World};
 use durer_scene::camera::Raster;
@@ -102,9 +102,9 @@ impl<'a> ProbeGrid<'a> {
             [width, height].map(|side| ((u64::from(side) * u64::from(rays)).div_ceil(larger.into()) as u32).max(1));
         let raster = raster(subject.world, columns, rows);
         let job = Job {
-            settings: WhittedOptions {
+            settings: RenderSettings {
                 bounces: settings.bounces.min(BOUNCES),
-                least_weight: settings.least_weight.max(MIN_WEIGHT),
+                min_weight: settings.min_weight.max(MIN_WEIGHT),
                 ..settings
             },
             // The checks use the terms of Whitted's method.
@@ -151,7 +151,7 @@ impl<'a> ProbeGrid<'a> {
                     continue;
                 }
                 all[part] += count;
-                if let Material::Solid(solid, ..) = &materials[part] {
+                if let Material::Mix(solid, ..) = &materials[part] {
                     parts.extend(solid.materials().map(|inner| inner as usize));
                 }
             }
@@ -161,7 +161,7 @@ impl<'a> ProbeGrid<'a> {
 
     /// Returns true if the job uses path tracing.
     pub(super) fn is_physical(&self) -> bool {
-        self.subject.job.method.transport().is_some()
+        self.subject.job.method.path_options().is_some()
     }
 
     /// Returns true if an object is transparent.
@@ -173,8 +173,8 @@ impl<'a> ProbeGrid<'a> {
     }
 
     /// Returns the naming of the scene's objects and materials in messages.
-    pub(super) fn names(&self) -> Names<'a> {
-        Names { files: self.subject.files, scene: self.subject.scene, world: self.subject.world }
+    pub(super) fn names(&self) -> SceneNames<'a> {
+        SceneNames { files: self.subject.files, scene: self.subject.scene, world: self.subject.world }
     }
 
     /// Names an object by its keyword and line. An object of a model is named by its own name and
@@ -182,7 +182,7 @@ impl<'a> ProbeGrid<'a> {
     pub(super) fn object(&self, number: u32) -> String {
         let span = self.object_span(number);
         let (line, column) = self.subject.files.position(span).unwrap_or_default();
-        match self.names().unworded(number) {
+        match self.names().name_without_keyword(number) {
             Some(name) => format!("{name} at {line}:{column}"),
             None => format!("`{}` of line {line}", self.text(span)),
         }
@@ -229,7 +229,7 @@ impl ProbeHit {
 impl Probe {
     fn of(pixel: (u32, u32), ray: Ray, tree: &Tree) -> Self {
         let mut probe = Probe { pixel, ray, color: tree.sum(), seen: None };
-        let TermKind::Ray { hit: Some(hit), .. } = &tree.root.what else { return probe };
+        let TermKind::Ray { hit: Some(hit), .. } = &tree.root.kind else { return probe };
         let mut seen = ProbeHit {
             object: hit.object,
             material: hit.material,
@@ -241,7 +241,7 @@ impl Probe {
             lit: Vec::new(),
         };
         for term in &tree.root.terms {
-            match &term.what {
+            match &term.kind {
                 TermKind::Ambient { .. } => seen.ambient += tree.color(term.contribution()),
                 // A mix of materials has one term per light for each part.
                 TermKind::Light { light, to_light, shadow, .. } => {
@@ -252,7 +252,11 @@ impl Probe {
                             light: *light,
                             cosine: hit.n.dot(*to_light),
                             arrives: tree.color(term.scale),
-                            blocker: shadow.as_ref().filter(|s| s.share.is(0.0)).and_then(|s| s.blocker).map(|b| b.0),
+                            blocker: shadow
+                                .as_ref()
+                                .filter(|s| s.share.equals(0.0))
+                                .and_then(|s| s.blocker)
+                                .map(|b| b.0),
                             adds,
                         }),
                     }

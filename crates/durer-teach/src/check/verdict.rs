@@ -100,7 +100,7 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
     // Clear glass shows what is behind it, not the light that reaches it.
     let clear = |seen: &ProbeHit| match &grid.world().materials()[seen.material as usize] {
         Material::Phong(phong) => phong.transparent.min_element() > 0.5 && phong.diffuse.max_element() < 0.1,
-        Material::Solid(..) => false,
+        Material::Mix(..) => false,
     };
     let lit = grid.seen().filter(|(_, seen)| !clear(seen));
     let all: Vec<&LightContribution> = lit.filter_map(|(_, seen)| seen.by(number)).collect();
@@ -141,7 +141,7 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
         let colored = |seen: &ProbeHit| match &grid.world().materials()[seen.material as usize] {
             // Mirrors and other surfaces without diffuse reflection do not absorb a light's colour.
             Material::Phong(phong) => phong.diffuse.max_element() >= 0.05,
-            Material::Solid(..) => true,
+            Material::Mix(..) => true,
         };
         let lit = grid.seen().filter(|(_, seen)| !clear(seen) && colored(seen));
         let lit = lit.filter_map(|(_, seen)| seen.by(number));

@@ -9,8 +9,8 @@ use durer_image::{Image, Layer};
 use durer_render::compile::{AccelKind, Resources, compile};
 use durer_render::film::aov::Aov;
 use durer_render::film::{Filter, luminance_of};
-use durer_render::integrator::{IntegratorKind, PathOptions, PhotonParameters, WhittedOptions};
-use durer_render::render::explain::Names;
+use durer_render::integrator::{IntegratorKind, PathOptions, PhotonParameters, RenderSettings};
+use durer_render::render::explain::SceneNames;
 use durer_render::render::{Control, Job, RenderError, Sampling, center_ray, raster, render};
 use durer_render::world::{Material, World};
 use durer_scene::camera::Raster;
@@ -172,14 +172,14 @@ impl Stage {
                 (phong.fresnel, phong.reflective) = (false, Color::ZERO);
             }
             if let (Some(own), Some(PathSettings { disperses: false, .. })) = (&mut phong.principled, look.paths) {
-                Arc::make_mut(own).written.transmission_dispersion_scale = 0.0;
+                Arc::make_mut(own).definition.transmission_dispersion_scale = 0.0;
             }
         }
     }
 
-    fn settings(&self, look: &ShotOptions) -> WhittedOptions {
+    fn settings(&self, look: &ShotOptions) -> RenderSettings {
         let all = self.job.settings;
-        WhittedOptions {
+        RenderSettings {
             bounces: look.bounces.min(all.bounces),
             shadows: look.shadows && all.shadows,
             refraction: all.refraction && look.glass != Glass::None,
@@ -190,7 +190,7 @@ impl Stage {
     /// Returns Whitted's method, or path tracing with the options of the job.
     fn method(&self, look: &ShotOptions) -> IntegratorKind {
         let Some(carriage) = look.paths else { return IntegratorKind::WHITTED };
-        let own = self.job.method.transport().unwrap_or_default();
+        let own = self.job.method.path_options().unwrap_or_default();
         let transport = PathOptions { direct: carriage.direct, color: carriage.color, ..own };
         match (carriage.photons, self.job.method) {
             (false, _) => IntegratorKind::Path(transport),
@@ -226,7 +226,7 @@ impl Stage {
 
     /// Returns true if the job uses path tracing.
     pub(super) fn has_paths(&self) -> bool {
-        self.job.method.transport().is_some()
+        self.job.method.path_options().is_some()
     }
 
     fn sampling(&self, look: &ShotOptions) -> Sampling {
@@ -241,8 +241,12 @@ impl Stage {
     /// a ray are black.
     fn directions(&self) -> Result<LessonPicture, RenderError> {
         let (raster, (width, height)) = (self.raster(), self.size());
-        let rays: Vec<Option<Vec3>> =
-            self.job.whole().places().map(|place| Some(center_ray(&self.world, &raster, place)?.dir)).collect();
+        let rays: Vec<Option<Vec3>> = self
+            .job
+            .whole()
+            .pixel_positions()
+            .map(|place| Some(center_ray(&self.world, &raster, place)?.dir))
+            .collect();
         let coverage = rays.iter().map(|dir| f32::from(u8::from(dir.is_some()))).collect();
         let pixels = rays.iter().map(|dir| dir.map_or(Vec3::ZERO, |dir| 0.5 * (dir + 1.0))).collect();
         let values = rays.iter().map(|dir| dir.unwrap_or(Vec3::ZERO)).collect();
@@ -255,7 +259,7 @@ impl Stage {
     fn distances(&self) -> Vec<f32> {
         let raster = self.raster();
         let ray = |place| center_ray(&self.world, &raster, place);
-        let hits = self.job.whole().places().filter_map(|place| self.world.intersect(&ray(place)?, &mut ()));
+        let hits = self.job.whole().pixel_positions().filter_map(|place| self.world.intersect(&ray(place)?, &mut ()));
         hits.map(|at| at.hit.t).filter(|t| t.is_finite()).collect()
     }
 
@@ -287,7 +291,7 @@ impl Stage {
             }
             Some("normals") => {
                 let seen: Vec<Vec3> = values.iter().copied().filter(|n| *n != Vec3::ZERO).collect();
-                let (raster, places) = (self.raster(), self.job.whole().places());
+                let (raster, places) = (self.raster(), self.job.whole().pixel_positions());
                 let away = |((x, y), n): ((u32, u32), &Vec3)| {
                     center_ray(&self.world, &raster, (x, y)).is_some_and(|ray| ray.dir.dot(*n) > 0.0)
                 };
@@ -316,7 +320,7 @@ impl Stage {
     /// Names the object at a pixel's centre by its keyword and its position in the scene file.
     pub(super) fn object_at(&self, pixel: (u32, u32)) -> String {
         let hit = center_ray(&self.world, &self.raster(), pixel).and_then(|ray| self.world.closest(&ray, &mut ()));
-        let names = Names { files: &self.files, scene: &self.scene, world: &self.world };
+        let names = SceneNames { files: &self.files, scene: &self.scene, world: &self.world };
         hit.map_or("the background".into(), |hit| {
             let name = names.object(hit.object);
             // Drop the directory of the file.

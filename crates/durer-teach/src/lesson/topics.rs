@@ -1,7 +1,7 @@
 //! The table of the lesson's topics: text, equations, pictures and references to the source code.
 //! Topics of path tracing come last.
 
-use durer_render::integrator::Direct;
+use durer_render::integrator::DirectSampling;
 use durer_scene::spectrum::ColorMode;
 
 /// Options of one picture of the lesson: which parts of the light it shows, and which mistake it
@@ -30,7 +30,7 @@ pub struct ShotOptions {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PathSettings {
     /// Sampling strategy for direct light.
-    pub direct: Direct,
+    pub direct: DirectSampling,
     /// True if caustics are rendered with photons.
     pub photons: bool,
     /// RGB or spectral light.
@@ -42,7 +42,7 @@ pub struct PathSettings {
 impl PathSettings {
     /// Path tracing in RGB, with both sampling strategies for direct light.
     pub const PLAIN: PathSettings =
-        PathSettings { direct: Direct::Both, photons: false, color: ColorMode::Rgb, disperses: true };
+        PathSettings { direct: DirectSampling::Both, photons: false, color: ColorMode::Rgb, disperses: true };
 }
 
 /// How a picture of the lesson renders glass.
@@ -144,7 +144,7 @@ const fn paths(bounces: u32, carriage: PathSettings) -> ShotOptions {
     ShotOptions { bounces, sampled: true, paths: Some(carriage), ..FRESNEL }
 }
 const BOTH: PathSettings = PathSettings::PLAIN;
-const fn straight(direct: Direct) -> ShotOptions {
+const fn straight(direct: DirectSampling) -> ShotOptions {
     paths(0, PathSettings { direct, ..BOTH })
 }
 const PHOTONS: PathSettings = PathSettings { photons: true, ..BOTH };
@@ -163,7 +163,7 @@ pub static TOPICS: [Topic; 18] = [
             at("crates/durer-bvh/src/math/ray.rs", "struct Ray"),
             at("crates/durer-scene/src/camera/perspective.rs", "fn ray"),
             at("crates/durer-scene/src/camera/pose.rs", "struct CameraBasis"),
-            at("crates/durer-render/src/render/eye.rs", "fn center_ray"),
+            at("crates/durer-render/src/render/camera_rays.rs", "fn center_ray"),
         ],
         shots: &[value("the rays' directions as colours", "rays")],
         lacking: "its camera has no rays",
@@ -216,7 +216,7 @@ pub static TOPICS: [Topic; 18] = [
         equations: &["L = k_d"],
         places: &[
             at("crates/durer-render/src/world/shading.rs", "fn diffuse_color"),
-            at("crates/durer-render/src/world/mod.rs", "fn sky"),
+            at("crates/durer-render/src/world/mod.rs", "fn background_radiance"),
             at("crates/durer-scene/src/texture/mod.rs", "fn at"),
         ],
         shots: &[color("the colour of each surface", FLAT)],
@@ -231,7 +231,7 @@ pub static TOPICS: [Topic; 18] = [
         equations: &["L = k_d I_a + Σ k_d max(0, N·L_i) I_i", "point light:   I_i = I / (a_0 + a_1 d + a_2 d²)"],
         places: &[
             at("crates/durer-render/src/integrator/whitted.rs", "fn shade"),
-            at("crates/durer-render/src/integrator/whitted/direct.rs", "struct Direct"),
+            at("crates/durer-render/src/integrator/whitted/direct.rs", "struct LightTerms"),
             at("crates/durer-scene/src/light/point.rs", "fn illuminate"),
             at("crates/durer-scene/src/light/directional.rs", "fn illuminate"),
         ],
@@ -248,7 +248,7 @@ pub static TOPICS: [Topic; 18] = [
             "Phong:   L += k_s max(0, R·L)^s I,   R = d - 2 (d·N) N",
         ],
         places: &[
-            at("crates/durer-render/src/integrator/whitted/direct.rs", "struct Direct"),
+            at("crates/durer-render/src/integrator/whitted/direct.rs", "struct LightTerms"),
             at("crates/durer-scene/src/math/mod.rs", "fn reflect"),
             at("crates/durer-render/src/compile/materials.rs", "fn highlight"),
         ],
@@ -385,8 +385,8 @@ pub static TOPICS: [Topic; 18] = [
             at("crates/durer-scene/src/light/area.rs", "fn sample"),
         ],
         shots: &[
-            color("rays to the center of each light", straight(Direct::Middle)),
-            color("rays to random points on it", straight(Direct::Lights)),
+            color("rays to the center of each light", straight(DirectSampling::Center)),
+            color("rays to random points on it", straight(DirectSampling::Lights)),
         ],
         lacking: "it has no emissive surface that casts shadows",
     },
@@ -430,9 +430,9 @@ pub static TOPICS: [Topic; 18] = [
             at("crates/durer-render/src/integrator/path/direct.rs", "fn of_direction"),
         ],
         shots: &[
-            color("light sampling only", straight(Direct::Lights)),
-            color("BSDF sampling only", straight(Direct::Bsdf)),
-            color("both, weighted", straight(Direct::Both)),
+            color("light sampling only", straight(DirectSampling::Lights)),
+            color("BSDF sampling only", straight(DirectSampling::Bsdf)),
+            color("both, weighted", straight(DirectSampling::Both)),
         ],
         lacking: "it has no light with an extent",
     },

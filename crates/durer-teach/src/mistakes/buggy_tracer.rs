@@ -10,11 +10,11 @@ use super::bugs::{
     Normals, PointLightDirection, Reach, ShadowDirection,
 };
 use super::variant::{TaughtShapes, taught_shapes};
-use durer_render::integrator::media::Media;
-use durer_render::integrator::media::Passage;
+use durer_render::integrator::media::MediumStack;
+use durer_render::integrator::media::MediumTransition;
 use durer_render::integrator::spawn::{spawn_ray, to_light};
-use durer_render::integrator::whitted::secondary::{Blend, fresnel_share};
-use durer_render::integrator::{Whitted, WhittedOptions, refract};
+use durer_render::integrator::whitted::secondary::{SpecularBlend, fresnel_share};
+use durer_render::integrator::{RenderSettings, Whitted, refract};
 use durer_render::world::{Epsilon, Geometry, HighlightModel, Phong, SurfaceInteraction, WeightedMaterial, World};
 use durer_scene::camera::Projection;
 use durer_scene::light::{Illuminate, Light, LightLiSample};
@@ -27,7 +27,7 @@ use smallvec::SmallVec;
 #[derive(Clone, Copy, Debug)]
 pub struct BuggyTracer<'w> {
     world: &'w World,
-    settings: WhittedOptions,
+    settings: RenderSettings,
     bugs: &'w Bugs,
     right: Whitted<'w>,
 }
@@ -36,20 +36,20 @@ pub struct BuggyTracer<'w> {
 #[derive(Clone)]
 struct RayState {
     bounces: u32,
-    media: Media,
+    media: MediumStack,
     weight: f32,
     first: bool,
 }
 
 impl<'w> BuggyTracer<'w> {
     /// Creates a tracer that renders `world` with the mistakes in `bugs`.
-    pub fn new(world: &'w World, settings: WhittedOptions, bugs: &'w Bugs) -> Self {
+    pub fn new(world: &'w World, settings: RenderSettings, bugs: &'w Bugs) -> Self {
         BuggyTracer { world, settings, bugs, right: Whitted { world, settings, cancel: None } }
     }
 
     /// Returns the radiance along a camera ray.
     pub fn radiance(&self, ray: &Ray) -> Color {
-        let path = RayState { bounces: self.settings.bounces, media: Media::default(), weight: 1.0, first: true };
+        let path = RayState { bounces: self.settings.bounces, media: MediumStack::default(), weight: 1.0, first: true };
         self.trace(&ray.into(), path)
     }
 
@@ -65,10 +65,12 @@ impl<'w> BuggyTracer<'w> {
             if self.bugs.pick == HitChoice::MovedDirection {
                 (at.ray, at.surface.position, at.surface.rounding_error) = (*ray, ray.rounded.at(t), Vec3::ZERO);
             }
-            match self.right.passage(&at, &path.media) {
-                Some(Passage { hidden: true, behind, .. }) => (path.media, rest.rounded.t_min) = (behind, hit.t),
-                passage => {
-                    let color = self.shade(&self.met(at, t), passage, path);
+            match self.right.transition(&at, &path.media) {
+                Some(MediumTransition { displaced: true, behind, .. }) => {
+                    (path.media, rest.rounded.t_min) = (behind, hit.t)
+                }
+                transition => {
+                    let color = self.shade(&self.met(at, t), transition, path);
                     let clamped = self.bugs.clamped_rays;
                     return if clamped { color.clamp(Color::ZERO, Color::ONE) } else { color };
                 }
@@ -77,7 +79,7 @@ impl<'w> BuggyTracer<'w> {
         match self.bugs.sky.filter(|(_, all)| path.first || *all) {
             Some((color, _)) => color,
             None if self.bugs.bounces.black_sky && !path.first => Color::ZERO,
-            None => self.world.sky(ray.dir()),
+            None => self.world.background_radiance(ray.dir()),
         }
     }
 
@@ -140,7 +142,7 @@ impl<'w> BuggyTracer<'w> {
         at
     }
 
-    fn shade(&self, at: &SurfaceInteraction, passage: Option<Passage>, path: RayState) -> Color {
+    fn shade(&self, at: &SurfaceInteraction, transition: Option<MediumTransition>, path: RayState) -> Color {
         let (world, bugs) = (self.world, self.bugs);
         let SurfaceInteraction { ray, surface, .. } = at;
         let from_behind = self.right.sees_back(at);
@@ -151,7 +153,7 @@ impl<'w> BuggyTracer<'w> {
         if world.shading_rules().spoiled_normals && n.is_nan() {
             return Color::ZERO;
         }
-        let parts = world.parts(at);
+        let parts = world.materials_at(at);
         let (mut color, mut blocked) = (Color::ZERO, false);
         if !black || bugs.faced {
             let diffuse: SmallVec<[Color; 2]> =
@@ -222,15 +224,15 @@ impl<'w> BuggyTracer<'w> {
             Some(false) if blocked => color = Color::ZERO,
             _ => {}
         }
-        if bugs.bounces.instead && path.bounces > 0 && Blend::of(&parts).reflective != Color::ZERO {
+        if bugs.bounces.instead && path.bounces > 0 && SpecularBlend::of(&parts).reflective != Color::ZERO {
             color = Color::ZERO;
         }
         if bugs.bounces.mixed && path.bounces > 0 {
-            color *= Color::ONE - Blend::of(&parts).reflective;
+            color *= Color::ONE - SpecularBlend::of(&parts).reflective;
         }
         if path.bounces > 0 {
             let rounds = if bugs.bounces.each_light { world.lights().len() } else { 1 };
-            let secondary = self.secondary(at, &parts, passage.unwrap_or_default(), path);
+            let secondary = self.secondary(at, &parts, transition.unwrap_or_default(), path);
             for _ in 0..rounds {
                 color += secondary;
             }
@@ -368,7 +370,7 @@ impl<'w> BuggyTracer<'w> {
             return Color::ONE;
         }
         let rules = self.world.shading_rules();
-        let way = rules.epsilon.and_then(|_| self.world.course_way(light, surface.position));
+        let way = rules.epsilon.and_then(|_| self.world.course_light_direction(light, surface.position));
         let seen = match way {
             Some((to_light, distance)) => &LightLiSample { to_light, distance, color: seen.color },
             None => seen,
@@ -385,7 +387,7 @@ impl<'w> BuggyTracer<'w> {
             Reach::Squared => seen.distance * seen.distance,
         };
         let reach = if bugs.short && seen.distance.is_infinite() { 1.0 } else { reach };
-        let epsilon = bugs.epsilon.map(Epsilon::Least).or(rules.epsilon);
+        let epsilon = bugs.epsilon.map(Epsilon::MinT).or(rules.epsilon);
         let way = match bugs.way {
             ShadowDirection::Light => seen.to_light,
             ShadowDirection::Away => -seen.to_light,
@@ -411,7 +413,7 @@ impl<'w> BuggyTracer<'w> {
         for _ in 0..64 {
             let Some((hit, _)) = self.closest(&ray) else { return share };
             let blocker = self.world.interaction(ray, hit);
-            let parts = self.world.parts(&blocker);
+            let parts = self.world.materials_at(&blocker);
             share *= parts.iter().map(|part| part.share * part.phong.transparent).sum::<Color>();
             if share == Color::ZERO {
                 break;
@@ -426,7 +428,7 @@ impl<'w> BuggyTracer<'w> {
         for _ in 0..64 {
             let Some((hit, _)) = self.closest(&ray) else { return Color::ONE };
             let blocker = self.world.interaction(ray, hit);
-            let parts = self.world.parts(&blocker);
+            let parts = self.world.materials_at(&blocker);
             if parts.iter().all(|part| part.phong.transparent == Color::ZERO) {
                 return Color::ZERO;
             }
@@ -440,11 +442,11 @@ impl<'w> BuggyTracer<'w> {
         &self,
         at: &SurfaceInteraction,
         parts: &[WeightedMaterial],
-        passage: Passage,
+        transition: MediumTransition,
         path: RayState,
     ) -> Color {
         let bugs = self.bugs.bounces;
-        let Blend { mut reflective, mut transparent, ior, fresnel } = Blend::of(parts);
+        let SpecularBlend { mut reflective, mut transparent, ior, fresnel } = SpecularBlend::of(parts);
         if reflective == Color::ZERO && transparent == Color::ZERO {
             return Color::ZERO;
         }
@@ -452,7 +454,7 @@ impl<'w> BuggyTracer<'w> {
         let leaving = self.right.sees_back(at);
         let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if leaving { -n } else { n });
         let n = if ray.dir().dot(n) < 0.0 { n } else { n_geo };
-        let Passage { here, there, behind, .. } = passage;
+        let MediumTransition { ior_front, ior_behind, behind, .. } = transition;
         let eta = match bugs.glass {
             Glass::Right
             | Glass::Straight
@@ -460,8 +462,8 @@ impl<'w> BuggyTracer<'w> {
             | Glass::RootAdded
             | Glass::SignChanged
             | Glass::NoRoot
-            | Glass::Unsquared => here / there,
-            Glass::Inverted | Glass::Exchanged => there / here,
+            | Glass::Unsquared => ior_front / ior_behind,
+            Glass::Inverted | Glass::Exchanged => ior_behind / ior_front,
             Glass::NotSwapped => 1.0 / ior,
         };
         let mirrored = mirrored(ray.dir(), n, bugs.mirror);
@@ -490,12 +492,12 @@ impl<'w> BuggyTracer<'w> {
         };
         let divided = fresnel && self.settings.reflection && self.settings.refraction;
         if divided && bugs.fresnel != Fresnel::None {
-            let ratio = (there - here) / (there + here);
+            let ratio = (ior_behind - ior_front) / (ior_behind + ior_front);
             let schlick = |t| match bugs.fresnel {
                 Fresnel::Constant => ratio * ratio,
                 Fresnel::Share(share) => share,
                 Fresnel::Unsquared | Fresnel::Power(_) => {
-                    let slow = if there < here { t } else { ray.dir() };
+                    let slow = if ior_behind < ior_front { t } else { ray.dir() };
                     let rest = 1.0 - slow.dot(n).abs();
                     let r0 = if bugs.fresnel == Fresnel::Unsquared { ratio.abs() } else { ratio * ratio };
                     let power = if let Fresnel::Power(power) = bugs.fresnel { power } else { 5.0 };
@@ -507,7 +509,8 @@ impl<'w> BuggyTracer<'w> {
                     r0 + (1.0 - r0) * rest * rest * rest * rest * rest
                 }
                 _ => {
-                    let indices = if bugs.glass == Glass::Exchanged { (there, here) } else { (here, there) };
+                    let indices =
+                        if bugs.glass == Glass::Exchanged { (ior_behind, ior_front) } else { (ior_front, ior_behind) };
                     let before = if rules.exit_r0 { 1.0 } else { indices.0 };
                     fresnel_share(ray.dir(), n, t, indices, before)
                 }
@@ -541,10 +544,10 @@ impl<'w> BuggyTracer<'w> {
             return Color::ZERO;
         }
         let total = self.right.weight_after(path.weight, weight);
-        if total < self.settings.least_weight {
+        if total < self.settings.min_weight {
             return Color::ZERO;
         }
-        let epsilon = self.bugs.bounces.epsilon.map(Epsilon::Least).or(self.world.shading_rules().epsilon);
+        let epsilon = self.bugs.bounces.epsilon.map(Epsilon::MinT).or(self.world.shading_rules().epsilon);
         let dir = if self.bugs.bounces.unit { dir.normalize_or(dir) } else { dir };
         let ray = spawn_ray(surface, dir, f32::INFINITY, epsilon);
         weight * self.trace(&ray, RayState { bounces: path.bounces - 1, weight: total, first: false, ..path })

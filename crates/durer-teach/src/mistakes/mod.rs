@@ -29,7 +29,7 @@ pub use variant::SceneVariant;
 /// Finds the mistakes that explain a picture, with the method of the job. `reported` receives the
 /// progress, from 0 to 1.
 pub fn diagnose(question: &DiagnosisInput, reported: &(dyn Fn(f64) + Sync)) -> Diagnosis {
-    match question.job.method.transport() {
+    match question.job.method.path_options() {
         Some(_) => paths::diagnose(question, reported),
         None => diagnose::diagnose(question, reported),
     }
@@ -38,7 +38,7 @@ pub fn diagnose(question: &DiagnosisInput, reported: &(dyn Fn(f64) + Sync)) -> D
 /// Returns the share of the reference in which a render of the scene differs from it: share of a
 /// sample of pixels or, with path tracing, of the blocks that differ by more than noise.
 pub fn off(question: &DiagnosisInput) -> f64 {
-    match question.job.method.transport() {
+    match question.job.method.path_options() {
         Some(_) => paths::off(question),
         None => diagnose::off(question),
     }

@@ -50,7 +50,7 @@ fn world_of(text: &str, rules: &DialectRules) -> (Scene, World) {
 
 fn job() -> Job {
     let job = Job { width: 48, height: 40, sampling: Sampling::Center, ..Job::default() };
-    Job { settings: durer_render::integrator::WhittedOptions { bounces: 3, least_weight: 0.0, ..job.settings }, ..job }
+    Job { settings: durer_render::integrator::RenderSettings { bounces: 3, min_weight: 0.0, ..job.settings }, ..job }
 }
 
 /// Without mistakes, the student's tracer reproduces the rendered picture bit for bit in every
@@ -65,7 +65,7 @@ fn variant_without_mistakes_renders_the_correct_picture() {
             let tracer = BuggyTracer::new(&variant.world, job.settings, &variant.bugs);
             let whitted = Whitted { world: &variant.world, settings: job.settings, cancel: None };
             let raster = variant.raster(job.width, job.height);
-            for place in job.whole().places() {
+            for place in job.whole().pixel_positions() {
                 let ray = center_ray(&variant.world, &raster, place).unwrap();
                 let (own, right) = (tracer.radiance(&ray), whitted.radiance(&ray, &mut ()));
                 // The program of a year may divide by zero.
@@ -88,7 +88,7 @@ fn every_row_has_a_unique_name_and_a_lesson_step() {
 
 /// Renders the eight-bit picture of a variant; also returns its brightest value.
 fn picture(variant: &SceneVariant, job: &Job, brightest: f32) -> (Picture, f32) {
-    let places: Vec<(u32, u32)> = job.whole().places().collect();
+    let places: Vec<(u32, u32)> = job.whole().pixel_positions().collect();
     let view = View { job, scale: Scale::Display, transfer: Transfer::Course, brightest };
     let brightest = view.light(variant, &places).iter().map(|light| light.max_element()).fold(0.0, f32::max);
     let image = Image::from_pixels(job.width, job.height, view.picture(variant, &places)).unwrap();

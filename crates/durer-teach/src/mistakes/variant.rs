@@ -5,7 +5,7 @@ use super::path_habits::Paths;
 use durer_bvh::BuildQuality;
 use durer_render::compile::rules::matrix_rules;
 use durer_render::compile::{self, AccelKind};
-use durer_render::integrator::WhittedOptions;
+use durer_render::integrator::RenderSettings;
 use durer_render::render::raster;
 use durer_render::world::{Geometry, HighlightModel, Material, MeshTree, Object, Phong, World};
 use durer_scene::camera::{Camera, CameraBasis, CameraSample, Projection, Raster};
@@ -27,7 +27,7 @@ pub struct SceneVariant<'s> {
     /// The world: geometry, lights, materials, camera and rules.
     pub world: World,
     /// Options of Whitted's method.
-    pub settings: WhittedOptions,
+    pub settings: RenderSettings,
     /// Mistakes of the Whitted tracer.
     pub bugs: Bugs,
     /// Mistakes in camera rays.
@@ -91,7 +91,7 @@ pub type Product<'p> = &'p dyn Fn(&[MatrixOp], MatrixRules) -> DAffine3;
 
 impl<'s> SceneVariant<'s> {
     /// Creates a variant without mistakes.
-    pub fn new(scene: &'s Scene, world: World, settings: WhittedOptions) -> Self {
+    pub fn new(scene: &'s Scene, world: World, settings: RenderSettings) -> Self {
         let (bugs, aim, output, turn, paths) = Default::default();
         SceneVariant { scene, world, settings, bugs, aim, output, turn, paths }
     }
@@ -210,7 +210,7 @@ impl<'s> SceneVariant<'s> {
         }
         for (object, place) in self.world.edit().objects.iter_mut().zip(places) {
             if !matches!(object.geometry, Geometry::Solid(_)) {
-                object.place_at(place);
+                object.set_transform(place);
             }
         }
         self.rebuild();

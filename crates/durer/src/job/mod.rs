@@ -10,9 +10,9 @@ mod option_form;
 use durer_render::film::Filter;
 use durer_render::film::aov::Aov;
 use durer_render::film::course::CourseFilter;
-use durer_render::film::false_color::LightScale;
-use durer_render::integrator::{IntegratorKind, WhittedOptions};
-use durer_render::render::{Crop, Job, Sampling};
+use durer_render::film::false_color::FalseColorScale;
+use durer_render::integrator::{IntegratorKind, RenderSettings};
+use durer_render::render::{Job, PixelRect, Sampling};
 use durer_scene::camera::{Projection, Raster};
 use durer_scene::describe::{DescribedKind, Field, Value};
 use durer_scene::dialect::{Dialect, DialectRules};
@@ -115,7 +115,7 @@ options! {
         /// Maximum depth of reflected and transmitted rays; with path and photons, maximum number
         /// of scattering events after the first hit [default: 8; 16 with path and photons; with
         /// --dialect, that dialect's own default]
-        bounces: u32 = "bounces", OptionForm::Whole(0, WhittedOptions::MAX_BOUNCES);
+        bounces: u32 = "bounces", OptionForm::Whole(0, RenderSettings::MAX_BOUNCES);
         /// Cast shadows [default: on; with --dialect, off]
         shadows: bool = "shadows", OptionForm::Switch;
         /// Also shade surfaces that are seen from behind [default: on; with --dialect, off]
@@ -303,10 +303,10 @@ impl RenderJob {
         let method = self.resolve_integrator(default_integrator(scene))?;
         // Blur from an aperture, and random integrators, need more samples than antialiasing.
         let default_samples =
-            if camera.is_some_and(|camera| camera.has_aperture()) || method.is_random() { 64 } else { 16 };
+            if camera.is_some_and(|camera| camera.has_aperture()) || method.is_stochastic() { 64 } else { 16 };
         let default_samples = render_defaults.samples.unwrap_or(default_samples);
         let is = |flag: Option<bool>| flag.unwrap_or(false);
-        if method.is_random() && (is(self.jitter) || is(self.blur)) {
+        if method.is_stochastic() && (is(self.jitter) || is(self.blur)) {
             return Err(format!("--jitter and --blur do not apply to --integrator {}", method.name()));
         }
         self.check_combination()?;
@@ -324,7 +324,7 @@ impl RenderJob {
                         false => "--light-range needs two numbers, 0 or more, the second greater".into(),
                     });
                 }
-                Some(LightScale { low, high, logarithmic })
+                Some(FalseColorScale { low, high, logarithmic })
             }
             None => None,
         };
@@ -335,20 +335,20 @@ impl RenderJob {
         Ok(Job {
             width,
             height,
-            crop: crop.map(|(left, top, width, height)| Crop { left, top, width, height }),
+            crop: crop.map(|(left, top, width, height)| PixelRect { left, top, width, height }),
             seed: self.seed.unwrap_or(0),
             sampling: self.sampling(context, default_samples)?,
             noise: self.noise_threshold,
             adaptive: is(self.adaptive),
             method,
-            settings: WhittedOptions {
+            settings: RenderSettings {
                 bounces: self.bounces.unwrap_or_else(|| usual_bounces(method, context)),
                 shadows: self.shadows.unwrap_or(rules.shadows),
                 shade_back: self.shade_back.unwrap_or(rules.shade_back),
                 transparent_shadows: is(self.transparent_shadows) || rules.transparent_shadows,
                 reflection: !is(self.no_reflection),
                 refraction: !is(self.no_refraction),
-                least_weight: self.min_throughput.unwrap_or(if emulates { 0.0 } else { MIN_THROUGHPUT }),
+                min_weight: self.min_throughput.unwrap_or(if emulates { 0.0 } else { MIN_THROUGHPUT }),
             },
             color: view.is_none() || pictures.iter().any(|show| show == "color"),
             aovs: pictures.iter().filter_map(|name| Aov::from_name(name)).collect(),
@@ -444,7 +444,7 @@ impl RenderJob {
             transparent_shadows: (settings.transparent_shadows && !rules.transparent_shadows).then_some(true),
             no_reflection: unless(!settings.reflection, false),
             no_refraction: unless(!settings.refraction, false),
-            min_throughput: Some(settings.least_weight)
+            min_throughput: Some(settings.min_weight)
                 .filter(|&least| least != if emulates { 0.0 } else { MIN_THROUGHPUT }),
             noise_threshold: job.noise,
             adaptive: unless(job.adaptive, false),
@@ -503,7 +503,7 @@ impl RenderJob {
 
 /// Returns the default number of bounces.
 fn usual_bounces(method: IntegratorKind, context: &JobContext) -> u32 {
-    match method.transport() {
+    match method.path_options() {
         Some(_) => context.scene.render_defaults.bounces.unwrap_or(PATH_BOUNCES),
         None => context.rules.bounces,
     }

@@ -28,7 +28,7 @@ fn defaults_follow_from_the_scene() {
     assert_eq!(crop(RenderJob::default().size((640, 320))), None);
     let old = JobContext { emulates: true, ..context(&scene, rules) };
     let job = RenderJob::default().resolve(&old, None).unwrap();
-    assert_eq!((job.sampling, job.settings.least_weight), (Sampling::Center, 0.0));
+    assert_eq!((job.sampling, job.settings.min_weight), (Sampling::Center, 0.0));
     let timed = JobContext { timed: true, ..context(&scene, rules) };
     assert_eq!(RenderJob::default().resolve(&timed, None).unwrap().sampling.samples(), 1 << 20);
 }

@@ -1,7 +1,7 @@
 //! Tests of the cache: unchanged files are neither read nor built again.
 
 use super::*;
-use durer_render::compile::Reuse;
+use durer_render::compile::CacheStatistics;
 use durer_scene::source::Digest;
 use std::collections::BTreeSet;
 use std::fs;
@@ -66,8 +66,8 @@ impl TestFolder {
     }
 
     fn reuse(&self) -> (usize, usize) {
-        let Reuse { made, reused } = self.cache.as_ref().unwrap().reuse();
-        (made, reused)
+        let CacheStatistics { built, reused } = self.cache.as_ref().unwrap().statistics();
+        (built, reused)
     }
 }
 

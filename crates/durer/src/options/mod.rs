@@ -111,8 +111,8 @@ impl RenderOptions {
     pub fn control(&self) -> Control {
         Control {
             threads: self.threads,
-            tile: self.tile,
-            time: self.time_limit,
+            tile_size: self.tile,
+            time_limit: self.time_limit,
             memory: self.memory.bytes(),
             ..Control::default()
         }

@@ -47,7 +47,7 @@ fn options_reach_the_job_and_the_loader() {
     options.set("shard", "2/5").unwrap();
     assert_eq!((options.shard.index, options.shard.count, options.shard.by), (2, 5, ShardBy::Samples));
     options.set("time-limit", "1500ms").unwrap();
-    assert_eq!(options.control().time, Some(Duration::from_millis(1500)));
+    assert_eq!(options.control().time_limit, Some(Duration::from_millis(1500)));
     options.set("assets", "a").unwrap();
     options.set("assets", "b").unwrap();
     assert_eq!(options.load.assets.len(), 2);

@@ -2,7 +2,7 @@
 
 use durer_render::integrator::trace::TermKind;
 use durer_render::integrator::{TraceNode, Tree};
-use durer_render::render::explain::{Explanation, Names};
+use durer_render::render::explain::{Explanation, SceneNames};
 use durer_scene::math::Vec3;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
@@ -20,9 +20,9 @@ pub enum Explained {
 
 /// Creates the output of `durer explain --json`: the tree of terms, and the names of the objects,
 /// materials and lights to which it refers by index.
-pub fn explanation(subject: &Explained, names: &Names) -> Value {
+pub fn explanation(subject: &Explained, names: &SceneNames) -> Value {
     let (mut objects, mut lights, mut materials) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
-    let mut note = |node: &TraceNode| match &node.what {
+    let mut note = |node: &TraceNode| match &node.kind {
         TermKind::Ray { hit: Some(hit), .. } => {
             objects.insert(hit.object);
             materials.insert(hit.material);
@@ -68,12 +68,12 @@ pub fn explanation(subject: &Explained, names: &Names) -> Value {
 
 /// Adds to each term the lines that derive its numbers. `at` is the direction of its ray, and the
 /// normal at the hit.
-fn annotate(node: &TraceNode, json: &mut Value, at: (Vec3, Vec3), names: &Names) {
+fn annotate(node: &TraceNode, json: &mut Value, at: (Vec3, Vec3), names: &SceneNames) {
     let lines = names.origins(node, at.0, at.1);
     if !lines.is_empty() {
         json["origins"] = lines.into();
     }
-    let at = match &node.what {
+    let at = match &node.kind {
         TermKind::Ray { ray, hit: Some(hit), .. } => (ray.dir, hit.n),
         _ => at,
     };

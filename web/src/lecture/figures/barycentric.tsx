@@ -1,11 +1,11 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import { fixed } from "../../ui/slider";
 import { draw } from "../../viewer/picture";
-import { numberOf, useCast, usePaper, useScene } from "../context";
+import { numberOf, useCast, usePageBackground, useScene } from "../context";
 import { Handle } from "../draw";
 import { Choice, Equation, Figure, Sym } from "../parts";
 import { PlaneName, Plot, type Scale } from "../plot";
-import { paint, sceneOf } from "../scenes";
+import { materialPresets, sceneText } from "../scenes";
 import type { Topic } from "../topic";
 
 type Point = [number, number];
@@ -24,9 +24,9 @@ function BarycentricFigure() {
   const [point, setPoint] = useState<Point>([0.1, -0.3]);
   const [shows, setShows] = useState<"barycentric" | "areas">("barycentric");
   const [a, b, c] = corners;
-  const scene = sceneOf({
-    paper: usePaper(),
-    materials: [paint.stone],
+  const scene = sceneText({
+    background: usePageBackground(),
+    materials: [materialPresets.stone],
     group: `MaterialIndex 0 Triangle { ${corners.map(([x, y], i) => `vertex${i} ${x} ${y} 0`).join(" ")} }`,
   });
   const text = scene.replace(
@@ -163,8 +163,8 @@ function BarycentricFigure() {
 function Backdrop({ session }: { session: ReturnType<typeof useScene> }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
-    session.tell({ kind: "size", width: 1000, height: Math.round(1000 / aspect) });
-    session.tell({ kind: "show", picture: "barycentric", stops: 0, tone: "none" });
+    session.send({ kind: "size", width: 1000, height: Math.round(1000 / aspect) });
+    session.send({ kind: "show", picture: "barycentric", stops: 0, tone: "none" });
     return session.on((event, bytes) => {
       if (event.kind !== "picture" || !canvas.current) return;
       // Pixels outside the triangle show the page.

@@ -2,10 +2,10 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { add, cross, type Eye, mul, unit, type Vec } from "../../explain/space";
 import { fixed, Slider } from "../../ui/slider";
 import { draw } from "../../viewer/picture";
-import { usePaper, usePixel, useScene } from "../context";
+import { usePageBackground, usePixel, useScene } from "../context";
 import { Arrow, Dot, Line, Name, Path } from "../draw";
 import { Equation, Figure, Sym } from "../parts";
-import { paint, sceneOf } from "../scenes";
+import { materialPresets, sceneText } from "../scenes";
 import { Stage } from "../stage";
 import type { Topic } from "../topic";
 
@@ -16,17 +16,17 @@ const up = cross(right, forward);
 const [width, height] = [160, 120];
 
 function CameraFigure() {
-  const paper = usePaper();
-  const text = sceneOf({
-    paper,
-    materials: [paint.stone, paint.clay, paint.sky, paint.sand],
+  const background = usePageBackground();
+  const text = sceneText({
+    background,
+    materials: [materialPresets.stone, materialPresets.clay, materialPresets.sky, materialPresets.sand],
     group: `MaterialIndex 0 Disc { center 1 -1 -0.6 normal 0 1 0 radius 3 }
       MaterialIndex 1 Sphere { center 0.7 -0.1 -0.4 radius 0.9 }
       MaterialIndex 2 Box { min 1.9 -1 -2 max 2.9 1.1 -1 }
       MaterialIndex 3 Cone { base 1.9 -1 0.9 top 1.9 0.5 0.9 baseRadius 0.55 }`,
   });
   const stage = useScene(text);
-  const seen = useScene(text, [{ name: "samples", value: "4" }]);
+  const image = useScene(text, [{ name: "samples", value: "4" }]);
   const canvas = useRef<HTMLCanvasElement>(null);
   const [eye, setEye] = useState<Eye>({
     target: [-0.3, 0.35, 0.6],
@@ -42,7 +42,7 @@ function CameraFigure() {
 
   useEffect(() => {
     const look = (moving: boolean) =>
-      seen.tell({
+      image.send({
         kind: "look",
         center: at,
         direction: forward,
@@ -50,16 +50,16 @@ function CameraFigure() {
         angle: angleRef.current,
         moving,
       });
-    seen.tell({ kind: "size", width, height });
+    image.send({ kind: "size", width, height });
     look(false);
-    return seen.on((event, bytes) => {
+    return image.on((event, bytes) => {
       if (event.kind === "scene") look(false);
       if (event.kind === "picture" && canvas.current)
         draw(canvas.current, event.head.width, event.head.height, bytes);
     });
-  }, [seen, angle]);
+  }, [image, angle]);
 
-  const account = usePixel(seen, pixel.x, pixel.y, `${angle} ${text}`);
+  const account = usePixel(image, pixel.x, pixel.y, `${angle} ${text}`);
   const tree = account?.tree ?? null;
   const distance = 1 / Math.tan((angle * Math.PI) / 360);
   const [x, y] = [(2 * (pixel.x + 0.5)) / width - 1, (height - 2 * (pixel.y + 0.5)) / width];

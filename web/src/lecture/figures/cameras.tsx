@@ -2,16 +2,16 @@ import { useState } from "preact/hooks";
 import { add, type Eye, mul, type Vec } from "../../explain/space";
 import type { CameraRay } from "../../protocol";
 import { fixed, Slider } from "../../ui/slider";
-import { useAnswer, usePaper, useScene } from "../context";
+import { useAnswer, usePageBackground, useScene } from "../context";
 import { Dot, Line } from "../draw";
 import { Choice, Equation, Figure, Sym } from "../parts";
-import { Rendered } from "../rendered";
-import { paint, sceneOf } from "../scenes";
+import { RenderedImage } from "../rendered";
+import { materialPresets, sceneText } from "../scenes";
 import { Stage } from "../stage";
 import type { Topic } from "../topic";
 
 /** Kind of camera that the figure can show. */
-interface Kind {
+interface CameraKind {
   id: string;
   name: string;
   /** Returns the camera's block in the scene language, with the value of its slider. */
@@ -100,7 +100,7 @@ const kinds = [
     size: [240, 240],
     rule: "A mirror in the shape of a paraboloid, seen from far above. It preserves angles: small circles remain circles.",
   },
-] as const satisfies readonly Kind[];
+] as const satisfies readonly CameraKind[];
 type Id = (typeof kinds)[number]["id"];
 
 /** Returns objects all around the eye, so that every camera sees some of them. */
@@ -120,19 +120,25 @@ function around(): string {
 const things = around();
 
 function CamerasFigure() {
-  const paper = usePaper();
+  const background = usePageBackground();
   const [id, setId] = useState<Id>("fisheye");
-  const kind: Kind = kinds.find((known) => known.id === id) ?? kinds[0];
+  const kind: CameraKind = kinds.find((known) => known.id === id) ?? kinds[0];
   const [values, setValues] = useState<Partial<Record<Id, number>>>({});
   const value = values[id] ?? kind.range[1];
-  const scene = sceneOf({
-    paper,
-    materials: [paint.stone, paint.clay, paint.sky, paint.sand, paint.sage],
+  const scene = sceneText({
+    background,
+    materials: [
+      materialPresets.stone,
+      materialPresets.clay,
+      materialPresets.sky,
+      materialPresets.sand,
+      materialPresets.sage,
+    ],
     group: things,
   });
   const text = scene.replace(/^.*\n/, `${kind.statement(value)}\n`);
   const outside = useScene(scene);
-  const seen = useScene(text, [{ name: "samples", value: "9" }]);
+  const image = useScene(text, [{ name: "samples", value: "9" }]);
   const [eye, setEye] = useState<Eye>({
     target: [0, 0.2, 0],
     distance: 21,
@@ -143,9 +149,9 @@ function CamerasFigure() {
   const [width, height] = kind.size;
   const columns = 15;
   const rows = Math.max(5, Math.round((columns * height) / width) | 1);
-  const rays = useAnswer(seen, { kind: "rays", columns, rows, row: null }, "rays", text)?.rays ?? [];
+  const rays = useAnswer(image, { kind: "rays", columns, rows, row: null }, "rays", text)?.rays ?? [];
   const there = rays.filter((ray): ray is CameraRay => ray !== null);
-  const starts = new Set(there.map(({ origin }) => origin.map((c) => c.toFixed(4)).join(" "))).size;
+  const originCount = new Set(there.map(({ origin }) => origin.map((c) => c.toFixed(4)).join(" "))).size;
   return (
     <Figure
       stage={
@@ -178,7 +184,12 @@ function CamerasFigure() {
             )}
           </Stage>
           <div class="inset wide">
-            <Rendered session={seen} width={width} height={height} label={`What it sees: ${kind.name}`} />
+            <RenderedImage
+              session={image}
+              width={width}
+              height={height}
+              label={`What it sees: ${kind.name}`}
+            />
           </div>
         </div>
       }
@@ -216,11 +227,11 @@ function CamerasFigure() {
       </Equation>
       <Equation
         numbers={
-          starts === 1 ? (
+          originCount === 1 ? (
             "all rays start at one eye point"
           ) : (
             <>
-              they start at <b>{starts}</b> points
+              they start at <b>{originCount}</b> points
             </>
           )
         }

@@ -4,8 +4,8 @@ import type { PictureInfo } from "../../protocol";
 import { Slider } from "../../ui/slider";
 import { usePixel, useScene } from "../context";
 import { Choice, Equation, Figure, Sym } from "../parts";
-import { Picked } from "../picked";
-import { Rendered } from "../rendered";
+import { PixelPicker } from "../picked";
+import { RenderedImage } from "../rendered";
 import type { Topic } from "../topic";
 
 const [width, height] = [360, 288];
@@ -38,15 +38,15 @@ function CausticsFigure() {
     <Figure
       stage={
         <div class="square">
-          <Picked place={place} pick={setPlace}>
-            <Rendered
+          <PixelPicker place={place} pick={setPlace}>
+            <RenderedImage
               session={session}
               width={width}
               height={height}
               label="A mirror ball and a glass ball under a lamp; click for the photons of a pixel"
-              told={setHead}
+              onResult={setHead}
             />
-          </Picked>
+          </PixelPicker>
         </div>
       }
       controls={

@@ -3,8 +3,8 @@ import type { Session } from "../../engine/engine";
 import { fixed, Slider } from "../../ui/slider";
 import { usePixel, useScene } from "../context";
 import { Equation, Figure, Switch, Sym } from "../parts";
-import { Picked } from "../picked";
-import { Rendered } from "../rendered";
+import { PixelPicker } from "../picked";
+import { RenderedImage } from "../rendered";
 import type { Topic } from "../topic";
 
 const [width, height] = [320, 240];
@@ -31,12 +31,12 @@ function EpsilonFigure() {
   const [exact, setExact] = useState(false);
   const [wrong, setWrong] = useState<number | null>(null);
   const epsilon = step === 0 ? 0 : 10 ** (step / 10 - 7.5);
-  const broken = useScene(text, options);
-  const sound = useScene(text, options);
+  const withEpsilon = useScene(text, options);
+  const exactSession = useScene(text, options);
   const pictures = useRef<{ broken?: Uint8Array; sound?: Uint8Array }>({});
   useEffect(() => {
-    broken.tell({ kind: "epsilon", epsilon: exact ? null : epsilon });
-  }, [broken, epsilon, exact]);
+    withEpsilon.send({ kind: "epsilon", epsilon: exact ? null : epsilon });
+  }, [withEpsilon, epsilon, exact]);
   useEffect(() => {
     const hear = (name: "broken" | "sound") => (session: Session) =>
       session.on((event, bytes) => {
@@ -45,27 +45,30 @@ function EpsilonFigure() {
         const { broken: a, sound: b } = pictures.current;
         if (a && b) setWrong(differing(a, b));
       });
-    const ends = [hear("broken")(broken), hear("sound")(sound)];
+    const ends = [hear("broken")(withEpsilon), hear("sound")(exactSession)];
     return () => {
       for (const end of ends) end();
     };
-  }, [broken, sound]);
+  }, [withEpsilon, exactSession]);
   const [place, setPlace] = useState({ x: 0.36, y: 0.5 });
   const pixel = { x: Math.floor(place.x * width), y: Math.floor(place.y * height) };
-  const account = usePixel(broken, pixel.x, pixel.y, `${epsilon} ${exact}`);
+  const account = usePixel(withEpsilon, pixel.x, pixel.y, `${epsilon} ${exact}`);
   const light = account?.tree?.terms.find(
     (term) => term.segment?.role === "shadowed" || term.segment?.role === "lit",
   );
   const shadow = light?.rows.find((row) => row.name === "shadow ray")?.result ?? "this pixel sees no surface";
-  const sizes = { session: broken, width, height };
+  const sizes = { session: withEpsilon, width, height };
   return (
     <Figure
       stage={
         <div class="halves">
-          <Picked place={place} pick={setPlace}>
-            <Rendered {...sizes} label="The scene with this epsilon; click for the shadow ray of a pixel" />
-          </Picked>
-          <Rendered {...sizes} session={sound} label="The scene with exact ray origins" />
+          <PixelPicker place={place} pick={setPlace}>
+            <RenderedImage
+              {...sizes}
+              label="The scene with this epsilon; click for the shadow ray of a pixel"
+            />
+          </PixelPicker>
+          <RenderedImage {...sizes} session={exactSession} label="The scene with exact ray origins" />
         </div>
       }
       controls={
@@ -76,7 +79,7 @@ function EpsilonFigure() {
             min={0}
             max={75}
             step={1}
-            text={exact ? "none" : spelled(epsilon)}
+            text={exact ? "none" : formatEpsilon(epsilon)}
             change={(next) => {
               setStep(next);
               setExact(false);
@@ -93,7 +96,7 @@ function EpsilonFigure() {
           ) : (
             <>
               <b>{wrong.toLocaleString("en")}</b> of {(width * height).toLocaleString("en")} pixels are wrong
-              {judged(exact ? null : epsilon, wrong)}
+              {describeErrors(exact ? null : epsilon, wrong)}
             </>
           )
         }
@@ -116,12 +119,12 @@ export function differing(a: Uint8Array, b: Uint8Array): number {
   return count;
 }
 
-function spelled(epsilon: number): string {
+function formatEpsilon(epsilon: number): string {
   if (epsilon === 0) return "0";
   return epsilon < 0.001 ? epsilon.toExponential(1).replace("-", "−") : fixed(epsilon, 3);
 }
 
-function judged(epsilon: number | null, wrong: number): string {
+function describeErrors(epsilon: number | null, wrong: number): string {
   if (wrong === 0) return "";
   return epsilon !== null && epsilon < 0.01 ? ": surfaces shadow themselves" : ": light leaks below objects";
 }

@@ -1,11 +1,11 @@
 import { useState } from "preact/hooks";
-import { flat } from "../../explain/segments";
+import { flatten } from "../../explain/segments";
 import { fixed, Slider } from "../../ui/slider";
-import { usePaper, useScene, useTrace } from "../context";
+import { usePageBackground, useScene, useTrace } from "../context";
 import { Handle } from "../draw";
 import { Choice, Equation, Figure, Sym } from "../parts";
 import { PlaneArrow, PlaneName, Plot } from "../plot";
-import { sceneOf } from "../scenes";
+import { sceneText } from "../scenes";
 import type { Topic } from "../topic";
 
 type Side = "outside" | "inside";
@@ -14,8 +14,8 @@ function GlassFigure() {
   const [degrees, setDegrees] = useState(48);
   const [index, setIndex] = useState(1.5);
   const [side, setSide] = useState<Side>("outside");
-  const text = sceneOf({
-    paper: usePaper(),
+  const text = sceneText({
+    background: usePageBackground(),
     materials: [`diffuseColor 0 0 0 specularColor 1 1 1 transparentColor 1 1 1 refractionIndex ${index}`],
     group: "MaterialIndex 0 Plane { normal 0 1 0 offset 0 }",
   });
@@ -28,7 +28,7 @@ function GlassFigure() {
   const angle = (degrees * Math.PI) / 180;
   const from: [number, number] = [-2.1 * Math.sin(angle), sign * 2.1 * Math.cos(angle)];
   const pixel = useTrace(probe, [...from, 0], [-from[0], -from[1], 0], text);
-  const terms = flat(pixel?.tree).map(({ term }) => term);
+  const terms = flatten(pixel?.tree).map(({ term }) => term);
   const split = terms.find((term) => term.rows.some((row) => row.name === "η"));
   const value = (name: string) => split?.rows.find((row) => row.name === name)?.value ?? null;
   const [here, there, sine] = [value("η"), value("η′"), value("sin θ′")];

@@ -1,10 +1,10 @@
 import { useEffect, useMemo, useState } from "preact/hooks";
 import { add, cross, dot, type Eye, mul, type Projector, sub, unit, type Vec } from "../../explain/space";
 import { fixed, Slider, short } from "../../ui/slider";
-import { useCast, usePaper, useScene } from "../context";
+import { useCast, usePageBackground, useScene } from "../context";
 import { Dot, Handle, Line, Name, Path } from "../draw";
 import { Equation, Figure, Sym } from "../parts";
-import { paint, sceneOf } from "../scenes";
+import { materialPresets, sceneText } from "../scenes";
 import { Stage } from "../stage";
 import type { Topic } from "../topic";
 
@@ -29,10 +29,10 @@ function corner(column: number, row: number): Vec {
 }
 
 function MachineFigure() {
-  const paper = usePaper();
-  const text = sceneOf({
-    paper,
-    materials: [paint.stone, paint.clay, paint.sky, paint.sand],
+  const background = usePageBackground();
+  const text = sceneText({
+    background,
+    materials: [materialPresets.stone, materialPresets.clay, materialPresets.sky, materialPresets.sand],
     group: `MaterialIndex 0 Disc { center 1.6 -1 0 normal 0 1 0 radius 2.9 }
       MaterialIndex 1 Sphere { center 1.2 0 0.1 radius 1 }
       MaterialIndex 2 Box { min 2.2 -1 -1.7 max 3.4 0.9 -0.5 }
@@ -53,8 +53,8 @@ function MachineFigure() {
 
   useEffect(() => {
     const look = () => {
-      drawn.tell({ kind: "size", width: columns, height: rows });
-      drawn.tell({ kind: "look", center: nail, direction: aim, up: [0, 1, 0], angle, moving: false });
+      drawn.send({ kind: "size", width: columns, height: rows });
+      drawn.send({ kind: "look", center: nail, direction: aim, up: [0, 1, 0], angle, moving: false });
     };
     return drawn.on((event, bytes) => {
       if (event.kind === "scene") look();
@@ -197,8 +197,12 @@ function Canvas({ view, colors, upTo }: { view: Projector; colors: Uint8Array | 
 }
 
 function PixelHandle({ view, at, drag }: { view: Projector; at: Vec; drag(x: number, y: number): void }) {
-  const seen = view.point(at);
-  return seen && <Handle x={seen.x} y={seen.y} color="var(--ray-camera)" label="The pixel" drag={drag} />;
+  const projected = view.point(at);
+  return (
+    projected && (
+      <Handle x={projected.x} y={projected.y} color="var(--ray-camera)" label="The pixel" drag={drag} />
+    )
+  );
 }
 
 export const machine: Topic = {

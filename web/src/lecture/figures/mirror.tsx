@@ -1,24 +1,24 @@
 import { useState } from "preact/hooks";
-import { flat } from "../../explain/segments";
+import { flatten } from "../../explain/segments";
 import { add, type Eye, sub, unit, type Vec } from "../../explain/space";
 import { fixed, Slider } from "../../ui/slider";
-import { usePaper, useScene, useTrace } from "../context";
+import { usePageBackground, useScene, useTrace } from "../context";
 import { Arrow, Dot, Line, Name } from "../draw";
 import { Equation, Figure, Sym } from "../parts";
 import { Point3 } from "../point";
-import { paint, sceneOf } from "../scenes";
+import { materialPresets, sceneText } from "../scenes";
 import { Stage } from "../stage";
 import type { Topic } from "../topic";
 
 function MirrorFigure() {
-  const paper = usePaper();
+  const background = usePageBackground();
   const [bounces, setBounces] = useState(2);
   const [from, setFrom] = useState<Vec>([-3.2, 0.55, 2.3]);
   const [aim, setAim] = useState<Vec>([-0.586, 0.07, 0.889]);
-  const text = sceneOf({
-    paper,
+  const text = sceneText({
+    background,
     ambient: "0.3 0.3 0.31",
-    materials: [paint.stone, paint.mirror, paint.clay, paint.sky],
+    materials: [materialPresets.stone, materialPresets.mirror, materialPresets.clay, materialPresets.sky],
     group: `MaterialIndex 0 Disc { center 0 -1 0 normal 0 1 0 radius 3.8 }
       MaterialIndex 1 Sphere { center -0.9 -0.05 0 radius 0.95 }
       MaterialIndex 1 Sphere { center 1.25 -0.2 0.3 radius 0.8 }
@@ -37,7 +37,7 @@ function MirrorFigure() {
   });
   const direction = unit(sub(aim, from));
   const pixel = useTrace(probe, from, direction, `${text} ${bounces}`);
-  const rays = flat(pixel?.tree).filter(
+  const rays = flatten(pixel?.tree).filter(
     ({ term }) => term.segment && term.segment.role !== "lit" && term.segment.role !== "shadowed",
   );
   const first = rays.find(({ term }) => term.segment?.role === "reflected")?.term ?? null;

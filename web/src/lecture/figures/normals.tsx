@@ -1,10 +1,10 @@
 import { useState } from "preact/hooks";
 import { fixed, Slider } from "../../ui/slider";
-import { useCast, usePaper, useScene } from "../context";
+import { useCast, usePageBackground, useScene } from "../context";
 import { Handle } from "../draw";
 import { Equation, Figure, Sym } from "../parts";
 import { PlaneArrow, PlaneName, Plot } from "../plot";
-import { paint, sceneOf } from "../scenes";
+import { materialPresets, sceneText } from "../scenes";
 import type { Topic } from "../topic";
 
 type Point = [number, number];
@@ -14,9 +14,9 @@ function NormalsFigure() {
   const [squash, setSquash] = useState(0.7);
   const [turn, setTurn] = useState(62);
   // The matrix, by rows: x' = x + shear y, y' = squash y.
-  const text = sceneOf({
-    paper: usePaper(),
-    materials: [paint.clay],
+  const text = sceneText({
+    background: usePageBackground(),
+    materials: [materialPresets.clay],
     group: `MaterialIndex 0 Transform { Matrix { 1 ${shear} 0 0  0 ${squash} 0 0  0 0 1 0  0 0 0 1 } Sphere { center 0 0 0 radius 1.4 } }`,
   });
   const session = useScene(text);

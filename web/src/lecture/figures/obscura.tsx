@@ -3,12 +3,12 @@ import type { Session } from "../../engine/engine";
 import { type Eye, sub, type Vec } from "../../explain/space";
 import type { CastResult } from "../../protocol";
 import { fixed, Slider } from "../../ui/slider";
-import { usePaper, useScene } from "../context";
+import { usePageBackground, useScene } from "../context";
 import { Dot, Line, Name, Path } from "../draw";
 import { Equation, Figure, Sym } from "../parts";
 import { Point3 } from "../point";
-import { Rendered } from "../rendered";
-import { paint, sceneOf } from "../scenes";
+import { RenderedImage } from "../rendered";
+import { materialPresets, sceneText } from "../scenes";
 import { Stage } from "../stage";
 import type { Topic } from "../topic";
 
@@ -35,7 +35,7 @@ function useCasts(session: Session, origin: Vec, targets: Vec[], key: string): C
 }
 
 function ObscuraFigure() {
-  const paper = usePaper();
+  const background = usePageBackground();
   const [hole, setHole] = useState(0.3);
   const [depth, setDepth] = useState(2);
   const [point, setPoint] = useState<Vec>([0.9, 1.3, -3.6]);
@@ -46,8 +46,8 @@ function ObscuraFigure() {
     Rectangle { corner -2 -1 ${depth} edge0 0 2.7 0 edge1 4 0 0 }
     Rectangle { corner -2 -1 0 edge0 0 0 ${depth} edge1 4 0 0 }
     Rectangle { corner -4 -1 -6 edge0 0 0 6 edge1 8 0 0 }`;
-  const materials = [paint.stone, paint.clay, paint.sage, paint.sky];
-  const text = sceneOf({ paper, materials, group: `${room}\n${garden}` });
+  const materials = [materialPresets.stone, materialPresets.clay, materialPresets.sage, materialPresets.sky];
+  const text = sceneText({ background, materials, group: `${room}\n${garden}` });
   const session = useScene(text);
   const [eye, setEye] = useState<Eye>({
     target: [0.3, 0.35, -2.3],
@@ -58,7 +58,7 @@ function ObscuraFigure() {
   });
   const targets = aims.map((aim): Vec => [0, high + (aim * hole) / 2, 0]);
   // The garden is omitted, because the point can lie inside one of its objects.
-  const walls = useScene(sceneOf({ paper, materials, group: room }));
+  const walls = useScene(sceneText({ background, materials, group: room }));
   const casts = useCasts(walls, point, targets, text);
   const passed = casts.filter((cast) => cast.hit?.object === 1);
   const heights = passed.map((cast) => cast.hit?.point[1] ?? 0);
@@ -67,7 +67,7 @@ function ObscuraFigure() {
   // A camera with this hole and the wall as its film renders the image on the wall.
   const angle = (2 * Math.atan(1.35 / depth) * 180) / Math.PI;
   const film = useScene(
-    sceneOf({ paper: "0.72 0.80 0.92", materials, group: garden }).replace(
+    sceneText({ background: "0.72 0.80 0.92", materials, group: garden }).replace(
       /^.*\n/,
       `PinholeCamera { center 0 ${high} 0 direction 0 0 -1 up 0 1 0 angle ${angle} hole ${hole} filmDistance ${depth} }\n`,
     ),
@@ -145,7 +145,12 @@ function ObscuraFigure() {
             )}
           </Stage>
           <div class="inset turned">
-            <Rendered session={film} width={200} height={200} label="The image on the wall, upside down" />
+            <RenderedImage
+              session={film}
+              width={200}
+              height={200}
+              label="The image on the wall, upside down"
+            />
           </div>
         </div>
       }

@@ -1,7 +1,7 @@
 import { useContext, useState } from "preact/hooks";
 import type { PictureInfo, Setting } from "../../protocol";
-import { OwnSceneContext, useOpened } from "../context";
-import { Explained } from "../explained";
+import { OwnSceneContext, useSceneFile } from "../context";
+import { ExplainedImage } from "../explained";
 import { Choice, Equation, Figure, Sym } from "../parts";
 import type { Topic } from "../topic";
 
@@ -61,18 +61,18 @@ function OwnFigure() {
   const [head, setHead] = useState<PictureInfo | null>(null);
   const step = steps.find((known) => known.id === id) ?? steps[0];
   const options: Setting[] = step.options.map(([name, value]) => ({ name, value }));
-  const { session, size, refused } = useOpened(own, options, step.picture);
+  const { session, size, refused } = useSceneFile(own, options, step.picture);
   const [width, height] = size;
   return (
     <Figure
       stage={
-        <Explained
+        <ExplainedImage
           session={session}
           width={width}
           height={height}
           label={`Your scene: ${step.name}`}
           scene={`${id} ${own.text ?? ""}`}
-          told={setHead}
+          onResult={setHead}
         />
       }
       controls={

@@ -4,7 +4,7 @@ import type { PictureInfo } from "../../protocol";
 import { Slider } from "../../ui/slider";
 import { useScene } from "../context";
 import { Choice, Equation, Figure, Sym } from "../parts";
-import { Rendered } from "../rendered";
+import { RenderedImage } from "../rendered";
 import type { Topic } from "../topic";
 
 const counts = [1, 2, 4, 8, 16, 32, 64, 128, 256];
@@ -26,12 +26,12 @@ function PathsFigure() {
     <Figure
       stage={
         <div class="square">
-          <Rendered
+          <RenderedImage
             session={session}
             width={400}
             height={400}
             label="The path-traced Cornell box"
-            told={setHead}
+            onResult={setHead}
           />
         </div>
       }

@@ -1,11 +1,11 @@
 import { useState } from "preact/hooks";
 import { fixed, Slider } from "../../ui/slider";
-import { usePaper, useScene } from "../context";
+import { usePageBackground, useScene } from "../context";
 import { Handle } from "../draw";
 import { Equation, Figure, Sym } from "../parts";
 import { PlaneArrow, PlaneName, Plot, type Scale } from "../plot";
-import { Rendered } from "../rendered";
-import { paint, sceneOf } from "../scenes";
+import { RenderedImage } from "../rendered";
+import { materialPresets, sceneText } from "../scenes";
 import type { Topic } from "../topic";
 
 type Point = [number, number];
@@ -17,9 +17,9 @@ function PinholeFigure() {
   const [width, height] = [360, 300];
   // The film is 1 high and wide: the angle narrows as its distance grows.
   const angle = (2 * Math.atan(0.5 / film) * 180) / Math.PI;
-  const text = sceneOf({
-    paper: usePaper(),
-    materials: [paint.stone, paint.clay, paint.sky, paint.sand],
+  const text = sceneText({
+    background: usePageBackground(),
+    materials: [materialPresets.stone, materialPresets.clay, materialPresets.sky, materialPresets.sand],
     group: `MaterialIndex 0 Disc { center 0 -0.6 -4 normal 0 1 0 radius 4.6 }
       MaterialIndex 1 Sphere { center -0.75 0 -2.4 radius 0.6 }
       MaterialIndex 2 Sphere { center 0.5 0 -4.2 radius 0.6 }
@@ -36,7 +36,7 @@ function PinholeFigure() {
     <Figure
       stage={
         <div class="halves">
-          <Rendered
+          <RenderedImage
             session={session}
             width={width}
             height={height}

@@ -1,10 +1,10 @@
 import { useState } from "preact/hooks";
 import { fixed } from "../../ui/slider";
-import { numberOf, useCast, usePaper, useScene } from "../context";
+import { numberOf, useCast, usePageBackground, useScene } from "../context";
 import { Handle } from "../draw";
 import { Equation, Figure, Sym } from "../parts";
 import { PlaneArrow, PlaneName, Plot } from "../plot";
-import { paint, sceneOf } from "../scenes";
+import { materialPresets, sceneText } from "../scenes";
 import type { Topic } from "../topic";
 
 type Point = [number, number];
@@ -16,9 +16,9 @@ function PlaneFigure() {
   const [turn, setTurn] = useState(1.35);
   const n: Point = [Math.cos(turn), Math.sin(turn)];
   const offset = n[0] * foot[0] + n[1] * foot[1];
-  const text = sceneOf({
-    paper: usePaper(),
-    materials: [paint.stone],
+  const text = sceneText({
+    background: usePageBackground(),
+    materials: [materialPresets.stone],
     group: `MaterialIndex 0 Plane { normal ${n[0]} ${n[1]} 0 offset ${offset} }`,
   });
   const session = useScene(text);

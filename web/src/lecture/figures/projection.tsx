@@ -1,10 +1,10 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import { fixed, Slider } from "../../ui/slider";
 import { draw } from "../../viewer/picture";
-import { usePaper, useScene } from "../context";
+import { usePageBackground, useScene } from "../context";
 import { Equation, Figure, Sym } from "../parts";
 import { PlaneName, Plot } from "../plot";
-import { paint, sceneOf } from "../scenes";
+import { materialPresets, sceneText } from "../scenes";
 import type { Topic } from "../topic";
 
 const [width, height] = [480, 400];
@@ -17,13 +17,13 @@ const things: { x: number; z: number; r: number; color: string }[] = [
 ];
 
 function ProjectionFigure() {
-  const paper = usePaper();
+  const background = usePageBackground();
   const [angle, setAngle] = useState(60);
   const parallel = angle <= 1;
   const distance = half / Math.tan((Math.max(angle, 1) * Math.PI) / 360);
-  const scene = sceneOf({
-    paper,
-    materials: [paint.stone, paint.clay, paint.sky, paint.sand],
+  const scene = sceneText({
+    background,
+    materials: [materialPresets.stone, materialPresets.clay, materialPresets.sky, materialPresets.sand],
     group: `MaterialIndex 0 Box { min -3 -0.8 -6.4 max 3 -0.7 1 }
       ${things.map(({ x, z, r }, i) => `MaterialIndex ${i + 1} Sphere { center ${x} 0 ${z} radius ${r} }`).join("\n")}`,
   });
@@ -34,7 +34,7 @@ function ProjectionFigure() {
   const session = useScene(text, [{ name: "samples", value: "4" }]);
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
-    session.tell({ kind: "size", width, height });
+    session.send({ kind: "size", width, height });
     return session.on((event, bytes) => {
       if (event.kind === "picture" && canvas.current)
         draw(canvas.current, event.head.width, event.head.height, bytes);

@@ -1,19 +1,19 @@
 import { useState } from "preact/hooks";
 import { add, type Eye, length, mul, sub, type Vec } from "../../explain/space";
 import { fixed, Slider } from "../../ui/slider";
-import { useCast, usePaper, useScene } from "../context";
+import { useCast, usePageBackground, useScene } from "../context";
 import { Arrow, Dot, Line, Name } from "../draw";
 import { Equation, Figure, Switch, Sym } from "../parts";
 import { Point3 } from "../point";
-import { paint, sceneOf } from "../scenes";
+import { materialPresets, sceneText } from "../scenes";
 import { Stage } from "../stage";
 import type { Topic } from "../topic";
 
 function RayFigure() {
-  const paper = usePaper();
-  const text = sceneOf({
-    paper,
-    materials: [paint.stone, paint.clay, paint.sky],
+  const background = usePageBackground();
+  const text = sceneText({
+    background,
+    materials: [materialPresets.stone, materialPresets.clay, materialPresets.sky],
     group: `MaterialIndex 0 Disc { center 0.6 -1.2 0 normal 0 1 0 radius 3.4 }
       MaterialIndex 1 Sphere { center 1.1 -0.2 0 radius 1 }
       MaterialIndex 2 Box { min 2.1 -1.2 -1.8 max 3.1 0.8 -0.8 }`,

@@ -1,10 +1,10 @@
 import { useState } from "preact/hooks";
 import type { PictureInfo } from "../../protocol";
 import { Slider } from "../../ui/slider";
-import { usePaper, useScene } from "../context";
+import { usePageBackground, useScene } from "../context";
 import { Choice, Equation, Figure, Sym } from "../parts";
-import { Rendered } from "../rendered";
-import { paint, sceneOf } from "../scenes";
+import { RenderedImage } from "../rendered";
+import { materialPresets, sceneText } from "../scenes";
 import type { Topic } from "../topic";
 
 const counts = [1, 2, 4, 8, 16, 32, 64, 128];
@@ -21,9 +21,14 @@ function SamplesFigure() {
   const [filter, setFilter] = useState<Filter>("box");
   const [head, setHead] = useState<PictureInfo | null>(null);
   const samples = counts[step] ?? 1;
-  const text = sceneOf({
-    paper: usePaper(),
-    materials: [paint.clay, paint.sky, "diffuseColor 0.85 0.84 0.8", "diffuseColor 0.12 0.12 0.13"],
+  const text = sceneText({
+    background: usePageBackground(),
+    materials: [
+      materialPresets.clay,
+      materialPresets.sky,
+      "diffuseColor 0.85 0.84 0.8",
+      "diffuseColor 0.12 0.12 0.13",
+    ],
     group: `Transform { Translate 0 -1 0 Group {
         ${stripes()} } }
       MaterialIndex 0 Sphere { center -1 0.05 0 radius 1.05 }
@@ -35,13 +40,13 @@ function SamplesFigure() {
   return (
     <Figure
       stage={
-        <Rendered
+        <RenderedImage
           session={session}
           width={96}
           height={54}
           squares
           label="An image with few pixels, each shown as a square"
-          told={setHead}
+          onResult={setHead}
         />
       }
       controls={

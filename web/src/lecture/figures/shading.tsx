@@ -2,23 +2,23 @@ import { useState } from "preact/hooks";
 import { add, type Eye, mul, sub, unit, type Vec } from "../../explain/space";
 import type { Term } from "../../protocol";
 import { fixed, Slider } from "../../ui/slider";
-import { useCast, usePaper, useScene, useTrace } from "../context";
+import { useCast, usePageBackground, useScene, useTrace } from "../context";
 import { Arrow, Dot, Handle, Name } from "../draw";
 import { Equation, Figure, Sym } from "../parts";
 import { Point3 } from "../point";
-import { sceneOf } from "../scenes";
+import { sceneText } from "../scenes";
 import { Stage } from "../stage";
 import type { Topic } from "../topic";
 
 function ShadingFigure() {
-  const paper = usePaper();
+  const background = usePageBackground();
   const [lamp, setLamp] = useState<Vec>([-2.7, 1.9, 1.1]);
   const [toward, setToward] = useState<Vec>(unit([-0.12, 0.42, 0.9]));
   const [diffuse, setDiffuse] = useState(0.75);
   const [specular, setSpecular] = useState(0.5);
   const [exponent, setExponent] = useState(24);
-  const text = sceneOf({
-    paper,
+  const text = sceneText({
+    background,
     ambient: "0.08 0.08 0.09",
     lights: `PointLight { position ${lamp.join(" ")} color 1 0.98 0.95 }`,
     materials: [
@@ -61,7 +61,7 @@ function ShadingFigure() {
           label="A ball lit by a point light, with the vectors at a point"
         >
           {(view) => {
-            const seen = view.point(point);
+            const projected = view.point(point);
             return (
               <>
                 <Arrow
@@ -92,10 +92,10 @@ function ShadingFigure() {
                 </Name>
                 <Dot view={view} at={lamp} color="var(--ray-scattered)" radius={11} />
                 <Point3 view={view} at={lamp} color="var(--ray-scattered)" label="The light" move={setLamp} />
-                {seen && (
+                {projected && (
                   <Handle
-                    x={seen.x}
-                    y={seen.y}
+                    x={projected.x}
+                    y={projected.y}
                     color="var(--ray-camera)"
                     label="The point"
                     drag={(x, y) => {

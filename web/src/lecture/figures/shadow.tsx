@@ -1,24 +1,24 @@
 import { useState } from "preact/hooks";
 import { add, type Eye, length, mul, sub, unit, type Vec } from "../../explain/space";
 import { fixed, Slider, short } from "../../ui/slider";
-import { useCast, usePaper, useScene } from "../context";
+import { useCast, usePageBackground, useScene } from "../context";
 import { Dot, Line, Name } from "../draw";
 import { Equation, Figure, Sym } from "../parts";
 import { Point3 } from "../point";
-import { paint, sceneOf } from "../scenes";
+import { materialPresets, sceneText } from "../scenes";
 import { Stage } from "../stage";
 import type { Topic } from "../topic";
 
 function ShadowFigure() {
-  const paper = usePaper();
+  const background = usePageBackground();
   const [lamp, setLamp] = useState<Vec>([-1.7, 2.3, 0.7]);
   const [point, setPoint] = useState<Vec>([1.5, -1, -0.4]);
   const [radius, setRadius] = useState(0.75);
-  const text = sceneOf({
-    paper,
+  const text = sceneText({
+    background,
     ambient: "0.16 0.16 0.18",
     lights: `PointLight { position ${lamp.join(" ")} color 0.85 0.84 0.8 }`,
-    materials: [paint.stone, paint.clay, paint.sky],
+    materials: [materialPresets.stone, materialPresets.clay, materialPresets.sky],
     group: `MaterialIndex 0 Disc { center 0 -1 0 normal 0 1 0 radius 3.6 }
       MaterialIndex 1 Sphere { center 0 0.1 0 radius ${radius} }
       MaterialIndex 2 Box { min 1.2 -1 -2.2 max 2.2 -0.2 -1.4 }`,

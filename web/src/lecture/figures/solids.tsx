@@ -1,10 +1,10 @@
 import { useState } from "preact/hooks";
 import { fixed } from "../../ui/slider";
-import { useCast, usePaper, useScene } from "../context";
+import { useCast, usePageBackground, useScene } from "../context";
 import { Handle } from "../draw";
 import { Choice, Equation, Figure, Sym } from "../parts";
 import { PlaneArrow, PlaneName, Plot, type Scale } from "../plot";
-import { paint, sceneOf } from "../scenes";
+import { materialPresets, sceneText } from "../scenes";
 import type { Topic } from "../topic";
 
 type Point = [number, number];
@@ -49,9 +49,9 @@ function SolidsFigure() {
   const [tip, setTip] = useState<Point>([-2.4, 0.32]);
   const d: Point = [tip[0] - origin[0], tip[1] - origin[1]];
   const balls = centers.map(([x, y], i) => `Sphere { center ${x} ${y} 0 radius ${radii[i]} }`).join(" ");
-  const text = sceneOf({
-    paper: usePaper(),
-    materials: [paint.clay],
+  const text = sceneText({
+    background: usePageBackground(),
+    materials: [materialPresets.clay],
     group: `MaterialIndex 0 ${operation} { ${balls} }`,
   });
   const session = useScene(text);

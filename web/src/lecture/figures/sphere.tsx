@@ -1,10 +1,10 @@
 import { useState } from "preact/hooks";
 import { fixed } from "../../ui/slider";
-import { numberOf, useCast, usePaper, useScene } from "../context";
+import { numberOf, useCast, usePageBackground, useScene } from "../context";
 import { Handle } from "../draw";
 import { Equation, Figure, Sym } from "../parts";
 import { PlaneArrow, PlaneName, Plot, type Scale } from "../plot";
-import { paint, sceneOf } from "../scenes";
+import { materialPresets, sceneText } from "../scenes";
 import type { Topic } from "../topic";
 
 type Point = [number, number];
@@ -14,9 +14,9 @@ function SphereFigure() {
   const [origin, setOrigin] = useState<Point>([-3.4, 0.3]);
   const [tip, setTip] = useState<Point>([-2, 0.45]);
   const [radius, setRadius] = useState(1.35);
-  const text = sceneOf({
-    paper: usePaper(),
-    materials: [paint.clay],
+  const text = sceneText({
+    background: usePageBackground(),
+    materials: [materialPresets.clay],
     group: `MaterialIndex 0 Sphere { center ${center[0]} ${center[1]} 0 radius ${radius} }`,
   });
   const session = useScene(text);

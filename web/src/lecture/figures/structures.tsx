@@ -3,11 +3,11 @@ import { Boxes } from "../../explain/edges";
 import { add, type Eye, length, mul, sub, type Vec } from "../../explain/space";
 import type { Structure, Traversal, TraversalStep } from "../../protocol";
 import { fixed, Slider } from "../../ui/slider";
-import { useAnswer, usePaper, useScene } from "../context";
+import { useAnswer, usePageBackground, useScene } from "../context";
 import { Arrow, Dot, Line, Name } from "../draw";
 import { Choice, Equation, Figure, Sym } from "../parts";
 import { Point3 } from "../point";
-import { paint, sceneOf } from "../scenes";
+import { materialPresets, sceneText } from "../scenes";
 import { Stage } from "../stage";
 import type { Topic } from "../topic";
 
@@ -32,7 +32,11 @@ const structures = [
 ] as const satisfies readonly (readonly [Structure, string])[];
 
 function StructuresFigure() {
-  const text = sceneOf({ paper: usePaper(), materials: [paint.clay, paint.sky, paint.sand], group });
+  const text = sceneText({
+    background: usePageBackground(),
+    materials: [materialPresets.clay, materialPresets.sky, materialPresets.sand],
+    group,
+  });
   const session = useScene(text);
   const [eye, setEye] = useState<Eye>({ target: [0, 0, 0], distance: 13, yaw: 0.3, pitch: 0.28, angle: 42 });
   const [structure, setStructure] = useState<Structure>("tree");

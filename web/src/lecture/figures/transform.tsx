@@ -1,10 +1,10 @@
 import { useState } from "preact/hooks";
 import { fixed, Slider } from "../../ui/slider";
-import { numberOf, useCast, usePaper, useScene } from "../context";
+import { numberOf, useCast, usePageBackground, useScene } from "../context";
 import { Handle } from "../draw";
 import { Equation, Figure, Switch, Sym } from "../parts";
 import { PlaneArrow, PlaneName, Plot, type Scale } from "../plot";
-import { paint, sceneOf } from "../scenes";
+import { materialPresets, sceneText } from "../scenes";
 import type { Topic } from "../topic";
 
 type Point = [number, number];
@@ -16,9 +16,9 @@ function TransformFigure() {
   const [origin, setOrigin] = useState<Point>([-2.6, 1.3]);
   const [tip, setTip] = useState<Point>([-1.5, 0.85]);
   const [wrong, setWrong] = useState(false);
-  const text = sceneOf({
-    paper: usePaper(),
-    materials: [paint.clay],
+  const text = sceneText({
+    background: usePageBackground(),
+    materials: [materialPresets.clay],
     group: `MaterialIndex 0 Transform { Translate ${move} 0 0 ZRotate ${turn} Scale ${stretch} 1 1 Sphere { center 0 0 0 radius 1 } }`,
   });
   const session = useScene(text);

@@ -7,7 +7,7 @@ use crate::asset_export::export_assets;
 use crate::folder::FolderSource;
 use durer::load::{LoadOptions, load_text};
 use durer_diag::Diagnostics;
-use durer_render::integrator::{Integrate, Path, PathOptions, WhittedOptions};
+use durer_render::integrator::{Integrate, Path, PathOptions, RenderSettings};
 use durer_scene::light::Light;
 use durer_scene::math::{Vec3, fp};
 use durer_scene::sampler::SampleId;
@@ -103,7 +103,7 @@ fn ball(bsdf: &str) -> Vec3 {
     let (mut files, mut found, options) = (Default::default(), Diagnostics::default(), LoadOptions::default());
     let loaded = load_text(std::path::Path::new("a.xml"), text.as_bytes().into(), &options, &mut files, &mut found);
     let world = loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut found)).unwrap();
-    let settings = WhittedOptions { bounces: 8, ..durer_render::render::Job::default().settings };
+    let settings = RenderSettings { bounces: 8, ..durer_render::render::Job::default().settings };
     let path = Path::new(&world, settings, PathOptions::default());
     let n = 1 << 14;
     let one = |i: u32| {

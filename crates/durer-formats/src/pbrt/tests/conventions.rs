@@ -3,7 +3,7 @@ use super::super::named;
 use super::*;
 use durer_diag::Diagnostic;
 use durer_render::compile::testing;
-use durer_render::integrator::{Integrate, Path as Paths, PathOptions, WhittedOptions};
+use durer_render::integrator::{Integrate, Path as Paths, PathOptions, RenderSettings};
 use durer_render::render::Job;
 use durer_render::world::World;
 use durer_scene::bsdf::fresnel::conductor_colors;
@@ -90,7 +90,7 @@ fn orthographic_spherical_and_lens_cameras_match_closed_forms() {
 
 /// Returns the irradiance at a point on a surface facing up, from one sample.
 fn irradiance(world: &World, point: Vec3) -> Vec3 {
-    let settings = WhittedOptions { bounces: 0, ..Job::default().settings };
+    let settings = RenderSettings { bounces: 0, ..Job::default().settings };
     let paths = Paths::new(world, settings, PathOptions::default());
     paths.irradiance(point.as_dvec3(), Vec3::Y, SampleId::new(0, (3, 5), 7), &mut ())
 }
@@ -284,7 +284,7 @@ fn environment_picture_has_pbrt_orientation() {
             "Camera \"perspective\" WorldBegin AttributeBegin {turn}\n\
              LightSource \"infinite\" \"string filename\" \"sky.pfm\" \"float scale\" 2 AttributeEnd Shape \"sphere\""
         );
-        world(folder.path().join("a.pbrt").to_str().unwrap(), &text).sky(dir)
+        world(folder.path().join("a.pbrt").to_str().unwrap(), &text).background_radiance(dir)
     };
     close(look("", Vec3::X), Vec3::new(6.0, 4.0, 2.0));
     close(look("", Vec3::NEG_X), Vec3::ZERO);
@@ -450,7 +450,7 @@ fn media_fill_shapes_and_surround_the_camera() {
     );
     let inside = world("smoke.pbrt", &text);
     assert_eq!(inside.objects().len(), 1);
-    let settings = WhittedOptions { bounces: 4, ..Job::default().settings };
+    let settings = RenderSettings { bounces: 4, ..Job::default().settings };
     let through = |world: &World| {
         let paths = Paths::new(world, settings, PathOptions::default());
         let ray = durer_scene::math::Ray::new(Vec3::ZERO, Vec3::Z);
@@ -474,11 +474,11 @@ fn media_fill_shapes_and_surround_the_camera() {
     assert!(medium(1).is_none());
     let sheet = world.materials().iter().find_map(|material| match material {
         durer_render::world::Material::Phong(phong) => {
-            phong.principled.as_ref().filter(|own| own.written.subsurface_weight > 0.0)
+            phong.principled.as_ref().filter(|own| own.definition.subsurface_weight > 0.0)
         }
-        durer_render::world::Material::Solid(..) => None,
+        durer_render::world::Material::Mix(..) => None,
     });
-    let sheet = &sheet.unwrap().written;
+    let sheet = &sheet.unwrap().definition;
     close(sheet.subsurface_color, Vec3::splat(0.4));
     assert!((sheet.subsurface_scatter_anisotropy + 0.5).abs() < 1e-6);
 }

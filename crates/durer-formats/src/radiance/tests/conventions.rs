@@ -2,7 +2,7 @@ use super::*;
 use durer::LoadOptions;
 use durer::load_text;
 use durer_diag::{Diagnostics, Files};
-use durer_render::integrator::{Integrate, Path as Paths, PathOptions, WhittedOptions};
+use durer_render::integrator::{Integrate, Path as Paths, PathOptions, RenderSettings};
 use durer_render::render::Job;
 use durer_scene::camera::{CameraBasis, CameraRules, CameraSample, Projection};
 use durer_scene::math::{Vec2, fp};
@@ -17,9 +17,9 @@ fn shown(text: &str, point: Vec3, normal: Vec3) -> Vec3 {
     let loaded = load_text(Path::new("a.rad"), text.as_bytes().into(), &options, &mut files, &mut diagnostics);
     let world = loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics));
     let world = world.unwrap_or_else(|| panic!("{:?}", diagnostics.iter().collect::<Vec<_>>()));
-    let settings = WhittedOptions { bounces: 0, ..Job::default().settings };
+    let settings = RenderSettings { bounces: 0, ..Job::default().settings };
     let paths =
-        Paths { world: &world, settings, transport: PathOptions::default(), photons: None, cone: None, cancel: None };
+        Paths { world: &world, settings, options: PathOptions::default(), photons: None, cone: None, cancel: None };
     const SAMPLES: u32 = 256;
     let sum: glam::DVec3 = (0..SAMPLES)
         .map(|i| paths.irradiance(point.as_dvec3(), normal, SampleId::new(0, (0, 0), i), &mut ()).as_dvec3())
@@ -116,9 +116,9 @@ fn tessellated_cone_has_uniform_irradiance() {
     let options = LoadOptions::default();
     let loaded = load_text(Path::new("a.rad"), text.as_bytes().into(), &options, &mut files, &mut diagnostics).unwrap();
     let world = loaded.compile(&options, &mut files, &mut diagnostics).unwrap();
-    let settings = WhittedOptions { bounces: 0, ..Job::default().settings };
+    let settings = RenderSettings { bounces: 0, ..Job::default().settings };
     let paths =
-        Paths { world: &world, settings, transport: PathOptions::default(), photons: None, cone: None, cancel: None };
+        Paths { world: &world, settings, options: PathOptions::default(), photons: None, cone: None, cancel: None };
     let mut dark = 0;
     for i in 0..256 {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(i) * 1.40625 + 0.3);

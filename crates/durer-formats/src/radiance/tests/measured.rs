@@ -104,14 +104,8 @@ fn skies_are_rotated_by_xform_and_by_their_arguments() {
         let scene = load_text(&path, text.as_bytes().into(), &options, &mut files_read, &mut diagnostics).unwrap();
         let world = scene.compile(&options, &mut files_read, &mut diagnostics).unwrap();
         let settings = Job::default().settings;
-        let paths = Paths {
-            world: &world,
-            settings,
-            transport: PathOptions::default(),
-            photons: None,
-            cone: None,
-            cancel: None,
-        };
+        let paths =
+            Paths { world: &world, settings, options: PathOptions::default(), photons: None, cone: None, cancel: None };
         let at = |x: f32, y: f32| {
             let ray = Ray::new(Vec3::ZERO, Vec3::new(x, y, 1.0).normalize());
             paths.radiance(&ray, SampleId::new(0, (0, 0), 0), &mut ()).x

@@ -27,8 +27,8 @@ pub fn blur(pixels: &[Color], width: u32, height: u32) -> Vec<Color> {
     assert_eq!(pixels.len(), w * h, "the size must be that of the pixels");
     // `at` is the tap's position plus 2, before it is clamped to the picture.
     let tap = |at: usize, length: usize| at.saturating_sub(2).min(length - 1);
-    let along_rows = by_pixels(w, h, |x, y| (0..5).map(|k| BLUR[k] * pixels[y * w + tap(x + k, w)]).sum());
-    by_pixels(w, h, |x, y| (0..5).map(|k| BLUR[k] * along_rows[tap(y + k, h) * w + x]).sum())
+    let along_rows = from_pixels(w, h, |x, y| (0..5).map(|k| BLUR[k] * pixels[y * w + tap(x + k, w)]).sum());
+    from_pixels(w, h, |x, y| (0..5).map(|k| BLUR[k] * along_rows[tap(y + k, h) * w + x]).sum())
 }
 
 /// Averages blocks of three by three pixels. The result has a third of `width` and `height`,
@@ -36,7 +36,7 @@ pub fn blur(pixels: &[Color], width: u32, height: u32) -> Vec<Color> {
 pub fn average_3x3(pixels: &[Color], width: u32, height: u32) -> Vec<Color> {
     let w = width as usize;
     assert_eq!(pixels.len(), w * height as usize, "the size must be that of the pixels");
-    by_pixels(w / 3, height as usize / 3, |x, y| {
+    from_pixels(w / 3, height as usize / 3, |x, y| {
         (0..9).map(|i| pixels[(3 * y + i / 3) * w + 3 * x + i % 3]).sum::<Vec3>() / 9.0
     })
 }
@@ -48,6 +48,6 @@ pub fn blur_and_average(pixels: &[Color], width: u32, height: u32) -> Vec<Color>
 }
 
 /// Returns a picture, computed pixel by pixel from column and row.
-fn by_pixels(width: usize, height: usize, color: impl Fn(usize, usize) -> Color) -> Vec<Color> {
+fn from_pixels(width: usize, height: usize, color: impl Fn(usize, usize) -> Color) -> Vec<Color> {
     (0..width * height).map(|i| color(i % width, i / width)).collect()
 }

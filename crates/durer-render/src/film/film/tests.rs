@@ -9,7 +9,7 @@ fn film(samples: &[Sample]) -> Film {
     let mut film = Film::new(3, 2);
     // Some samples are transparent.
     let seen = |s: u32, color| if s % 4 == 3 { None } else { Some(color) };
-    samples.iter().for_each(|&Sample(x, y, s, color, weight)| film.add_if_seen(x, y, s, seen(s, color), weight));
+    samples.iter().for_each(|&Sample(x, y, s, color, weight)| film.add_optional(x, y, s, seen(s, color), weight));
     film
 }
 
@@ -40,12 +40,12 @@ proptest! {
             let packed = PackedFilm::new(film.clone(), count);
             prop_assert_eq!(&packed.film([0, 0, 3, 2]), &film);
             let (mut means, bits) = (Vec::new(), |color: Color, share: f32| (color.to_array().map(f32::to_bits), share.to_bits()));
-            packed.means(|color, share| means.push(bits(color, share)));
+            packed.for_each_mean(|color, share| means.push(bits(color, share)));
             let whole = (0..6).map(|i| (i % 3, i / 3)).map(|(x, y)| bits(film.resolve(x, y), film.coverage(x, y)));
             prop_assert_eq!(means, whole.collect::<Vec<_>>());
             match (samples.len(), count) {
-                (6, 1) => prop_assert!(matches!(packed, PackedFilm::Single(..))),
-                (_, 120) => prop_assert!(matches!(packed, PackedFilm::Even(..))),
+                (6, 1) => prop_assert!(matches!(packed, PackedFilm::OneSample(..))),
+                (_, 120) => prop_assert!(matches!(packed, PackedFilm::UnitWeights(..))),
                 (1.., 121) => prop_assert!(matches!(packed, PackedFilm::Small(..))),
                 _ => {}
             }
@@ -88,14 +88,14 @@ proptest! {
 fn misses_are_transparent_black_by_their_weight() {
     let mut film = Film::new(3, 1);
     film.add(0, 0, 0, Vec3::ONE, 0.5);
-    film.add_if_seen(0, 0, 1, None, 1.5);
+    film.add_optional(0, 0, 1, None, 1.5);
     assert_eq!((film.coverage(0, 0), film.resolve(0, 0), film.samples(0, 0)), (0.25, Vec3::splat(0.25), 2));
-    film.add_if_seen(1, 0, 0, None, 1.0);
+    film.add_optional(1, 0, 0, None, 1.0);
     assert_eq!((film.coverage(1, 0), film.resolve(1, 0)), (0.0, Vec3::ZERO));
     assert_eq!((film.coverage(2, 0), film.resolve(2, 0)), (1.0, Vec3::ZERO));
     // The weights sum to zero, and one of the samples is transparent.
     film.add(2, 0, 0, Vec3::ONE, 1.0);
-    film.add_if_seen(2, 0, 1, None, -1.0);
+    film.add_optional(2, 0, 1, None, -1.0);
     assert_eq!((film.coverage(2, 0), film.resolve(2, 0)), (1.0, Vec3::ZERO));
 }
 
@@ -122,7 +122,7 @@ fn rejected_samples_are_counted_and_the_first_are_listed() {
     film.add(0, 0, 9, Vec3::ONE, f32::INFINITY);
     film.add(0, 1, 0, Vec3::splat(1e30), 1.0);
     film.add(1, 0, 77, Vec3::splat(0.25), 1.0);
-    assert_eq!((film.rejected(), film.first_rejected().len()), (41, REMEMBERED));
+    assert_eq!((film.rejected(), film.first_rejected().len()), (41, MAX_LISTED_REJECTED));
     // Colours that are too bright are clamped.
     assert_eq!(film.resolve(0, 1), Vec3::splat(GREATEST_COLOR as f32));
     assert_eq!(film.first_rejected()[..2], [Rejected { y: 0, x: 0, sample: 9 }, Rejected { y: 0, x: 1, sample: 0 }]);
@@ -145,8 +145,8 @@ fn variance_is_finite_for_finite_samples_and_zero_for_equal_ones() {
         assert_eq!(film.rejected(), 0);
         let mut bytes = Vec::new();
         film.write(&mut bytes);
-        assert_eq!(Film::new(2, 1).read(&mut Bytes(&bytes), 9), Some(film));
-        assert_eq!(Film::new(2, 1).read(&mut Bytes(&bytes), 8), None, "more samples than possible");
+        assert_eq!(Film::new(2, 1).read(&mut ByteReader(&bytes), 9), Some(film));
+        assert_eq!(Film::new(2, 1).read(&mut ByteReader(&bytes), 8), None, "more samples than possible");
     }
 }
 
@@ -162,9 +162,9 @@ proptest! {
     fn small_samples_give_equal_sums(r in -2.6_f32..2.6, g in -2.6_f32..2.6, b in -2.6_f32..2.6, weight in -1.0_f32..=1.0) {
         for scale in [1.0, 1e-3, 1e-6, 0.0] {
             let color = scale * Vec3::new(r, g, b);
-            let (mut fast, mut slow, mut small) = (Pixel::default(), Pixel::default(), Small::default());
+            let (mut fast, mut slow, mut small) = (Pixel::default(), Pixel::default(), SmallSums::default());
             for weight in [weight, 1.0] {
-                prop_assert!(Small::holds(color, weight));
+                prop_assert!(SmallSums::fits(color, weight));
                 small.add(color, weight);
                 prop_assert!(slow.add(color.to_array().map(f64::from), weight.into(), 1.0));
             }

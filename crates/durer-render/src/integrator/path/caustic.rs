@@ -2,7 +2,7 @@
 
 use super::Path;
 use super::photons::DensityEstimate;
-use super::radiance::{Contribution, Output};
+use super::radiance::{Contribution, PathOutput};
 use super::state::{PathState, SampleContext};
 use super::vertex::{Vertex, VertexKind};
 use crate::integrator::trace::{TermKind, TraceListener};
@@ -15,11 +15,11 @@ impl Path<'_> {
         vertex: &Vertex,
         state: &PathState,
         context: &SampleContext,
-        output: &mut Output<T>,
+        output: &mut PathOutput<T>,
     ) {
         let Some(map) = &context.photons else { return };
         let max_bounces = self.max_depth() - state.depth;
-        let DensityEstimate { light, photons, radius } = match &vertex.kind {
+        let DensityEstimate { radiance: light, photons, radius } = match &vertex.kind {
             VertexKind::Surface(surface, shading, _) => map.on_surface(surface, shading, max_bounces),
             VertexKind::Medium(point, dir, phase) => {
                 map.in_medium((point.as_vec3(), *dir), state.media.object(), phase, max_bounces)

@@ -1,6 +1,6 @@
 //! Upper bound on light that samples rarely find, used for error estimates.
 
-use super::{Direct, Path};
+use super::{DirectSampling, Path};
 use crate::world::emitters::emitter_of;
 use crate::world::{Material, Phong};
 use durer_scene::material::Pattern as _;
@@ -15,11 +15,11 @@ impl Path<'_> {
     /// partial opacity, solids, and infinite shapes. If something mirrors or refracts and no
     /// photons are sent, it comes from all emissive surfaces. With light sampling alone, it also
     /// comes from the dimmest part of the environment.
-    pub fn most_by_chance(&self, brightness: impl Fn(Color) -> f32) -> f32 {
+    pub fn max_rare_contribution(&self, brightness: impl Fn(Color) -> f32) -> f32 {
         let shows = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
         let mut phongs = self.world.materials().iter().filter_map(|material| match material {
             Material::Phong(phong) => Some(phong),
-            Material::Solid(..) => None,
+            Material::Mix(..) => None,
         });
         let mirrored = self.photons.is_none() && phongs.any(shows);
         let by_chance = self.world.objects().iter().filter(|object| {
@@ -28,9 +28,9 @@ impl Path<'_> {
             mirrored || !is_chosen
         });
         let brightest = by_chance.map(|object| self.brightest(object.material, &brightness)).fold(0.0, f32::max);
-        let sky = match self.transport.direct {
-            Direct::Lights | Direct::Middle => self.world.environment().map_or(0.0, |sky| brightness(sky.max_weight())),
-            Direct::Both | Direct::Bsdf => 0.0,
+        let sky = match self.options.direct {
+            DirectSampling::Lights | DirectSampling::Center => self.world.environment().map_or(0.0, |sky| brightness(sky.max_weight())),
+            DirectSampling::Both | DirectSampling::Bsdf => 0.0,
         };
         // Directions are sampled in proportion to their cosine, so a hit counts pi times.
         sky.max(PI * brightest)
@@ -40,7 +40,7 @@ impl Path<'_> {
     fn brightest(&self, material: u32, brightness: &impl Fn(Color) -> f32) -> f32 {
         match &self.world.materials()[material as usize] {
             Material::Phong(phong) => phong.emission.as_ref().map_or(0.0, |emission| brightness(emission.radiance)),
-            Material::Solid(solid, ..) => {
+            Material::Mix(solid, ..) => {
                 solid.materials().map(|part| self.brightest(part, brightness)).into_iter().fold(0.0, f32::max)
             }
         }

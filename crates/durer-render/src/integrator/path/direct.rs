@@ -5,15 +5,15 @@
 //! Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9.
 
 use super::Path;
-use super::radiance::{Contribution, Output};
+use super::radiance::{Contribution, PathOutput};
 use super::state::{Dimension, PathState, SampleContext};
-use super::vertex::{TRIES, Vertex, VertexKind};
-use crate::integrator::Direct;
-use crate::integrator::media::Media;
+use super::vertex::{CANDIDATES, Vertex, VertexKind};
+use crate::integrator::DirectSampling;
+use crate::integrator::media::MediumStack;
 use crate::integrator::spawn::spawn_ray;
 use crate::integrator::trace::{Shadow, TermKind, TermValue, TraceListener};
 use crate::world::SurfaceInteraction;
-use crate::world::emitters::{Choice, LightSample};
+use crate::world::emitters::{LightChoice, LightSample};
 use durer_scene::math::{Color, Ray64, Vec2};
 use durer_scene::medium::Segment;
 use durer_scene::spectrum::Spectrum;
@@ -39,18 +39,18 @@ const R2_STEP: Vec2 = Vec2::new(0.754_877_7, 0.569_840_3);
 
 impl Path<'_> {
     /// Chooses one light for a vertex at random; `None` if no light can reach it.
-    pub(super) fn choose_light(&self, vertex: &Vertex) -> Option<Choice> {
+    pub(super) fn choose_light(&self, vertex: &Vertex) -> Option<LightChoice> {
         self.world.emitters().choose(self.world, &vertex.receiver, vertex.random(Dimension::Choices).y)
     }
 
     /// Samples a point on the chosen light and adds the light that the vertex scatters from there.
     pub(super) fn add_direct<T: TraceListener>(
         &self,
-        choice: &Choice,
+        choice: &LightChoice,
         vertex: &Vertex,
         state: &PathState,
         context: &SampleContext,
-        output: &mut Output<T>,
+        output: &mut PathOutput<T>,
     ) {
         let Some(LightLiSample { light, value, bsdf_pdf, pdf, candidate_pdf }) = self.sample_li(choice, vertex) else {
             return;
@@ -60,11 +60,11 @@ impl Path<'_> {
         }
         // BSDF sampling never hits a light without extent.
         let bsdf_pdf = if light.pdf > 0.0 { bsdf_pdf } else { 0.0 };
-        let weight_of = |bsdf_pdf| self.transport.direct.of_light(candidate_pdf, bsdf_pdf);
+        let weight_of = |bsdf_pdf| self.options.direct.of_light(candidate_pdf, bsdf_pdf);
         if weight_of(bsdf_pdf) == 0.0 && !self.world.has_sheets() {
             return;
         }
-        let (visibility, sheets) = self.visibility(&light, vertex, state, context, output.tally);
+        let (visibility, sheets) = self.visibility(&light, vertex, state, context, output.listener);
         // Each sheet costs a path one bounce. With too few bounces left, BSDF sampling never hits
         // the light.
         let mis = weight_of(if state.depth + sheets > self.max_depth() { 0.0 } else { bsdf_pdf });
@@ -87,15 +87,15 @@ impl Path<'_> {
     }
 
     /// Samples a point on the chosen light.
-    fn sample_li(&self, choice: &Choice, vertex: &Vertex) -> Option<LightLiSample> {
-        if choice.is_sky() && vertex.tries > 1.0 {
+    fn sample_li(&self, choice: &LightChoice, vertex: &Vertex) -> Option<LightLiSample> {
+        if choice.is_sky() && vertex.candidates > 1.0 {
             return self.resample_environment(choice, vertex);
         }
         let emitters = self.world.emitters();
         let at = |u| emitters.sample(self.world, choice, vertex.receiver.point, u);
         let u = vertex.random(Dimension::LightPoint);
-        let light = match (at(u)?, self.transport.direct) {
-            (any, Direct::Middle) => at(emitters.middle(any.light).unwrap_or(u))?,
+        let light = match (at(u)?, self.options.direct) {
+            (any, DirectSampling::Center) => at(emitters.center_sample(any.light).unwrap_or(u))?,
             (any, _) => any,
         };
         let (value, bsdf_pdf) = vertex.eval(light.wi);
@@ -108,11 +108,11 @@ impl Path<'_> {
     ///
     /// Source: Talbot, Cline and Egbert, *Importance Resampling for Global Illumination*, EGSR
     /// 2005.
-    fn resample_environment(&self, choice: &Choice, vertex: &Vertex) -> Option<LightLiSample> {
+    fn resample_environment(&self, choice: &LightChoice, vertex: &Vertex) -> Option<LightLiSample> {
         let sky = self.world.environment()?;
-        let (tries, mut u) = (vertex.tries, vertex.random(Dimension::LightPoint));
+        let (tries, mut u) = (vertex.candidates, vertex.random(Dimension::LightPoint));
         let (mut best, mut sum, mut rest) = (None, 0.0, vertex.random(Dimension::Survival).y);
-        for _ in 0..TRIES {
+        for _ in 0..CANDIDATES {
             let direction = sky.direction(u);
             u = (u + R2_STEP).map(|x| if x < 1.0 { x } else { x - 1.0 });
             let Some((wi, place, density)) = direction else { continue };
@@ -122,7 +122,7 @@ impl Path<'_> {
             }
             let (density, radiance) = (choice.probability() * density, sky.light(&place));
             let candidate_pdf = tries * density;
-            let mis = self.transport.direct.of_light(candidate_pdf, bsdf_pdf);
+            let mis = self.options.direct.of_light(candidate_pdf, bsdf_pdf);
             let target = mis * value.max_element() * radiance.max_element();
             let weight = target / density;
             if !(weight > 0.0 && weight.is_finite()) {
@@ -150,7 +150,7 @@ impl Path<'_> {
         vertex: &Vertex,
         state: &PathState,
         context: &SampleContext,
-        tally: &mut T,
+        listener: &mut T,
     ) -> (Spectrum, u32) {
         if !self.settings.shadows {
             return (Spectrum::ONE, 0);
@@ -164,17 +164,17 @@ impl Path<'_> {
         }
         let (mut left, mut sheets) = (Spectrum::ONE, 0);
         let mut numbers = state.sample.stream(state.depth, 1);
-        let mut pass = |media: &Media, ray: &Ray64, to: f32| match self.world.medium(media.object()) {
+        let mut pass = |media: &MediumStack, ray: &Ray64, to: f32| match self.world.medium(media.object()) {
             Some(medium) => {
-                let way = Segment { origin: ray.origin(), dir: light.wi, from: 0.0, to };
-                medium.transmittance(&way, &context.lanes, &mut || numbers.number())
+                let segment = Segment { origin: ray.origin(), dir: light.wi, from: 0.0, to };
+                medium.transmittance(&segment, &context.lanes, &mut || numbers.number())
             }
             None => Spectrum::ONE,
         };
         // A BSDF sample can hit a light on both sides, so light samples must reach both sides too.
         let hides_backs = self.world.hides_backs() && light.pdf == 0.0;
         if !self.world.has_cutouts() && !self.world.has_interfaces() && !self.world.has_sheets() {
-            match self.world.occluded(&ray, tally) {
+            match self.world.occluded(&ray, listener) {
                 true if hides_backs => {}
                 true => return (Spectrum::ZERO, 0),
                 false => return (pass(media, &ray, ray.rounded.t_max), 0),
@@ -183,13 +183,13 @@ impl Path<'_> {
         let mut media = media.clone();
         // After 64 layers the light counts as occluded.
         for _ in 0..64 {
-            let Some(hit) = self.world.closest(&ray, tally) else {
+            let Some(hit) = self.world.closest(&ray, listener) else {
                 return (left * pass(&media, &ray, ray.rounded.t_max), sheets);
             };
             left *= pass(&media, &ray, hit.t);
             let blocker = self.world.interaction(ray, hit);
-            match self.passage(&blocker, &media, &context.lanes) {
-                Some(passage) if self.is_nothing(&blocker, &passage) => media = passage.behind,
+            match self.transition(&blocker, &media, &context.lanes) {
+                Some(transition) if self.has_no_effect(&blocker, &transition) => media = transition.behind,
                 _ if hides_backs && self.world.is_hidden(-ray.dir(), &blocker) => {}
                 None if self.world.has_sheets() => {
                     left *= self.straight_transmittance(&blocker, context);
@@ -218,8 +218,8 @@ impl Path<'_> {
 
     /// Returns true if this lobe transmits light as [`Path::straight_transmittance`] does. Light
     /// samples at the previous vertex then already include the lights behind the surface.
-    pub(super) fn is_seen_through(&self, vertex: &Vertex, lobe: usize, state: &PathState) -> bool {
-        self.world.has_sheets() && !state.prev_is_target && vertex.kind.goes_straight(lobe)
+    pub(super) fn sees_through(&self, vertex: &Vertex, lobe: usize, state: &PathState) -> bool {
+        self.world.has_sheets() && !state.prev_is_photon_target && vertex.kind.transmits_straight(lobe)
     }
 
     /// Returns true if photons are sent to the object that was hit.
@@ -235,15 +235,15 @@ impl Path<'_> {
     }
 }
 
-impl Direct {
+impl DirectSampling {
     /// Returns the MIS weight of a light sample with density `light` in whose direction BSDF
     /// sampling has density `bsdf`.
     fn of_light(self, light: f32, bsdf: f32) -> f32 {
         match self {
-            Direct::Both => power_heuristic(light, bsdf),
-            Direct::Lights | Direct::Middle => 1.0,
+            DirectSampling::Both => power_heuristic(light, bsdf),
+            DirectSampling::Lights | DirectSampling::Center => 1.0,
             // Light samples count only for lights that BSDF sampling cannot hit.
-            Direct::Bsdf => f32::from(u8::from(bsdf == 0.0)),
+            DirectSampling::Bsdf => f32::from(u8::from(bsdf == 0.0)),
         }
     }
 
@@ -251,9 +251,9 @@ impl Direct {
     /// sampling has density `light`.
     pub(super) fn of_direction(self, bsdf: f32, light: f32) -> f32 {
         match self {
-            Direct::Both => power_heuristic(bsdf, light),
-            Direct::Lights | Direct::Middle => f32::from(u8::from(light == 0.0)),
-            Direct::Bsdf => 1.0,
+            DirectSampling::Both => power_heuristic(bsdf, light),
+            DirectSampling::Lights | DirectSampling::Center => f32::from(u8::from(light == 0.0)),
+            DirectSampling::Bsdf => 1.0,
         }
     }
 }

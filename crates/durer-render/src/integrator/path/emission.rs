@@ -1,7 +1,7 @@
 //! Light at the end of a path's ray: background, suns and emissive surfaces.
 
 use super::Path;
-use super::radiance::{Contribution, Output};
+use super::radiance::{Contribution, PathOutput};
 use super::state::{PathState, PrevVertex, SampleContext};
 use crate::integrator::trace::{TermKind, TraceListener};
 use crate::world::SurfaceInteraction;
@@ -14,7 +14,7 @@ impl Path<'_> {
         &self,
         state: &PathState,
         context: &SampleContext,
-        output: &mut Output<T>,
+        output: &mut PathOutput<T>,
     ) {
         let emitters = self.world.emitters();
         let dir = state.ray.dir();
@@ -42,14 +42,14 @@ impl Path<'_> {
         at: &SurfaceInteraction,
         state: &PathState,
         context: &SampleContext,
-        output: &mut Output<T>,
+        output: &mut PathOutput<T>,
     ) {
         let color = self.world.emission(at);
         if color == Color::ZERO {
             return;
         }
-        let light = context.lanes.light_of(color, || self.world.own_illuminant(at.material));
-        let is_sampled = self.world.emitters().chooses(&at.hit, at.ray.dir());
+        let light = context.lanes.light_of(color, || self.world.material_illuminant(at.material));
+        let is_sampled = self.world.emitters().can_choose(&at.hit, at.ray.dir());
         let mis = self.hit_weight(state, is_sampled, |prev| self.pdf_of_hit(at, prev));
         let contribution = Contribution { factor: Spectrum::splat(mis), light, scatterings: state.depth };
         self.add(contribution, || TermKind::Emission { mis }, state, context, output);
@@ -60,8 +60,8 @@ impl Path<'_> {
     /// sampling finds it.
     fn hit_weight(&self, state: &PathState, is_sampled: bool, light_pdf: impl Fn(&PrevVertex) -> f32) -> f32 {
         match &state.prev_vertex {
-            Some(prev) => self.transport.direct.of_direction(prev.pdf, light_pdf(prev)),
-            None if is_sampled && state.is_caustic && state.prev_is_target => 0.0,
+            Some(prev) => self.options.direct.of_direction(prev.pdf, light_pdf(prev)),
+            None if is_sampled && state.is_caustic && state.prev_is_photon_target => 0.0,
             None => 1.0,
         }
     }
@@ -70,8 +70,8 @@ impl Path<'_> {
     /// hit point.
     fn pdf_of_hit(&self, at: &SurfaceInteraction, prev: &PrevVertex) -> f32 {
         let SurfaceInteraction { ray, hit, .. } = at;
-        let way = ray.origin() + f64::from(hit.t) * ray.dir().as_dvec3() - prev.receiver.point;
-        let (wi, distance) = (ray.dir().normalize(), way.length() as f32);
+        let to_hit = ray.origin() + f64::from(hit.t) * ray.dir().as_dvec3() - prev.receiver.point;
+        let (wi, distance) = (ray.dir().normalize(), to_hit.length() as f32);
         self.world.emitters().pdf_of_hit(self.world, hit, &prev.receiver, wi, distance)
     }
 }

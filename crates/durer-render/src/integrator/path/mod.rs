@@ -22,8 +22,8 @@
 //! Light Transport Simulation*, 1997, chapters 9 and 10.
 
 use super::trace::{HitRecord, NodeId, RayKind, TermKind, TraceListener};
-use super::{Integrate, WhittedOptions, one_by_one};
-use crate::integrator::media::{Media, Passage};
+use super::{Integrate, RenderSettings, one_by_one};
+use crate::integrator::media::{MediumStack, MediumTransition};
 use crate::world::{Hit, MAX_BATCH, Shading, SurfaceInteraction, World};
 use durer_scene::bsdf::lobe::diffuse::Diffuse;
 use durer_scene::bsdf::{Bsdf, Frame};
@@ -33,15 +33,15 @@ use durer_scene::sampler::SampleId;
 use durer_scene::shape::SurfacePoint;
 use durer_scene::spectrum::{Lanes, Spectrum};
 use glam::DVec3;
-pub use parameters::{Direct, PathOptions, PhotonParameters};
-pub use photons::{DensityEstimate, PhotonMap, Photons};
-use propagate::Event;
-use radiance::Output;
+pub use parameters::{DirectSampling, PathOptions, PhotonParameters};
+pub use photons::{DensityEstimate, PhotonMap, PhotonTracer};
+use propagate::PathEvent;
+use radiance::PathOutput;
 use smallvec::SmallVec;
 use state::{PathState, SampleContext};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use vertex::{DIRECTIONS, VertexKind};
+use vertex::{SPLIT_DIRECTIONS, VertexKind};
 
 /// Path tracing integrator for one world, with or without photons for caustics.
 #[derive(Clone, Debug)]
@@ -49,11 +49,11 @@ pub struct Path<'w> {
     /// World to render.
     pub world: &'w World,
     /// Maximum depth, and whether objects cast shadows.
-    pub settings: WhittedOptions,
+    pub settings: RenderSettings,
     /// Light sampling strategy, colour mode and clamp.
-    pub transport: PathOptions,
+    pub options: PathOptions,
     /// Photons for caustics. If `None`, paths find caustics only by chance.
-    pub photons: Option<Arc<Photons>>,
+    pub photons: Option<Arc<PhotonTracer>>,
     /// Footprint of a camera sample; `None` if no texture is filtered.
     pub cone: Option<RayCone>,
     /// Cancellation flag. Once it is set, no more rays are traced and results are meaningless.
@@ -64,14 +64,14 @@ pub struct Path<'w> {
 struct PathStack {
     active: PathState,
     /// Branches that start at the first glossy vertex; the next one is last.
-    pending: SmallVec<[PathState; DIRECTIONS as usize]>,
+    pending: SmallVec<[PathState; SPLIT_DIRECTIONS as usize]>,
 }
 
 impl Integrate for Path<'_> {
-    fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
+    fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, listener: &mut T) -> Color {
         let context = self.context(id);
-        tally.lanes(&context.lanes);
-        let node = tally.begin(NodeId::ROOT, || TermKind::Ray {
+        listener.lanes(&context.lanes);
+        let node = listener.begin(NodeId::ROOT, || TermKind::Ray {
             from: RayKind::Camera,
             ray: ray.into(),
             weight: 1.0,
@@ -79,10 +79,10 @@ impl Integrate for Path<'_> {
             bounce: None,
         });
         let [one, zero] = [Spectrum::ONE, Spectrum::ZERO].map(|value| context.term(value));
-        tally.end(node, one, one, zero);
+        listener.end(node, one, one, zero);
         let mut state = PathState { node, ..self.start(ray.into(), id) };
-        let hit = self.world.closest_along(&mut state.ray, tally);
-        context.lanes.color(self.trace(state, hit, &context, tally))
+        let hit = self.world.closest_along(&mut state.ray, listener);
+        context.lanes.color(self.trace(state, hit, &context, listener))
     }
 
     /// Traces a batch of camera rays. Their first hits are computed together.
@@ -90,20 +90,20 @@ impl Integrate for Path<'_> {
         &self,
         rays: &[Ray64],
         begin: impl Fn(usize) -> SampleId,
-        tally: &mut T,
+        listener: &mut T,
         colors: &mut [Color],
     ) {
         if T::LISTENS || T::COUNTS_WORK {
-            return one_by_one(self, rays, begin, tally, colors);
+            return one_by_one(self, rays, begin, listener, colors);
         }
-        let mut found = [None; MAX_BATCH];
+        let mut hits = [None; MAX_BATCH];
         for (part, (rays, colors)) in rays.chunks(MAX_BATCH).zip(colors.chunks_mut(MAX_BATCH)).enumerate() {
-            self.world.closest_batch(rays, &mut found[..rays.len()]);
+            self.world.closest_batch(rays, &mut hits[..rays.len()]);
             for (i, (ray, color)) in rays.iter().zip(colors).enumerate() {
-                tally.ray();
+                listener.ray();
                 let id = begin(part * MAX_BATCH + i);
                 let context = self.context(id);
-                *color = context.lanes.color(self.trace(self.start(*ray, id), found[i], &context, tally));
+                *color = context.lanes.color(self.trace(self.start(*ray, id), hits[i], &context, listener));
             }
         }
     }
@@ -117,14 +117,14 @@ impl Integrate for Path<'_> {
 
 impl<'w> Path<'w> {
     /// Creates a path tracer without photons or cancellation.
-    pub fn new(world: &'w World, settings: WhittedOptions, transport: PathOptions) -> Self {
-        Path { world, settings, transport, photons: None, cone: None, cancel: None }
+    pub fn new(world: &'w World, settings: RenderSettings, options: PathOptions) -> Self {
+        Path { world, settings, options, photons: None, cone: None, cancel: None }
     }
 
     /// Returns the irradiance at a point on the side of a unit normal: pi times the radiance of a
     /// white matte surface. `id` selects the random numbers.
-    pub fn irradiance<T: TraceListener>(&self, point: DVec3, normal: Vec3, id: SampleId, tally: &mut T) -> Color {
-        self.irradiance_on(&SurfacePoint::around(point, normal), normal, id, tally)
+    pub fn irradiance<T: TraceListener>(&self, point: DVec3, normal: Vec3, id: SampleId, listener: &mut T) -> Color {
+        self.irradiance_on(&SurfacePoint::around(point, normal), normal, id, listener)
     }
 
     /// Returns the irradiance at a surface point on the side of a unit shading normal. See
@@ -134,7 +134,7 @@ impl<'w> Path<'w> {
         surface: &SurfacePoint,
         normal: Vec3,
         id: SampleId,
-        tally: &mut T,
+        listener: &mut T,
     ) -> Color {
         let mut bsdf = Bsdf::default();
         bsdf.push(Diffuse::lambert(Spectrum::ONE), Spectrum::ONE, 1.0);
@@ -144,10 +144,10 @@ impl<'w> Path<'w> {
         let nowhere = Ray64::new(surface.point(), Vec3::ZERO, 0.0, 0.0);
         let active = PathState { camera_distance: None, ..self.start(nowhere, id) };
         let mut stack = PathStack { active, pending: SmallVec::new() };
-        let mut output = Output { radiance: Spectrum::ZERO, tally };
+        let mut output = PathOutput { radiance: Spectrum::ZERO, listener };
         let goes_on = self.shade(VertexKind::Surface(surface, &shading, None), &mut stack, &context, &mut output);
-        if let Some(hit) = self.intersect_next(goes_on, &mut stack, output.tally) {
-            self.follow(hit, stack, &context, &mut output);
+        if let Some(hit) = self.intersect_next(goes_on, &mut stack, output.listener) {
+            self.trace_branches(hit, stack, &context, &mut output);
         }
         std::f32::consts::PI * context.lanes.color(output.radiance)
     }
@@ -159,13 +159,13 @@ impl<'w> Path<'w> {
                 let map = photons.map(self, id.sample);
                 SampleContext { lanes: *map.lanes(), photons: Some(map) }
             }
-            None => SampleContext { lanes: Lanes::new(self.transport.color, id.wavelength()), photons: None },
+            None => SampleContext { lanes: Lanes::new(self.options.color, id.wavelength()), photons: None },
         }
     }
 
     /// Returns the state of a path that starts with a ray from any point.
     fn start(&self, ray: Ray64, id: SampleId) -> PathState {
-        let media = Media::around(self.world, ray.origin().as_vec3());
+        let media = MediumStack::around(self.world, ray.origin().as_vec3());
         PathState::new(ray, id, media)
     }
 
@@ -180,26 +180,26 @@ impl<'w> Path<'w> {
         active: PathState,
         hit: Option<Hit>,
         context: &SampleContext,
-        tally: &mut T,
+        listener: &mut T,
     ) -> Spectrum {
-        let mut output = Output { radiance: Spectrum::ZERO, tally };
-        self.follow(hit, PathStack { active, pending: SmallVec::new() }, context, &mut output);
+        let mut output = PathOutput { radiance: Spectrum::ZERO, listener };
+        self.trace_branches(hit, PathStack { active, pending: SmallVec::new() }, context, &mut output);
         output.radiance
     }
 
     /// Traces all branches to their end, one bounce at a time, depth first.
-    fn follow<T: TraceListener>(
+    fn trace_branches<T: TraceListener>(
         &self,
         hit: Option<Hit>,
         mut stack: PathStack,
         context: &SampleContext,
-        output: &mut Output<T>,
+        output: &mut PathOutput<T>,
     ) {
         let mut at = SurfaceInteraction::NOWHERE;
         let mut next = Some(hit);
         while let Some(hit) = next {
             let goes_on = self.bounce(hit, &mut at, &mut stack, context, output);
-            next = self.intersect_next(goes_on, &mut stack, output.tally);
+            next = self.intersect_next(goes_on, &mut stack, output.listener);
         }
     }
 
@@ -209,12 +209,12 @@ impl<'w> Path<'w> {
         &self,
         goes_on: bool,
         stack: &mut PathStack,
-        tally: &mut T,
+        listener: &mut T,
     ) -> Option<Option<Hit>> {
         if !goes_on {
             stack.active = stack.pending.pop()?;
         }
-        Some(self.world.closest_along(&mut stack.active.ray, tally))
+        Some(self.world.closest_along(&mut stack.active.ray, listener))
     }
 
     /// Runs one bounce: moves the ray to its next vertex, adds the light there, and turns the
@@ -225,30 +225,31 @@ impl<'w> Path<'w> {
         at: &mut SurfaceInteraction,
         stack: &mut PathStack,
         context: &SampleContext,
-        output: &mut Output<T>,
+        output: &mut PathOutput<T>,
     ) -> bool {
         let state = &mut stack.active;
-        match self.propagate(hit, at, state, context, output.tally) {
-            Event::Absorbed => false,
-            Event::Escaped => {
+        match self.propagate(hit, at, state, context, output.listener) {
+            PathEvent::Absorbed => false,
+            PathEvent::Escaped => {
                 self.add_background(state, context, output);
                 false
             }
-            Event::Medium(point, dir, phase) => {
+            PathEvent::Medium(point, dir, phase) => {
                 self.shade(VertexKind::Medium(point, dir, phase), stack, context, output)
             }
-            Event::Surface(passage) => {
-                let shading = self.world.shading(at, passage.as_ref().map_or(1.0, Passage::eta), &context.lanes);
+            PathEvent::Surface(transition) => {
+                let shading =
+                    self.world.shading(at, transition.as_ref().map_or(1.0, MediumTransition::eta), &context.lanes);
                 output
-                    .tally
+                    .listener
                     .hit(state.node, || HitRecord::new(self.world, at, shading.frame.normal, at.inside(), false));
                 self.add_emission(at, state, context, output);
                 if shading.bsdf.is_black() {
                     return false;
                 }
-                self.select_hero(at, state, context, output.tally);
-                state.prev_is_target = self.is_photon_target(at);
-                let kind = VertexKind::Surface(&at.surface, &shading, passage.as_ref());
+                self.select_hero(at, state, context, output.listener);
+                state.prev_is_photon_target = self.is_photon_target(at);
+                let kind = VertexKind::Surface(&at.surface, &shading, transition.as_ref());
                 self.shade(kind, stack, context, output)
             }
         }
@@ -261,7 +262,7 @@ impl<'w> Path<'w> {
         kind: VertexKind<'_, 'w>,
         stack: &mut PathStack,
         context: &SampleContext,
-        output: &mut Output<T>,
+        output: &mut PathOutput<T>,
     ) -> bool {
         let state = &stack.active;
         if state.depth > self.max_depth() || self.is_cancelled() {
@@ -279,7 +280,7 @@ impl<'w> Path<'w> {
         if is_broad {
             self.add_caustic(&vertex, state, context, output);
         }
-        self.scatter(&vertex, sample, stack, context, output.tally)
+        self.scatter(&vertex, sample, stack, context, output.listener)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Options of path tracing and of photon mapping.
 
-use super::{Path, Photons};
-use crate::integrator::{IntegratorContext, Parameters};
+use super::{Path, PhotonTracer};
+use crate::integrator::{IntegratorContext, IntegratorOptions};
 use durer_scene::describe::{Constraint, Describe, Field, FieldKind, FieldType, Value, described};
 use durer_scene::dialect::{DialectSet, set};
 use durer_scene::spectrum::ColorMode;
@@ -20,22 +20,22 @@ described! {
         color: ColorMode = ColorMode::Rgb, optional, Constraint::Any, ["color" in set::DURER];
         /// Sampling of direct light: both (light and BSDF sampling, combined by MIS), or for
         /// comparison only lights or only bsdf (same mean, more noise) [default: both]
-        direct: Direct = Direct::Both, optional, Constraint::Any, ["direct" in set::DURER];
+        direct: DirectSampling = DirectSampling::Both, optional, Constraint::Any, ["direct" in set::DURER];
     }
 }
 
 impl Copy for PathOptions {}
 
-impl Parameters for PathOptions {
+impl IntegratorOptions for PathOptions {
     type Integrator<'w> = Path<'w>;
 
-    fn over(self, IntegratorContext { world, settings, cone, cancel, .. }: IntegratorContext<'_>) -> Path<'_> {
+    fn create(self, IntegratorContext { world, settings, cone, cancel, .. }: IntegratorContext<'_>) -> Path<'_> {
         // The footprint is needed only for mipmaps.
         let cone = cone.filter(|_| world.has_mipmaps());
         Path { cancel, cone, ..Path::new(world, settings, self) }
     }
 
-    fn transport(&self) -> Option<PathOptions> {
+    fn path_options(&self) -> Option<PathOptions> {
         Some(*self)
     }
 }
@@ -50,7 +50,7 @@ pub struct PhotonParameters {
     pub count: u32,
     /// Search radius for photons in the first sample, in world units.
     pub radius: Option<f32>,
-    /// Removes the bias to second order at the cost of more noise; see [`Photons::corrected`].
+    /// Removes the bias to second order at the cost of more noise; see [`PhotonTracer::corrected`].
     pub corrected: bool,
 }
 
@@ -103,29 +103,29 @@ impl Describe for PhotonParameters {
     }
 }
 
-impl Parameters for PhotonParameters {
+impl IntegratorOptions for PhotonParameters {
     type Integrator<'w> = Path<'w>;
 
     const PREPARES: bool = true;
 
-    fn over(self, setup: IntegratorContext<'_>) -> Path<'_> {
-        let photons = Photons::new(setup.world, setup.seed, self.count, self.radius);
+    fn create(self, context: IntegratorContext<'_>) -> Path<'_> {
+        let photons = PhotonTracer::new(context.world, context.seed, self.count, self.radius);
         let photons = if self.corrected { photons.corrected() } else { photons };
-        Path { photons: Some(Arc::new(photons)), ..self.transport.over(setup) }
+        Path { photons: Some(Arc::new(photons)), ..self.transport.create(context) }
     }
 
-    fn transport(&self) -> Option<PathOptions> {
+    fn path_options(&self) -> Option<PathOptions> {
         Some(self.transport)
     }
 }
 
 /// Strategy for sampling direct light from emitters with extent: light sampling, BSDF sampling or
-/// both. All except [`Direct::Middle`] have the same mean and differ only in noise.
+/// both. All except [`DirectSampling::Center`] have the same mean and differ only in noise.
 ///
 /// Source: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Direct {
+pub enum DirectSampling {
     /// Light and BSDF sampling, combined by the power heuristic.
     #[default]
     Both,
@@ -133,31 +133,33 @@ pub enum Direct {
     Lights,
     /// BSDF sampling alone. Light samples count only for lights that BSDF sampling cannot hit.
     Bsdf,
-    /// [`Direct::Lights`] with a fixed point on each emitter: the centre of a sphere, disc or
-    /// rectangle. Shadows become hard. Biased; for teaching only.
-    Middle,
+    /// [`DirectSampling::Lights`] with a fixed point on each emitter: the centre of a sphere, disc
+    /// or rectangle. Shadows become hard. Biased; for teaching only.
+    #[serde(rename = "middle")]
+    Center,
 }
 
-impl Direct {
+impl DirectSampling {
     /// Strategies that users can choose.
-    pub const CHOICES: [Direct; 3] = [Direct::Both, Direct::Lights, Direct::Bsdf];
+    pub const CHOICES: [DirectSampling; 3] = [DirectSampling::Both, DirectSampling::Lights, DirectSampling::Bsdf];
 
-    /// Names of [`Direct::CHOICES`].
-    const NAMES: [&str; 3] = [Direct::CHOICES[0].name(), Direct::CHOICES[1].name(), Direct::CHOICES[2].name()];
+    /// Names of [`DirectSampling::CHOICES`].
+    const NAMES: [&str; 3] =
+        [DirectSampling::CHOICES[0].name(), DirectSampling::CHOICES[1].name(), DirectSampling::CHOICES[2].name()];
 
     /// Returns the strategy's name in options.
     pub const fn name(self) -> &'static str {
         match self {
-            Direct::Both => "both",
-            Direct::Lights => "lights",
-            Direct::Bsdf => "bsdf",
-            Direct::Middle => "middle",
+            DirectSampling::Both => "both",
+            DirectSampling::Lights => "lights",
+            DirectSampling::Bsdf => "bsdf",
+            DirectSampling::Center => "middle",
         }
     }
 }
 
-impl FieldType for Direct {
-    const KIND: FieldKind = FieldKind::Word(&Direct::NAMES);
+impl FieldType for DirectSampling {
+    const KIND: FieldKind = FieldKind::Word(&DirectSampling::NAMES);
 
     fn value(&self) -> Option<Value> {
         Some(Value::Word(self.name().into()))
@@ -165,6 +167,6 @@ impl FieldType for Direct {
 
     fn from_value(value: Value) -> Option<Self> {
         let Value::Word(word) = value else { return None };
-        Direct::CHOICES.into_iter().find(|direct| direct.name() == word)
+        DirectSampling::CHOICES.into_iter().find(|direct| direct.name() == word)
     }
 }

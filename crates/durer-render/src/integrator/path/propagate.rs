@@ -2,7 +2,7 @@
 
 use super::Path;
 use super::state::{PathState, SampleContext};
-use crate::integrator::media::{Media, Passage};
+use crate::integrator::media::{MediumStack, MediumTransition};
 use crate::integrator::trace::TraceListener;
 use crate::world::{Hit, SurfaceInteraction};
 use durer_scene::math::{Ray64, Vec3, gamma};
@@ -12,7 +12,7 @@ use glam::DVec3;
 use std::sync::atomic::Ordering::Relaxed;
 
 /// Next event along a path's ray: a surface hit, scattering in a medium, or the end of the path.
-pub(super) enum Event {
+pub(super) enum PathEvent {
     /// The path ended inside a medium, by Russian roulette or after too many scatterings.
     Absorbed,
     /// The ray left the scene.
@@ -20,9 +20,9 @@ pub(super) enum Event {
     /// The ray scattered at a point in an open medium, in which lights are visible. The vector is
     /// the ray's unit direction.
     Medium(DVec3, Vec3, HenyeyGreenstein),
-    /// The ray hit a surface. The passage is `None` if light cannot enter or leave the object
+    /// The ray hit a surface. The transition is `None` if light cannot enter or leave the object
     /// there.
-    Surface(Option<Passage>),
+    Surface(Option<MediumTransition>),
 }
 
 /// Maximum number of scatterings inside one object before the path ends.
@@ -38,10 +38,10 @@ impl Path<'_> {
         at: &mut SurfaceInteraction,
         state: &mut PathState,
         context: &SampleContext,
-        tally: &mut T,
-    ) -> Event {
-        let (event, transmittance) = self.propagate_inner(hit, at, state, context, tally);
-        tally.weigh(state.node, context.term(transmittance), context.term(state.throughput * state.share));
+        listener: &mut T,
+    ) -> PathEvent {
+        let (event, transmittance) = self.propagate_inner(hit, at, state, context, listener);
+        listener.weigh(state.node, context.term(transmittance), context.term(state.throughput * state.pixel_share));
         event
     }
 
@@ -53,13 +53,13 @@ impl Path<'_> {
         at: &mut SurfaceInteraction,
         state: &mut PathState,
         context: &SampleContext,
-        tally: &mut T,
-    ) -> (Event, Spectrum) {
+        listener: &mut T,
+    ) -> (PathEvent, Spectrum) {
         let lanes = &context.lanes;
         // Ray that starts at the last scattering and skips the surfaces passed since.
         let mut rest = state.ray;
         let mut transmittance = Spectrum::ONE;
-        let (mut walked, mut layers, mut scatterings) = (0.0, 0, 0);
+        let (mut traversed, mut layers, mut scatterings) = (0.0, 0, 0);
         let mut numbers = state.sample.stream(state.depth, 0);
         let before = state.throughput;
         loop {
@@ -68,17 +68,18 @@ impl Path<'_> {
                 let stretch = ray.dir().length();
                 let length = hit.map_or(f32::INFINITY, |hit| hit.t * stretch);
                 if let Some(medium) = self.world.medium(state.media.object()) {
-                    let way = Segment { origin: ray.origin(), dir: ray.dir() / stretch, from: walked, to: length };
-                    match medium.sample_distance(&way, state.throughput, lanes, &mut || numbers.number()) {
+                    let segment =
+                        Segment { origin: ray.origin(), dir: ray.dir() / stretch, from: traversed, to: length };
+                    match medium.sample_distance(&segment, state.throughput, lanes, &mut || numbers.number()) {
                         DistanceSample::Passed(left) => transmittance *= left,
                         DistanceSample::Scattered(distance, left) => {
                             transmittance *= left;
                             state.throughput = before * transmittance;
                             // Stay in front of the surface that encloses the medium.
                             let distance = distance.min(length * (1.0 - gamma(16)));
-                            let point = way.origin + f64::from(distance) * way.dir.as_dvec3();
-                            if self.world.is_open(state.media.object()) {
-                                return (Event::Medium(point, way.dir, medium.phase), transmittance);
+                            let point = segment.origin + f64::from(distance) * segment.dir.as_dvec3();
+                            if self.world.is_directly_lit(state.media.object()) {
+                                return (PathEvent::Medium(point, segment.dir, medium.phase), transmittance);
                             }
                             // Lights are not visible from inside this object, so continue the
                             // random walk until it leaves.
@@ -89,12 +90,12 @@ impl Path<'_> {
                             };
                             let is_cancelled = scatterings % 256 == 0 && self.is_cancelled();
                             if scatterings > MAX_WALK || is_cancelled || numbers.number() >= survival {
-                                return (Event::Absorbed, transmittance);
+                                return (PathEvent::Absorbed, transmittance);
                             }
                             transmittance /= survival;
-                            let dir = medium.phase.sample(way.dir, numbers.pair());
+                            let dir = medium.phase.sample(segment.dir, numbers.pair());
                             state.ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
-                            (rest, walked) = (state.ray, 0.0);
+                            (rest, traversed) = (state.ray, 0.0);
                             (state.prev_vertex, state.camera_distance) = (None, None);
                             state.throughput = before * transmittance;
                             break 'passed;
@@ -102,8 +103,8 @@ impl Path<'_> {
                     }
                     state.throughput = before * transmittance;
                 }
-                let Some(hit) = hit else { return (Event::Escaped, transmittance) };
-                walked = length;
+                let Some(hit) = hit else { return (PathEvent::Escaped, transmittance) };
+                traversed = length;
                 self.world.intersect_into(ray, hit, at);
                 if let (Some(cone), Some(before)) = (&self.cone, state.camera_distance) {
                     at.width = cone.width_at(before + length);
@@ -121,17 +122,17 @@ impl Path<'_> {
                         break 'passed;
                     }
                 }
-                match self.passage(at, &state.media, lanes) {
-                    Some(passage) if self.is_nothing(at, &passage) => {
-                        (state.media, rest.rounded.t_min) = (passage.behind, hit.t);
+                match self.transition(at, &state.media, lanes) {
+                    Some(transition) if self.has_no_effect(at, &transition) => {
+                        (state.media, rest.rounded.t_min) = (transition.behind, hit.t);
                     }
-                    passage => {
+                    transition => {
                         state.camera_distance = state.camera_distance.map(|before| before + length);
-                        return (Event::Surface(passage), transmittance);
+                        return (PathEvent::Surface(transition), transmittance);
                     }
                 }
             }
-            hit = self.world.closest_along(&mut rest, tally);
+            hit = self.world.closest_along(&mut rest, listener);
         }
     }
 
@@ -140,18 +141,24 @@ impl Path<'_> {
         self.cancel.is_some_and(|cancel| cancel.load(Relaxed))
     }
 
-    /// Returns the passage of a ray through a surface, or `None` if light cannot enter the object.
-    pub(super) fn passage(&self, at: &SurfaceInteraction, media: &Media, lanes: &Lanes) -> Option<Passage> {
-        let ior = self.world.refracts(at, lanes)?;
-        let passage = media.nested_passage(self.world, at, ior, at.inside());
+    /// Returns the transition of a ray through a surface, or `None` if light cannot enter the
+    /// object.
+    pub(super) fn transition(
+        &self,
+        at: &SurfaceInteraction,
+        media: &MediumStack,
+        lanes: &Lanes,
+    ) -> Option<MediumTransition> {
+        let ior = self.world.refraction_index(at, lanes)?;
+        let transition = media.nested_transition(self.world, at, ior, at.inside());
         Some(match self.world.ignores_surroundings(at) {
-            true => passage.across(ior, at.inside()),
-            false => passage,
+            true => transition.without_surroundings(ior, at.inside()),
+            false => transition,
         })
     }
 
     /// Returns true if a surface has no effect on the ray except for a change of medium.
-    pub(super) fn is_nothing(&self, at: &SurfaceInteraction, passage: &Passage) -> bool {
-        passage.hidden || passage.here == passage.there && self.world.is_interface(at)
+    pub(super) fn has_no_effect(&self, at: &SurfaceInteraction, transition: &MediumTransition) -> bool {
+        transition.displaced || transition.ior_front == transition.ior_behind && self.world.is_interface(at)
     }
 }

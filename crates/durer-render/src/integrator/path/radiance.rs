@@ -6,11 +6,11 @@ use crate::integrator::trace::{TermKind, TraceListener};
 use durer_scene::spectrum::Spectrum;
 
 /// Output of tracing a path: the sum of the radiance found so far, and the trace listener.
-pub(super) struct Output<'t, T> {
+pub(super) struct PathOutput<'t, T> {
     /// Sum of throughput · light over all terms so far, by lane.
     pub(super) radiance: Spectrum,
     /// Counts rays and can record each term.
-    pub(super) tally: &'t mut T,
+    pub(super) listener: &'t mut T,
 }
 
 /// Light found at a path vertex, to be added to the camera ray's radiance.
@@ -32,11 +32,11 @@ impl Path<'_> {
         what: impl FnOnce() -> TermKind,
         state: &PathState,
         context: &SampleContext,
-        output: &mut Output<T>,
+        output: &mut PathOutput<T>,
     ) {
         let mut factor = factor;
-        let mut throughput = state.throughput * state.share * factor;
-        if let Some(limit) = self.transport.clamp
+        let mut throughput = state.throughput * state.pixel_share * factor;
+        if let Some(limit) = self.options.clamp
             && scatterings > 1
         {
             let brightest = (throughput * light).max_element();
@@ -46,8 +46,8 @@ impl Path<'_> {
             }
         }
         output.radiance += throughput * light;
-        let node = output.tally.begin(state.node, what);
-        output.tally.end(node, context.term(factor), context.term(Spectrum::ONE), context.term(light));
-        output.tally.weigh(node, context.term(Spectrum::ONE), context.term(throughput));
+        let node = output.listener.begin(state.node, what);
+        output.listener.end(node, context.term(factor), context.term(Spectrum::ONE), context.term(light));
+        output.listener.weigh(node, context.term(Spectrum::ONE), context.term(throughput));
     }
 }

@@ -19,16 +19,16 @@ impl Path<'_> {
         sample: Option<BsdfSample>,
         stack: &mut PathStack,
         context: &SampleContext,
-        tally: &mut T,
+        listener: &mut T,
     ) -> bool {
         if vertex.directions == 1 {
-            return sample.is_some_and(|sample| self.spawn(vertex, &sample, &mut stack.active, context, tally));
+            return sample.is_some_and(|sample| self.spawn(vertex, &sample, &mut stack.active, context, listener));
         }
         for number in 0..vertex.directions {
             let mut branch = stack.active.branch(number, vertex.directions);
             let vertex = Vertex { random: branch.vertex_sample().pairs(), ..*vertex };
             if let Some(sample) = vertex.sample_bsdf()
-                && self.spawn(&vertex, &sample, &mut branch, context, tally)
+                && self.spawn(&vertex, &sample, &mut branch, context, listener)
             {
                 stack.pending.push(branch);
             }
@@ -46,7 +46,7 @@ impl Path<'_> {
         sample: &BsdfSample,
         state: &mut PathState,
         context: &SampleContext,
-        tally: &mut T,
+        listener: &mut T,
     ) -> bool {
         let throughput = state.throughput * sample.weight;
         let survival = match state.depth {
@@ -59,11 +59,11 @@ impl Path<'_> {
         let is_delta = sample.pdf == 0.0;
         if is_delta {
             // Light samples do not compete with a delta lobe, unless they see through the surface.
-            state.prev_vertex = state.prev_vertex.filter(|_| self.is_seen_through(vertex, sample.lobe, state));
+            state.prev_vertex = state.prev_vertex.filter(|_| self.sees_through(vertex, sample.lobe, state));
             state.is_caustic |= state.had_rough_bounce;
         } else {
             let pdf = vertex.directions as f32 * sample.pdf;
-            state.prev_vertex = Some(PrevVertex { receiver: vertex.receiver, pdf, tries: vertex.tries });
+            state.prev_vertex = Some(PrevVertex { receiver: vertex.receiver, pdf, tries: vertex.candidates });
             state.is_caustic = false;
             state.had_rough_bounce = true;
             state.camera_distance = None;
@@ -74,14 +74,14 @@ impl Path<'_> {
         state.throughput = throughput / survival;
         state.depth += 1;
         state.ray = vertex.kind.spawn(sample.wi);
-        let node = tally.begin(state.node, || TermKind::Ray {
+        let node = listener.begin(state.node, || TermKind::Ray {
             from: match (is_delta, sample.transmits) {
                 (true, false) => RayKind::Reflected,
                 (true, true) => RayKind::Transmitted,
                 (false, _) => RayKind::Scattered,
             },
             ray: (&state.ray).into(),
-            weight: (state.throughput * state.share).max_element(),
+            weight: (state.throughput * state.pixel_share).max_element(),
             hit: None,
             bounce: Some({
                 let (lobe, probability) = vertex.kind.lobe(sample.lobe);
@@ -89,7 +89,7 @@ impl Path<'_> {
             }),
         });
         let factor = sample.weight / (survival * vertex.directions as f32);
-        tally.end(node, context.term(factor), context.term(Spectrum::ONE), context.term(Spectrum::ZERO));
+        listener.end(node, context.term(factor), context.term(Spectrum::ONE), context.term(Spectrum::ZERO));
         state.node = node;
         true
     }
@@ -101,7 +101,7 @@ impl Path<'_> {
         at: &SurfaceInteraction,
         state: &mut PathState,
         context: &SampleContext,
-        tally: &mut T,
+        listener: &mut T,
     ) {
         let Some(nm) = context.lanes.hero().filter(|_| !state.monochromatic && self.world.disperses(at)) else {
             return;
@@ -109,10 +109,10 @@ impl Path<'_> {
         let kept = Spectrum::X * 4.0;
         state.throughput *= kept;
         state.monochromatic = true;
-        let node = tally.begin(state.node, || TermKind::OneWavelength { nm });
+        let node = listener.begin(state.node, || TermKind::Dispersion { nm });
         let [one, zero] = [Spectrum::ONE, Spectrum::ZERO].map(|value| context.term(value));
-        tally.end(node, context.term(kept), one, zero);
-        tally.weigh(node, one, context.term(state.throughput * state.share));
+        listener.end(node, context.term(kept), one, zero);
+        listener.weigh(node, one, context.term(state.throughput * state.pixel_share));
         state.node = node;
     }
 }

@@ -1,7 +1,7 @@
 //! State of a path between two stages of a bounce.
 
 use super::PhotonMap;
-use crate::integrator::media::Media;
+use crate::integrator::media::MediumStack;
 use crate::integrator::trace::{NodeId, TermValue};
 use crate::world::emitters::Receiver;
 use durer_scene::math::Ray64;
@@ -53,19 +53,19 @@ pub(super) struct PathState {
     pub(super) throughput: Spectrum,
     /// Share of the pixel that this branch represents: 1 / (number of branches). Separate from
     /// `throughput`, so that Russian roulette does not end branches sooner than unsplit paths.
-    pub(super) share: f32,
+    pub(super) pixel_share: f32,
     /// Number of scattering events since the camera. Vertices deeper than `max_depth` scatter no
     /// light.
     pub(super) depth: u32,
     /// Random numbers of the path; each branch has its own.
     pub(super) sample: SampleId,
     /// Objects that contain the ray. The last one fills the space.
-    pub(super) media: Media,
+    pub(super) media: MediumStack,
     /// Last vertex that sampled lights, for the MIS weight of lights that the ray hits. `None` if
     /// no light sample competes: after the camera and after delta lobes.
     pub(super) prev_vertex: Option<PrevVertex>,
     /// True if photons are sent to the last surface that scattered the path.
-    pub(super) prev_is_target: bool,
+    pub(super) prev_is_photon_target: bool,
     /// True after scattering from a lobe that is not a delta lobe.
     pub(super) had_rough_bounce: bool,
     /// True if delta lobes follow a rough bounce. Photons then account for the lights that the path
@@ -95,16 +95,16 @@ pub(super) struct PrevVertex {
 
 impl PathState {
     /// Creates the state at the start of a path.
-    pub(super) fn new(ray: Ray64, sample: SampleId, media: Media) -> Self {
+    pub(super) fn new(ray: Ray64, sample: SampleId, media: MediumStack) -> Self {
         PathState {
             ray,
             throughput: Spectrum::ONE,
-            share: 1.0,
+            pixel_share: 1.0,
             depth: 0,
             sample,
             media,
             prev_vertex: None,
-            prev_is_target: false,
+            prev_is_photon_target: false,
             had_rough_bounce: false,
             is_caustic: false,
             monochromatic: false,
@@ -122,6 +122,6 @@ impl PathState {
     /// sample sequence, so that all of them are stratified together.
     pub(super) fn branch(&self, number: u32, count: u32) -> Self {
         let sample = self.sample.with_sample(self.sample.sample.wrapping_mul(count).wrapping_add(number));
-        PathState { sample, share: self.share / count as f32, ..self.clone() }
+        PathState { sample, pixel_share: self.pixel_share / count as f32, ..self.clone() }
     }
 }

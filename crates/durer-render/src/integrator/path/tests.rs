@@ -3,7 +3,7 @@
 use super::*;
 use crate::compile::AccelKind;
 use crate::compile::testing::{self, read};
-use crate::integrator::{Direct, TraceNode};
+use crate::integrator::{DirectSampling, TraceNode};
 use crate::render::Job;
 use durer_scene::dialect::Dialect;
 use durer_scene::math::fp;
@@ -18,7 +18,7 @@ mod terms;
 
 /// Returns the mean of many samples along a ray and its standard error.
 fn light(world: &World, ray: Ray, bounces: u32, samples: u32) -> (f64, f64) {
-    let settings = WhittedOptions { bounces, ..Job::default().settings };
+    let settings = RenderSettings { bounces, ..Job::default().settings };
     let path = Path::new(world, settings, PathOptions::default());
     let (mut sum, mut squares) = (0.0, 0.0);
     for sample in 0..samples {
@@ -32,8 +32,8 @@ fn light(world: &World, ray: Ray, bounces: u32, samples: u32) -> (f64, f64) {
 
 /// Returns mean and variance of each colour channel over many samples along a ray, for both
 /// strategies combined, light sampling, and BSDF sampling.
-fn by_ways(world: &World, ray: Ray, settings: WhittedOptions, color: ColorMode) -> [[(f64, f64); 3]; 3] {
-    [Direct::Both, Direct::Lights, Direct::Bsdf].map(|direct| {
+fn by_ways(world: &World, ray: Ray, settings: RenderSettings, color: ColorMode) -> [[(f64, f64); 3]; 3] {
+    [DirectSampling::Both, DirectSampling::Lights, DirectSampling::Bsdf].map(|direct| {
         let path = Path::new(world, settings, PathOptions { color, direct, ..PathOptions::default() });
         let n = 1 << 14;
         let (mut sum, mut squares) = (DVec3::ZERO, DVec3::ZERO);
@@ -251,7 +251,7 @@ fn light_sampling_and_bsdf_sampling_alone_have_the_mean_of_both() {
          MaterialIndex 1 Sphere {{ center -0.8 1.6 0 radius 0.8 }} Triangle {{ vertex0 1 2 0 vertex1 2 2 0 vertex2 2 2 1 }}
          MaterialIndex 2 Sphere {{ center -0.3 0.4 1 radius 0.4 }} }}"
     ));
-    let settings = WhittedOptions { bounces: 3, ..Job::default().settings };
+    let settings = RenderSettings { bounces: 3, ..Job::default().settings };
     for (direction, color) in [(-1.0, ColorMode::Rgb), (-0.7, ColorMode::Rgb), (-1.0, ColorMode::Spectral)] {
         let ray = Ray::new(Vec3::new(2.0, 2.0, 0.0), Vec3::new(direction, -1.0, 0.0).normalize());
         let ways = by_ways(&world, ray, settings, color);
@@ -291,7 +291,7 @@ fn several_directions_to_an_environment_have_the_mean_of_one() {
         MaterialIndex 4 Plane { normal 0 1 0 offset -1 } }";
     let (world, found) = testing::try_read(text, Dialect::Durer.rules(), AccelKind::Bvh, folder.path());
     let world = world.unwrap_or_else(|| panic!("{found:?}"));
-    let settings = WhittedOptions { bounces: 3, ..Job::default().settings };
+    let settings = RenderSettings { bounces: 3, ..Job::default().settings };
     for (x, y) in
         [(-2.0, 0.5), (-1.6, 0.2), (-2.5, -0.1), (0.3, 0.4), (-0.2, -0.3), (2.0, 0.6), (2.5, 0.3), (1.0, -0.9)]
     {
@@ -304,7 +304,7 @@ fn several_directions_to_an_environment_have_the_mean_of_one() {
         }
         // The first glossy vertex follows two directions, all others follow one.
         fn follow(node: &TraceNode, directions: u32) -> usize {
-            let below = node.terms.iter().map(|term| match &term.what {
+            let below = node.terms.iter().map(|term| match &term.kind {
                 TermKind::Ray { bounce: Some(bounce), .. } => {
                     assert_eq!(bounce.directions, directions);
                     1 + follow(term, 1)

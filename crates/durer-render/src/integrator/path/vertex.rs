@@ -2,7 +2,7 @@
 
 use super::Path;
 use super::state::{DIMENSIONS, Dimension, PathState};
-use crate::integrator::media::{Media, Passage};
+use crate::integrator::media::{MediumStack, MediumTransition};
 use crate::integrator::spawn::{offset_bound, spawn_ray, to_point};
 use crate::world::Shading;
 use crate::world::emitters::{LightSample, Receiver};
@@ -17,13 +17,13 @@ use glam::DVec3;
 /// other BSDFs, one candidate is as good. (Measured for a rough metal: the variance is 0.72 with
 /// two candidates, 0.59 with four and 0.54 with eight. A picture takes 1.2 times as long with four
 /// as with one.)
-pub(super) const TRIES: u32 = 4;
+pub(super) const CANDIDATES: u32 = 4;
 
 /// Number of directions followed from a glossy first vertex if there is an environment. Most of
 /// these paths end soon, so the cost of the first vertex is shared.
 ///
 /// Source: Arvo and Kirk, *Particle Transport and Image Synthesis*, SIGGRAPH 1990 (splitting).
-pub(super) const DIRECTIONS: u32 = 2;
+pub(super) const SPLIT_DIRECTIONS: u32 = 2;
 
 /// Path vertex with everything needed to sample lights and directions from it.
 #[derive(Clone, Copy)]
@@ -33,7 +33,7 @@ pub(super) struct Vertex<'a, 'w> {
     /// Random numbers in [0, 1)^2, indexed by [`Dimension`].
     pub(super) random: [Vec2; DIMENSIONS],
     /// Number of candidate directions to the environment; at least 1.
-    pub(super) tries: f32,
+    pub(super) candidates: f32,
     /// Number of directions to follow; at least 1.
     pub(super) directions: u32,
     /// Point and normal for which lights are sampled.
@@ -43,8 +43,8 @@ pub(super) struct Vertex<'a, 'w> {
 /// Scatterer at a path vertex: a surface with its BSDF, or a medium with its phase function.
 #[derive(Clone, Copy)]
 pub(super) enum VertexKind<'a, 'w> {
-    /// A surface. With a passage, light can pass through it into another medium.
-    Surface(&'a SurfacePoint, &'a Shading<'w>, Option<&'a Passage>),
+    /// A surface. With a transition, light can pass through it into another medium.
+    Surface(&'a SurfacePoint, &'a Shading<'w>, Option<&'a MediumTransition>),
     /// A point in a medium, and the unit direction in which the ray arrives.
     Medium(DVec3, Vec3, HenyeyGreenstein),
 }
@@ -68,18 +68,19 @@ impl<'w> Path<'w> {
     pub(super) fn vertex<'a>(&self, kind: VertexKind<'a, 'w>, state: &PathState) -> Vertex<'a, 'w> {
         let is_narrow = self.world.environment().is_some() && kind.is_glossy();
         let (tries, directions) = match (is_narrow, state.depth) {
-            (true, 0) => (TRIES, DIRECTIONS),
-            (true, _) => (TRIES, 1),
+            (true, 0) => (CANDIDATES, SPLIT_DIRECTIONS),
+            (true, _) => (CANDIDATES, 1),
             (false, _) => (1, 1),
         };
         let is_seen = state.depth == 0 || state.camera_distance.is_some();
-        let far = if is_seen { Receiver::FAR } else { Receiver::FAR_BEYOND };
+        let uniform_threshold =
+            if is_seen { Receiver::UNIFORM_THRESHOLD } else { Receiver::INDIRECT_UNIFORM_THRESHOLD };
         Vertex {
             kind,
             random: state.vertex_sample().pairs(),
-            tries: tries as f32,
+            candidates: tries as f32,
             directions,
-            receiver: Receiver { point: kind.point(), n: kind.normal(), far },
+            receiver: Receiver { point: kind.point(), n: kind.normal(), uniform_threshold },
         }
     }
 }
@@ -179,7 +180,7 @@ impl VertexKind<'_, '_> {
     }
 
     /// Returns true if a lobe transmits light straight through an open surface, such as a pane.
-    pub(super) fn goes_straight(&self, lobe: usize) -> bool {
+    pub(super) fn transmits_straight(&self, lobe: usize) -> bool {
         let is_sheet = matches!(self, VertexKind::Surface(_, _, None));
         is_sheet && self.nth_lobe(lobe).is_some_and(|lobe| lobe.kind().is_straight)
     }
@@ -209,9 +210,11 @@ impl VertexKind<'_, '_> {
     }
 
     /// Returns the media behind the surface if a direction leads there and light can pass.
-    pub(super) fn media_behind(&self, wi: Vec3) -> Option<&Media> {
+    pub(super) fn media_behind(&self, wi: Vec3) -> Option<&MediumStack> {
         match self {
-            VertexKind::Surface(_, shading, Some(passage)) if wi.dot(shading.n_geo) < 0.0 => Some(&passage.behind),
+            VertexKind::Surface(_, shading, Some(transition)) if wi.dot(shading.n_geo) < 0.0 => {
+                Some(&transition.behind)
+            }
             _ => None,
         }
     }

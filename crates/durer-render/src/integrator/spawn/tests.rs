@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::compile::{AccelKind, testing};
-use crate::integrator::{Integrate, Path as PathTracer, PathOptions, Whitted, WhittedOptions};
+use crate::integrator::{Integrate, Path as PathTracer, PathOptions, RenderSettings, Whitted};
 use crate::world::World;
 use durer_scene::dialect::Dialect;
 use durer_scene::math::Ray;
@@ -88,17 +88,17 @@ fn room(walls: &str, at: Vec3, folder: &Path) -> World {
 /// Returns how many of `count` squared rays from inside a room, in all directions, see light with
 /// Whitted ray tracing or path tracing.
 fn leaks(world: &World, at: Vec3, count: usize) -> usize {
-    let settings = WhittedOptions {
+    let settings = RenderSettings {
         bounces: 0,
         shadows: true,
         shade_back: true,
         transparent_shadows: false,
         reflection: false,
         refraction: false,
-        least_weight: 0.0,
+        min_weight: 0.0,
     };
     let whitted = Whitted { world, settings, cancel: None };
-    let path = PathTracer::new(world, WhittedOptions { bounces: 5, ..settings }, PathOptions::default());
+    let path = PathTracer::new(world, RenderSettings { bounces: 5, ..settings }, PathOptions::default());
     let eye = at + Vec3::new(0.25, -0.125, 0.5);
     let sees = |i: usize| {
         let (u, v) = ((i % count) as f32 + 0.5, (i / count) as f32 + 0.5);

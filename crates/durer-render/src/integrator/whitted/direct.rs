@@ -14,71 +14,76 @@ const MOST_LAYERS: u32 = 64;
 
 impl Whitted<'_> {
     /// Returns the shadow ray to a light for the trace.
-    pub(super) fn shadow(&self, surface: &SurfacePoint, light: usize, seen: &LightLiSample, share: Color) -> Shadow {
-        let ray = self.shadow_ray(surface, light, seen);
+    pub(super) fn shadow(&self, surface: &SurfacePoint, light: usize, light_sample: &LightLiSample, share: Color) -> Shadow {
+        let ray = self.shadow_ray(surface, light, light_sample);
         let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
         Shadow { ray: (&ray).into(), blocker, share: share.into() }
     }
 
     /// Returns the shadow ray to a light.
     #[inline(always)]
-    pub(super) fn shadow_ray(&self, surface: &SurfacePoint, light: usize, seen: &LightLiSample) -> Ray64 {
+    pub(super) fn shadow_ray(&self, surface: &SurfacePoint, light: usize, light_sample: &LightLiSample) -> Ray64 {
         let epsilon = self.world.shading_rules().epsilon;
         if epsilon.is_none() {
             // End before the light, so that objects exactly at the light do not block it.
-            return to_light(surface, seen.to_light, seen.distance * (1.0 - gamma(16)), None);
+            return to_light(surface, light_sample.to_light, light_sample.distance * (1.0 - gamma(16)), None);
         }
-        let way = self.world.course_way(light, surface.position);
-        let (dir, distance) = way.unwrap_or((seen.to_light, seen.distance));
+        let light_direction = self.world.course_light_direction(light, surface.position);
+        let (dir, distance) = light_direction.unwrap_or((light_sample.to_light, light_sample.distance));
         to_light(surface, dir, distance, epsilon)
     }
 
     /// Computes the visibility of lights along shadow rays: 0 if occluded, else the transmittance
     /// of transparent objects in between.
-    pub(super) fn visible<T: TraceListener>(&self, shadows: &mut [Ray64], shares: &mut [Color], tally: &mut T) {
-        let mut found = [None; MAX_BATCH];
+    pub(super) fn visible<T: TraceListener>(&self, shadows: &mut [Ray64], shares: &mut [Color], listener: &mut T) {
+        let mut hits = [None; MAX_BATCH];
         if self.world.shading_rules().shadow_fronts {
-            self.world.first_hits(shadows, &mut found[..shadows.len()], tally);
-            for ((ray, share), hit) in shadows.iter().zip(shares).zip(found) {
+            self.world.first_hits(shadows, &mut hits[..shadows.len()], listener);
+            for ((ray, share), hit) in shadows.iter().zip(shares).zip(hits) {
                 let blocker = hit.map(|hit| self.world.interaction_along(ray, hit));
                 let blocked = blocker.is_some_and(|blocker| blocker.surface.n_shade.dot(ray.dir()) <= 0.0);
                 *share = if blocked { Color::ZERO } else { Color::ONE };
             }
         } else if self.settings.transparent_shadows {
-            self.world.first_hits(shadows, &mut found[..shadows.len()], tally);
-            for ((ray, share), hit) in shadows.iter().zip(shares).zip(found) {
-                *share = self.let_through(*ray, hit, tally);
+            self.world.first_hits(shadows, &mut hits[..shadows.len()], listener);
+            for ((ray, share), hit) in shadows.iter().zip(shares).zip(hits) {
+                *share = self.shadow_transmittance(*ray, hit, listener);
             }
         } else {
             let mut blocked = [false; MAX_BATCH];
-            self.world.any_hits(shadows, &mut blocked[..shadows.len()], tally);
+            self.world.any_hits(shadows, &mut blocked[..shadows.len()], listener);
             for (share, blocked) in shares.iter_mut().zip(blocked) {
                 *share = if blocked { Color::ZERO } else { Color::ONE };
             }
         }
     }
 
-    /// Returns the transmittance of the transparent objects along a shadow ray. `found` is its
-    /// first hit.
-    fn let_through<T: TraceListener>(&self, mut ray: Ray64, mut found: Option<Hit>, tally: &mut T) -> Color {
+    /// Returns the transmittance of the transparent objects along a shadow ray. `next_hit` is
+    /// its first hit.
+    fn shadow_transmittance<T: TraceListener>(
+        &self,
+        mut ray: Ray64,
+        mut next_hit: Option<Hit>,
+        listener: &mut T,
+    ) -> Color {
         let (to_light, mut share) = (ray.dir(), Color::ONE);
         // Limits the number of layers.
         for layer in 1.. {
-            let Some(hit) = found else { return share };
+            let Some(hit) = next_hit else { return share };
             // An opaque material ends the search early, without computing the surface.
             match &self.world.materials()[self.world.material_of(&hit) as usize] {
                 Material::Phong(phong) if phong.transparent == Color::ZERO => break,
                 _ => {}
             }
             let blocker = self.world.interaction_along(&ray, hit);
-            let parts = self.world.parts(&blocker);
+            let parts = self.world.materials_at(&blocker);
             share *= parts.iter().map(|part| part.share * part.phong.transparent).sum::<Color>();
             if share == Color::ZERO || layer == MOST_LAYERS {
                 break;
             }
             let rest = ray.rounded.t_max - blocker.hit.t;
             ray = spawn_ray(&blocker.surface, to_light, rest, self.world.shading_rules().epsilon);
-            found = self.world.closest_along(&mut ray, tally);
+            next_hit = self.world.closest_along(&mut ray, listener);
         }
         Color::ZERO
     }
@@ -86,30 +91,30 @@ impl Whitted<'_> {
 
 /// Diffuse and highlight terms of one light at a shaded point, without occlusion.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Direct {
+pub(super) struct LightTerms {
     /// Cosine between the normal and the direction to the light.
     cosine: f32,
     /// Cosine that is raised to the highlight's exponent, possibly negative. `None` without a
     /// highlight.
     base: Option<f32>,
-    /// Cosine to the power of the exponent, computed by [`take_powers`].
+    /// Cosine to the power of the exponent, computed by [`compute_powers`].
     strength: f32,
     diffuse: Color,
 }
 
-impl Direct {
+impl LightTerms {
     /// Computes all terms except the highlight's power.
     #[inline(always)]
-    pub(super) fn of(phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, seen: &LightLiSample) -> Self {
-        let cosine = n.dot(seen.to_light);
+    pub(super) fn of(phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, light_sample: &LightLiSample) -> Self {
+        let cosine = n.dot(light_sample.to_light);
         let emits = |model| cosine > 0.0 || model == HighlightModel::Phong { behind: true };
         let highlight = phong.highlight.filter(|highlight| emits(highlight.2));
         let base = highlight.map(|(_, _, model)| match model {
             // Cosine between the normal and the half vector of light and eye.
-            HighlightModel::Blinn => n.dot((seen.to_light - view).normalize_or_zero()),
-            HighlightModel::Phong { .. } => reflect(view, n).dot(seen.to_light),
+            HighlightModel::Blinn => n.dot((light_sample.to_light - view).normalize_or_zero()),
+            HighlightModel::Phong { .. } => reflect(view, n).dot(light_sample.to_light),
         });
-        Direct { cosine, base, strength: 0.0, diffuse: cosine.max(0.0) * diffuse }
+        LightTerms { cosine, base, strength: 0.0, diffuse: cosine.max(0.0) * diffuse }
     }
 
     /// Returns true if both terms are 0 for a light of any colour.
@@ -126,28 +131,28 @@ impl Direct {
 
     /// Returns the radiance that the point scatters towards the ray's origin.
     #[inline(always)]
-    pub(super) fn color(&self, phong: &Phong, seen: &LightLiSample) -> Color {
+    pub(super) fn color(&self, phong: &Phong, light_sample: &LightLiSample) -> Color {
         match (self.base, phong.highlight) {
-            (Some(_), Some((specular, ..))) => (self.diffuse + self.strength * specular) * seen.color,
-            _ => self.diffuse * seen.color,
+            (Some(_), Some((specular, ..))) => (self.diffuse + self.strength * specular) * light_sample.color,
+            _ => self.diffuse * light_sample.color,
         }
     }
 
     /// Reports both terms to a listener. `parent` is the light's node in the trace.
-    pub(super) fn report<T: TraceListener>(&self, phong: &Phong, diffuse: Color, parent: NodeId, tally: &mut T) {
+    pub(super) fn report<T: TraceListener>(&self, phong: &Phong, diffuse: Color, parent: NodeId, listener: &mut T) {
         let cosine = self.cosine;
-        let node = tally.begin(parent, || TermKind::Diffuse { cosine });
-        tally.end(node, Color::splat(cosine.max(0.0)), Color::ONE, diffuse);
+        let node = listener.begin(parent, || TermKind::Diffuse { cosine });
+        listener.end(node, Color::splat(cosine.max(0.0)), Color::ONE, diffuse);
         if let (Some(base), Some((specular, exponent, model))) = (self.base, phong.highlight) {
             let node =
-                tally.begin(parent, || TermKind::Highlight { model: TermKind::highlight(model), base, exponent });
-            tally.end(node, Color::splat(self.strength), Color::ONE, specular);
+                listener.begin(parent, || TermKind::Highlight { model: TermKind::highlight(model), base, exponent });
+            listener.end(node, Color::splat(self.strength), Color::ONE, specular);
         }
     }
 }
 
 /// Computes the highlight powers of several points with SIMD.
-pub(super) fn take_powers(points: &[ShadingPoint], parts: &mut [ShadedMaterial], some: impl Iterator<Item = usize>) {
+pub(super) fn compute_powers(points: &[ShadingPoint], parts: &mut [ShadedMaterial], some: impl Iterator<Item = usize>) {
     let mut powers = Powers { bases: [0.0; MAX_BATCH], exponents: [1.0; MAX_BATCH], count: 0 };
     let mut places = [0; MAX_BATCH];
     for point in some.map(|i| &points[i]) {
@@ -162,11 +167,11 @@ pub(super) fn take_powers(points: &[ShadingPoint], parts: &mut [ShadedMaterial],
             (powers.bases[at], powers.exponents[at], places[at]) = (base, exponent, place);
             powers.count += 1;
             if powers.count == MAX_BATCH {
-                powers.give(&places, parts);
+                powers.flush(&places, parts);
             }
         }
     }
-    powers.give(&places, parts);
+    powers.flush(&places, parts);
 }
 
 /// Batch of bases and exponents of highlights, whose powers are computed with SIMD.
@@ -178,7 +183,7 @@ struct Powers {
 
 impl Powers {
     /// Computes the powers of the batch, stores them in `parts` and empties the batch.
-    fn give(&mut self, places: &[usize; MAX_BATCH], parts: &mut [ShadedMaterial]) {
+    fn flush(&mut self, places: &[usize; MAX_BATCH], parts: &mut [ShadedMaterial]) {
         let count = std::mem::take(&mut self.count);
         if count == 0 {
             return;

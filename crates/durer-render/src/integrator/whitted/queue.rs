@@ -1,6 +1,6 @@
 //! Queue of rays that the Whitted integrator traces, with the sums of their light.
 
-use crate::integrator::media::Media;
+use crate::integrator::media::MediumStack;
 use crate::integrator::trace::{NodeId, TraceListener};
 use crate::world::MAX_BATCH;
 use durer_scene::math::{Color, Ray, Ray64, Vec3};
@@ -14,10 +14,10 @@ pub(super) struct Segment {
     /// Minimum `t` of hits. It skips surfaces that were ignored.
     pub(super) t_min: f32,
     /// Objects that contain the ray.
-    pub(super) media: Media,
+    pub(super) media: MediumStack,
     /// Maximum depth of secondary rays from this one.
     pub(super) bounces: u32,
-    /// Weight in the pixel; see [`super::WhittedOptions::least_weight`].
+    /// Weight in the pixel; see [`super::RenderSettings::min_weight`].
     pub(super) weight: f32,
     /// Index of the camera ray from which it descends.
     pub(super) camera: u32,
@@ -44,7 +44,7 @@ impl Default for Segment {
         Segment {
             ray: Ray64::from(Ray::new(Vec3::ZERO, Vec3::X)),
             t_min: 0.0,
-            media: Media::default(),
+            media: MediumStack::default(),
             bounces: 0,
             weight: 1.0,
             camera: 0,
@@ -131,11 +131,11 @@ impl Queue {
         mut number: u32,
         mut light: Color,
         colors: &mut [Color],
-        tally: &mut T,
+        listener: &mut T,
     ) {
         loop {
             let &mut Segment { parent, branch, factor, node, camera, .. } = self.segment(number);
-            tally.end(node, factor, Color::ONE, light);
+            listener.end(node, factor, Color::ONE, light);
             self.free.push(number);
             if parent == CAMERA {
                 colors[camera as usize] = light;
@@ -149,7 +149,7 @@ impl Queue {
             }
             let [mirrored, transmitted] = above.branches;
             let secondary = Color::ZERO + mirrored + transmitted;
-            tally.end(above.secondary, Color::ONE, Color::ONE, secondary);
+            listener.end(above.secondary, Color::ONE, Color::ONE, secondary);
             (number, light) = (parent, above.local + secondary);
         }
     }

@@ -2,7 +2,7 @@
 
 use super::queue::{Queue, Segment};
 use super::{ShadedMaterial, ShadingPoint, Whitted};
-use crate::integrator::media::{Body, Media, Passage};
+use crate::integrator::media::{MediumEntry, MediumStack, MediumTransition};
 use crate::integrator::spawn::spawn_ray;
 use crate::integrator::trace::{RayKind, TermKind, TraceListener};
 use crate::world::{Material, SurfaceInteraction, WeightedMaterial};
@@ -29,28 +29,32 @@ impl Whitted<'_> {
         parts: &[ShadedMaterial],
         queue: &mut Queue,
         colors: &mut [Color],
-        tally: &mut T,
+        listener: &mut T,
     ) {
         let number = point.segment;
         let &mut Segment { node, bounces, .. } = queue.segment(number);
-        let blend = || Blend::of(parts.iter().map(|lit| &lit.part));
-        if !self.goes_on(bounces) {
+        let blend = || SpecularBlend::of(parts.iter().map(|lit| &lit.part));
+        if !self.continues(bounces) {
             if T::LISTENS && blend().is_some() {
-                let node = tally.begin(node, || TermKind::Spent);
-                tally.end(node, Color::ONE, Color::ONE, Color::ZERO);
+                let node = listener.begin(node, || TermKind::DepthLimit);
+                listener.end(node, Color::ONE, Color::ONE, Color::ZERO);
             }
-            return queue.finish(number, point.color, colors, tally);
+            return queue.finish(number, point.color, colors, listener);
         }
         let blend = blend();
         let spoiled = self.world.shading_rules().spoiled_normals && point.n.is_nan();
         if !blend.is_some() || spoiled {
-            return queue.finish(number, point.color, colors, tally);
+            return queue.finish(number, point.color, colors, listener);
         }
-        let secondary_rays = self.secondary_rays(&point.at, blend, &point.passage);
+        let secondary_rays = self.secondary_rays(&point.at, blend, &point.transition);
         let total = blend.transparent != Color::ZERO && secondary_rays.transmitted.is_none();
-        let Passage { here, there, .. } = point.passage;
-        let secondary =
-            tally.begin(node, || TermKind::Secondary { here, there, fresnel: secondary_rays.fresnel, total });
+        let MediumTransition { ior_front, ior_behind, .. } = point.transition;
+        let secondary = listener.begin(node, || TermKind::Secondary {
+            here: ior_front,
+            there: ior_behind,
+            fresnel: secondary_rays.fresnel,
+            total,
+        });
         let segment = queue.segment(number);
         (segment.local, segment.branches, segment.pending) = (point.color, [Color::ZERO; 2], 0);
         segment.secondary = secondary;
@@ -58,22 +62,22 @@ impl Whitted<'_> {
         if self.settings.reflection {
             let inside = |queue: &mut Queue| queue.segment(number).media.clone();
             let branch = (secondary_rays.mirrored, secondary_rays.reflective);
-            self.spawn((number, RayKind::Reflected), surface, branch, inside, queue, tally);
+            self.spawn((number, RayKind::Reflected), surface, branch, inside, queue, listener);
         }
         if let Some(dir) = secondary_rays.transmitted.filter(|_| self.settings.refraction) {
-            let inside = |_: &mut Queue| std::mem::take(&mut point.passage.behind);
+            let inside = |_: &mut Queue| std::mem::take(&mut point.transition.behind);
             self.spawn(
                 (number, RayKind::Transmitted),
                 surface,
                 (dir, secondary_rays.transparent),
                 inside,
                 queue,
-                tally,
+                listener,
             );
         }
         if queue.segment(number).pending == 0 {
-            tally.end(secondary, Color::ONE, Color::ONE, Color::ZERO);
-            queue.finish(number, point.color + Color::ZERO, colors, tally);
+            listener.end(secondary, Color::ONE, Color::ONE, Color::ZERO);
+            queue.finish(number, point.color + Color::ZERO, colors, listener);
         }
     }
 
@@ -82,10 +86,10 @@ impl Whitted<'_> {
     fn secondary_rays(
         &self,
         at: &SurfaceInteraction,
-        blend: Blend,
-        &Passage { here, there, .. }: &Passage,
+        blend: SpecularBlend,
+        &MediumTransition { ior_front, ior_behind, .. }: &MediumTransition,
     ) -> SecondaryRays {
-        let Blend { mut reflective, mut transparent, fresnel, .. } = blend;
+        let SpecularBlend { mut reflective, mut transparent, fresnel, .. } = blend;
         let (rules, leaving, dir) = (self.world.shading_rules(), self.sees_back(at), at.ray.dir());
         // Use the normals on the ray's side.
         let [n, n_geo] = [at.surface.n_shade, at.surface.n_geo].map(|n| if leaving { -n } else { n });
@@ -101,15 +105,17 @@ impl Whitted<'_> {
         let transmitted = match transparent == Color::ZERO {
             true => None,
             // If the normal is not of unit length, the transmitted direction is not either.
-            false if rules.raw_refraction => refract_raw(dir, n, here / there).map(|through| through.normalize_or(dir)),
-            false => refract(dir, n, here / there),
+            false if rules.raw_refraction => {
+                refract_raw(dir, n, ior_front / ior_behind).map(|through| through.normalize_or(dir))
+            }
+            false => refract(dir, n, ior_front / ior_behind),
         };
         // If reflection or refraction is switched off, the other one gets all the light.
         let divides = fresnel && self.settings.reflection && self.settings.refraction;
         let share = divides.then(|| {
             // Total internal reflection has weight 1.
-            let before = if rules.exit_r0 { 1.0 } else { here };
-            transmitted.map_or(1.0, |through| fresnel_share(dir, n, through, (here, there), before))
+            let before = if rules.exit_r0 { 1.0 } else { ior_front };
+            transmitted.map_or(1.0, |through| fresnel_share(dir, n, through, (ior_front, ior_behind), before))
         });
         if let Some(share) = share {
             reflective *= share;
@@ -120,35 +126,46 @@ impl Whitted<'_> {
 
     /// Returns the refraction at a hit, or `None` if the surface is opaque.
     #[inline]
-    pub fn passage(&self, at: &SurfaceInteraction, media: &Media) -> Option<Passage> {
+    pub fn transition(&self, at: &SurfaceInteraction, media: &MediumStack) -> Option<MediumTransition> {
         if !self.world.may_enter(at) {
             return None;
         }
         let blend = match &self.world.materials()[at.material as usize] {
-            Material::Phong(phong) => Blend::of(&[WeightedMaterial { phong, share: 1.0 }]),
-            Material::Solid(..) => Blend::of(&self.world.parts(at)),
+            Material::Phong(phong) => SpecularBlend::of(&[WeightedMaterial { phong, share: 1.0 }]),
+            Material::Mix(..) => SpecularBlend::of(&self.world.materials_at(at)),
         };
         if blend.transparent == Color::ZERO {
             return None;
         }
         let leaving = self.sees_back(at);
         Some(match self.world.shading_rules().one_medium {
-            true => self.official_passage(at.hit.object, blend, leaving, media),
-            false => media.passage_into(self.world, (at.hit.object, at.ray.rounded.origin), blend.ior, leaving),
+            true => self.official_transition(at.hit.object, blend, leaving, media),
+            false => media.transition_into(self.world, (at.hit.object, at.ray.rounded.origin), blend.ior, leaving),
         })
     }
 
     /// Returns the refraction as in the course's programs: a ray has only one index of refraction,
     /// and there is air behind glass.
-    fn official_passage(&self, object: u32, blend: Blend, leaving: bool, media: &Media) -> Passage {
+    fn official_transition(
+        &self,
+        object: u32,
+        blend: SpecularBlend,
+        leaving: bool,
+        media: &MediumStack,
+    ) -> MediumTransition {
         let (known, ior) = (media.ior(), blend.ior);
-        let (here, there) = match (leaving, blend.fresnel) {
+        let (ior_front, ior_behind) = match (leaving, blend.fresnel) {
             (true, true) if known != 1.0 || self.world.shading_rules().air_at_eye => (known, 1.0),
             (true, _) => (ior, 1.0),
             (false, true) => (known, ior),
             (false, false) => (1.0, ior),
         };
-        Passage { here, there, behind: Media::only(Body { object, ior: there, size: None }), hidden: false }
+        MediumTransition {
+            ior_front,
+            ior_behind,
+            behind: MediumStack::single(MediumEntry { object, ior: ior_behind, size: None }),
+            displaced: false,
+        }
     }
 
     /// Returns the weight of a ray after multiplication by a colour: its largest component or, in
@@ -164,9 +181,9 @@ impl Whitted<'_> {
         (parent, from): (u32, RayKind),
         surface: &SurfacePoint,
         (dir, factor): (Vec3, Color),
-        media: impl FnOnce(&mut Queue) -> Media,
+        media: impl FnOnce(&mut Queue) -> MediumStack,
         queue: &mut Queue,
-        tally: &mut T,
+        listener: &mut T,
     ) {
         // Schlick's formula can give less than 0 if the normal is not of unit length.
         if factor == Color::ZERO {
@@ -174,14 +191,14 @@ impl Whitted<'_> {
         }
         let &mut Segment { weight, bounces, camera, secondary, .. } = queue.segment(parent);
         let weight = self.weight_after(weight, factor);
-        if weight < self.settings.least_weight {
-            let node = tally.begin(secondary, || TermKind::Cut { weight });
-            tally.end(node, factor, Color::ONE, Color::ZERO);
+        if weight < self.settings.min_weight {
+            let node = listener.begin(secondary, || TermKind::BelowMinWeight { weight });
+            listener.end(node, factor, Color::ONE, Color::ZERO);
             return;
         }
         let ray = spawn_ray(surface, dir, f32::INFINITY, self.world.shading_rules().epsilon);
         let node =
-            tally.begin(secondary, || TermKind::Ray { from, ray: (&ray).into(), weight, hit: None, bounce: None });
+            listener.begin(secondary, || TermKind::Ray { from, ray: (&ray).into(), weight, hit: None, bounce: None });
         let media = media(queue);
         queue.segment(parent).pending += 1;
         let segment = queue.push(&ray, node);
@@ -194,7 +211,7 @@ impl Whitted<'_> {
 /// Mirror and glass properties at a point for the Whitted integrator, averaged over its materials
 /// by their shares. The index of refraction is that of the material with the largest share.
 #[derive(Clone, Copy)]
-pub struct Blend {
+pub struct SpecularBlend {
     /// Fraction of light reflected as by a mirror, per channel.
     pub reflective: Color,
     /// Fraction of light transmitted, per channel.
@@ -205,7 +222,7 @@ pub struct Blend {
     pub fresnel: bool,
 }
 
-impl Blend {
+impl SpecularBlend {
     /// Returns true if any light is reflected or transmitted.
     fn is_some(&self) -> bool {
         self.reflective != Color::ZERO || self.transparent != Color::ZERO
@@ -214,7 +231,7 @@ impl Blend {
     /// Averages the materials of a point.
     #[inline]
     pub fn of<'a, 'w: 'a>(parts: impl IntoIterator<Item = &'a WeightedMaterial<'w>>) -> Self {
-        let mut blend = Blend { reflective: Color::ZERO, transparent: Color::ZERO, ior: 1.0, fresnel: false };
+        let mut blend = SpecularBlend { reflective: Color::ZERO, transparent: Color::ZERO, ior: 1.0, fresnel: false };
         let mut most = 0.0;
         for &WeightedMaterial { phong, share } in parts {
             blend.reflective += share * phong.reflective;

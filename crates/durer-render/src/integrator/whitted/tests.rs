@@ -11,19 +11,19 @@ use durer_scene::math::random::Random;
 use durer_scene::math::{Vec3, reflect};
 use std::path::Path;
 
-const ALL: WhittedOptions = WhittedOptions {
+const ALL: RenderSettings = RenderSettings {
     bounces: 8,
     shadows: true,
     shade_back: true,
     transparent_shadows: false,
     reflection: true,
     refraction: true,
-    least_weight: 0.0,
+    min_weight: 0.0,
 };
 
 const CAMERA: &str = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }\n";
 
-fn seen(text: &str, settings: WhittedOptions, origin: [f32; 3], dir: [f32; 3]) -> Vec3 {
+fn seen(text: &str, settings: RenderSettings, origin: [f32; 3], dir: [f32; 3]) -> Vec3 {
     let world = testing::read(&format!("{CAMERA}{text}"));
     let dir = Vec3::from(dir).normalize();
     Whitted { world: &world, settings, cancel: None }.radiance(&Ray::new(origin.into(), dir), &mut ())
@@ -101,21 +101,21 @@ fn facing_mirrors_sum_a_geometric_series() {
     for bounces in 0..12 {
         expected += libm::ldexpf(1.0, -(bounces as i32));
         for dir in [[1.0, 0.0, 0.0], [1.0, 0.2, 0.1]] {
-            let color = seen(hall, WhittedOptions { bounces, ..ALL }, [0.0; 3], dir);
+            let color = seen(hall, RenderSettings { bounces, ..ALL }, [0.0; 3], dir);
             assert!((color.x - expected).abs() < 1e-5, "{bounces} {color} {expected}");
         }
     }
-    let off = WhittedOptions { reflection: false, ..ALL };
+    let off = RenderSettings { reflection: false, ..ALL };
     assert!((seen(hall, off, [0.0; 3], [1.0, 0.0, 0.0]).x - 1.0).abs() < 1e-5);
     // With Dürer's own rules, the weight is 1/2 after one bounce and 1/4 after two.
-    let cut = WhittedOptions { least_weight: 0.3, ..ALL };
+    let cut = RenderSettings { min_weight: 0.3, ..ALL };
     assert!((seen(hall, cut, [0.0; 3], [1.0, 0.0, 0.0]).x - 1.5).abs() < 1e-5);
     // The course uses the length of the colour, which is sqrt(3) / 2 after one bounce and 3/4 after
     // two.
     let mut world = testing::read(&format!("{CAMERA}{hall}"));
     let rules = Dialect::Durer.rules();
     world.edit().set_rules(durer_scene::dialect::DialectRules { epsilon: Some(1e-4), ..rules.clone() });
-    let cut = WhittedOptions { least_weight: 0.7, ..ALL };
+    let cut = RenderSettings { min_weight: 0.7, ..ALL };
     let old = Whitted { world: &world, settings: cut, cancel: None }.radiance(&Ray::new(Vec3::ZERO, Vec3::X), &mut ());
     assert!((old.x - 1.75).abs() < 1e-5, "{old}");
 }
@@ -127,13 +127,13 @@ fn deep_recursion_needs_no_deep_stack() {
         Lights { DirectionalLight { direction 0 -1 0 color 0.001 0.001 0.001 } }
         Materials { Material { diffuseColor 1 1 1 reflectiveColor 1 1 1 } }
         Group { MaterialIndex 0 Plane { normal 1 0 0 offset -1 } Plane { normal -1 0 0 offset -1 } }";
-    let settings = WhittedOptions { bounces: WhittedOptions::MAX_BOUNCES, ..ALL };
+    let settings = RenderSettings { bounces: RenderSettings::MAX_BOUNCES, ..ALL };
     let world = &testing::read(&format!("{CAMERA}{hall}"));
     let light = || Whitted { world, settings, cancel: None }.radiance(&Ray::new(Vec3::ZERO, Vec3::X), &mut ());
     // One kilobyte of stack per level would overflow this stack.
     let thread = std::thread::Builder::new().stack_size(192 << 10);
     let light = std::thread::scope(|scope| thread.spawn_scoped(scope, light).unwrap().join().unwrap());
-    assert_eq!(light, Vec3::splat(WhittedOptions::MAX_BOUNCES as f32 + 1.0));
+    assert_eq!(light, Vec3::splat(RenderSettings::MAX_BOUNCES as f32 + 1.0));
 }
 
 #[test]
@@ -156,7 +156,7 @@ fn shadows_end_at_the_light() {
         "Lights { DirectionalLight { direction 0 -1 0 color 1 1 1 } } Materials { Material { diffuseColor 1 1 1 } }
         Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } Sphere { center 0 1e6 0 radius 1 } }";
     assert_eq!(seen(text, ALL, [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]), Vec3::ZERO);
-    assert_eq!(seen(text, WhittedOptions { shadows: false, ..ALL }, [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]), Vec3::ONE);
+    assert_eq!(seen(text, RenderSettings { shadows: false, ..ALL }, [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]), Vec3::ONE);
 }
 
 #[test]
@@ -224,7 +224,7 @@ fn coloured_glass_casts_coloured_shadows_if_enabled() {
     let down = |settings| seen(text, settings, [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]);
     assert_eq!(down(ALL), Vec3::ZERO);
     // The light passes through two walls of the sphere.
-    assert_eq!(down(WhittedOptions { transparent_shadows: true, ..ALL }), Vec3::new(0.25, 1.0, 0.0));
+    assert_eq!(down(RenderSettings { transparent_shadows: true, ..ALL }), Vec3::new(0.25, 1.0, 0.0));
 }
 
 #[test]
@@ -251,12 +251,12 @@ fn coarse_smooth_sphere_casts_no_shadow_on_points_that_face_the_light() {
             let ray = Ray::new(origin, (Vec3::new(3.0, 0.0, 0.0) + random.point() - origin).normalize());
             let Some(at) = world.intersect(&ray, &mut ()) else { continue };
             let surface = at.surface;
-            let seen = world.illuminate(0, surface.point());
+            let light_sample = world.illuminate(0, surface.point());
             // Skip points on the wall.
-            if surface.position.y < 1.0 && surface.n_shade.dot(seen.to_light) > 1e-3 {
+            if surface.position.y < 1.0 && surface.n_shade.dot(light_sample.to_light) > 1e-3 {
                 all += 1;
                 let mut share = [Color::ZERO];
-                whitted.visible(&mut [whitted.shadow_ray(&surface, 0, &seen)], &mut share, &mut ());
+                whitted.visible(&mut [whitted.shadow_ray(&surface, 0, &light_sample)], &mut share, &mut ());
                 dark += i32::from(share == [Color::ZERO]);
             }
         }
@@ -282,7 +282,7 @@ fn backs_are_black_only_with_the_quirk_black_backs() {
     let below = |dialect: Dialect, shade_back: bool| {
         let (world, _) = testing::try_read(&text, dialect.rules(), AccelKind::Bvh, Path::new("."));
         let world = world.unwrap();
-        let settings = WhittedOptions { shade_back, ..ALL };
+        let settings = RenderSettings { shade_back, ..ALL };
         Whitted { world: &world, settings, cancel: None }.radiance(&Ray::new(Vec3::NEG_Y, Vec3::Y), &mut ()).x
     };
     assert_eq!(below(Dialect::F04, false), 0.0);
@@ -309,7 +309,7 @@ fn traced_terms_sum_to_the_radiance_without_a_trace() {
             let (world, findings) = testing::try_read(&text, dialect.rules(), AccelKind::Bvh, &folder);
             let world = world.unwrap_or_else(|| panic!("{findings:?}"));
             let settings =
-                WhittedOptions { bounces: 5, transparent_shadows: random.below(2) == 0, least_weight: 0.01, ..ALL };
+                RenderSettings { bounces: 5, transparent_shadows: random.below(2) == 0, min_weight: 0.01, ..ALL };
             let whitted = Whitted { world: &world, settings, cancel: None };
             for _ in 0..60 {
                 let forward = world.camera_frame().forward + 0.3 * random.direction();
@@ -329,7 +329,7 @@ fn traced_terms_sum_to_the_radiance_without_a_trace() {
 }
 
 fn count(node: &TraceNode, kinds: &mut std::collections::BTreeMap<String, u32>) {
-    let json = serde_json::to_value(&node.what).unwrap();
+    let json = serde_json::to_value(&node.kind).unwrap();
     *kinds.entry(json["kind"].as_str().unwrap().into()).or_default() += 1;
     node.terms.iter().for_each(|node| count(node, kinds));
 }

@@ -5,7 +5,7 @@ use crate::compile::testing;
 use crate::film::Filter;
 use crate::film::aov::Aov;
 use crate::film::course::CourseFilter;
-use crate::integrator::{Direct, IntegratorKind, PathOptions};
+use crate::integrator::{DirectSampling, IntegratorKind, PathOptions};
 use crate::render::verify::RenderVariant;
 use crate::render::*;
 use crate::world::World;
@@ -13,7 +13,7 @@ use durer_scene::source::Digest;
 use std::sync::atomic::AtomicBool;
 
 fn all(world: &World, job: &Job) -> PartialRender {
-    RenderVariant::PLAIN.make(world, job, &AtomicBool::new(false)).unwrap()
+    RenderVariant::PLAIN.render_job(world, job, &AtomicBool::new(false)).unwrap()
 }
 
 /// A sphere in front of a uniform sky, lit by an area light that is out of view.
@@ -29,7 +29,7 @@ Group { numObjects 2
 /// Returns a job with BSDF sampling alone, which rarely hits the light.
 fn uneven(adaptive: bool, seed: u64) -> Job {
     let IntegratorKind::Path(paths) = IntegratorKind::PATH else { unreachable!("`PATH` is a path tracer") };
-    let method = IntegratorKind::Path(PathOptions { direct: Direct::Bsdf, ..paths });
+    let method = IntegratorKind::Path(PathOptions { direct: DirectSampling::Bsdf, ..paths });
     let sampling = Sampling::Filtered { samples: 32, filter: Filter::Box { radius: 0.5 } };
     Job { width: 40, height: 32, sampling, adaptive, seed, method, ..Job::default() }
 }
@@ -93,7 +93,7 @@ fn adaptive_renders_resume_from_any_point() {
     let (mut undecided, mut decided) = (0, 0);
     for round in 0.. {
         let threads = Some(1 + round % 3);
-        let control = Control { most_tiles: Some(3), tile: Some(8), threads, ..Control::default() };
+        let control = Control { max_tiles: Some(3), tile_size: Some(8), threads, ..Control::default() };
         let outcome = part.render(&world, &control, &mut |_, _| {}).unwrap();
         let bytes = part.write();
         part = PartialRender::read(&bytes).unwrap();
@@ -148,24 +148,24 @@ fn unsuitable_jobs_for_adaptive_sampling_are_rejected() {
     for by in [ShardBy::Tiles, ShardBy::Samples] {
         assert!(new(&job, Shard { index: 1, count: 2, by }).unwrap_err().contains("cannot be split"));
     }
-    assert!(matches!(Bands::new(&job, u64::MAX), Err(RenderError::Bands(_))));
+    assert!(matches!(BandedRender::new(&job, u64::MAX), Err(RenderError::Bands(_))));
 }
 
 #[test]
 fn samples_follow_the_standard_deviation() {
     // Each pixel gets the pilot samples. The others are distributed in proportion to the deviation.
-    assert_eq!(divided(&[0.0, 1.0, 3.0, 0.0], 64), [16, 56, 168, 16]);
-    assert_eq!(divided(&[1.0; 5], 100), [100; 5]);
+    assert_eq!(distribute(&[0.0, 1.0, 3.0, 0.0], 64), [16, 56, 168, 16]);
+    assert_eq!(distribute(&[1.0; 5], 100), [100; 5]);
     // No pixel needs more samples, or one pixel gets the maximum.
-    assert_eq!(divided(&[0.0; 3], 64), [16; 3]);
+    assert_eq!(distribute(&[0.0; 3], 64), [16; 3]);
     let mut one = [0.0; 1000];
     one[7] = 1e30;
-    assert_eq!(divided(&one, 64).iter().sum::<u32>(), 999 * 16 + 64 * 64);
+    assert_eq!(distribute(&one, 64).iter().sum::<u32>(), 999 * 16 + 64 * 64);
     let many: Vec<f32> = (0..1000_u16).map(|i| f32::from(i * 37 % 101)).collect();
     for samples in [16, 50, 63] {
-        let given = divided(&many, samples);
-        assert_eq!(given.iter().sum::<u32>(), 1000 * samples);
-        assert!(given.iter().all(|&n| n >= pilot(samples)));
+        let counts = distribute(&many, samples);
+        assert_eq!(counts.iter().sum::<u32>(), 1000 * samples);
+        assert!(counts.iter().all(|&n| n >= pilot(samples)));
     }
 }
 
@@ -176,7 +176,7 @@ fn sample_count_grows_to_its_target() {
         assert!(counts.is_sorted());
         assert_eq!((counts[pilot(samples) as usize], counts.last()), (pilot(samples), Some(&target)));
     }
-    assert_eq!((pilot(16), pilot(100), most(64), most(1 << 16)), (8, 24, 4096, 1 << 20));
+    assert_eq!((pilot(16), pilot(100), max_samples(64), max_samples(1 << 16)), (8, 24, 4096, 1 << 20));
 }
 
 #[test]
@@ -185,13 +185,13 @@ fn pixels_of_the_other_colour_estimate_the_variance() {
     let mut variances = vec![0.0; width * height];
     for at in 0..variances.len() {
         variances[at] = 1.0;
-        let found = around(&variances, width);
+        let found = neighbor_variances(&variances, width);
         let away = |i: usize| [(i % width).abs_diff(at % width), (i / width).abs_diff(at / width)];
         let tells = |i: usize| away(i).iter().sum::<usize>() % 2 == 1 && away(i).iter().all(|&way| way <= 6);
         assert!((0..found.len()).all(|i| (found[i] > 0.0) == tells(i)), "{at}");
         variances[at] = 0.0;
     }
     // A uniform variance stays uniform, also at the borders.
-    assert!(around(&[2.0; 15], 5).iter().all(|value| (value - 2.0).abs() < 1e-5));
-    assert_eq!(around(&[2.0], 1), [0.0]);
+    assert!(neighbor_variances(&[2.0; 15], 5).iter().all(|value| (value - 2.0).abs() < 1e-5));
+    assert_eq!(neighbor_variances(&[2.0], 1), [0.0]);
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::compile::testing::read;
 use crate::film::Filter;
-use crate::integrator::{PhotonParameters, WhittedOptions};
+use crate::integrator::{PhotonParameters, RenderSettings};
 use crate::render::explain::explain;
 use crate::render::{Sampling, Shard};
 
@@ -29,7 +29,7 @@ fn pane() -> World {
 
 fn job(method: IntegratorKind, size: u32, samples: u32, seed: u64) -> Job {
     let sampling = Sampling::Filtered { samples, filter: Filter::default() };
-    let settings = WhittedOptions { bounces: 12, ..Job::default().settings };
+    let settings = RenderSettings { bounces: 12, ..Job::default().settings };
     Job { width: size, height: size, method, sampling, settings, seed, ..Job::default() }
 }
 

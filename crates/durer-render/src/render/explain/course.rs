@@ -1,12 +1,12 @@
 //! Explanation of pixels that combine the samples of neighbours, as in the course's assignments.
 
-use super::{Mean, SampleAccount};
+use super::{ExplainedSample, SampleCombination};
 use crate::film::course::CourseFilter;
 use crate::render::aim::PixelSample;
-use crate::render::course::share;
-use crate::render::samples::Samples;
+use crate::render::course::coverage_of;
+use crate::render::samples::SampleSource;
 use crate::render::sub_pixels::SubPixels;
-use crate::render::{Crop, Job};
+use crate::render::{Job, PixelRect};
 use crate::world::World;
 use durer_scene::math::{Color, Vec3};
 use durer_scene::sampler::Sampler;
@@ -15,34 +15,34 @@ use glam::DVec3;
 /// Returns the samples of a pixel of Fall 2004: all samples within the filter's support, with their
 /// weights in this pixel.
 pub(super) fn around(
-    source: &Samples,
+    source: &SampleSource,
     job: &Job,
     here: (u32, u32),
     (sampler, samples, filter): (Sampler, u32, CourseFilter),
-    account: impl Fn((u32, u32), u32, PixelSample) -> SampleAccount,
-) -> (Mean, Vec<SampleAccount>) {
+    account: impl Fn((u32, u32), u32, PixelSample) -> ExplainedSample,
+) -> (SampleCombination, Vec<ExplainedSample>) {
     let samples = sampler.round_up(samples);
-    let all = |crop: Crop| crop.places().flat_map(move |of| (0..samples).map(move |sample| (of, sample)));
+    let all = |crop: PixelRect| crop.pixel_positions().flat_map(move |of| (0..samples).map(move |sample| (of, sample)));
     let aim = |(of, sample): ((u32, u32), u32)| {
-        let (aim, position) = source.aim.kept((sampler, samples), of.0, of.1, sample);
+        let (aim, position) = source.aim.spread_sample((sampler, samples), of.0, of.1, sample);
         (of, sample, PixelSample { weight: filter.weight_between(of, position, here), ..aim })
     };
-    let aims: Vec<_> = all(Crop::pixel(here).grown(filter.support(), job.whole())).map(aim).collect();
+    let aims: Vec<_> = all(PixelRect::pixel(here).grown(filter.support(), job.whole())).map(aim).collect();
     // If all weights are zero, the pixel is the mean of its own samples.
     if aims.iter().all(|(.., aim)| aim.weight == 0.0) {
         let own = |(of, sample, aim)| account(of, sample, PixelSample { weight: 1.0, ..aim });
-        return (Mean::Around, aims.into_iter().filter(|aim| aim.0 == here).map(own).collect());
+        return (SampleCombination::Neighbors, aims.into_iter().filter(|aim| aim.0 == here).map(own).collect());
     }
-    (Mean::Around, aims.into_iter().map(|(of, sample, aim)| account(of, sample, aim)).collect())
+    (SampleCombination::Neighbors, aims.into_iter().map(|(of, sample, aim)| account(of, sample, aim)).collect())
 }
 
 /// Returns the sub-pixels that contribute to a pixel of Fall 2012.
 pub(super) fn sub_pixels(
-    source: &Samples,
+    source: &SampleSource,
     world: &World,
     grid: SubPixels,
-    account: impl Fn((u32, u32), u32, PixelSample) -> SampleAccount,
-) -> (Mean, Vec<SampleAccount>) {
+    account: impl Fn((u32, u32), u32, PixelSample) -> ExplainedSample,
+) -> (SampleCombination, Vec<ExplainedSample>) {
     let (raster, count) = (grid.raster(world), grid.around.pixels() as usize);
     let one = |(i, place): (usize, (u32, u32))| {
         // Blurring and averaging are linear, so the weight of a sub-pixel is the response to it
@@ -50,17 +50,17 @@ pub(super) fn sub_pixels(
         let mut white = vec![Color::ZERO; count];
         white[i] = Color::ONE;
         let aim = source.aim.sub_pixel(&grid, &raster, place);
-        account(grid.pixel(place), grid.number(place), PixelSample { weight: grid.develop(white)[0].x, ..aim })
+        account(grid.pixel(place), grid.number(place), PixelSample { weight: grid.blurred_mean(white)[0].x, ..aim })
     };
-    let samples = grid.around.places().enumerate().map(one).collect();
-    (Mean::SubPixels(grid), samples)
+    let samples = grid.around.pixel_positions().enumerate().map(one).collect();
+    (SampleCombination::SubPixels(grid), samples)
 }
 
 /// Returns the colour and the coverage of the finished pixel.
 pub(super) fn finished(
-    mean: &Mean,
-    samples: &[SampleAccount],
-    light: impl Fn(&SampleAccount) -> Option<Color>,
+    mean: &SampleCombination,
+    samples: &[ExplainedSample],
+    light: impl Fn(&ExplainedSample) -> Option<Color>,
 ) -> (Color, f32) {
     let lights: Vec<Option<Color>> = samples.iter().map(light).collect();
     let colors = lights.iter().map(|light| light.unwrap_or(Vec3::ZERO)).collect();
@@ -69,13 +69,13 @@ pub(super) fn finished(
         return (color, 1.0);
     }
     let mask = lights.iter().map(|light| if light.is_some() { Vec3::ONE } else { Vec3::ZERO }).collect();
-    (color, share(combined(mean, samples, mask)))
+    (color, coverage_of(combined(mean, samples, mask)))
 }
 
 /// Combines the samples' colours into a pixel.
-fn combined(mean: &Mean, samples: &[SampleAccount], colors: Vec<Color>) -> Color {
-    if let Mean::SubPixels(grid) = mean {
-        return grid.develop(colors)[0];
+fn combined(mean: &SampleCombination, samples: &[ExplainedSample], colors: Vec<Color>) -> Color {
+    if let SampleCombination::SubPixels(grid) = mean {
+        return grid.blurred_mean(colors)[0];
     }
     let (mut sum, mut total) = (DVec3::ZERO, 0.0);
     for (sample, color) in samples.iter().zip(colors) {

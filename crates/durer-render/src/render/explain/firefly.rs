@@ -49,7 +49,7 @@ fn cause(light: &Tree) -> Vec<String> {
     let (mut node, mut chosen) = (&light.root, Vec::new());
     let adds = |node: &TraceNode| luminance_of(light.color(node.contribution()));
     loop {
-        if let TermKind::Ray { bounce: Some(bounce), .. } = &node.what {
+        if let TermKind::Ray { bounce: Some(bounce), .. } = &node.kind {
             chosen.push(bounce);
         }
         let next = node.terms.iter().max_by(|a, b| adds(a).total_cmp(&adds(b)));
@@ -58,18 +58,18 @@ fn cause(light: &Tree) -> Vec<String> {
             None => break,
         }
     }
-    let way = chosen.iter().map(|bounce| bounce.lobe).collect::<Vec<_>>().join(", then ");
+    let path_text = chosen.iter().map(|bounce| bounce.lobe).collect::<Vec<_>>().join(", then ");
     // Delta lobes have no density.
     let single = chosen.last().is_some_and(|last| last.pdf == 0.0);
     let seldom = chosen.iter().filter(|bounce| bounce.pdf > 0.0).min_by(|a, b| a.pdf.total_cmp(&b.pdf));
     let text = |what: &str| match chosen.is_empty() {
         true => format!("{what} is seen directly"),
-        false => format!("BSDF sampling hit {what} after {way}"),
+        false => format!("BSDF sampling hit {what} after {path_text}"),
     };
     let mut causes = Vec::new();
-    match &node.what {
+    match &node.kind {
         TermKind::Emission { .. } | TermKind::Sky if single && seldom.is_some() => {
-            let what = if matches!(node.what, TermKind::Sky) { "the sky" } else { "an emitter" };
+            let what = if matches!(node.kind, TermKind::Sky) { "the sky" } else { "an emitter" };
             causes.push(text(what));
             causes.push(
                 "light sampling cannot follow mirrors and glass, so such light is found rarely and then has a large \
@@ -83,9 +83,9 @@ fn cause(light: &Tree) -> Vec<String> {
         }
         TermKind::Sky => causes.push(text("the sky")),
         TermKind::Direct { choice, pdf, mis, .. } => {
-            let way = if chosen.is_empty() { "at the first hit".into() } else { format!("after {way}") };
+            let path_text = if chosen.is_empty() { "at the first hit".into() } else { format!("after {path_text}") };
             causes.push(format!(
-                "light sampling found a light {way}, with probability {} and density {} /sr (MIS weight {})",
+                "light sampling found a light {path_text}, with probability {} and density {} /sr (MIS weight {})",
                 number(*choice),
                 number(*pdf),
                 number(*mis)

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::compile::{AccelKind, testing};
-use crate::integrator::{IntegratorKind, PathOptions, WhittedOptions};
+use crate::integrator::{IntegratorKind, PathOptions, RenderSettings};
 use durer_scene::dialect::Dialect;
 use durer_scene::spectrum::ColorMode;
 use std::path::Path;
@@ -19,14 +19,14 @@ fn explanations_sum_to_the_pixels_of_all_scenes() {
         let dialect = [Dialect::Durer, Dialect::F12a4, Dialect::F04, Dialect::F12a5][i % 4];
         let (world, findings) = testing::try_read(&text, dialect.rules(), AccelKind::Bvh, &folder);
         let world = world.unwrap_or_else(|| panic!("{}: {findings:?}", scene.display()));
-        let settings = WhittedOptions {
+        let settings = RenderSettings {
             bounces: 4,
             shadows: true,
             shade_back: i % 2 == 0,
             transparent_shadows: i % 3 == 0,
             reflection: true,
             refraction: true,
-            least_weight: 0.01,
+            min_weight: 0.01,
         };
         // Use path tracing for scenes made for it, and for some others.
         let paths = text.contains("PrincipledMaterial") || i % 5 == 0;
@@ -55,7 +55,7 @@ fn brightest_sample_below_glass_is_explained_as_a_caustic() {
          MaterialIndex 2 Sphere { center 0 4 0 radius 0.1 } }",
     );
     let sampling = Sampling::Filtered { filter: crate::film::Filter::default(), samples: 64 };
-    let settings = WhittedOptions { bounces: 8, ..Job::default().settings };
+    let settings = RenderSettings { bounces: 8, ..Job::default().settings };
     let job = Job { width: 24, height: 24, sampling, settings, method: IntegratorKind::PATH, ..Job::default() };
     let explained = (0..job.height).flat_map(|y| (0..job.width).map(move |x| (x, y)));
     let explained = explained.map(|(x, y)| explain(&world, &job, x, y).unwrap());

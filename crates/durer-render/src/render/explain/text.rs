@@ -1,8 +1,8 @@
 //! Text form of explanations, one line per term.
 
+use super::derivations::derivations;
 use super::numbers::{number, rgb, vector};
-use super::origins::origins;
-use super::{ErrorBound, Explanation, Mean, SampleAccount};
+use super::{ErrorBound, ExplainedSample, Explanation, SampleCombination};
 use crate::integrator::trace::{Bounce, HitRecord, RayKind, RayRecord, Shadow, TermKind, TermValue};
 use crate::integrator::{TraceNode, Tree};
 use crate::world::emitters::LightId;
@@ -17,7 +17,7 @@ use durer_scene::spectrum::{Lanes, Spectrum};
 /// Looks up the names of objects, materials and lights, and where the scene file defines them, for
 /// explanations.
 #[derive(Clone, Copy, Debug)]
-pub struct Names<'a> {
+pub struct SceneNames<'a> {
     /// Files that were read.
     pub files: &'a Files,
     /// Scene as written in the file.
@@ -46,9 +46,9 @@ pub struct TextLine {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExplainOptions {
     /// Minimum share of the total brightness. Terms with less are omitted.
-    pub least: f32,
+    pub min_share: f32,
     /// Maximum depth of terms. Deeper ones are omitted.
-    pub deepest: usize,
+    pub max_depth: usize,
     /// Transfer curve for the eight-bit colour.
     pub transfer: Transfer,
 }
@@ -63,7 +63,7 @@ impl TextLine {
 impl Default for ExplainOptions {
     /// Options that omit nothing.
     fn default() -> Self {
-        ExplainOptions { least: 0.0, deepest: usize::MAX, transfer: Transfer::default() }
+        ExplainOptions { min_share: 0.0, max_depth: usize::MAX, transfer: Transfer::default() }
     }
 }
 
@@ -75,7 +75,7 @@ struct Context<'a> {
     /// Factor by which the node's contribution is multiplied in the total.
     gain: TermValue,
     /// Brightness of the total.
-    whole: f32,
+    total: f32,
     /// Direction of the enclosing ray.
     dir: Vec3,
     /// Normal at the enclosing ray's hit.
@@ -92,7 +92,7 @@ fn brightness(color: Color) -> f32 {
     color.dot(LUMINANCE)
 }
 
-impl Names<'_> {
+impl SceneNames<'_> {
     /// Returns the file name, line and column of a span.
     fn place(&self, span: Span) -> String {
         let name = self.files.name(span.file).unwrap_or("?");
@@ -105,7 +105,7 @@ impl Names<'_> {
     /// Returns lines that derive the numbers in a term. `dir` is the direction of the ray that the
     /// term belongs to, and `n` the normal at its hit.
     pub fn origins(&self, node: &TraceNode, dir: Vec3, n: Vec3) -> Vec<String> {
-        origins(node, (self.scene, self.world), dir, n)
+        derivations(node, (self.scene, self.world), dir, n)
     }
 
     /// Returns the line number of a span, or its full position if it is in another file than the
@@ -126,7 +126,7 @@ impl Names<'_> {
 
     /// Names an object that has no keyword in the scene file, as in JSON: by its kind and, if it
     /// has one, its name. `None` if it has a keyword.
-    pub fn unworded(&self, object: u32) -> Option<String> {
+    pub fn name_without_keyword(&self, object: u32) -> Option<String> {
         let object = &self.world.objects()[object as usize];
         let kind = match &object.geometry {
             Geometry::Primitive(shape) => shape.keywords()[0].0,
@@ -143,7 +143,7 @@ impl Names<'_> {
     /// Returns the keyword or kind of an object, and its span.
     fn keyword(&self, object: u32) -> (String, Span) {
         let span = self.world.objects()[object as usize].span;
-        (self.unworded(object).unwrap_or_else(|| self.word(span)), span)
+        (self.name_without_keyword(object).unwrap_or_else(|| self.word(span)), span)
     }
 
     /// Names an object by keyword and line number.
@@ -203,24 +203,24 @@ impl Names<'_> {
 impl Explanation {
     /// Returns the explanation as lines of text: the pixel, its samples, and the tree of the sample
     /// with index `wanted`.
-    pub fn lines(&self, names: &Names, wanted: usize, options: &ExplainOptions) -> Vec<TextLine> {
+    pub fn lines(&self, names: &SceneNames, wanted: usize, options: &ExplainOptions) -> Vec<TextLine> {
         let mut lines = Vec::new();
-        let mut say = |depth, text: String| lines.push(TextLine::plain(depth, text));
+        let mut push_line = |depth, text: String| lines.push(TextLine::plain(depth, text));
         let [r, g, b] = options.transfer.encode_pixel(self.color);
         let curve = options.transfer.name();
-        say(0, format!("pixel {},{} = {}, in eight bits {r} {g} {b} ({curve})", self.x, self.y, rgb(self.color)));
+        push_line(0, format!("pixel {},{} = {}, in eight bits {r} {g} {b} ({curve})", self.x, self.y, rgb(self.color)));
         if self.coverage < 1.0 {
-            say(1, format!("coverage {:.1} %", 100.0 * self.coverage));
+            push_line(1, format!("coverage {:.1} %", 100.0 * self.coverage));
         }
         let all = self.samples.len();
         if all > 1 {
             let sum: f64 = self.samples.iter().map(|s| f64::from(s.weight)).sum();
             let of = match &self.mean {
-                Mean::Own => String::new(),
-                Mean::Around => ", including samples of neighbouring pixels".into(),
-                Mean::SubPixels(_) => ": subpixels, blurred and averaged as the 2012 program does".into(),
+                SampleCombination::Own => String::new(),
+                SampleCombination::Neighbors => ", including samples of neighbouring pixels".into(),
+                SampleCombination::SubPixels(_) => ": subpixels, blurred and averaged as the 2012 program does".into(),
             };
-            say(1, format!("weighted mean of {all} samples{of}; the weights sum to {}", sum as f32));
+            push_line(1, format!("weighted mean of {all} samples{of}; the weights sum to {}", sum as f32));
         }
         if let Some(error) = &self.error {
             let ErrorBound { luminance, bias, standard_error, bound } = *error;
@@ -230,12 +230,12 @@ impl Explanation {
                 0.0 => format!("standard error {standard_error}"),
                 _ => format!("photon bias {bias}, standard error {standard_error}"),
             };
-            say(1, format!("luminance {luminance}, error at most {bound} with 90 % confidence: {parts}"));
+            push_line(1, format!("luminance {luminance}, error at most {bound} with 90 % confidence: {parts}"));
         }
         if let Some(stale) = self.stale_texels {
-            say(1, format!("plus {} from the quirk `stale-texels`", rgb(stale)));
+            push_line(1, format!("plus {} from the quirk `stale-texels`", rgb(stale)));
         }
-        let nothing = |i: usize| i != wanted && self.samples[i].weight == 0.0 && self.mean != Mean::Own;
+        let nothing = |i: usize| i != wanted && self.samples[i].weight == 0.0 && self.mean != SampleCombination::Own;
         for (i, sample) in self.samples.iter().enumerate().filter(|(i, _)| !nothing(*i)) {
             sample_lines(sample, self.number(i), names, (i == wanted).then_some(options), &mut lines);
         }
@@ -251,40 +251,40 @@ impl Explanation {
 
     /// Names a sample by its index, and by its pixel if the samples belong to several pixels.
     fn number(&self, index: usize) -> String {
-        let SampleAccount { of: (x, y), sample, .. } = self.samples[index];
+        let ExplainedSample { of: (x, y), sample, .. } = self.samples[index];
         match self.mean {
-            Mean::Own => format!("sample {sample}"),
+            SampleCombination::Own => format!("sample {sample}"),
             _ => format!("sample {index} (number {sample} of pixel {x},{y})"),
         }
     }
 }
 
-/// Appends the line of a sample and, if `whole` is given, its tree.
+/// Appends the line of a sample and, if `tree_options` is given, its tree.
 fn sample_lines(
-    sample: &SampleAccount,
+    sample: &ExplainedSample,
     name: String,
-    names: &Names,
-    whole: Option<&ExplainOptions>,
+    names: &SceneNames,
+    tree_options: Option<&ExplainOptions>,
     lines: &mut Vec<TextLine>,
 ) {
-    let SampleAccount { place, weight, light, .. } = sample;
-    let seen = light.as_ref().map_or("the camera sees nothing here".into(), |light| rgb(light.sum()));
-    let text = format!("{name} at {}, {}, weight {}: {seen}", place.x, place.y, number(*weight));
+    let ExplainedSample { place, weight, light, .. } = sample;
+    let color_text = light.as_ref().map_or("the camera sees nothing here".into(), |light| rgb(light.sum()));
+    let text = format!("{name} at {}, {}, weight {}: {color_text}", place.x, place.y, number(*weight));
     lines.push(TextLine::plain(1, text));
-    if let (Some(light), Some(options)) = (light, whole) {
+    if let (Some(light), Some(options)) = (light, tree_options) {
         tree_lines(light, names, 2, options, lines);
     }
 }
 
 /// Returns the trace of a ray as lines of text.
-pub fn ray_text(light: &Tree, names: &Names, options: &ExplainOptions) -> Vec<TextLine> {
+pub fn ray_text(light: &Tree, names: &SceneNames, options: &ExplainOptions) -> Vec<TextLine> {
     let mut lines = Vec::new();
     tree_lines(light, names, 0, options, &mut lines);
     lines
 }
 
 /// Appends the lines of a tree.
-fn tree_lines(tree: &Tree, names: &Names, depth: usize, options: &ExplainOptions, lines: &mut Vec<TextLine>) {
+fn tree_lines(tree: &Tree, names: &SceneNames, depth: usize, options: &ExplainOptions, lines: &mut Vec<TextLine>) {
     if let Lanes::Wavelengths(waves) = &tree.lanes {
         let list = |numbers: Spectrum| numbers.to_array().map(number).join(", ");
         let text = format!("light at {} nm; converted to RGB", list(waves.nm));
@@ -299,16 +299,16 @@ fn tree_lines(tree: &Tree, names: &Names, depth: usize, options: &ExplainOptions
 impl<'a> Context<'a> {
     fn of(tree: &'a Tree) -> Self {
         let (dir, n, to_light) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
-        let whole = brightness(tree.sum()).max(f32::MIN_POSITIVE);
+        let total = brightness(tree.sum()).max(f32::MIN_POSITIVE);
         let gain = TermValue::Color(Color::ONE);
-        Context { tree, gain, whole, dir, n, to_light, material: None, fresnel: None }
+        Context { tree, gain, total, dir, n, to_light, material: None, fresnel: None }
     }
 }
 
 /// Appends the lines of a node and of the terms below it.
 fn node_lines(
     node: &TraceNode,
-    names: &Names,
+    names: &SceneNames,
     depth: usize,
     options: &ExplainOptions,
     at: Context,
@@ -317,7 +317,7 @@ fn node_lines(
     let (factor, value) = (numbers(node.factor), numbers(node.value));
     let mut more = Vec::new();
     let mut below = Context { gain: at.gain * node.factor * node.scale, ..at };
-    let text = match &node.what {
+    let text = match &node.kind {
         TermKind::Ray { from, ray, weight, hit, bounce } => {
             below.dir = ray.dir;
             let from = match from {
@@ -351,7 +351,7 @@ fn node_lines(
             more.push(format!("{photons} photons at most {} away", number(*radius)));
             format!("caustics: {value}")
         }
-        TermKind::OneWavelength { nm } => {
+        TermKind::Dispersion { nm } => {
             format!(
                 "dispersion: only {} nm continues and stands for all four wavelengths: {factor} · {value}",
                 number(*nm)
@@ -383,7 +383,7 @@ fn node_lines(
                 numbers(node.scale)
             ));
             more.extend(shadow.iter().map(|shadow| shadow_line(shadow, names)));
-            let through = if node.factor.is(1.0) { String::new() } else { format!("{factor} · ") };
+            let through = if node.factor.equals(1.0) { String::new() } else { format!("{factor} · ") };
             let sum = if node.terms.is_empty() { value } else { format!("(sum below) · {}", numbers(node.scale)) };
             format!("{}{}: {through}{sum}", names.short_light(*light), share_text(*share))
         }
@@ -413,32 +413,32 @@ fn node_lines(
             }
             text
         }
-        TermKind::Cut { weight } => {
+        TermKind::BelowMinWeight { weight } => {
             format!("a ray with throughput {} is not traced (--min-throughput)", number(*weight))
         }
-        TermKind::Spent => {
+        TermKind::DepthLimit => {
             "mirrored and transmitted light is left out: the maximum depth is reached (--bounces)".into()
         }
     };
     let of_whole = |node: &TraceNode, gain| {
-        let added = node.added().unwrap_or_else(|| gain * node.contribution());
-        brightness(at.tree.color(added)) / at.whole
+        let added = node.path_contribution().unwrap_or_else(|| gain * node.contribution());
+        brightness(at.tree.color(added)) / at.total
     };
-    let adds = node.added().unwrap_or_else(|| node.contribution());
+    let adds = node.path_contribution().unwrap_or_else(|| node.contribution());
     let color = at.tree.color(adds);
     lines.push(TextLine { depth, adds: Some(adds), color, share: of_whole(node, at.gain), text });
     let mut report = |text: String| lines.push(TextLine::plain(depth + 1, text));
     more.into_iter().for_each(&mut report);
-    if depth >= options.deepest && !node.terms.is_empty() {
+    if depth >= options.max_depth && !node.terms.is_empty() {
         return report(format!("{} below (--depth)", terms(node.terms.len())));
     }
-    let small = |term: &&TraceNode| of_whole(term, below.gain).abs() < options.least;
+    let small = |term: &&TraceNode| of_whole(term, below.gain).abs() < options.min_share;
     let left = node.terms.iter().filter(small).count();
     for term in node.terms.iter().filter(|term| !small(term)) {
         node_lines(term, names, depth + 1, options, below, lines);
     }
     if left > 0 {
-        let text = format!("{} of less than {} % each (--min)", terms(left), number(100.0 * options.least));
+        let text = format!("{} of less than {} % each (--min)", terms(left), number(100.0 * options.min_share));
         lines.push(TextLine::plain(depth + 1, text));
     }
 }
@@ -465,7 +465,7 @@ fn terms(count: usize) -> String {
 
 /// Describes the factor of a secondary ray. If Fresnel's equations split the light, it is the
 /// material's colour times the Fresnel factor.
-fn split(node: &TraceNode, from: &str, at: &Context, names: &Names) -> String {
+fn split(node: &TraceNode, from: &str, at: &Context, names: &SceneNames) -> String {
     let phong = at.material.and_then(|i| names.world.materials().get(i as usize));
     match (at.fresnel, phong) {
         (Some(r), Some(Material::Phong(phong))) if from == "mirrored ray" => {
@@ -479,7 +479,7 @@ fn split(node: &TraceNode, from: &str, at: &Context, names: &Names) -> String {
 }
 
 /// Describes the hit of a ray.
-fn struck_lines(hit: &HitRecord, names: &Names) -> Vec<String> {
+fn struck_lines(hit: &HitRecord, names: &SceneNames) -> Vec<String> {
     let (object, t) = (names.short_object(hit.object), number(hit.t));
     let mut lines = vec![format!("hits {object} at t = {t}, point {}", vector(hit.position))];
     if hit.barycentric != Vec3::ZERO {
@@ -510,15 +510,15 @@ fn struck_lines(hit: &HitRecord, names: &Names) -> Vec<String> {
 }
 
 /// Describes what a shadow ray hits.
-fn shadow_line(shadow: &Shadow, names: &Names) -> String {
+fn shadow_line(shadow: &Shadow, names: &SceneNames) -> String {
     let Some((object, t)) = shadow.blocker else { return "the shadow ray is unoccluded".into() };
     let (object, t) = (names.short_object(object), number(t));
     match shadow.share {
-        share if share.is(0.0) => format!("occluded by {object}, {t} away"),
-        share if share.is(1.0) && names.world.shading_rules().shadow_fronts => {
+        share if share.equals(0.0) => format!("occluded by {object}, {t} away"),
+        share if share.equals(1.0) && names.world.shading_rules().shadow_fronts => {
             format!("{object} is {t} away, but does not block it: the ray hits its back (quirk `shadow-fronts`)")
         }
-        share if share.is(1.0) => format!("{object} is {t} away, but does not block it: it transmits all light"),
+        share if share.equals(1.0) => format!("{object} is {t} away, but does not block it: it transmits all light"),
         share => format!("{object}, {t} away, transmits {}", numbers(share)),
     }
 }

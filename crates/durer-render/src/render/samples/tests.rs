@@ -45,7 +45,7 @@ fn samples_do_not_allocate() {
     {
         let job = job(32, 64, method);
         let part = job.whole();
-        let samples = Samples::new(world, &job, &stop);
+        let samples = SampleSource::new(world, &job, &stop);
         let mut film = Film::window(0, 0, 32, 32);
         let mut take = |range: std::ops::Range<u32>| {
             samples.add(&mut film, part, |_| range.clone(), &at, &mut RayCount::default()).unwrap()
@@ -62,7 +62,7 @@ fn tile_locks_twice_per_pass() {
     let world = testing::read(TEXT);
     let locks = |width: u32| {
         let part = PartialRender::new(&world, &job(width, 1, IntegratorKind::WHITTED), Shard::WHOLE).unwrap();
-        let control = Control { tile: Some(16), threads: Some(2), ..Control::default() };
+        let control = Control { tile_size: Some(16), threads: Some(2), ..Control::default() };
         part.render(&world, &control, &mut |_, _| {}).unwrap();
         part.locked.load(Relaxed)
     };

@@ -1,7 +1,7 @@
 //! Single-precision 4 x 4 matrices with the arithmetic of the course's programs for products,
 //! inverses and decompositions.
 
-use super::Vectors;
+use super::VectorLibrary;
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::{MatrixOp, MatrixRules};
 use glam::DAffine3;
@@ -16,7 +16,7 @@ impl Matrix {
         Matrix([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]);
 
     /// Returns the product of the matrices in one transform.
-    pub fn of(ops: &[MatrixOp], rules: MatrixRules, vectors: Vectors) -> Self {
+    pub fn of(ops: &[MatrixOp], rules: MatrixRules, vectors: VectorLibrary) -> Self {
         let product = ops.iter().fold(Matrix::IDENTITY, |product, op| {
             let own = Matrix::from(op);
             match op {
@@ -32,7 +32,7 @@ impl Matrix {
     }
 
     /// Returns the product `self` · `other`, which applies `other` first.
-    pub fn times(&self, other: &Matrix, vectors: Vectors) -> Matrix {
+    pub fn times(&self, other: &Matrix, vectors: VectorLibrary) -> Matrix {
         let entry = |row: usize, column: usize| {
             let [a, b, c, d] = [0, 1, 2, 3].map(|i| self.0[i][row] * other.0[column][i]);
             vectors.sum_from(a) + b + c + d
@@ -41,12 +41,12 @@ impl Matrix {
     }
 
     /// Transforms a point, with the arithmetic of the given vector library.
-    pub fn point(&self, p: Vec3, vectors: Vectors) -> Vec3 {
+    pub fn point(&self, p: Vec3, vectors: VectorLibrary) -> Vec3 {
         let row = |row: usize| {
             let [x, y, z, w] = self.0.map(|column| column[row]);
             match vectors {
-                Vectors::Vecmath => vectors.sum_from(x * p.x) + y * p.y + z * p.z + w,
-                Vectors::Glm => (x * p.x + y * p.y) + (z * p.z + w),
+                VectorLibrary::Vecmath => vectors.sum_from(x * p.x) + y * p.y + z * p.z + w,
+                VectorLibrary::Glm => (x * p.x + y * p.y) + (z * p.z + w),
             }
         };
         Vec3::new(row(0), row(1), row(2))
@@ -56,13 +56,13 @@ impl Matrix {
     pub fn vector(&self, v: Vec3) -> Vec3 {
         let row = |row: usize| {
             let [x, y, z] = [0, 1, 2].map(|column| self.0[column][row] * v[column]);
-            Vectors::Vecmath.sum_from(x) + y + z
+            VectorLibrary::Vecmath.sum_from(x) + y + z
         };
         Vec3::new(row(0), row(1), row(2))
     }
 
     /// Multiplies a normal by the transposed matrix.
-    pub fn across(&self, n: Vec3, vectors: Vectors) -> Vec3 {
+    pub fn across(&self, n: Vec3, vectors: VectorLibrary) -> Vec3 {
         let [x, y, z] = [0, 1, 2].map(|column| {
             let [a, b, c] = [0, 1, 2].map(|row| self.0[column][row] * n[row]);
             vectors.sum_from(a) + b + c
@@ -72,16 +72,16 @@ impl Matrix {
 
     /// Returns true if all entries of the matrix and its inverse are finite.
     pub fn is_regular(&self) -> bool {
-        let inverse = self.inverse(Vectors::Vecmath);
+        let inverse = self.inverse(VectorLibrary::Vecmath);
         [self, &inverse].iter().all(|matrix| matrix.0.iter().flatten().all(|x| x.is_finite()))
     }
 
     /// Returns the inverse, computed as cofactors times the reciprocal of the determinant. For a
     /// singular matrix, its entries are infinite or NaN.
-    pub fn inverse(&self, vectors: Vectors) -> Matrix {
+    pub fn inverse(&self, vectors: VectorLibrary) -> Matrix {
         match vectors {
-            Vectors::Vecmath => self.inverse_by_minors(),
-            Vectors::Glm => self.inverse_by_factors(),
+            VectorLibrary::Vecmath => self.inverse_by_minors(),
+            VectorLibrary::Glm => self.inverse_by_factors(),
         }
     }
 
@@ -212,7 +212,7 @@ impl From<&MatrixOp> for Matrix {
             MatrixOp::XRotate(degrees) => rotation(Vec3::X, degrees),
             MatrixOp::YRotate(degrees) => rotation(Vec3::Y, degrees),
             MatrixOp::ZRotate(degrees) => rotation(Vec3::Z, degrees),
-            MatrixOp::Rotate(axis, degrees) => rotation(Vectors::Vecmath.unit(axis), degrees),
+            MatrixOp::Rotate(axis, degrees) => rotation(VectorLibrary::Vecmath.unit(axis), degrees),
             MatrixOp::Matrix(rows) => Matrix([0, 1, 2, 3].map(|i| [0, 1, 2, 3].map(|j| rows[4 * j + i]))),
         }
     }

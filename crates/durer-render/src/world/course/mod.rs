@@ -16,44 +16,44 @@ use durer_scene::math::{Aabb, Ray, Ray64, Vec3};
 use durer_scene::shape::Primitive;
 pub use matrix::Matrix;
 use octree::Octree;
-use shapes::{Crossing, Limits};
+use shapes::{Crossing, HitInterval};
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Vector library whose arithmetic an official program uses: the order of operations decides the
 /// last bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Vectors {
+pub enum VectorLibrary {
     /// The course's own library vecmath, 2012 to 2019.
     Vecmath,
     /// The library glm, since 2020.
     Glm,
 }
 
-impl Vectors {
+impl VectorLibrary {
     /// Starts a sum with its first term. The course's own library starts with 0, so its sums are
     /// never -0. The sign of a zero decides whether a ray passes through an octree cell.
     fn sum_from(self, first: f32) -> f32 {
         match self {
-            Vectors::Vecmath => 0.0 + first,
-            Vectors::Glm => first,
+            VectorLibrary::Vecmath => 0.0 + first,
+            VectorLibrary::Glm => first,
         }
     }
 
     /// Returns the direction with which an octree is traversed. Of unit length in the course's own
     /// arithmetic.
-    fn walked(self, dir: Vec3) -> Vec3 {
+    fn traversal_direction(self, dir: Vec3) -> Vec3 {
         match self {
-            Vectors::Vecmath => self.unit(dir),
-            Vectors::Glm => dir,
+            VectorLibrary::Vecmath => self.unit(dir),
+            VectorLibrary::Glm => dir,
         }
     }
 
     /// Normalizes a vector. Returns NaN for a zero vector.
     pub fn unit(self, v: Vec3) -> Vec3 {
         match self {
-            Vectors::Vecmath => v / v.length(),
-            Vectors::Glm => v * (1.0 / v.dot(v).sqrt()),
+            VectorLibrary::Vecmath => v / v.length(),
+            VectorLibrary::Glm => v * (1.0 / v.dot(v).sqrt()),
         }
     }
 }
@@ -64,7 +64,7 @@ impl Vectors {
 pub struct HitRules {
     /// Arithmetic of ray transforms and of directions to lights. With glm, each object transforms
     /// rays, even by the identity, as the difference of two points.
-    pub vectors: Vectors,
+    pub vectors: VectorLibrary,
     /// True to intersect triangles with the inverse of a matrix, false to use their plane and
     /// areas.
     pub triangle_matrix: bool,
@@ -83,7 +83,7 @@ pub struct HitRules {
 
 /// Objects of a world, prepared for intersection as an official program of the course does it.
 #[derive(Clone, Debug)]
-pub struct CourseHits {
+pub struct CourseAccel {
     rules: HitRules,
     objects: Vec<CourseObject>,
 }
@@ -106,7 +106,7 @@ enum MeshOrder {
     Octree(Octree),
 }
 
-impl CourseHits {
+impl CourseAccel {
     /// Prepares the objects of a world.
     pub(crate) fn new(rules: HitRules, objects: &[Object]) -> Self {
         // Several objects can use the same mesh.
@@ -122,7 +122,7 @@ impl CourseHits {
             let inverses = object.matrices.iter().map(|matrix| matrix.inverse(rules.vectors)).collect();
             CourseObject { inverses, walk }
         });
-        CourseHits { rules, objects: objects.collect() }
+        CourseAccel { rules, objects: objects.collect() }
     }
 
     /// Returns the first hit in a ray's interval.
@@ -130,7 +130,8 @@ impl CourseHits {
         let mut best: Option<Hit> = None;
         for (number, (prepared, object)) in (0..).zip(self.objects.iter().zip(objects)) {
             let local = self.local(prepared, &ray.rounded);
-            let limits = Limits { t_min: ray.rounded.t_min, t_max: ray.rounded.t_max, best: best.map(|hit| hit.t) };
+            let limits =
+                HitInterval { t_min: ray.rounded.t_min, t_max: ray.rounded.t_max, best: best.map(|hit| hit.t) };
             let mut offer = |crossing: Option<Crossing>, part: u32| {
                 if let Some(Crossing { t, uv }) = crossing {
                     best = Some(Hit { t, uv, object: number, part });
@@ -171,16 +172,16 @@ impl CourseHits {
     fn local(&self, object: &CourseObject, ray: &Ray) -> Ray {
         let mut local = *ray;
         match self.rules.vectors {
-            Vectors::Vecmath => {
+            VectorLibrary::Vecmath => {
                 for inverse in &object.inverses {
-                    local.origin = inverse.point(local.origin, Vectors::Vecmath);
+                    local.origin = inverse.point(local.origin, VectorLibrary::Vecmath);
                     local.dir = inverse.vector(local.dir);
                 }
             }
-            Vectors::Glm => {
+            VectorLibrary::Glm => {
                 let inverse = object.inverses.first().unwrap_or(&Matrix::IDENTITY);
-                local.origin = inverse.point(ray.origin, Vectors::Glm);
-                local.dir = inverse.point(ray.origin + ray.dir, Vectors::Glm) - local.origin;
+                local.origin = inverse.point(ray.origin, VectorLibrary::Glm);
+                local.dir = inverse.point(ray.origin + ray.dir, VectorLibrary::Glm) - local.origin;
             }
         }
         local
@@ -196,7 +197,7 @@ impl CourseHits {
                 let local = self.local(object, ray);
                 vectors.unit(local.origin + hit.t * local.dir - sphere.center)
             }
-            Geometry::Primitive(Primitive::Plane(plane)) if self.rules.raw_normals || vectors == Vectors::Glm => {
+            Geometry::Primitive(Primitive::Plane(plane)) if self.rules.raw_normals || vectors == VectorLibrary::Glm => {
                 plane.normal
             }
             Geometry::Primitive(Primitive::Plane(plane)) => vectors.unit(plane.normal),
@@ -204,8 +205,8 @@ impl CourseHits {
         };
         let moved = |n, inverse: &Matrix| vectors.unit(inverse.across(n, vectors));
         let n = match vectors {
-            Vectors::Vecmath => object.inverses.iter().rev().fold(own, moved),
-            Vectors::Glm => moved(own, object.inverses.first().unwrap_or(&Matrix::IDENTITY)),
+            VectorLibrary::Vecmath => object.inverses.iter().rev().fold(own, moved),
+            VectorLibrary::Glm => moved(own, object.inverses.first().unwrap_or(&Matrix::IDENTITY)),
         };
         n.is_finite().then_some(n)
     }
@@ -227,19 +228,21 @@ impl CourseObject {
         &self,
         tree: &MeshTree,
         ray: &Ray,
-        mut limits: Limits,
+        mut limits: HitInterval,
         rules: HitRules,
         counter: &mut T,
     ) -> Option<(Crossing, u32)> {
         let mut best: Option<(Crossing, u32)> = None;
         match self.walk.as_deref()? {
-            MeshOrder::Octree(octree) => octree.walk(ray.origin, rules.vectors.walked(ray.dir), &mut |part| {
-                counter.count_work(0, 1);
-                if let Some(crossing) = shapes::triangle(tree.mesh.corners(part), ray, limits, rules) {
-                    limits.best = Some(crossing.t);
-                    best = Some((crossing, part));
-                }
-            }),
+            MeshOrder::Octree(octree) => {
+                octree.walk(ray.origin, rules.vectors.traversal_direction(ray.dir), &mut |part| {
+                    counter.count_work(0, 1);
+                    if let Some(crossing) = shapes::triangle(tree.mesh.corners(part), ray, limits, rules) {
+                        limits.best = Some(crossing.t);
+                        best = Some((crossing, part));
+                    }
+                })
+            }
             MeshOrder::Boxes(bvh) => bvh.traverse(ray, counter, |item, t_max, _| {
                 let part = bvh.primitive_indices()[item];
                 let Some(crossing) = shapes::triangle(tree.mesh.corners(part), ray, limits, rules) else {
@@ -285,12 +288,12 @@ impl World {
 
     /// Returns the direction and distance to a light in an official program's arithmetic. `None`
     /// for Dürer's own arithmetic and for lights that the course does not have.
-    pub fn course_way(&self, light: usize, point: Vec3) -> Option<(Vec3, f32)> {
+    pub fn course_light_direction(&self, light: usize, point: Vec3) -> Option<(Vec3, f32)> {
         let vectors = self.hit_rules()?.vectors;
         match &self.lights()[light] {
             Light::Point(emitter) => {
-                let way = emitter.position - point;
-                Some((vectors.unit(way), way.length()))
+                let to_emitter = emitter.position - point;
+                Some((vectors.unit(to_emitter), to_emitter.length()))
             }
             Light::Directional(sun) => Some((-vectors.unit(sun.direction().unwrap_or(Vec3::NEG_Y)), f32::MAX)),
             _ => None,

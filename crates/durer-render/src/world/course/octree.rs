@@ -12,7 +12,7 @@ use durer_scene::math::{Aabb, Vec3};
 use std::ops::Range;
 
 /// Maximum number of triangles in a cell that is not divided.
-const MOST: usize = 7;
+const MAX_LEAF_TRIANGLES: usize = 7;
 /// Deepest level at which cells are divided.
 const LAST_LEVEL: u32 = 8;
 /// Number of stored triangles beyond which cells are no longer divided, in all cells together.
@@ -62,7 +62,7 @@ impl Octree {
 
     /// Divides a cell, or stores its triangles if there are few.
     fn fill(&mut self, cell: usize, bounds: Aabb, triangles: Vec<u32>, boxes: &[Aabb], level: u32) {
-        if triangles.len() <= MOST || level > LAST_LEVEL || self.triangles.len() > MOST_STORED {
+        if triangles.len() <= MAX_LEAF_TRIANGLES || level > LAST_LEVEL || self.triangles.len() > MOST_STORED {
             let start = self.triangles.len() as u32;
             self.triangles.extend(triangles);
             self.cells[cell] = Cell::Whole(start..self.triangles.len() as u32);
@@ -77,10 +77,10 @@ impl Octree {
                 let half = |axis: usize| if child & (4 >> axis) != 0 { upper[axis] } else { lower[axis] };
                 Vec3::new(half(0), half(1), half(2))
             };
-            let own = Aabb { min: pick(middle, bounds.min), max: pick(bounds.max, middle) };
-            let touches = |b: &Aabb| b.min.cmple(own.max).all() && own.min.cmple(b.max).all();
+            let child_bounds = Aabb { min: pick(middle, bounds.min), max: pick(bounds.max, middle) };
+            let touches = |b: &Aabb| b.min.cmple(child_bounds.max).all() && child_bounds.min.cmple(b.max).all();
             let inside = triangles.iter().copied().filter(|&i| touches(&boxes[i as usize])).collect();
-            self.fill(first + child, own, inside, boxes, level + 1);
+            self.fill(first + child, child_bounds, inside, boxes, level + 1);
         }
     }
 
@@ -123,13 +123,13 @@ impl Octree {
         let mut child = first_child(enter, middle);
         loop {
             let is_upper = [0, 1, 2].map(|axis| child & (4 >> axis) != 0);
-            let own = Span {
+            let child_span = Span {
                 enter: [0, 1, 2].map(|axis| if is_upper[axis] { middle[axis] } else { enter[axis] }),
                 leave: [0, 1, 2].map(|axis| if is_upper[axis] { leave[axis] } else { middle[axis] }),
             };
-            self.visit(children + (child ^ mirrored), mirrored, own, offer);
+            self.visit(children + (child ^ mirrored), mirrored, child_span, offer);
             // Leave through the nearest exit plane. Nothing lies behind an outer plane.
-            let axis = first_plane(own.leave);
+            let axis = first_plane(child_span.leave);
             if is_upper[axis] {
                 return;
             }

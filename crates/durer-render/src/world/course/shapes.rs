@@ -15,7 +15,7 @@ pub(super) struct Crossing {
 
 /// Interval of a ray in which a hit counts, for intersections in an official program's arithmetic.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Limits {
+pub(super) struct HitInterval {
     /// Minimum `t`, excluded.
     pub t_min: f32,
     /// Maximum `t`.
@@ -24,7 +24,7 @@ pub(super) struct Limits {
     pub best: Option<f32>,
 }
 
-impl Limits {
+impl HitInterval {
     /// Returns true if a hit at `t` counts. With `ties`, it may be at the same distance as the best
     /// hit. False for NaN.
     pub fn takes(&self, t: f32, ties: bool) -> bool {
@@ -41,7 +41,7 @@ impl Limits {
 
 /// Intersects a sphere: solves |o + t d - c|^2 = r^2 by the quadratic formula, without avoiding
 /// cancellation.
-pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: Limits, rules: HitRules) -> Option<Crossing> {
+pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: HitInterval, rules: HitRules) -> Option<Crossing> {
     let Ray { dir, t_min, .. } = *ray;
     let origin = ray.origin - sphere.center;
     let a = dir.dot(dir);
@@ -70,7 +70,7 @@ pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: Limits, rules: HitRules
 }
 
 /// Intersects a plane: solves n·(o + t d) = offset, with n as in the scene file.
-pub(super) fn plane(plane: &Plane, ray: &Ray, limits: Limits, closed: bool) -> Option<Crossing> {
+pub(super) fn plane(plane: &Plane, ray: &Ray, limits: HitInterval, closed: bool) -> Option<Crossing> {
     let n = plane.normal;
     let t = (plane.offset - n.dot(ray.origin)) / n.dot(ray.dir);
     let begins = t > limits.t_min || closed && t == limits.t_min;
@@ -78,7 +78,7 @@ pub(super) fn plane(plane: &Plane, ray: &Ray, limits: Limits, closed: bool) -> O
 }
 
 /// Intersects both sides of a triangle.
-pub(super) fn triangle(corners: [Vec3; 3], ray: &Ray, limits: Limits, rules: HitRules) -> Option<Crossing> {
+pub(super) fn triangle(corners: [Vec3; 3], ray: &Ray, limits: HitInterval, rules: HitRules) -> Option<Crossing> {
     let (t, uv) = if rules.triangle_matrix { by_matrix(corners, ray)? } else { by_areas(corners, ray)? };
     limits.takes(t, rules.tied_triangles).then_some(Crossing { t, uv })
 }

@@ -461,15 +461,15 @@ fn cluster_of_many_parts_matches_its_parts() {
 #[test]
 fn parts_are_clipped_to_the_bounds_of_the_whole() {
     let (mut random, mut hits) = (Random(28), 0);
-    let operand = |shape| Solid::Operand(Arc::new(world(&shape).objects()[0].clone()));
+    let operand = |shape| CsgTree::Operand(Arc::new(world(&shape).objects()[0].clone()));
     for _ in 0..20 {
         let mut rod = || {
             let (base, along) = (random.point(), 5.0 * random.direction());
             operand(shape(Cylinder { base: base - along, top: base + along, radius: random.between(0.05, 0.3) }))
         };
-        let cut: Vec<Solid> = (0..12).map(|_| rod()).collect();
+        let cut: Vec<CsgTree> = (0..12).map(|_| rod()).collect();
         let parts = vec![operand(cuboid([-1.0, -0.2, -1.0], [1.0, 0.2, 1.0])), operand(ball([0.0; 3], 1.2))];
-        let [solid, mut whole] = [0; 2].map(|_| Csg::new(Solid::all(parts.clone(), cut.clone())));
+        let [solid, mut whole] = [0; 2].map(|_| Csg::new(CsgTree::intersection(parts.clone(), cut.clone())));
         assert!(whole.bvh.take().is_some());
         for _ in 0..1000 {
             let ray = Ray64::from(Ray::new(2.0 * random.point(), random.direction()));
@@ -532,6 +532,6 @@ fn coincident_parts_take_linear_time() {
         let hit = world.closest(&ray, &mut ());
         assert_eq!(hit.is_some(), there, "{operation:?}");
         // The visible surface is that of the first part in the file.
-        assert!(hit.is_none_or(|hit| hit.part & !(TURNED | ENTERS) == 0), "{operation:?}");
+        assert!(hit.is_none_or(|hit| hit.part & !(INVERTED | ENTERS) == 0), "{operation:?}");
     }
 }

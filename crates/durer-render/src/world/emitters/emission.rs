@@ -12,7 +12,7 @@ use std::f32::consts::PI;
 
 /// Bounding sphere of an object that casts caustics; photons are sent to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Target {
+pub struct PhotonTarget {
     /// Centre.
     pub center: Vec3,
     /// Radius.
@@ -23,8 +23,8 @@ pub struct Target {
 
 /// Photon emitter of a scene: all light sources, and the targets to which they send photons.
 #[derive(Clone, Debug, Default)]
-pub struct Beams {
-    targets: Vec<Target>,
+pub struct PhotonEmitter {
+    targets: Vec<PhotonTarget>,
     sources: Vec<PhotonSource>,
     /// Cumulative power of the sources, for choosing one.
     sums: Vec<f32>,
@@ -38,16 +38,16 @@ enum PhotonSource {
     /// An emissive surface.
     Area(AreaLight),
     /// A light with a position, by its index.
-    Near(u32),
+    Point(u32),
     /// A light at infinity, by its index.
-    Far(u32),
+    Distant(u32),
     /// The environment.
-    Sky,
+    EnvironmentMap,
 }
 
 /// Photon at its emission: ray and power, divided by the sampling density.
 #[derive(Clone, Copy, Debug)]
-pub struct Emitted {
+pub struct EmittedPhoton {
     /// The ray.
     pub ray: Ray64,
     /// Power per colour channel. For a light with a position, relative to the light's intensity.
@@ -59,40 +59,40 @@ pub struct Emitted {
     pub material: Option<u32>,
 }
 
-impl Beams {
+impl PhotonEmitter {
     /// Prepares emission from all lights to all objects that reflect or refract.
     pub fn new(world: &World) -> Self {
         let targets = targets(world);
         let all = world.objects().iter().filter_map(Object::bounds).reduce(Aabb::union);
         let reach = all.map_or(0.0, |all| all.size().length());
-        let mut beams = Beams { targets, reach, ..Beams::default() };
+        let mut beams = PhotonEmitter { targets, reach, ..PhotonEmitter::default() };
         if beams.targets.is_empty() {
             return beams;
         }
         let area: f32 = beams.targets.iter().map(|target| PI * target.radius * target.radius).sum();
         let emitters = world.emitters();
-        for source in emitters.as_given() {
+        for source in emitters.in_scene_order() {
             match source {
                 LightEntry::Area(area) => {
                     let sides = if area.two_sided { 2.0 } else { 1.0 };
                     beams.add(PhotonSource::Area(*area), PI * sides * area.form.area() * area.radiance.max_element());
                 }
                 LightEntry::Light(number) => {
-                    beams.add(PhotonSource::Near(*number), 4.0 * PI * PI * strength(world, *number))
+                    beams.add(PhotonSource::Point(*number), 4.0 * PI * PI * strength(world, *number))
                 }
             }
         }
-        for &InfiniteLight { light, way, .. } in &emitters.apart {
+        for &InfiniteLight { light, way, .. } in &emitters.outside_tree {
             let color = world.lights()[light as usize].color().max_element();
             match way != Vec3::ZERO {
-                true => beams.add(PhotonSource::Far(light), PI * color * area),
+                true => beams.add(PhotonSource::Distant(light), PI * color * area),
                 // Its attenuation may differ from the inverse square law, so use its strength at a
                 // distance of the scene's size.
-                false => beams.add(PhotonSource::Near(light), 4.0 * PI * PI * color * reach * reach),
+                false => beams.add(PhotonSource::Point(light), 4.0 * PI * PI * color * reach * reach),
             }
         }
         if let Some(sky) = world.environment() {
-            beams.add(PhotonSource::Sky, 4.0 * PI * sky.mean().max_element() * area);
+            beams.add(PhotonSource::EnvironmentMap, 4.0 * PI * sky.mean().max_element() * area);
         }
         beams
     }
@@ -111,13 +111,13 @@ impl Beams {
     }
 
     /// Returns the radius of the smallest target, in world units.
-    pub fn finest(&self) -> f32 {
+    pub fn min_target_radius(&self) -> f32 {
         self.targets.iter().map(|target| target.radius).fold(f32::INFINITY, f32::min)
     }
 
     /// Emits a photon. `choices` selects the source and the target, `place` the point on the
     /// source. All numbers are in [0, 1).
-    pub fn emit(&self, world: &World, choices: Vec2, place: Vec2, direction: Vec2) -> Option<Emitted> {
+    pub fn emit(&self, world: &World, choices: Vec2, place: Vec2, direction: Vec2) -> Option<EmittedPhoton> {
         let all = *self.sums.last()?;
         let wanted = choices.x * all;
         let i = self.sums.partition_point(|&sum| sum <= wanted).min(self.sums.len() - 1);
@@ -127,7 +127,7 @@ impl Beams {
         match self.sources[i] {
             PhotonSource::Area(area) => {
                 let (point, normal, density) = area.form.point(area.normal, place)?;
-                let (dir, pdf) = self.towards(point, target, direction)?;
+                let (dir, pdf) = self.sample_cone(point, target, direction)?;
                 let cosine = normal.dot(dir);
                 if cosine == 0.0 || cosine < 0.0 && !area.two_sided {
                     return None;
@@ -136,37 +136,42 @@ impl Beams {
                 // Offset the ray from the surface of the emitter.
                 let side = if cosine < 0.0 { -normal } else { normal };
                 let origin = point + f64::from(4.0 * area.error) * side.as_dvec3();
-                Some(Emitted {
+                Some(EmittedPhoton {
                     ray: Ray64::new(origin, dir, 0.0, f32::INFINITY),
                     power,
                     light: None,
                     material: Some(world.objects()[area.object as usize].material),
                 })
             }
-            PhotonSource::Near(light) => {
+            PhotonSource::Point(light) => {
                 let origin = world.illuminate(light as usize, DVec3::ZERO);
                 let point = f64::from(origin.distance) * origin.to_light.as_dvec3();
-                let (dir, pdf) = self.towards(point, target, direction)?;
+                let (dir, pdf) = self.sample_cone(point, target, direction)?;
                 let ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
-                Some(Emitted { ray, power: Color::splat(1.0 / (pdf * choice)), light: Some(light), material: None })
+                Some(EmittedPhoton {
+                    ray,
+                    power: Color::splat(1.0 / (pdf * choice)),
+                    light: Some(light),
+                    material: None,
+                })
             }
-            PhotonSource::Far(light) => {
+            PhotonSource::Distant(light) => {
                 let sample = super::spread(world, light, of_light(world, light, DVec3::ZERO, 1.0), place);
-                let (ray, density) = self.across(-sample.wi, target, direction);
-                Some(Emitted { ray, power: sample.radiance / (density * choice), light: None, material: None })
+                let (ray, density) = self.sample_parallel(-sample.wi, target, direction);
+                Some(EmittedPhoton { ray, power: sample.radiance / (density * choice), light: None, material: None })
             }
-            PhotonSource::Sky => {
+            PhotonSource::EnvironmentMap => {
                 let (wi, radiance, pdf) = from_all_around(world.environment()?, place)?;
-                let (ray, density) = self.across(-wi, target, direction);
-                Some(Emitted { ray, power: radiance / (density * pdf * choice), light: None, material: None })
+                let (ray, density) = self.sample_parallel(-wi, target, direction);
+                Some(EmittedPhoton { ray, power: radiance / (density * pdf * choice), light: None, material: None })
             }
         }
     }
 
     /// Samples a direction from a point towards a target. Also returns its density per steradian,
     /// taken over all targets.
-    fn towards(&self, point: DVec3, target: usize, u: Vec2) -> Option<(Vec3, f32)> {
-        let cone = |target: &Target| {
+    fn sample_cone(&self, point: DVec3, target: usize, u: Vec2) -> Option<(Vec3, f32)> {
+        let cone = |target: &PhotonTarget| {
             let to = (target.center.as_dvec3() - point).as_vec3();
             let (d2, r2) = (to.length_squared(), target.radius * target.radius);
             // From inside the sphere, all directions hit it.
@@ -176,7 +181,7 @@ impl Beams {
         let (axis, cosine) = cone(&self.targets[target]);
         let dir = Frame::around(axis).to_world(warp::polar(1.0 - u.x * (1.0 - cosine), u.y)).normalize();
         // A direction can hit several targets.
-        let density = |target: &Target| {
+        let density = |target: &PhotonTarget| {
             let (axis, cosine) = cone(target);
             if axis.dot(dir) >= cosine - 1e-6 { 1.0 / (2.0 * PI * (1.0 - cosine).max(1e-7)) } else { 0.0 }
         };
@@ -186,12 +191,12 @@ impl Beams {
 
     /// Samples a ray through a target in a given direction. It starts in front of all objects. Also
     /// returns its density per area, taken over all targets.
-    fn across(&self, dir: Vec3, target: usize, u: Vec2) -> (Ray64, f32) {
+    fn sample_parallel(&self, dir: Vec3, target: usize, u: Vec2) -> (Ray64, f32) {
         let frame = Frame::around(dir);
         let disc = warp::disc(u);
-        let Target { center, radius, .. } = self.targets[target];
+        let PhotonTarget { center, radius, .. } = self.targets[target];
         let through = center + radius * (disc.x * frame.tangent + disc.y * frame.bitangent);
-        let density = |target: &Target| {
+        let density = |target: &PhotonTarget| {
             let beside = (target.center - through).reject_from_normalized(dir).length_squared();
             let square = target.radius * target.radius;
             if beside <= square * (1.0 + 1e-5) { 1.0 / (PI * square) } else { 0.0 }
@@ -225,10 +230,10 @@ fn strength(world: &World, light: u32) -> f32 {
 }
 
 /// Returns bounding spheres of all bounded objects with delta lobes, ordered by object.
-fn targets(world: &World) -> Vec<Target> {
+fn targets(world: &World) -> Vec<PhotonTarget> {
     let mut found = Vec::new();
     for (number, object) in world.objects().iter().enumerate() {
-        if !throws_light(world, object) {
+        if !casts_caustics(world, object) {
             continue;
         }
         let Some(bounds) = object.bounds() else { continue };
@@ -239,23 +244,23 @@ fn targets(world: &World) -> Vec<Target> {
             Geometry::Primitive(_) | Geometry::Mesh(_) | Geometry::Solid(_) => half.length(),
         };
         if radius > 0.0 && radius.is_finite() {
-            found.push(Target { center, radius: 1.001 * radius, object: number as u32 });
+            found.push(PhotonTarget { center, radius: 1.001 * radius, object: number as u32 });
         }
     }
     found
 }
 
 /// Returns true if an object may reflect or refract light into single directions.
-fn throws_light(world: &World, object: &Object) -> bool {
+fn casts_caustics(world: &World, object: &Object) -> bool {
     // The parts of a solid have their own materials.
     if matches!(object.geometry, Geometry::Solid(_)) {
         return true;
     }
     match &world.materials()[object.material as usize] {
         Material::Phong(phong) => match &phong.principled {
-            Some(own) => own.has_single_directions(),
+            Some(own) => own.has_delta_lobes(),
             None => phong.reflective != Color::ZERO || phong.transparent != Color::ZERO,
         },
-        Material::Solid(..) => true,
+        Material::Mix(..) => true,
     }
 }

@@ -14,10 +14,10 @@ use durer_scene::shape::Shape as _;
 use glam::DVec3;
 use serde::Serialize;
 use std::f32::consts::PI;
-use tree::{Bounds, LightTree};
+use tree::{LightBounds, LightTree};
 
 /// Maximum number of objects for which containment between objects is tested.
-const MANY: usize = 10_000;
+const MAX_OBJECTS_TESTED: usize = 10_000;
 
 /// Emissive part of an object that light sampling can choose, such as a triangle or a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,8 +57,8 @@ pub struct LightSampler {
     /// Index in `sources` of each part.
     parts: Vec<u32>,
     /// Lights that are not in the tree.
-    apart: Vec<InfiniteLight>,
-    /// Lights in `apart` that have an angular extent.
+    outside_tree: Vec<InfiniteLight>,
+    /// Lights in `outside_tree` that have an angular extent.
     suns: Vec<Sun>,
     tree: LightTree,
 }
@@ -76,14 +76,14 @@ struct InfiniteLight {
 
 impl InfiniteLight {
     fn of(world: &World, light: u32) -> InfiniteLight {
-        let (seen, color) = (of_light(world, light, DVec3::ZERO, 1.0), world.lights()[light as usize].color());
-        let way = if seen.reach.is_infinite() { seen.wi } else { Vec3::ZERO };
-        InfiniteLight { light, way, irradiance: PI * color.max_element().max(0.0) }
+        let (light_sample, color) = (of_light(world, light, DVec3::ZERO, 1.0), world.lights()[light as usize].color());
+        let direction = if light_sample.reach.is_infinite() { light_sample.wi } else { Vec3::ZERO };
+        InfiniteLight { light, way: direction, irradiance: PI * color.max_element().max(0.0) }
     }
 
     /// Returns the estimated irradiance on a surface with normal `n`. A zero normal stands for any
     /// orientation.
-    fn brings(&self, n: Vec3) -> f32 {
+    fn estimated_irradiance(&self, n: Vec3) -> f32 {
         if n == Vec3::ZERO || self.way == Vec3::ZERO {
             self.irradiance
         } else {
@@ -104,7 +104,7 @@ struct LightWeights {
 }
 
 /// Fraction of choices that ignore the estimates and are uniform, because estimates can be wrong.
-const EVENLY: f32 = 0.1;
+const UNIFORM_FRACTION: f32 = 0.1;
 
 impl LightWeights {
     /// Returns the probability of choosing a light whose estimated irradiance is `brings`.
@@ -114,7 +114,7 @@ impl LightWeights {
         }
         let share = brings / self.total;
         let even = 1.0 / self.choices;
-        if share.is_finite() { (1.0 - EVENLY) * share + EVENLY * even } else { even }
+        if share.is_finite() { (1.0 - UNIFORM_FRACTION) * share + UNIFORM_FRACTION * even } else { even }
     }
 }
 
@@ -122,7 +122,7 @@ impl LightWeights {
 #[derive(Clone, Debug)]
 struct Sun {
     light: u32,
-    way: Vec3,
+    direction: Vec3,
     /// Squared chord of half the angle. (The cosine of a small angle is too imprecise.)
     chord2: f32,
     radiance: Color,
@@ -160,24 +160,25 @@ pub struct Receiver {
     /// Threshold for sampling a distant group of similar emitters uniformly, since all contribute
     /// about the same. It is the maximum ratio of the group's radius to its distance, divided by
     /// the cosines at group and point.
-    pub far: f32,
+    pub uniform_threshold: f32,
 }
 
 impl Receiver {
-    /// Value of [`Receiver::far`] for points that the camera sees, also through delta lobes.
-    pub const FAR: f32 = 0.1;
-    /// Value of [`Receiver::far`] for later bounces. Many of them are averaged, so each choice of a
-    /// light matters less.
-    pub const FAR_BEYOND: f32 = 0.3;
+    /// Value of [`Receiver::uniform_threshold`] for points that the camera sees, also through delta
+    /// lobes.
+    pub const UNIFORM_THRESHOLD: f32 = 0.1;
+    /// Value of [`Receiver::uniform_threshold`] for later bounces. Many of them are averaged, so
+    /// each choice of a light matters less.
+    pub const INDIRECT_UNIFORM_THRESHOLD: f32 = 0.3;
 }
 
 /// Light that was chosen for a point, with the probability of the choice.
-pub struct Choice {
+pub struct LightChoice {
     of: ChosenLight,
     probability: f32,
 }
 
-impl Choice {
+impl LightChoice {
     /// Returns true if the environment was chosen.
     pub fn is_sky(&self) -> bool {
         matches!(self.of, ChosenLight::Sky)
@@ -189,7 +190,7 @@ impl Choice {
     }
 }
 
-/// Kind and index of a light in a [`Choice`].
+/// Kind and index of a light in a [`LightChoice`].
 enum ChosenLight {
     /// A light outside the light tree, by its index in the scene.
     Apart(u32),
@@ -223,7 +224,7 @@ pub struct LightSample {
 
 impl LightSample {
     /// Creates a sample of the environment in direction `wi`.
-    pub fn of_sky(choice: &Choice, wi: Vec3, radiance: Color, pdf: f32) -> Self {
+    pub fn of_sky(choice: &LightChoice, wi: Vec3, radiance: Color, pdf: f32) -> Self {
         LightSample {
             light: LightId::Environment,
             wi,
@@ -252,7 +253,7 @@ impl LightSampler {
         for (number, object) in world.objects().iter().enumerate() {
             let Some(Emission { radiance, two_sided, .. }) = world.emission_of(object.material) else { continue };
             let two_sided = two_sided && !has_empty_inside(world, number);
-            let (start, error) = (emitters.sources.len(), object.rounding());
+            let (start, error) = (emitters.sources.len(), object.rounding_error());
             for part in 0..object.parts() {
                 let Some((form, normal)) = emitter_of(object, part) else { break };
                 let area = AreaLight { form, normal, object: number as u32, part, two_sided, error, radiance };
@@ -270,18 +271,18 @@ impl LightSampler {
                     let most = profile.map_or(1.0, |profile| profile.max_candela());
                     let power = PI * most * intensity.max_element().max(0.0);
                     emitters.sources.push(LightEntry::Light(number as u32));
-                    bounds.push(Bounds {
+                    bounds.push(LightBounds {
                         bounds: Aabb { min: position, max: position },
                         power,
                         axis: Vec3::Z,
                         cos_normals: -1.0,
                         cos_emission: 0.0,
                         two_sided: false,
-                        each: power,
+                        emitter_power: power,
                     });
                 }
                 None => {
-                    emitters.apart.push(InfiniteLight::of(world, number as u32));
+                    emitters.outside_tree.push(InfiniteLight::of(world, number as u32));
                     emitters.suns.extend(Sun::of(world, number as u32));
                 }
             }
@@ -308,58 +309,58 @@ impl LightSampler {
     }
 
     /// Iterates over the emitters in the order of the scene.
-    fn as_given(&self) -> impl Iterator<Item = &LightEntry> {
+    fn in_scene_order(&self) -> impl Iterator<Item = &LightEntry> {
         self.parts.iter().map(|&source| &self.sources[source as usize])
     }
 
     /// Estimates the irradiances at a point. `None` if there are no lights.
     fn chances(&self, world: &World, to: &Receiver) -> Option<LightWeights> {
         let (environment, has_tree) = (world.environment(), !self.tree.is_empty());
-        let choices = self.apart.len() + usize::from(environment.is_some()) + usize::from(has_tree);
-        let mut chances = LightWeights { choices: choices as f32, total: 0.0, sky: 0.0, tree: 0.0 };
+        let choices = self.outside_tree.len() + usize::from(environment.is_some()) + usize::from(has_tree);
+        let mut weights = LightWeights { choices: choices as f32, total: 0.0, sky: 0.0, tree: 0.0 };
         if choices > 1 {
-            chances.sky = environment.map_or(0.0, |sky| PI * sky.mean_above().max_element());
-            chances.tree = self.tree.importance(to);
-            let apart: f32 = self.apart.iter().map(|apart| apart.brings(to.n)).sum();
-            let total = apart + chances.sky + chances.tree;
+            weights.sky = environment.map_or(0.0, |sky| PI * sky.mean_above().max_element());
+            weights.tree = self.tree.importance(to);
+            let apart: f32 = self.outside_tree.iter().map(|apart| apart.estimated_irradiance(to.n)).sum();
+            let total = apart + weights.sky + weights.tree;
             // If the estimates are not valid, NaN makes the choice uniform.
-            chances.total = if total.is_finite() { total } else { f32::NAN };
+            weights.total = if total.is_finite() { total } else { f32::NAN };
         }
-        (choices > 0).then_some(chances)
+        (choices > 0).then_some(weights)
     }
 
     /// Chooses a light for a point. `u` in [0, 1) is a random number. Prefetches the data needed to
     /// sample it.
-    pub fn choose(&self, world: &World, to: &Receiver, u: f32) -> Option<Choice> {
-        let chances = self.chances(world, to)?;
+    pub fn choose(&self, world: &World, to: &Receiver, u: f32) -> Option<LightChoice> {
+        let weights = self.chances(world, to)?;
         let (has_sky, has_tree) = (world.environment().is_some(), !self.tree.is_empty());
         let mut rest = u;
-        for (i, apart) in self.apart.iter().enumerate() {
-            let chance = chances.of(apart.brings(to.n));
-            let is_last = i + 1 == self.apart.len() && !has_sky && !has_tree;
+        for (i, apart) in self.outside_tree.iter().enumerate() {
+            let chance = weights.of(apart.estimated_irradiance(to.n));
+            let is_last = i + 1 == self.outside_tree.len() && !has_sky && !has_tree;
             if rest < chance || is_last {
-                return Some(Choice { of: ChosenLight::Apart(apart.light), probability: chance });
+                return Some(LightChoice { of: ChosenLight::Apart(apart.light), probability: chance });
             }
             rest -= chance;
         }
         if has_sky {
-            let chance = chances.of(chances.sky);
+            let chance = weights.of(weights.sky);
             if rest < chance || !has_tree {
-                return Some(Choice { of: ChosenLight::Sky, probability: chance });
+                return Some(LightChoice { of: ChosenLight::Sky, probability: chance });
             }
             rest -= chance;
         }
-        let chance = chances.of(chances.tree);
+        let chance = weights.of(weights.tree);
         let rest = (rest / chance).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
         let (source, probability) = self.tree.sample(to, rest)?;
         if let Some(source) = self.sources.get(source as usize) {
             prefetch(source);
         }
-        Some(Choice { of: ChosenLight::Source(source), probability: chance * probability })
+        Some(LightChoice { of: ChosenLight::Source(source), probability: chance * probability })
     }
 
     /// Samples a direction from a point to the chosen light. `u` in [0, 1)^2 are random numbers.
-    pub fn sample(&self, world: &World, choice: &Choice, point: DVec3, u: Vec2) -> Option<LightSample> {
+    pub fn sample(&self, world: &World, choice: &LightChoice, point: DVec3, u: Vec2) -> Option<LightSample> {
         let probability = choice.probability;
         match choice.of {
             ChosenLight::Apart(light) => Some(spread(world, light, of_light(world, light, point, probability), u)),
@@ -377,7 +378,7 @@ impl LightSampler {
     /// Returns the random numbers with which [`LightSampler::sample`] samples the centre of a
     /// surface as seen from the point. For a triangle or cylinder, it samples some fixed point.
     /// `None` if the emitter is not a surface.
-    pub fn middle(&self, light: LightId) -> Option<Vec2> {
+    pub fn center_sample(&self, light: LightId) -> Option<Vec2> {
         let source = *self.parts.get(self.first[light.object()? as usize] as usize)? as usize;
         match self.sources.get(source)? {
             LightEntry::Area(area) if area.form.is_ball() => Some(Vec2::ZERO),
@@ -386,7 +387,7 @@ impl LightSampler {
     }
 
     /// Returns the emitter that a ray hit, if light sampling can choose that side of it.
-    fn chosen(&self, hit: &Hit, dir: Vec3) -> Option<(u32, &AreaLight)> {
+    fn emitter_at(&self, hit: &Hit, dir: Vec3) -> Option<(u32, &AreaLight)> {
         let source = *self.parts.get(self.first[hit.object as usize].checked_add(hit.part)? as usize)?;
         match self.sources.get(source as usize)? {
             LightEntry::Area(area) if area.two_sided || area.normal.dot(dir) <= 0.0 => Some((source, area)),
@@ -395,16 +396,16 @@ impl LightSampler {
     }
 
     /// Returns true if light sampling can choose the emissive surface that a ray hit.
-    pub fn chooses(&self, hit: &Hit, dir: Vec3) -> bool {
-        self.chosen(hit, dir).is_some()
+    pub fn can_choose(&self, hit: &Hit, dir: Vec3) -> bool {
+        self.emitter_at(hit, dir).is_some()
     }
 
     /// Returns the density per steradian with which light sampling finds an emissive surface that a
     /// ray hit. 0 if it never does.
     pub fn pdf_of_hit(&self, world: &World, hit: &Hit, to: &Receiver, wi: Vec3, distance: f32) -> f32 {
-        let Some((source, area)) = self.chosen(hit, wi) else { return 0.0 };
-        let Some(chances) = self.chances(world, to) else { return 0.0 };
-        let choice = chances.of(chances.tree) * self.tree.probability(to, source);
+        let Some((source, area)) = self.emitter_at(hit, wi) else { return 0.0 };
+        let Some(weights) = self.chances(world, to) else { return 0.0 };
+        let choice = weights.of(weights.tree) * self.tree.probability(to, source);
         let pdf = area.form.pdf(area.normal, to.point, wi, distance);
         if pdf.is_finite() { choice * pdf } else { 0.0 }
     }
@@ -412,8 +413,8 @@ impl LightSampler {
     /// Iterates over the lights at infinity that are visible in a direction, with their radiance.
     pub fn suns(&self, dir: Vec3) -> impl Iterator<Item = (LightId, Color)> {
         let dir = if self.suns.is_empty() { dir } else { dir.normalize_or_zero() };
-        let seen = self.suns.iter().filter(move |sun| sun.way.distance_squared(dir) <= sun.chord2);
-        seen.map(|sun| (LightId::Light(sun.light), sun.radiance))
+        let visible_suns = self.suns.iter().filter(move |sun| sun.direction.distance_squared(dir) <= sun.chord2);
+        visible_suns.map(|sun| (LightId::Light(sun.light), sun.radiance))
     }
 
     /// Returns the background radiance in a direction and, for an environment, its density in light
@@ -422,13 +423,13 @@ impl LightSampler {
         match world.environment() {
             Some(environment) => environment.at_with_pdf(wi),
             None if world.is_dark() => (Color::ZERO, 0.0),
-            None => (world.sky(wi), 0.0),
+            None => (world.background_radiance(wi), 0.0),
         }
     }
 
     /// Returns the probability with which the environment is chosen for a point.
     pub fn chance_of_sky(&self, world: &World, to: &Receiver) -> f32 {
-        self.chances(world, to).map_or(0.0, |chances| chances.of(chances.sky))
+        self.chances(world, to).map_or(0.0, |weights| weights.of(weights.sky))
     }
 }
 
@@ -460,8 +461,8 @@ fn has_empty_inside(world: &World, number: usize) -> bool {
     let within =
         |other: &Object| other.bounds().is_some_and(|other| bounds.contains(other.min) && bounds.contains(other.max));
     let others = || objects.iter().enumerate().filter(|(i, _)| *i != number).map(|(_, other)| other);
-    objects.len() <= MANY
-        && object.extent().is_some()
+    objects.len() <= MAX_OBJECTS_TESTED
+        && object.half_area().is_some()
         && (0..object.parts()).map(cone).sum::<f64>() > 0.0
         && !others().any(within)
 }
@@ -469,14 +470,14 @@ fn has_empty_inside(world: &World, number: usize) -> bool {
 /// Samples a light of the scene at its centre. The colour of such a light is the radiance of a
 /// white matte surface that faces it, which is irradiance divided by pi.
 fn of_light(world: &World, light: u32, point: DVec3, choice: f32) -> LightSample {
-    let seen = world.illuminate(light as usize, point);
+    let light_sample = world.illuminate(light as usize, point);
     LightSample {
         light: LightId::Light(light),
-        wi: seen.to_light,
-        reach: seen.distance,
+        wi: light_sample.to_light,
+        reach: light_sample.distance,
         error: 0.0,
         cosine: 1.0,
-        radiance: PI * seen.color,
+        radiance: PI * light_sample.color,
         choice,
         pdf: 0.0,
     }
@@ -486,11 +487,16 @@ impl Sun {
     /// Creates a sun from a light, if the light has an angular extent.
     fn of(world: &World, light: u32) -> Option<Sun> {
         let degrees = world.lights()[light as usize].angular_radius();
-        let seen = of_light(world, light, DVec3::ZERO, 1.0);
+        let light_sample = of_light(world, light, DVec3::ZERO, 1.0);
         let (half, _) = fp::sin_cos_degrees(0.5 * f64::from(degrees.min(90.0)));
         // The solid angle 2 pi (1 - cos) equals pi times this.
         let chord2 = (4.0 * half * half) as f32;
-        (degrees > 0.0).then(|| Sun { light, way: seen.wi, chord2, radiance: seen.radiance / (PI * chord2) })
+        (degrees > 0.0).then(|| Sun {
+            light,
+            direction: light_sample.wi,
+            chord2,
+            radiance: light_sample.radiance / (PI * chord2),
+        })
     }
 }
 
@@ -507,20 +513,20 @@ fn spread(world: &World, light: u32, sample: LightSample, u: Vec2) -> LightSampl
 
 impl AreaLight {
     /// Returns the bounds for the light tree.
-    fn bounds(&self) -> Bounds {
+    fn bounds(&self) -> LightBounds {
         let round = self.form.is_round();
         // On average, a quarter of the area of a convex surface is visible.
         let area = self.form.area() * if round { 0.25 } else { 1.0 };
         let power = area * self.radiance.max_element();
         let power = if power.is_finite() { power.max(0.0) } else { 0.0 };
-        Bounds {
+        LightBounds {
             bounds: self.form.bounds(),
             power,
             axis: if round { Vec3::Z } else { self.normal },
             cos_normals: if round { -1.0 } else { 1.0 },
             cos_emission: 0.0,
             two_sided: self.two_sided,
-            each: power,
+            emitter_power: power,
         }
     }
 
@@ -560,14 +566,14 @@ mod tests {
             Group { MaterialIndex 0 Sphere { center -1 1 0 radius 0.3 } }",
         );
         let (emitters, point) = (world.emitters(), DVec3::new(0.3, 0.1, 0.2));
-        let is_apart = |light: LightId| emitters.apart.iter().any(|apart| LightId::Light(apart.light) == light);
+        let is_apart = |light: LightId| emitters.outside_tree.iter().any(|apart| LightId::Light(apart.light) == light);
         // A point light without attenuation is not in the tree.
-        assert_eq!((emitters.apart.len(), emitters.sources.len()), (2, 1));
+        assert_eq!((emitters.outside_tree.len(), emitters.sources.len()), (2, 1));
         for n in [Vec3::Y, -Vec3::Y, Vec3::ZERO] {
-            let to = Receiver { point, n, far: Receiver::FAR };
-            let chances = emitters.chances(&world, &to).unwrap();
-            let apart: f32 = emitters.apart.iter().map(|apart| chances.of(apart.brings(n))).sum();
-            let expected = [apart, chances.of(chances.sky), chances.of(chances.tree)];
+            let to = Receiver { point, n, uniform_threshold: Receiver::UNIFORM_THRESHOLD };
+            let weights = emitters.chances(&world, &to).unwrap();
+            let apart: f32 = emitters.outside_tree.iter().map(|apart| weights.of(apart.estimated_irradiance(n))).sum();
+            let expected = [apart, weights.of(weights.sky), weights.of(weights.tree)];
             assert!((expected.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{expected:?}");
             assert!(expected.iter().all(|&chance| chance > 0.02), "{expected:?}");
             assert_eq!(expected[1], emitters.chance_of_sky(&world, &to));

@@ -14,7 +14,7 @@ use std::f32::consts::PI;
 
 /// Bounds of a group of emitters in the light tree: position, power and directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
+pub struct LightBounds {
     /// Bounding box.
     pub bounds: Aabb,
     /// Total power in an arbitrary unit, the same for all emitters.
@@ -28,24 +28,28 @@ pub struct Bounds {
     /// True if light is emitted on both sides.
     pub two_sided: bool,
     /// Power of each emitter, if all have similar powers and directions; otherwise 0.
-    pub each: f32,
+    pub emitter_power: f32,
 }
 
-impl Bounds {
+impl LightBounds {
     /// Returns bounds of both groups together.
-    fn union(&self, other: &Bounds) -> Bounds {
+    fn union(&self, other: &LightBounds) -> LightBounds {
         let (axis, cos_normals) = cone_union((self.axis, self.cos_normals), (other.axis, other.cos_normals));
-        let share = self.each.min(other.each) / self.each.max(other.each);
-        let one_way = cos_normals >= ONE_WAY && self.two_sided == other.two_sided;
+        let share = self.emitter_power.min(other.emitter_power) / self.emitter_power.max(other.emitter_power);
+        let one_way = cos_normals >= MIN_SIMILAR_COSINE && self.two_sided == other.two_sided;
         let all_ways = self.cos_normals == -1.0 && other.cos_normals == -1.0;
-        Bounds {
+        LightBounds {
             bounds: self.bounds.union(other.bounds),
             power: self.power + other.power,
             axis,
             cos_normals,
             cos_emission: self.cos_emission.min(other.cos_emission),
             two_sided: self.two_sided || other.two_sided,
-            each: if share >= ALIKE && (one_way || all_ways) { self.each.min(other.each) } else { 0.0 },
+            emitter_power: if share >= MIN_SIMILAR_RATIO && (one_way || all_ways) {
+                self.emitter_power.min(other.emitter_power)
+            } else {
+                0.0
+            },
         }
     }
 }
@@ -76,10 +80,10 @@ fn cone_union((a, cos_a): (Vec3, f32), (b, cos_b): (Vec3, f32)) -> (Vec3, f32) {
 const CENTER: f32 = 0.8;
 
 /// Minimum cosine between the axis and the normals of emitters that count as similar.
-const ONE_WAY: f32 = 0.995;
+const MIN_SIMILAR_COSINE: f32 = 0.995;
 
 /// Minimum ratio between powers that count as similar.
-const ALIKE: f32 = 0.8;
+const MIN_SIMILAR_RATIO: f32 = 0.8;
 
 /// Number of children of a node.
 const WIDTH: usize = 8;
@@ -116,8 +120,9 @@ impl Child {
 }
 
 impl Node {
-    fn new(held: &[Bounds]) -> Self {
-        let of = |number: &dyn Fn(&Bounds) -> f32| std::array::from_fn(|i| held.get(i).map_or(0.0, number));
+    fn new(child_indices: &[LightBounds]) -> Self {
+        let of =
+            |number: &dyn Fn(&LightBounds) -> f32| std::array::from_fn(|i| child_indices.get(i).map_or(0.0, number));
         Node {
             middle: [0, 1, 2].map(|axis| of(&|b| b.bounds.center()[axis])),
             radius2: of(&|b| (0.5 * b.bounds.size()).length_squared()),
@@ -143,7 +148,7 @@ impl Node {
     /// Implements [`Node::importances`]. `FACING` is true if the receiver has a normal.
     #[inline(always)]
     fn importances_of<const FACING: bool>(&self, to: &Receiver) -> (Eight, [bool; WIDTH]) {
-        let (p, n, far2) = (to.point.as_vec3(), to.n, to.far * to.far);
+        let (p, n, far2) = (to.point.as_vec3(), to.n, to.uniform_threshold * to.uniform_threshold);
         let (mut importances, mut far) = ([0.0; WIDTH], [false; WIDTH]);
         for i in 0..WIDTH {
             let (x, y, z) = (p.x - self.middle[0][i], p.y - self.middle[1][i], p.z - self.middle[2][i]);
@@ -160,17 +165,17 @@ impl Node {
             let bounds = (if inside { -1.0 } else { cos_bounds }, if inside { 0.0 } else { sine2.sqrt() });
             // Lower bound on the angle between the direction to the point and any normal in the
             // child's bounds.
-            let least = minus((cosine, sine(cosine)), (self.cos_normals[i], sine(self.cos_normals[i])));
-            let (cos_least, _) = minus(least, bounds);
+            let least = subtract_angles((cosine, sine(cosine)), (self.cos_normals[i], sine(self.cos_normals[i])));
+            let (cos_least, _) = subtract_angles(least, bounds);
             // On the axis of a uniform disc, the mean of 1 / distance^2 times both cosines is 1 /
             // (d^2 + r^2). A square whose corners are at the radius has 0.64 of the disc's area.
             let spread2 = largest(0.64 * radius2, f32::MIN_POSITIVE);
-            let mut importance = power.abs() * usual(least.0, cos_least) / (distance2 + spread2);
+            let mut importance = power.abs() * blend_cosines(least.0, cos_least) / (distance2 + spread2);
             let mut across = least.0;
             if FACING {
                 let arriving = -(n.x * x + n.y * y + n.z * z);
-                let (cos_arriving, _) = minus((arriving, sine(arriving)), bounds);
-                importance *= usual(arriving, largest(cos_arriving, 0.0));
+                let (cos_arriving, _) = subtract_angles((arriving, sine(arriving)), bounds);
+                importance *= blend_cosines(arriving, largest(cos_arriving, 0.0));
                 across = if across < arriving { across } else { arriving };
             }
             far[i] = across > 0.0 && radius2 < far2 * distance2 * across * across;
@@ -211,13 +216,13 @@ fn sine(cosine: f32) -> f32 {
 
 /// Combines the cosine at the centre of a node with the largest cosine in the node.
 #[inline(always)]
-fn usual(center: f32, most: f32) -> f32 {
+fn blend_cosines(center: f32, most: f32) -> f32 {
     CENTER * largest(center, 0.0) + (1.0 - CENTER) * most
 }
 
 /// Returns cosine and sine of the difference of two angles, or of 0 if it is negative.
 #[inline(always)]
-fn minus((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f32) {
+fn subtract_angles((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f32) {
     let (cosine, sine) = (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b);
     let is_less = cos_a > cos_b;
     (if is_less { 1.0 } else { cosine }, if is_less { 0.0 } else { sine })
@@ -303,7 +308,7 @@ pub struct LightTree {
 /// Node of the binary light tree that is built first, before nodes are merged to have eight
 /// children. Its children are at `first` and `first + 1`, unless it is a single emitter.
 struct BuildNode {
-    bounds: Bounds,
+    bounds: LightBounds,
     first: usize,
     /// Range of the node's emitters in the tree's order.
     range: (u32, u32),
@@ -320,29 +325,29 @@ const BUCKETS: usize = 12;
 impl LightTree {
     /// Builds a tree over the emitters that have power. Also returns the indices of these emitters
     /// in the tree's order; the other functions use positions in that order.
-    pub fn new(emitters: &[Bounds]) -> (Self, Vec<u32>) {
-        let (halves, order) = halved(emitters);
+    pub fn new(emitters: &[LightBounds]) -> (Self, Vec<u32>) {
+        let (halves, order) = build_binary(emitters);
         let mut tree = LightTree { leaves: vec![(0, 0); order.len()], ..LightTree::default() };
         let Some(root) = halves.first() else { return (tree, order) };
         let mut open = vec![(if root.is_leaf() { vec![0] } else { vec![root.first, root.first + 1] }, (0, 0))];
-        while let Some((mut held, parent)) = open.pop() {
+        while let Some((mut child_indices, parent)) = open.pop() {
             // Replace the most expensive nodes by their children until all slots are used.
-            while held.len() < WIDTH {
-                let inner = (0..held.len()).filter(|&i| !halves[held[i]].is_leaf());
+            while child_indices.len() < WIDTH {
+                let inner = (0..child_indices.len()).filter(|&i| !halves[child_indices[i]].is_leaf());
                 let largest = inner.max_by(|&a, &b| {
-                    let [a, b] = [a, b].map(|i| cost(&halves[held[i]].bounds));
+                    let [a, b] = [a, b].map(|i| cost(&halves[child_indices[i]].bounds));
                     a.total_cmp(&b)
                 });
                 let Some(i) = largest else { break };
-                let first = halves[held[i]].first;
-                held.splice(i..=i, [first, first + 1]);
+                let first = halves[child_indices[i]].first;
+                child_indices.splice(i..=i, [first, first + 1]);
             }
             let number = tree.nodes.len() as u32;
-            let bounds: Vec<Bounds> = held.iter().map(|&half| halves[half].bounds).collect();
+            let bounds: Vec<LightBounds> = child_indices.iter().map(|&half| halves[half].bounds).collect();
             let mut node = Node::new(&bounds);
-            for (slot, half) in (0..).zip(held.iter().map(|&half| &halves[half])) {
+            for (slot, half) in (0..).zip(child_indices.iter().map(|&half| &halves[half])) {
                 (node.ends[usize::from(slot)], node.ends[usize::from(slot) + 1]) = half.range;
-                node.alike |= u8::from(half.bounds.each > 0.0 && !half.is_leaf()) << slot;
+                node.alike |= u8::from(half.bounds.emitter_power > 0.0 && !half.is_leaf()) << slot;
                 if half.is_leaf() {
                     node.children[usize::from(slot)] = Child(Child::EMITTER | half.range.0);
                     tree.leaves[half.range.0 as usize] = (number, slot);
@@ -414,7 +419,7 @@ impl LightTree {
 }
 
 /// Builds a binary tree. Also returns the emitters in the tree's order.
-fn halved(emitters: &[Bounds]) -> (Vec<BuildNode>, Vec<u32>) {
+fn build_binary(emitters: &[LightBounds]) -> (Vec<BuildNode>, Vec<u32>) {
     let mut order: Vec<u32> = (0..emitters.len() as u32).filter(|&i| emitters[i as usize].power > 0.0).collect();
     if order.is_empty() {
         return (Vec::new(), order);
@@ -441,7 +446,7 @@ fn halved(emitters: &[Bounds]) -> (Vec<BuildNode>, Vec<u32>) {
 
 /// Splits emitters into two groups that are compact, weak and similar in direction. Returns the
 /// number of emitters in the first group.
-fn split(emitters: &[Bounds], range: &mut [u32], whole: &Bounds) -> usize {
+fn split(emitters: &[LightBounds], range: &mut [u32], whole: &LightBounds) -> usize {
     let middle = |i: u32| emitters[i as usize].bounds.center();
     let middles = Aabb::around(range.iter().map(|&i| middle(i)));
     let size = middles.size();
@@ -451,12 +456,12 @@ fn split(emitters: &[Bounds], range: &mut [u32], whole: &Bounds) -> usize {
         ((share * BUCKETS as f32) as usize).min(BUCKETS - 1)
     };
     for axis in (0..3).filter(|&axis| size[axis] > 0.0) {
-        let mut buckets: [Option<Bounds>; BUCKETS] = [None; BUCKETS];
+        let mut buckets: [Option<LightBounds>; BUCKETS] = [None; BUCKETS];
         for &i in range.iter() {
             let place = &mut buckets[bucket(axis, i)];
             *place = Some(place.map_or(emitters[i as usize], |known| known.union(&emitters[i as usize])));
         }
-        let join = |a: Option<Bounds>, b: Option<Bounds>| match (a, b) {
+        let join = |a: Option<LightBounds>, b: Option<LightBounds>| match (a, b) {
             (Some(a), Some(b)) => Some(a.union(&b)),
             (a, b) => a.or(b),
         };
@@ -486,7 +491,7 @@ fn split(emitters: &[Bounds], range: &mut [u32], whole: &Bounds) -> usize {
 }
 
 /// Returns the cost of a node: power times solid angle of emission times surface area.
-fn cost(b: &Bounds) -> f32 {
+fn cost(b: &LightBounds) -> f32 {
     let (normals, emission) = (angle(b.cos_normals), angle(b.cos_emission));
     let wide = (normals + emission).min(PI);
     let sine = sine(b.cos_normals);

@@ -15,7 +15,7 @@ fn bent_normals_reflect_outwards_and_change_continuously() {
         if z < 1e-3 || n.dot(n_geo) < -0.99 {
             continue;
         }
-        let made = bent(n, n_geo, wo);
+        let made = bend_normal(n, n_geo, wo);
         let shown = |n: Vec3| (2.0 * n.dot(wo) * n - wo).dot(n_geo);
         let least = (0.9 * z).min(0.01);
         assert!((made.length() - 1.0).abs() < 1e-5 && made.dot(wo) > 0.0, "{n} {n_geo} {wo}: {made}");
@@ -32,7 +32,7 @@ fn bent_normals_reflect_outwards_and_change_continuously() {
         }
         // Neighbouring normals stay close to each other.
         let beside = (n + 1e-4 * Vec3::new(1.0, -1.0, 0.5)).normalize();
-        assert!((bent(beside, n_geo, wo) - made).length() < 0.05, "{n} {n_geo} {wo}");
+        assert!((bend_normal(beside, n_geo, wo) - made).length() < 0.05, "{n} {n_geo} {wo}");
     }
     assert!(kept > 10_000 && bent_ones > 10_000, "{kept} {bent_ones}");
 }
@@ -41,6 +41,6 @@ fn bent_normals_reflect_outwards_and_change_continuously() {
 fn geometric_normal_is_never_bent() {
     for z in [1e-7, 1e-3, 0.5, 1.0_f32] {
         let wo = Vec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z);
-        assert_eq!(bent(Vec3::Z, Vec3::Z, wo), Vec3::Z);
+        assert_eq!(bend_normal(Vec3::Z, Vec3::Z, wo), Vec3::Z);
     }
 }

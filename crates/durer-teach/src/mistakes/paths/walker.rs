@@ -4,9 +4,9 @@
 
 use crate::mistakes::path_habits::{Chosen, Lacks, Paths, Sky, Slant};
 use crate::mistakes::variant::SceneVariant;
-use durer_render::integrator::media::Media;
+use durer_render::integrator::media::MediumStack;
 use durer_render::integrator::spawn::{offset_bound, spawn_ray, to_point};
-use durer_render::integrator::{Whitted, WhittedOptions};
+use durer_render::integrator::{RenderSettings, Whitted};
 use durer_render::world::emitters::{LightId, LightSample, Receiver};
 use durer_render::world::{Geometry, Shading, SurfaceInteraction, World};
 use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3, fp};
@@ -46,7 +46,7 @@ const SURE: u32 = 3;
 /// Simple path tracer that makes the mistakes of a [`SceneVariant`], as a student's program might.
 pub struct Walker<'w> {
     world: &'w World,
-    settings: WhittedOptions,
+    settings: RenderSettings,
     bugs: Paths,
     right: Whitted<'w>,
     lanes: Lanes,
@@ -69,7 +69,7 @@ impl<'w> Walker<'w> {
 
     fn walk(&self, mut ray: Ray64, numbers: &mut Numbers) -> Spectrum {
         let (world, lanes) = (self.world, &self.lanes);
-        let mut media = Media::around(world, ray.rounded.origin);
+        let mut media = MediumStack::around(world, ray.rounded.origin);
         let (mut throughput, mut sum) = (Spectrum::ONE, Spectrum::ZERO);
         // The last vertex whose scattered direction has a finite pdf, and that pdf.
         let mut last: Option<(Receiver, f32)> = None;
@@ -81,11 +81,13 @@ impl<'w> Walker<'w> {
                 return sum + throughput * self.background(ray.dir(), last, from_eye);
             };
             let at = world.interaction(ray, hit);
-            let passage = self.right.passage(&at, &media);
-            let nothing = passage.as_ref().is_some_and(|p| p.hidden || p.here == p.there && world.is_interface(&at));
+            let transition = self.right.transition(&at, &media);
+            let nothing = transition
+                .as_ref()
+                .is_some_and(|p| p.displaced || p.ior_front == p.ior_behind && world.is_interface(&at));
             let opacity = world.opacity(&at);
             if nothing || opacity < 1.0 && numbers.next() >= opacity {
-                media = passage.filter(|_| nothing).map_or(media, |passage| passage.behind);
+                media = transition.filter(|_| nothing).map_or(media, |transition| transition.behind);
                 ray.rounded.t_min = hit.t;
                 continue;
             }
@@ -93,13 +95,16 @@ impl<'w> Walker<'w> {
             if depth > self.settings.bounces {
                 return sum;
             }
-            let shading =
-                world.shading(&at, passage.as_ref().map_or(1.0, |passage| passage.there / passage.here), lanes);
+            let shading = world.shading(
+                &at,
+                transition.as_ref().map_or(1.0, |transition| transition.ior_behind / transition.ior_front),
+                lanes,
+            );
             if shading.bsdf.is_black() {
                 return sum;
             }
             let n = if shading.bsdf.passes_light() { Vec3::ZERO } else { shading.frame.normal };
-            let receiver = Receiver { point: at.surface.point(), n, far: Receiver::FAR };
+            let receiver = Receiver { point: at.surface.point(), n, uniform_threshold: Receiver::UNIFORM_THRESHOLD };
             if shading.bsdf.has_non_delta() {
                 sum += throughput * self.direct(&at, &shading, &receiver, numbers);
             }
@@ -117,8 +122,8 @@ impl<'w> Walker<'w> {
             } else {
                 last = None;
             }
-            if let Some(passage) = passage.filter(|_| wi.dot(shading.n_geo) < 0.0) {
-                media = passage.behind;
+            if let Some(transition) = transition.filter(|_| wi.dot(shading.n_geo) < 0.0) {
+                media = transition.behind;
             }
             ray = spawn_ray(&at.surface, wi, f32::INFINITY, None);
             depth += 1;

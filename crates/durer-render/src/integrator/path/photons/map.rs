@@ -19,7 +19,7 @@ pub(super) struct Photon {
     power: Spectrum,
     /// Number of delta bounces between the light and this point.
     bounces: u32,
-    pub(super) rest: Absorber,
+    pub(super) absorber: Absorber,
 }
 
 /// Place where a photon was absorbed: a surface, or the medium inside an object.
@@ -34,15 +34,15 @@ pub(super) enum Absorber {
 #[derive(Debug)]
 pub struct PhotonMap {
     pub(super) lanes: Lanes,
-    pub(super) on_surfaces: Cells,
-    pub(super) in_media: Cells,
+    pub(super) on_surfaces: PhotonGrid,
+    pub(super) in_media: PhotonGrid,
 }
 
 /// Radiance estimated from the photons near a point, by [`PhotonMap`].
 #[derive(Clone, Copy, Debug)]
 pub struct DensityEstimate {
     /// Radiance that the point scatters towards the previous vertex of the path.
-    pub light: Spectrum,
+    pub radiance: Spectrum,
     /// Number of photons within the radius that contributed.
     pub photons: usize,
     /// Search radius in world units.
@@ -51,7 +51,7 @@ pub struct DensityEstimate {
 
 /// Photons sorted into the cells of a hashed grid, for finding those near a point.
 #[derive(Debug)]
-pub(super) struct Cells {
+pub(super) struct PhotonGrid {
     /// Search radius in world units. Cells are two radii wide.
     radius: f32,
     corrected: bool,
@@ -69,11 +69,11 @@ fn cell_of(place: glam::I64Vec3) -> u64 {
 impl Photon {
     /// Creates a photon; `None` if its power is infinite or NaN.
     pub(super) fn new(position: Vec3, wi: Vec3, power: Spectrum, bounces: u32, rest: Absorber) -> Option<Self> {
-        power.is_finite().then_some(Photon { position, wi, power, bounces, rest })
+        power.is_finite().then_some(Photon { position, wi, power, bounces, absorber: rest })
     }
 }
 
-impl Cells {
+impl PhotonGrid {
     /// Sorts photons into cells that are two search radii wide.
     pub(super) fn new(photons: &[Photon], radius: f32, corrected: bool) -> Self {
         // Photons in a cell stay in the order of emission, so sums are reproducible.
@@ -81,14 +81,14 @@ impl Cells {
         let mut order: Vec<(u64, u32)> = (0..).zip(photons).map(|(i, photon)| (cell(photon), i)).collect();
         order.sort_unstable();
         let photons = order.iter().map(|&(_, i)| photons[i as usize]).collect();
-        Cells { radius, corrected, cells: order.into_iter().map(|(cell, _)| cell).collect(), photons }
+        PhotonGrid { radius, corrected, cells: order.into_iter().map(|(cell, _)| cell).collect(), photons }
     }
 
     /// Sums `value` over the photons within the search radius of a point that have at most
     /// `max_bounces` bounces. `value` is called with the vector to the photon and its squared
     /// length.
     fn gather(&self, point: Vec3, max_bounces: u32, value: impl Fn(&Photon, Vec3, f32) -> Spectrum) -> DensityEstimate {
-        let mut gathered = DensityEstimate { light: Spectrum::ZERO, photons: 0, radius: self.radius };
+        let mut gathered = DensityEstimate { radiance: Spectrum::ZERO, photons: 0, radius: self.radius };
         // Cells are two radii wide, so the nearest 2 x 2 x 2 cells contain all photons within the
         // radius.
         let low = place(point, self.radius, -0.5);
@@ -97,15 +97,15 @@ impl Cells {
             let start = self.cells.partition_point(|&other| other < cell);
             for (photon, _) in self.photons[start..].iter().zip(&self.cells[start..]).take_while(|pair| *pair.1 == cell)
             {
-                let way = photon.position - point;
-                let distance = way.length_squared();
+                let offset = photon.position - point;
+                let distance = offset.length_squared();
                 if distance >= self.radius * self.radius || photon.bounces > max_bounces {
                     continue;
                 }
-                let value = value(photon, way, distance);
+                let value = value(photon, offset, distance);
                 if value != Spectrum::ZERO {
                     gathered.photons += 1;
-                    gathered.light += value;
+                    gathered.radiance += value;
                 }
             }
         }
@@ -164,7 +164,7 @@ impl PhotonMap {
         max_bounces: u32,
     ) -> DensityEstimate {
         let cells = &self.in_media;
-        cells.gather(point, max_bounces, |photon, _, distance| match photon.rest == Absorber::Medium(object) {
+        cells.gather(point, max_bounces, |photon, _, distance| match photon.absorber == Absorber::Medium(object) {
             true => photon.power * (phase.value(dir, photon.wi) * cells.kernel(distance, 0.0, ball)),
             false => Spectrum::ZERO,
         })

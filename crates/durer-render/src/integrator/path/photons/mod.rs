@@ -12,17 +12,17 @@
 //! Scenes with Participating Media using Photon Maps*, 1998.
 
 use super::Path;
-use super::propagate::Event;
+use super::propagate::PathEvent;
 use super::state::{DIMENSIONS, PathState, SampleContext};
 use super::vertex::VertexKind;
-use crate::integrator::media::Passage;
+use crate::integrator::media::MediumTransition;
 use crate::world::emitters::LightId;
-use crate::world::emitters::emission::Beams;
+use crate::world::emitters::emission::PhotonEmitter;
 use crate::world::{SurfaceInteraction, World};
 use durer_scene::math::Color;
 use durer_scene::sampler::SampleId;
 use durer_scene::spectrum::{Lanes, Spectrum};
-use map::{Absorber, Cells, Photon};
+use map::{Absorber, Photon, PhotonGrid};
 pub use map::{DensityEstimate, PhotonMap};
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -34,19 +34,19 @@ use std::sync::{Arc, Mutex, PoisonError};
 const ALPHA: f64 = 2.0 / 3.0;
 
 /// Maximum number of cached photon maps.
-const MAX_KEPT: usize = 32;
+const MAX_CACHED: usize = 32;
 
 /// Photon tracer of a render: one photon map per sample index, built on demand and cached.
 #[derive(Debug)]
-pub struct Photons {
-    beams: Beams,
+pub struct PhotonTracer {
+    beams: PhotonEmitter,
     seed: u64,
     count: u32,
     /// Search radius of the first sample in world units.
     radius: f32,
     /// True if the bias of the estimate is removed to second order.
     corrected: bool,
-    kept: Mutex<MapCache>,
+    cache: Mutex<MapCache>,
 }
 
 /// Cached photon maps with their sample indices, oldest first.
@@ -58,21 +58,21 @@ const FIRST_DIMENSION: u32 = 3;
 /// Ratio of the search radius in media, where photons are sparser, to that on surfaces.
 const MEDIUM_RADIUS: f32 = 3.0;
 
-impl Photons {
+impl PhotonTracer {
     /// Creates a photon tracer with `count` photons per sample. `radius` is the search radius of
     /// the first sample in world units; the default depends on the smallest object that photons are
     /// sent to.
     pub fn new(world: &World, seed: u64, count: u32, radius: Option<f32>) -> Self {
-        let beams = Beams::new(world);
-        let usual = 0.05 * beams.finest();
+        let beams = PhotonEmitter::new(world);
+        let usual = 0.05 * beams.min_target_radius();
         let radius = radius.unwrap_or(if usual.is_finite() { usual } else { 1.0 });
-        Photons { beams, seed, count, radius, corrected: false, kept: Mutex::default() }
+        PhotonTracer { beams, seed, count, radius, corrected: false, cache: Mutex::default() }
     }
 
     /// Removes the bias of the estimates to second order in the radius, at the cost of more noise.
     /// The difference from the uncorrected light estimates the bias.
     pub fn corrected(self) -> Self {
-        Photons { corrected: true, ..self }
+        PhotonTracer { corrected: true, ..self }
     }
 
     /// Returns true if photons are sent to an object.
@@ -88,31 +88,31 @@ impl Photons {
 
     /// Returns the photon map of a sample, and builds it if it is not cached.
     pub(super) fn map(&self, path: &Path, sample: u32) -> Arc<PhotonMap> {
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut cache = self.cache.lock().unwrap_or_else(PoisonError::into_inner);
         // One thread builds the map. A parallel job could steal work that waits for the lock.
-        Self::found(&kept, sample).unwrap_or_else(|| Self::keep(&mut kept, sample, self.make(path, sample, false)))
+        Self::find(&cache, sample).unwrap_or_else(|| Self::keep(&mut cache, sample, self.make(path, sample, false)))
     }
 
     /// Builds the photon map of a sample in advance, on all threads.
     pub fn prepare(&self, path: &Path, sample: u32) {
-        let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if Self::found(&lock(), sample).is_none() {
+        let lock = || self.cache.lock().unwrap_or_else(PoisonError::into_inner);
+        if Self::find(&lock(), sample).is_none() {
             let map = self.make(path, sample, true);
             Self::keep(&mut lock(), sample, map);
         }
     }
 
     /// Returns the map of a sample if it is cached.
-    fn found(kept: &MapCache, sample: u32) -> Option<Arc<PhotonMap>> {
-        kept.iter().find(|(number, _)| *number == sample).map(|(_, map)| map.clone())
+    fn find(cache: &MapCache, sample: u32) -> Option<Arc<PhotonMap>> {
+        cache.iter().find(|(number, _)| *number == sample).map(|(_, map)| map.clone())
     }
 
     /// Caches a map, and drops the oldest one if there are too many.
-    fn keep(kept: &mut MapCache, sample: u32, map: PhotonMap) -> Arc<PhotonMap> {
+    fn keep(cache: &mut MapCache, sample: u32, map: PhotonMap) -> Arc<PhotonMap> {
         let map = Arc::new(map);
-        kept.push_back((sample, map.clone()));
-        if kept.len() > MAX_KEPT {
-            kept.pop_front();
+        cache.push_back((sample, map.clone()));
+        if cache.len() > MAX_CACHED {
+            cache.pop_front();
         }
         map
     }
@@ -120,19 +120,19 @@ impl Photons {
     /// Traces the photons of a sample and builds their map.
     fn make(&self, path: &Path, sample: u32, parallel: bool) -> PhotonMap {
         // Photons have the same wavelengths as the paths of the sample.
-        let lanes = Lanes::new(path.transport.color, SampleId::new(self.seed, (0, 0), sample).wavelength());
+        let lanes = Lanes::new(path.options.color, SampleId::new(self.seed, (0, 0), sample).wavelength());
         let one = |number: u32| self.trace(path, sample, number, lanes);
-        let found: Vec<Photon> = match parallel {
+        let photons: Vec<Photon> = match parallel {
             true => (0..self.count).into_par_iter().flat_map_iter(one).collect(),
             false => (0..self.count).flat_map(one).collect(),
         };
         let (surfaces, media): (Vec<_>, Vec<_>) =
-            found.into_iter().partition(|photon| photon.rest == Absorber::Surface);
+            photons.into_iter().partition(|photon| photon.absorber == Absorber::Surface);
         let radius = self.radius(sample);
         PhotonMap {
             lanes,
-            on_surfaces: Cells::new(&surfaces, radius, self.corrected),
-            in_media: Cells::new(&media, MEDIUM_RADIUS * radius, self.corrected),
+            on_surfaces: PhotonGrid::new(&surfaces, radius, self.corrected),
+            in_media: PhotonGrid::new(&media, MEDIUM_RADIUS * radius, self.corrected),
         }
     }
 
@@ -151,7 +151,7 @@ impl Photons {
             let hit = path.world.closest_along(&mut state.ray, &mut ());
             let event = path.propagate(hit, &mut at, &mut state, &context, &mut ());
             // Paths already include light that a medium scatters before any delta lobe.
-            if let Event::Medium(point, dir, _) = event
+            if let PathEvent::Medium(point, dir, _) = event
                 && !is_first
             {
                 let object = state.media.object();
@@ -160,7 +160,7 @@ impl Photons {
                     Spectrum::select(scattering.cmpgt(Spectrum::ZERO), state.throughput / scattering, Spectrum::ZERO);
                 return Photon::new(point.as_vec3(), -dir, power, state.depth, Absorber::Medium(object));
             }
-            let Event::Surface(passage) = event else { return None };
+            let PathEvent::Surface(transition) = event else { return None };
             if is_first {
                 // Light sampling already includes the light on other objects.
                 if !self.beams.reaches(at.hit.object) {
@@ -170,16 +170,16 @@ impl Photons {
                 // point.
                 let color = match emitted.light {
                     Some(light) => {
-                        let seen = path.world.illuminate(light as usize, at.surface.point());
-                        PI * seen.color * seen.distance * seen.distance
+                        let light_sample = path.world.illuminate(light as usize, at.surface.point());
+                        PI * light_sample.color * light_sample.distance * light_sample.distance
                     }
                     None => Color::ONE,
                 };
                 let of_light = || emitted.light.and_then(|light| path.world.illuminant(LightId::Light(light)));
-                let of_material = || emitted.material.and_then(|material| path.world.own_illuminant(material));
+                let of_material = || emitted.material.and_then(|material| path.world.material_illuminant(material));
                 state.throughput *= lanes.light_of(power * color, || of_light().or_else(of_material));
             }
-            let eta = passage.as_ref().map_or(1.0, Passage::eta);
+            let eta = transition.as_ref().map_or(1.0, MediumTransition::eta);
             let shading = path.world.shading(&at, eta, &lanes);
             path.select_hero(&at, &mut state, &context, &mut ());
             // Black surfaces reflect nothing, but their irradiance can be measured.
@@ -187,7 +187,7 @@ impl Photons {
                 let wi = -state.ray.dir().normalize();
                 return Photon::new(at.surface.position, wi, state.throughput, state.depth, Absorber::Surface);
             }
-            let vertex = VertexKind::Surface(&at.surface, &shading, passage.as_ref());
+            let vertex = VertexKind::Surface(&at.surface, &shading, transition.as_ref());
             let numbers = id.with_first_dimension(FIRST_DIMENSION + state.depth * DIMENSIONS as u32);
             let sample = vertex.sample(numbers.pair(0).x, numbers.pair(1))?;
             if sample.pdf != 0.0 || state.depth > path.max_depth() {

@@ -29,7 +29,7 @@ fn assert_alike(name: &str, a: (f64, f64), b: (f64, f64)) {
 
 #[test]
 fn light_and_bsdf_sampling_agree_for_every_shape_and_transform() {
-    let settings = WhittedOptions { bounces: 0, ..Job::default().settings };
+    let settings = RenderSettings { bounces: 0, ..Job::default().settings };
     for (shape, map) in SHAPES.iter().flat_map(|shape| MAPS.map(|map| (shape, map))) {
         let light = format!("Transform {{ {map} {shape} }}");
         let world = over_floor("", &light);
@@ -46,7 +46,7 @@ fn emissive_shapes_light_their_inside() {
     // In a closed furnace with radiance 1 and albedo 0.5 on both sides, the walls show their
     // emission and light scattered once, 1 + 0.5.
     let material = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 emissionLuminance 1 walls thin }";
-    let settings = WhittedOptions { bounces: 0, ..Job::default().settings };
+    let settings = RenderSettings { bounces: 0, ..Job::default().settings };
     for shape in &SHAPES[..6] {
         for map in ["Scale 1 1 1", "ZRotate 40 Scale 1.5 0.6 0.9 XRotate 30"] {
             let world = scene(material, "", &format!("MaterialIndex 0 Transform {{ {map} {shape} }}"));
@@ -73,7 +73,7 @@ fn irradiance_of_a_distant_emitter_follows_its_area() {
 #[test]
 fn convex_emitters_do_not_light_their_own_outside() {
     let material = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 emissionLuminance 0.5 }";
-    let settings = WhittedOptions { bounces: 0, ..Job::default().settings };
+    let settings = RenderSettings { bounces: 0, ..Job::default().settings };
     for shape in &SHAPES[..6] {
         let world = scene(material, "", &format!("MaterialIndex 0 Transform {{ Scale 1.1 0.9 1 {shape} }}"));
         for y in [0.0, 0.11, 0.23] {
@@ -106,7 +106,7 @@ fn without_a_background_only_lights_of_the_scene_emit() {
     let grey = lux(&of("Background { color 0.5 0.5 0.5 }")) - 250.0;
     assert!((grey - 0.5 * std::f32::consts::PI).abs() < 0.01, "{grey}");
     // With Whitted ray tracing, the background is grey.
-    assert_eq!(of("").sky(Vec3::Y), Vec3::splat(0.5));
+    assert_eq!(of("").background_radiance(Vec3::Y), Vec3::splat(0.5));
 }
 
 #[test]
@@ -114,10 +114,10 @@ fn errors_account_for_emitters_that_only_bsdf_sampling_finds() {
     let most = |light: &str, direct| {
         let world = over_floor("", light);
         let transport = PathOptions { direct, ..PathOptions::default() };
-        Path::new(&world, Job::default().settings, transport).most_by_chance(|color| color.x)
+        Path::new(&world, Job::default().settings, transport).max_rare_contribution(|color| color.x)
     };
     // The maximum is pi times the radiance of 3 for an emitter that light sampling does not choose.
     let solid = "Intersection { Box { min -1 1 -1 max 1 2 1 } Sphere { center 0 1.5 0 radius 0.6 } }";
-    assert!((most(solid, Direct::Both) - 3.0 * std::f32::consts::PI).abs() < 1e-5);
-    assert_eq!(most("Box { min -1 1 -1 max 1 2 1 }", Direct::Both), 0.0);
+    assert!((most(solid, DirectSampling::Both) - 3.0 * std::f32::consts::PI).abs() < 1e-5);
+    assert_eq!(most("Box { min -1 1 -1 max 1 2 1 }", DirectSampling::Both), 0.0);
 }

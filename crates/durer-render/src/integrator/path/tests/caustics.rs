@@ -4,8 +4,8 @@ use super::*;
 
 /// Returns the mean radiance along a ray with photon mapping, and its standard error.
 pub(super) fn by_photons(world: &World, ray: Ray, (count, radius): (u32, f32), samples: u32) -> (f64, f64) {
-    let settings = WhittedOptions { bounces: 12, ..Job::default().settings };
-    let photons = Some(Arc::new(Photons::new(world, 3, count, Some(radius))));
+    let settings = RenderSettings { bounces: 12, ..Job::default().settings };
+    let photons = Some(Arc::new(PhotonTracer::new(world, 3, count, Some(radius))));
     let path = Path { photons, ..Path::new(world, settings, PathOptions::default()) };
     let values: Vec<f64> = (0..samples)
         .map(|sample| f64::from(path.radiance(&ray, SampleId::new(7, (3, 5), sample), &mut ()).x))
@@ -100,8 +100,8 @@ fn photon_beams_in_fog_match_their_integral() {
     ));
     let ray = Ray::new(Vec3::new(-0.5, 0.0, 0.0), Vec3::X);
     // This depth is enough for two refractions, but not for another scattering event after them.
-    let settings = WhittedOptions { bounces: 2, ..Job::default().settings };
-    let photons = Some(Arc::new(Photons::new(&world, 3, 1_000, Some(0.2))));
+    let settings = RenderSettings { bounces: 2, ..Job::default().settings };
+    let photons = Some(Arc::new(PhotonTracer::new(&world, 3, 1_000, Some(0.2))));
     let path = Path { photons, ..Path::new(&world, settings, PathOptions::default()) };
     let n = 1 << 12;
     let values: Vec<f64> =
@@ -143,7 +143,7 @@ fn photon_maps_do_not_depend_on_how_they_are_built() {
     let settings = Job::default().settings;
     let ray = Ray::new(Vec3::new(3.0, 0.4, 0.0), Vec3::new(-3.0, -0.4, 0.0).normalize());
     let made = |prepared: bool| {
-        let photons = Arc::new(Photons::new(&world, 3, 5_000, None));
+        let photons = Arc::new(PhotonTracer::new(&world, 3, 5_000, None));
         let path = Path { photons: Some(photons.clone()), ..Path::new(&world, settings, PathOptions::default()) };
         if prepared {
             photons.prepare(&path, 2);

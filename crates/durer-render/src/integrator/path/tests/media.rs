@@ -78,7 +78,7 @@ fn light_sampling_passes_index_matched_surfaces() {
 #[test]
 fn spectral_rendering_keeps_grey_and_approximates_colours() {
     let world = over_floor("", "Sphere { center 0 3 0 radius 0.5 }");
-    let settings = WhittedOptions { bounces: 2, ..Job::default().settings };
+    let settings = RenderSettings { bounces: 2, ..Job::default().settings };
     let path = |color| Path::new(&world, settings, PathOptions { color, ..PathOptions::default() });
     let samples = 1 << 14;
     let mean = |color| {

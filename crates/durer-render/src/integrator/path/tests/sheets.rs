@@ -107,7 +107,7 @@ fn pane_transmits_the_light_of_a_small_disc() {
 
 #[test]
 fn light_and_bsdf_sampling_agree_through_panes() {
-    let settings = WhittedOptions { bounces: 4, ..Job::default().settings };
+    let settings = RenderSettings { bounces: 4, ..Job::default().settings };
     let glossy = "PrincipledMaterial { baseColor 0.5 0.4 0.3 specularRoughness 0.3 }";
     let glass =
         "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 transmissionColor 0.9 0.8 0.7 walls thin }";

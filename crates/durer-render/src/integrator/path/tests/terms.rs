@@ -7,7 +7,7 @@ use crate::integrator::{TraceRecorder, Tree};
 /// that the factors along each path multiply to the throughput.
 pub(super) fn tree(path: &Path, ray: &Ray, sample: u32) -> Tree {
     fn check(node: &TraceNode) {
-        assert_eq!(node.sum(), node.value, "{:?}", node.what);
+        assert_eq!(node.sum(), node.value, "{:?}", node.kind);
         let throughput = |node: &TraceNode| node.throughput.unwrap().spectrum();
         for term in &node.terms {
             let expected = throughput(node) * term.factor.spectrum() * term.scale.spectrum();
@@ -35,8 +35,8 @@ pub(super) fn tree(path: &Path, ray: &Ray, sample: u32) -> Tree {
 /// to the camera and its contribution to the pixel.
 fn sources(node: &TraceNode, rays: u32, found: &mut Vec<(u32, Spectrum)>) {
     for term in &node.terms {
-        let adds = || term.added().unwrap().spectrum();
-        match &term.what {
+        let adds = || term.path_contribution().unwrap().spectrum();
+        match &term.kind {
             TermKind::Ray { .. } => sources(term, rays + 1, found),
             TermKind::Direct { .. } | TermKind::Photons { .. } => found.push((rays + 1, adds())),
             TermKind::Sky | TermKind::Emission { .. } => found.push((rays, adds())),
@@ -62,7 +62,7 @@ fn from_center() -> Ray {
 #[test]
 fn clamping_limits_contributions_after_more_than_one_scattering() {
     let world = closed_room();
-    let settings = WhittedOptions { bounces: 6, ..Job::default().settings };
+    let settings = RenderSettings { bounces: 6, ..Job::default().settings };
     let limit = 0.02;
     let all = |clamp, sample| {
         let path = Path::new(&world, settings, PathOptions { clamp, ..PathOptions::default() });
@@ -88,7 +88,7 @@ fn clamping_limits_contributions_after_more_than_one_scattering() {
 #[test]
 fn reported_terms_of_a_path_sum_to_its_radiance() {
     let world = closed_room();
-    let settings = WhittedOptions { bounces: 6, ..Job::default().settings };
+    let settings = RenderSettings { bounces: 6, ..Job::default().settings };
     for (sample, color) in (0..200).zip([ColorMode::Rgb, ColorMode::Spectral].into_iter().cycle()) {
         let path = Path::new(&world, settings, PathOptions { clamp: Some(0.02), color, ..PathOptions::default() });
         let tree = tree(&path, &from_center(), sample);

@@ -19,14 +19,14 @@ fn indices(objects: &str, origin: [f32; 3], sine: f32) -> Vec<f32> {
 }
 
 fn along(world: &World, origin: [f32; 3], sine: f32) -> Vec<f32> {
-    let settings = WhittedOptions {
+    let settings = RenderSettings {
         bounces: 10,
         shadows: false,
         shade_back: true,
         transparent_shadows: false,
         reflection: false,
         refraction: true,
-        least_weight: 0.0,
+        min_weight: 0.0,
     };
     let ray = Ray::new(origin.into(), Vec3::new(sine, -(1.0 - sine * sine).sqrt(), 0.0));
     let mut account = TraceRecorder::default();
@@ -38,7 +38,7 @@ fn along(world: &World, origin: [f32; 3], sine: f32) -> Vec<f32> {
 }
 
 fn transmitted(node: &TraceNode, found: &mut Vec<Vec3>) {
-    if let TermKind::Ray { from: RayKind::Transmitted, ray, .. } = &node.what {
+    if let TermKind::Ray { from: RayKind::Transmitted, ray, .. } = &node.kind {
         found.push(ray.dir);
     }
     node.terms.iter().for_each(|term| transmitted(term, found));

@@ -26,7 +26,7 @@ fn products_and_shear_removal_match_double_precision() {
         let ops = random_ops(&mut random);
         for drop_shear in [false, true] {
             let rules = MatrixRules { drop_shear, ..MatrixRules::default() };
-            close(&Matrix::of(&ops, rules, Vectors::Glm), &Matrix::from(MatrixOp::product(&ops, rules)), 2e-4);
+            close(&Matrix::of(&ops, rules, VectorLibrary::Glm), &Matrix::from(MatrixOp::product(&ops, rules)), 2e-4);
         }
     }
 }
@@ -35,15 +35,15 @@ fn products_and_shear_removal_match_double_precision() {
 fn inverse_of_both_libraries_undoes_the_matrix() {
     let mut random = Random(60);
     for _ in 0..500 {
-        let matrix = Matrix::of(&random_ops(&mut random), MatrixRules::default(), Vectors::Vecmath);
-        for vectors in [Vectors::Vecmath, Vectors::Glm] {
+        let matrix = Matrix::of(&random_ops(&mut random), MatrixRules::default(), VectorLibrary::Vecmath);
+        for vectors in [VectorLibrary::Vecmath, VectorLibrary::Glm] {
             close(&matrix.times(&matrix.inverse(vectors), vectors), &Matrix::IDENTITY, 1e-3);
             let point = Vec3::from_array([0, 1, 2].map(|_| random.between(-2.0, 2.0)));
             let back = matrix.inverse(vectors).point(matrix.point(point, vectors), vectors);
             assert!((back - point).abs().max_element() < 1e-3, "{point} {back}");
         }
     }
-    for vectors in [Vectors::Vecmath, Vectors::Glm] {
+    for vectors in [VectorLibrary::Vecmath, VectorLibrary::Glm] {
         assert_eq!(Matrix::IDENTITY.inverse(vectors), Matrix::IDENTITY);
     }
 }
@@ -51,20 +51,20 @@ fn inverse_of_both_libraries_undoes_the_matrix() {
 #[test]
 fn singular_matrix_is_detected_and_tiny_one_is_skipped() {
     let flat = [MatrixOp::Scale(Vec3::new(1.0, 0.0, 1.0))];
-    assert!(!Matrix::of(&flat, MatrixRules::default(), Vectors::Vecmath).is_regular());
+    assert!(!Matrix::of(&flat, MatrixRules::default(), VectorLibrary::Vecmath).is_regular());
     let tiny = MatrixRules { ignore_tiny: true, ..MatrixRules::default() };
-    assert_eq!(Matrix::of(&flat, tiny, Vectors::Glm), Matrix::IDENTITY);
+    assert_eq!(Matrix::of(&flat, tiny, VectorLibrary::Glm), Matrix::IDENTITY);
     // 0.004^3 is smaller than the rounding of 1, and 0.006^3 is not.
     let scale = |s: f32| [MatrixOp::Translate(Vec3::X), MatrixOp::UniformScale(s)];
-    assert_eq!(Matrix::of(&scale(0.004), tiny, Vectors::Glm), Matrix::IDENTITY);
-    assert_ne!(Matrix::of(&scale(0.006), tiny, Vectors::Glm), Matrix::IDENTITY);
+    assert_eq!(Matrix::of(&scale(0.004), tiny, VectorLibrary::Glm), Matrix::IDENTITY);
+    assert_ne!(Matrix::of(&scale(0.006), tiny, VectorLibrary::Glm), Matrix::IDENTITY);
     assert!(MatrixOp::product(&scale(0.004), tiny) == DAffine3::IDENTITY);
 }
 
 #[test]
 fn sign_of_zero_matches_each_library() {
-    let moved = Matrix::of(&[MatrixOp::Translate(Vec3::ONE)], MatrixRules::default(), Vectors::Vecmath);
-    let inverse = moved.inverse(Vectors::Vecmath);
+    let moved = Matrix::of(&[MatrixOp::Translate(Vec3::ONE)], MatrixRules::default(), VectorLibrary::Vecmath);
+    let inverse = moved.inverse(VectorLibrary::Vecmath);
     assert!(inverse.vector(Vec3::new(-0.5, 0.9, -0.0)).z.is_sign_positive());
-    assert!((0.0_f32 - 0.0).is_sign_positive() && Vectors::Glm.sum_from(-0.0).is_sign_negative());
+    assert!((0.0_f32 - 0.0).is_sign_positive() && VectorLibrary::Glm.sum_from(-0.0).is_sign_negative());
 }

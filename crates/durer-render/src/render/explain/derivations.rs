@@ -16,8 +16,8 @@ use glam::DVec3;
 
 /// Returns lines of text that derive the numbers in a term of a trace. `dir` is the direction of
 /// the ray that the term belongs to, and `n` the normal at its hit.
-pub fn origins(node: &TraceNode, (scene, world): (&Scene, &World), dir: Vec3, n: Vec3) -> Vec<String> {
-    match &node.what {
+pub fn derivations(node: &TraceNode, (scene, world): (&Scene, &World), dir: Vec3, n: Vec3) -> Vec<String> {
+    match &node.kind {
         TermKind::Ray { ray, hit: Some(hit), .. } => of_hit(ray, hit, scene, world),
         TermKind::Secondary { here, there, fresnel, total } if here != there => {
             of_refraction(f64::from(*here), f64::from(*there), *fresnel, *total, dir, n)
@@ -99,7 +99,7 @@ fn of_color(hit: &HitRecord, scene: &Scene, world: &World) -> Vec<String> {
     let (mut material, mut lines) = (hit.material, Vec::new());
     // Patterns can be nested.
     for _ in 0..8 {
-        let Some(Material::Solid(solid, to_pattern, _)) = world.materials().get(material as usize) else { break };
+        let Some(Material::Mix(solid, to_pattern, _)) = world.materials().get(material as usize) else { break };
         let q = to_pattern.transform_point3(hit.position.as_dvec3());
         let [first, second] = solid.materials();
         let share = match solid {

@@ -1,8 +1,8 @@
 //! Centre rays: AOV values from one ray through each pixel's centre.
 
 use super::part::{BlockAovs, PrimaryHit};
-use super::samples::{Cancelled, SampleCursor, Samples};
-use super::{Crop, Job, center_ray, raster};
+use super::samples::{Cancelled, SampleCursor, SampleSource};
+use super::{Job, PixelRect, center_ray, raster};
 use crate::film::aov::{AovInput, brightness};
 use crate::integrator::Path;
 use crate::world::World;
@@ -14,21 +14,21 @@ use durer_scene::sampler::SampleId;
 pub(super) fn trace(
     world: &World,
     job: &Job,
-    samples: &Samples,
-    rect: Crop,
+    samples: &SampleSource,
+    rect: PixelRect,
     at: &SampleCursor,
 ) -> Result<BlockAovs, Cancelled> {
     let raster = raster(world, job.width, job.height);
     let wanted = |name: &str| job.aovs.iter().any(|aov| aov.name == name);
     let (cost_wanted, illuminance_wanted) = (wanted("cost"), wanted("illuminance"));
-    let path = Path::new(world, job.settings, job.method.transport().unwrap_or_default());
+    let path = Path::new(world, job.settings, job.method.path_options().unwrap_or_default());
     let mut rays = RayCount::default();
-    let mut seen = Vec::with_capacity(rect.pixels() as usize);
-    for (x, y) in rect.places() {
+    let mut inputs = Vec::with_capacity(rect.pixels() as usize);
+    for (x, y) in rect.pixel_positions() {
         samples.check()?;
         at.set((x, y, None));
         let Some(ray) = center_ray(world, &raster, (x, y)) else {
-            seen.push(AovInput::NOTHING);
+            inputs.push(AovInput::NOTHING);
             continue;
         };
         let hit = world.intersect(&ray, &mut rays);
@@ -51,16 +51,16 @@ pub(super) fn trace(
             _ => 0.0,
         };
         rays.0 += counts.rays;
-        seen.push(AovInput { covered: true, hit, albedo, counts, illuminance });
+        inputs.push(AovInput { covered: true, hit, albedo, counts, illuminance });
     }
     samples.check()?;
     // Replace NaN and infinity by 0.
     let finite = |value: Vec3| if value.is_finite() { value } else { Vec3::ZERO };
-    let values = job.ray_aovs().flat_map(|(_, value)| seen.iter().map(value).map(finite)).collect();
-    let found = |seen: &AovInput| match (seen.covered, seen.hit.is_some()) {
-        (false, _) => PrimaryHit::Blind,
+    let values = job.ray_aovs().flat_map(|(_, value)| inputs.iter().map(value).map(finite)).collect();
+    let hit = |input: &AovInput| match (input.covered, input.hit.is_some()) {
+        (false, _) => PrimaryHit::NoRay,
         (true, false) => PrimaryHit::Nothing,
         (true, true) => PrimaryHit::Hit,
     };
-    Ok(BlockAovs { found: seen.iter().map(found).collect(), values, rays: rays.0 })
+    Ok(BlockAovs { hits: inputs.iter().map(hit).collect(), values, rays: rays.0 })
 }

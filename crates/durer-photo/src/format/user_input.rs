@@ -1,14 +1,14 @@
 //! Input files that users write by hand, with points, lines, or control points: one row per line,
 //! and comments after `#`.
 
-use super::Words;
-use crate::known::{Axis, Control, Pair, VanishingLines};
+use super::TokenReader;
+use crate::known::{Axis, ControlPoint, PointPixelPair, VanishingLines};
 use crate::{Error, Observation};
 use nalgebra::{Vector2, Vector3};
 
 /// Reads world points and their pixels from rows `X Y Z u v`.
-pub fn read_points(file: &str, bytes: &[u8]) -> Result<Vec<Pair>, Error> {
-    let mut words = Words::in_rows(file, bytes)?;
+pub fn read_points(file: &str, bytes: &[u8]) -> Result<Vec<PointPixelPair>, Error> {
+    let mut words = TokenReader::in_rows(file, bytes)?;
     let mut pairs = Vec::new();
     while words.next_line('#') {
         let [x, y, z, u, v] = words.numbers("one of X Y Z u v")?;
@@ -22,7 +22,7 @@ pub fn read_points(file: &str, bytes: &[u8]) -> Result<Vec<Pair>, Error> {
 /// that points to the vanishing point, and from one row `origin u v`. The file must contain two
 /// axes with at least two lines each.
 pub fn read_lines(file: &str, bytes: &[u8], size: [u32; 2]) -> Result<VanishingLines, Error> {
-    let mut words = Words::in_rows(file, bytes)?;
+    let mut words = TokenReader::in_rows(file, bytes)?;
     let center = Vector2::from(size.map(|side| f64::from(side) / 2.0));
     let (mut sets, mut origin): (Vec<(Axis, Vec<_>)>, _) = (Vec::new(), center);
     while words.next_line('#') {
@@ -44,29 +44,29 @@ pub fn read_lines(file: &str, bytes: &[u8], size: [u32; 2]) -> Result<VanishingL
     }
     let count = sets.len();
     let [one, two] = <[_; 2]>::try_from(sets)
-        .map_err(|_| Error::of(file, format!("lines of two axes are needed, but the file has {count}")))?;
+        .map_err(|_| Error::in_file(file, format!("lines of two axes are needed, but the file has {count}")))?;
     Ok(VanishingLines { size, center, origin, axes: [one.0, two.0], lines: [one.1, two.1] })
 }
 
 /// Reads control points from rows `X Y Z photograph u v photograph u v ...`. Names of photographs
 /// must not contain spaces.
-pub fn read_control(file: &str, bytes: &[u8], names: &[&str]) -> Result<Vec<Control>, Error> {
-    let mut words = Words::in_rows(file, bytes)?;
+pub fn read_control(file: &str, bytes: &[u8], names: &[&str]) -> Result<Vec<ControlPoint>, Error> {
+    let mut words = TokenReader::in_rows(file, bytes)?;
     let mut points = Vec::new();
     while words.next_line('#') {
         let position = words.numbers("one of X Y Z")?.into();
-        let mut seen: Vec<Observation> = Vec::new();
+        let mut observations: Vec<Observation> = Vec::new();
         while !words.is_at_end_of_line() {
             let (name, place) = words.word("a photograph")?;
             let fail = |why: &str| Error::at(file, place, format!("{why} `{name}`"));
             let view = names.iter().position(|known| *known == name);
             let view = view.ok_or_else(|| fail("unknown photograph"))?;
-            if seen.iter().any(|other| other.view == view) {
+            if observations.iter().any(|other| other.view == view) {
                 return Err(fail("this row names a photograph twice:"));
             }
-            seen.push(Observation { view, feature: 0, pixel: words.numbers("one of u v")?.into() });
+            observations.push(Observation { view, feature: 0, pixel: words.numbers("one of u v")?.into() });
         }
-        points.push((position, seen));
+        points.push((position, observations));
     }
     Ok(points)
 }
