@@ -62,5 +62,5 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
             fallen.push(format!("at {center:?}, a wall of {wall} ({steps} steps): {lit} pixels are lit"));
         }
     }
-    Ok(Outcome { tried: attack.count, fallen, note: String::new() })
+    Ok(Outcome { tried: attack.count, failures: fallen, note: String::new() })
 }

@@ -1,6 +1,6 @@
 //! Attack `growth`: small files that describe huge data, read with a limit of address space.
 
-use super::{Attack, Outcome, broken, inputs, name};
+use super::{Attack, Outcome, failure_reason, inputs, name};
 use anyhow::Result;
 use std::fmt::Write;
 
@@ -71,7 +71,7 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         let arguments = ["render", path, "--samples", "1", "-q", "--restart", "-o", "o.png", "--threads", "2"];
         let output = attack.limited(&[&arguments, options].concat(), SPACE, SECONDS)?;
         tried += 1;
-        fallen.extend(broken(&output).map(|why| format!("{what}: {why}")));
+        fallen.extend(failure_reason(&output).map(|why| format!("{what}: {why}")));
         Ok(())
     };
     for path in inputs() {
@@ -92,5 +92,5 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
             &[&["--size", "8x8"], options].concat(),
         )?;
     }
-    Ok(Outcome { tried, fallen, note: String::new() })
+    Ok(Outcome { tried, failures: fallen, note: String::new() })
 }

@@ -208,5 +208,5 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         keep(at, why.unwrap_or("abort"))?;
         next = at + 1;
     }
-    Ok(Outcome { tried: attack.count, fallen, note: format!("; {} originals", originals.len()) })
+    Ok(Outcome { tried: attack.count, failures: fallen, note: format!("; {} originals", originals.len()) })
 }

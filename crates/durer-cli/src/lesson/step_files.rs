@@ -56,7 +56,15 @@ impl Lesson {
         let change = step.change.as_ref().map(|change| self.picture(format!("{name}-change.png"), &change.picture));
         let change = change.transpose()?;
         let plan = step.plan.map(|svg| (svg, format!("{name}-plan.svg")));
-        let Step { topic, title, words, ours, lacking, goes_on, .. } = step;
+        let Step {
+            topic,
+            title,
+            effect: words,
+            uses_built_in_scene: ours,
+            missing_because: lacking,
+            continues_topic: goes_on,
+            ..
+        } = step;
         self.steps.push(StepFiles { topic, title, words, ours, lacking, goes_on, before, after, change, plan });
         Ok(())
     }

@@ -9,7 +9,7 @@ pub struct RepairedText {
     /// The new text.
     pub bytes: Vec<u8>,
     /// Indices of the findings whose edits were applied.
-    pub mended: Vec<usize>,
+    pub fixed: Vec<usize>,
 }
 
 /// Applies the edits of findings to a file. Skips a finding if its edits overlap earlier ones or
@@ -38,5 +38,5 @@ pub fn apply(bytes: &[u8], file: u32, findings: &[Finding]) -> RepairedText {
         at = edit.span.end as usize;
     }
     text.extend_from_slice(&bytes[at..]);
-    RepairedText { bytes: text, mended }
+    RepairedText { bytes: text, fixed: mended }
 }
