@@ -73,7 +73,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     }
     let (durer, seed) = (build_durer()?, number("--seed")?.unwrap_or(1));
     let only = crate::value(arguments, "--only").cloned().unwrap_or_default();
-    let mut fallen = 0;
+    let mut failures = 0;
     for kind in kinds {
         let count = number("--count")?.unwrap_or(kind.count);
         let folder = tempfile::tempdir()?;
@@ -83,9 +83,9 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         let (tried, fell, seconds) = (found.tried, found.failures.len(), start.elapsed().as_secs_f64());
         println!("{:<10}{tried:>9} {}: {fell} failed, {seconds:.0} s{}", kind.name, kind.trial_description, found.note);
         found.failures.iter().take(20).for_each(|line| println!("    {line}"));
-        fallen += fell;
+        failures += fell;
     }
-    Ok(if fallen == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(if failures == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 impl Attack {
@@ -137,12 +137,8 @@ fn templates(attack: &Attack) -> Result<Outcome> {
     let output = command.env("DURER_ROUNDS", rounds).current_dir(crate::root()?).output()?;
     let messages = String::from_utf8_lossy(&output.stdout).into_owned();
     let skipped: Vec<&str> = messages.lines().filter(|line| line.contains("skipped")).collect();
-    let fallen = if output.status.success() { Vec::new() } else { messages.lines().map(String::from).collect() };
-    Ok(Outcome {
-        tried: attack.count,
-        failures: fallen,
-        note: skipped.iter().map(|line| format!("; {line}")).collect(),
-    })
+    let failures = if output.status.success() { Vec::new() } else { messages.lines().map(String::from).collect() };
+    Ok(Outcome { tried: attack.count, failures, note: skipped.iter().map(|line| format!("; {line}")).collect() })
 }
 
 fn kills(attack: &Attack) -> Result<Outcome> {

@@ -22,8 +22,8 @@ pub fn sanitize_name(name: &str) -> String {
 /// Returns a copy of the scene with all meshes and pictures moved to files in `folder`, and these
 /// files. Files that the scene names are copied too; unreadable ones keep their names.
 pub fn export_assets(scene: &Scene, folder: &str, source: &dyn AssetSource) -> (Scene, Vec<AssetFile>) {
-    let (files, taken, cached, textures) = Default::default();
-    let mut put = AssetExport { scene, folder, source, files, used_names: taken, new_names: cached, textures };
+    let (files, used_names, new_names, textures) = Default::default();
+    let mut put = AssetExport { scene, folder, source, files, used_names, new_names, textures };
     let mut new_name = scene.clone();
     if let Some(root) = &mut new_name.root {
         put.group(root);

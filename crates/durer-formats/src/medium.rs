@@ -49,11 +49,12 @@ impl Medium {
         m.transmission_color = self.extinction().map(|sigma| fp::exp(-sigma * depth));
         m.transmission_scatter = depth * self.scattering;
         m.transmission_scatter_anisotropy = self.anisotropy;
-        if let Some(Density { name, to_world: placed }) = &self.density {
+        if let Some(Density { name, to_world }) = &self.density {
             m.transmission_density = Some(name.clone());
-            let DAffine3 { matrix3: edges, translation } = placed.unwrap_or_default();
+            let DAffine3 { matrix3: edges, translation } = to_world.unwrap_or_default();
             let rows = [translation, edges.x_axis, edges.y_axis, edges.z_axis];
-            m.transmission_density_box = placed.iter().flat_map(|_| rows.map(|row| row.as_vec3().to_array())).collect();
+            m.transmission_density_box =
+                to_world.iter().flat_map(|_| rows.map(|row| row.as_vec3().to_array())).collect();
         }
     }
 

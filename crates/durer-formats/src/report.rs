@@ -18,8 +18,8 @@ impl Report {
     /// Creates an empty report for a file. Its error limit is the number of errors that
     /// `diagnostics` can still take.
     pub fn new(file: u32, diagnostics: &Diagnostics) -> Self {
-        let room = ERROR_LIMIT.saturating_sub(diagnostics.error_count());
-        Report { file, diagnostics: Vec::new(), errors: 0, max_errors: room }
+        let max_errors = ERROR_LIMIT.saturating_sub(diagnostics.error_count());
+        Report { file, diagnostics: Vec::new(), errors: 0, max_errors }
     }
 
     /// Creates an empty report for a part of the file, to be joined to this report later.

@@ -218,10 +218,9 @@ impl<'a> Xml<'a> {
         let at = (self.reader.error_position() as usize).min(self.text.len());
         let place = self.span(at, at);
         if let quick_xml::Error::IllFormed(events) = error
-            && let quick_xml::errors::IllFormedError::MismatchedEndTag { expected, found: attribute } = events
+            && let quick_xml::errors::IllFormedError::MismatchedEndTag { expected, found } = events
         {
-            let wrong =
-                self.wrong(place, format!("`</{attribute}>` closes an element that is not open")).code("unclosed");
+            let wrong = self.wrong(place, format!("`</{found}>` closes an element that is not open")).code("unclosed");
             return match self.open.last() {
                 Some(open) => wrong.related(*open, format!("`{expected}` is open here")),
                 None => wrong,

@@ -66,12 +66,12 @@ fn mitsuba(first: &str, last: &str) -> String {
 
 /// Runs the attack.
 pub fn run(attack: &Attack) -> Result<Outcome> {
-    let (mut fallen, mut tried) = (Vec::new(), 0);
+    let (mut failures, mut tried) = (Vec::new(), 0);
     let mut check = |path: &str, what: String, options: &[&str]| -> Result<()> {
         let arguments = ["render", path, "--samples", "1", "-q", "--restart", "-o", "o.png", "--threads", "2"];
         let output = attack.limited(&[&arguments, options].concat(), SPACE, SECONDS)?;
         tried += 1;
-        fallen.extend(failure_reason(&output).map(|why| format!("{what}: {why}")));
+        failures.extend(failure_reason(&output).map(|why| format!("{what}: {why}")));
         Ok(())
     };
     for path in inputs() {
@@ -92,5 +92,5 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
             &[&["--size", "8x8"], options].concat(),
         )?;
     }
-    Ok(Outcome { tried, failures: fallen, note: String::new() })
+    Ok(Outcome { tried, failures, note: String::new() })
 }

@@ -98,7 +98,7 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         let arguments = ["render", "case/out/in/ball.txt", "--size", "32x32", "--samples", "1", "-q", "-o", picture];
         attack.limited(&arguments, 4_000_000, 60)?;
     }
-    let mut fallen = Vec::new();
+    let mut failures = Vec::new();
     for number in 0..attack.count {
         let (file, text, secret, command) = INPUTS[attack.random(number, 0, INPUTS.len() as u64)];
         let name = named(attack, number, secret);
@@ -115,10 +115,10 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         // errors.
         let outcome = output.status.code() == Some(2) || file == "a.obj" && messages.is_empty();
         if let Some(why) = failure_reason(&output).or_else(|| (!outcome).then(|| "it was read".into())) {
-            fallen.push(format!("{file} names {name:?}: {why}"));
+            failures.push(format!("{file} names {name:?}: {why}"));
         }
     }
-    Ok(Outcome { tried: attack.count, failures: fallen, note: String::new() })
+    Ok(Outcome { tried: attack.count, failures, note: String::new() })
 }
 
 /// Returns a name that leads to a secret file, to a device or to a pipe.

@@ -33,7 +33,7 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
     attack.put("mesh.txt", scene("TriangleMesh { obj_file mesh.obj }"))?;
     attack.put("endless.txt", ENDLESS_SCENE)?;
     let whitted = crate::root()?.join("scenes/whitted.txt").display().to_string();
-    let (mut fallen, mut worst) = (Vec::new(), (Duration::ZERO, ""));
+    let (mut failures, mut worst) = (Vec::new(), (Duration::ZERO, ""));
     for number in 0..attack.count {
         let line = LONG[(number % LONG.len() as u64) as usize];
         let words = line.split_whitespace().map(|word| match word {
@@ -56,11 +56,11 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         // Code 0 means that the program ended before the signal. If the signal arrives before the
         // handler is installed, the program ends without a code.
         if took > MAX_DELAY || !matches!(code, None | Some(0 | 129 | 130 | 143)) {
-            fallen.push(format!("{line}: {:.2} s after {signal}, exit code {code:?}", took.as_secs_f64()));
+            failures.push(format!("{line}: {:.2} s after {signal}, exit code {code:?}", took.as_secs_f64()));
         }
     }
     let note = format!("; the slowest took {:.2} s: {}", worst.0.as_secs_f64(), worst.1);
-    Ok(Outcome { tried: attack.count, failures: fallen, note })
+    Ok(Outcome { tried: attack.count, failures, note })
 }
 
 /// Mirrors and glass that split every ray in two. With many bounces, no pixel is ever finished.

@@ -50,6 +50,6 @@ pub fn check_text(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<Che
         }
         _ => reader_findings(&diagnostics),
     };
-    let named = loaded.map(|loaded| loaded.files()).unwrap_or_default();
-    Ok(CheckedScene { path: path.into(), files, findings, dialect, readable, referenced_files: named })
+    let referenced_files = loaded.map(|loaded| loaded.files()).unwrap_or_default();
+    Ok(CheckedScene { path: path.into(), files, findings, dialect, readable, referenced_files })
 }

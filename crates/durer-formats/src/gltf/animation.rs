@@ -62,7 +62,7 @@ impl Model<'_> {
     fn track(&self, at: &JsonRef) -> Option<Sampler> {
         let words =
             [("STEP", Interpolation::Step), ("LINEAR", Interpolation::Linear), ("CUBICSPLINE", Interpolation::Cubic)];
-        let between = at.get("interpolation").map_or(Some(Interpolation::Linear), |word| word.word(&words))?;
+        let interpolation = at.get("interpolation").map_or(Some(Interpolation::Linear), |word| word.word(&words))?;
         let (input, output) = (at.required("input")?, at.required("output")?);
         let times = self.rows::<1>(self.accessor(&input)?, &input)?.into_iter().map(|[t]| t).collect::<Vec<_>>();
         if !times.is_sorted() {
@@ -72,7 +72,7 @@ impl Model<'_> {
         let accessor = self.accessor(&output)?;
         let rows = self.rows::<4>(accessor, &output)?;
         let values = rows.iter().flat_map(|row| row[..accessor.width.min(4)].iter().copied()).collect();
-        Some(Sampler { times, values, interpolation: between })
+        Some(Sampler { times, values, interpolation })
     }
 }
 

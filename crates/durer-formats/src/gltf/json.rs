@@ -101,8 +101,8 @@ enum PathStep<'a> {
 
 impl<'a> JsonRef<'a> {
     /// Returns the root value of the document.
-    pub fn root(value: &'a Value, findings: &'a JsonReport<'a>) -> Self {
-        JsonRef { value, report: findings, parent: None, step: PathStep::Key("") }
+    pub fn root(value: &'a Value, report: &'a JsonReport<'a>) -> Self {
+        JsonRef { value, report, parent: None, step: PathStep::Key("") }
     }
 
     /// Returns the JSON pointer (RFC 6901) to this value.

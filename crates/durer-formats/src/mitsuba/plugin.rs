@@ -67,8 +67,8 @@ impl Value {
 
 impl Plugin {
     pub fn new(class: &str, kind: String, at: Span) -> Plugin {
-        let queried = RefCell::default();
-        Plugin { element: class.into(), kind, at, properties: Vec::new(), known_names: queried }
+        let known_names = RefCell::default();
+        Plugin { element: class.into(), kind, at, properties: Vec::new(), known_names }
     }
 
     /// Returns a key that is unique to the plugin.
@@ -171,17 +171,17 @@ impl Plugin {
 
     /// Warns about properties that are unknown or not used.
     pub fn warn_unused(&self, report: &SharedReport) {
-        let queried = self.known_names.borrow();
+        let known_names = self.known_names.borrow();
         for property in &self.properties {
             let nested = matches!(property.value, Value::Plugin(_) | Value::Ref(_));
-            if property.used.get() || queried.contains(&property.name.as_str()) {
+            if property.used.get() || known_names.contains(&property.name.as_str()) {
                 continue;
             }
             let message = match (nested, property.name.as_str()) {
                 (true, "") => format!("the {} `{}` does not use this: it is ignored", self.element, self.kind),
                 (_, name) => format!("the {} `{}` has no property `{name}`: it is ignored", self.element, self.kind),
             };
-            let help = suggest(&property.name, queried.iter().copied());
+            let help = suggest(&property.name, known_names.iter().copied());
             let warning = durer_diag::Diagnostic::warning(message).code("unknown-property").at(property.at);
             report.push(durer_diag::Diagnostic { help, ..warning });
         }

@@ -75,11 +75,11 @@ pub(super) fn read_faces(
 }
 
 /// Reads the faces of one part of the file.
-fn faces(bytes: &[u8], part: Range<usize>, so_far: Counts, whole: &MeshData, report: Report) -> Faces {
+fn faces(bytes: &[u8], part: Range<usize>, before: Counts, whole: &MeshData, report: Report) -> Faces {
     let mut reader = FaceReader {
         bytes,
         total: counts(whole),
-        before: so_far,
+        before,
         positions: &whole.positions,
         corners: Vec::new(),
         triangulator: Triangulator::new(part.len()),
@@ -210,7 +210,7 @@ impl FaceReader<'_> {
 }
 
 /// Reads an index, which counts from 1 or, if negative, backwards from the last statement of its
-/// kind. `total` and `before` are the numbers of such statements in the whole file and before this
+/// kind. `total` and `so_far` are the numbers of such statements in the whole file and before this
 /// statement.
 pub(super) fn index(
     bytes: &[u8],

@@ -57,8 +57,8 @@ pub(super) fn read_files(
         };
         if bytes.len() < u32::MAX as usize {
             let file = input.files.borrow_mut().add_once(&path, &bytes);
-            let left_out = BTreeMap::new();
-            Reader { input, file, path: &path, library, ignored_keywords: left_out }.read(&bytes, diagnostics);
+            let ignored_keywords = BTreeMap::new();
+            Reader { input, file, path: &path, library, ignored_keywords }.read(&bytes, diagnostics);
         }
     }
 }

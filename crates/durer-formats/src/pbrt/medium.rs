@@ -124,10 +124,10 @@ impl Reader<'_> {
         let wanted = counts.iter().try_fold(1_i64, |product, &n| product.checked_mul(n.max(0)));
         if wanted != Some(densities.len() as i64) {
             let [x, y, z] = counts;
-            let coefficient = densities.len();
+            let count = densities.len();
             self.report.error(
                 place,
-                format!("`density` needs {x} x {y} x {z} numbers, by `nx`, `ny` and `nz`: found {coefficient}"),
+                format!("`density` needs {x} x {y} x {z} numbers, by `nx`, `ny` and `nz`: found {count}"),
             );
             return None;
         }
@@ -148,8 +148,8 @@ impl Reader<'_> {
         self.scene.assets.densities.insert(path.clone(), (bounds, Arc::new(grid)));
         let cell = (high - low) / DVec3::from_array(counts.map(|n| n as f64));
         let transform = DAffine3::from_scale_rotation_translation(high - low + 2.0 * cell, DQuat::IDENTITY, low - cell);
-        let placed = Some(self.state.transforms.maps[0] * transform);
-        Some(Medium { density: Some(Density { name: FileName { path, span: place }, to_world: placed }), ..medium })
+        let to_world = Some(self.state.transforms.maps[0] * transform);
+        Some(Medium { density: Some(Density { name: FileName { path, span: place }, to_world }), ..medium })
     }
 
     /// Sets the media inside and outside of shapes, which must be defined.

@@ -166,8 +166,8 @@ fn parse_declaration(head: &str, at: Span, language: Language, report: &SharedRe
         );
         return None;
     };
-    let param = KINDS.iter().find(|row| row.0 == kind);
-    if param.is_none() {
+    let row = KINDS.iter().find(|row| row.0 == kind);
+    if row.is_none() {
         let help = suggest(kind, KINDS.iter().map(|row| row.0));
         report.error_with_help(at, format!("`{kind}` is not a parameter type"), help);
     }
@@ -175,7 +175,7 @@ fn parse_declaration(head: &str, at: Span, language: Language, report: &SharedRe
         report.error_with_help(at, "only pbrt-v3 has `xyz` colours", Some("write `rgb`".into()));
         return None;
     }
-    Some((param?.1, name.to_string()))
+    Some((row?.1, name.to_string()))
 }
 
 /// Reads the values after a parameter's name: one value, or several in brackets.
@@ -186,16 +186,16 @@ fn values(text: &mut Lexer, head: Span, report: &SharedReport) -> Option<(Values
     };
     let (mut numbers, mut texts, mut bools) = (Vec::new(), Vec::new(), Vec::new());
     let (mut sound, mut kinds) = (true, 0);
-    let mut add = |param: SpannedToken, text: &Lexer| match param.token {
+    let mut add = |next: SpannedToken, text: &Lexer| match next.token {
         Token::Text(value) => {
             texts.push(value);
             true
         }
-        Token::Word if matches!(text.bytes(param.at), b"true" | b"false") => {
-            bools.push(text.bytes(param.at) == b"true");
+        Token::Word if matches!(text.bytes(next.at), b"true" | b"false") => {
+            bools.push(text.bytes(next.at) == b"true");
             true
         }
-        Token::Word => match number(text, param.at, report) {
+        Token::Word => match number(text, next.at, report) {
             Some(value) => {
                 numbers.push(value);
                 true
@@ -208,19 +208,19 @@ fn values(text: &mut Lexer, head: Span, report: &SharedReport) -> Option<(Values
     if first.token == Token::Open {
         text.next(report);
         loop {
-            let Some(param) = text.next(report) else {
+            let Some(next) = text.next(report) else {
                 let error = Diagnostic::error("these brackets are not closed").code("unclosed").at(first.at);
                 report.push(error.help("a `]` is missing"));
                 return None;
             };
-            end = param.at;
-            match param.token {
+            end = next.at;
+            match next.token {
                 Token::Close => break,
                 Token::Open => {
-                    report.error(param.at, "brackets cannot be nested: a `]` is missing before this");
+                    report.error(next.at, "brackets cannot be nested: a `]` is missing before this");
                     sound = false;
                 }
-                _ => sound &= add(param, text),
+                _ => sound &= add(next, text),
             }
             if report.is_full() {
                 return None;
@@ -273,11 +273,11 @@ pub(super) fn number(text: &Lexer, at: Span, report: &SharedReport) -> Option<f6
 /// Checks that the values fit the type.
 fn fits(kind: Kind, name: &str, values: &Values, at: Span, report: &SharedReport) -> bool {
     let complain = |wanted: &str| {
-        let param = match values.len() {
+        let actual = match values.len() {
             0 => "nothing".to_string(),
             _ => values.counted(),
         };
-        report.error(at, format!("`{name}` needs {wanted}, found {param}"));
+        report.error(at, format!("`{name}` needs {wanted}, found {actual}"));
         false
     };
     let rows = |size: usize| match values {

@@ -28,7 +28,7 @@ struct ShapeDef {
     area: f32,
     lights: usize,
     /// Transform from object space to world space.
-    map: DAffine3,
+    to_world: DAffine3,
     /// True if normals point inwards in pbrt but outwards in Dürer.
     inside_out: bool,
 }
@@ -133,7 +133,7 @@ impl Reader<'_> {
         };
         if self.limits.count_objects_or_report(1, self.report, at) {
             let inner = Object { node: shape.node, material: Some(material), span: at };
-            self.add(inner.placed(shape.map));
+            self.add(inner.placed(shape.to_world));
         }
     }
 
@@ -165,7 +165,7 @@ impl Reader<'_> {
             false => (Vec3::ZERO, to_world),
         };
         let node = Node::Primitive(Sphere { center, radius }.into());
-        Some(ShapeDef { node, area: 4.0 * PI * world * world, lights: 1, map: to_world, inside_out: flipped })
+        Some(ShapeDef { node, area: 4.0 * PI * world * world, lights: 1, to_world, inside_out: flipped })
     }
 
     fn disk(&mut self, params: &Params, to_world: DAffine3, flipped: bool) -> Option<ShapeDef> {
@@ -184,7 +184,7 @@ impl Reader<'_> {
         let stretch = to_world.transform_vector3(DVec3::X).cross(to_world.transform_vector3(DVec3::Y)).length() as f32;
         let area = PI * (radius * radius - inner_radius * inner_radius) * stretch;
         let node = Node::Primitive(Disc { center: height * Vec3::Z, normal, radius, inner_radius }.into());
-        Some(ShapeDef { node, area, lights: 1, map: to_world, inside_out: false })
+        Some(ShapeDef { node, area, lights: 1, to_world, inside_out: false })
     }
 
     /// Returns a tessellated shape. Together, they may have at most `MAX_TRIANGLES` triangles.
@@ -212,7 +212,7 @@ impl Reader<'_> {
         let name = name.unwrap_or_else(|| format!("{}#{}", self.input.name, self.scene.assets.meshes.len()));
         let lights = data.triangles.len();
         let node = self.scene.add_mesh(&name, data, at);
-        Some(ShapeDef { node, area, lights, map: to_world, inside_out: false })
+        Some(ShapeDef { node, area, lights, to_world, inside_out: false })
     }
 
     fn ply(&mut self, params: &Params, to_world: DAffine3, at: Span) -> Option<ShapeDef> {

@@ -200,20 +200,18 @@ impl<'a> HeaderReader<'a, '_> {
     }
 
     fn property(&mut self, words: &[Range<usize>]) {
-        let (count, scalar, name) = match words {
-            [_, list, count, scalar, name] if self.text(list) == "list" => (Some(count), scalar, name),
-            [_, scalar, name] if self.text(scalar) != "list" => (None, scalar, name),
+        let (count, number_type, name) = match words {
+            [_, list, count, number_type, name] if self.text(list) == "list" => (Some(count), number_type, name),
+            [_, number_type, name] if self.text(number_type) != "list" => (None, number_type, name),
             _ => return self.incomplete(words, "property <type> <name>` or `property list <type> <type> <name>"),
         };
-        let (count, scalar) = (count.map(|count| self.scalar(count)), self.scalar(scalar));
-        let (Some(scalar), Some(count)) = (scalar, count.map_or(Some(None), |c| c.map(Some))) else { return };
+        let (count, number_type) = (count.map(|count| self.scalar(count)), self.scalar(number_type));
+        let (Some(number_type), Some(count)) = (number_type, count.map_or(Some(None), |c| c.map(Some))) else { return };
         if count.is_some_and(|count| !count.is_integer()) {
             self.report.error(words[2].clone(), "the length of a list must be of an integer type");
         }
         match self.elements.last_mut() {
-            Some(element) => {
-                element.properties.push(Property { name: name.clone(), number_type: scalar, length_type: count })
-            }
+            Some(element) => element.properties.push(Property { name: name.clone(), number_type, length_type: count }),
             None => _ = self.report.error(words[0].clone(), "a property before the first `element`"),
         }
     }

@@ -63,8 +63,8 @@ impl Sky {
             return None;
         }
         let factor = if number(3) > 0.0 { number(3) } else { 1.0 };
-        let turn = transform.inverse() * transform.x_axis.length();
-        Some(Sky { kind, zenith: number(1).max(0.0), ground: number(2).max(0.0), factor, sun, to_sky: turn })
+        let to_sky = transform.inverse() * transform.x_axis.length();
+        Some(Sky { kind, zenith: number(1).max(0.0), ground: number(2).max(0.0), factor, sun, to_sky })
     }
 
     /// Creates a Perez sky from its arguments: brightness, ground, five coefficients, and direction
@@ -75,9 +75,9 @@ impl Sky {
         }
         let number = |i: usize| primitive.number(i).unwrap_or(0.0);
         let kind = SkyKind::Perez(std::array::from_fn(|i| number(2 + i)));
-        let turn = transform.inverse() * transform.x_axis.length();
+        let to_sky = transform.inverse() * transform.x_axis.length();
         let (zenith, ground) = (number(0).max(0.0), number(1).max(0.0));
-        Some(Sky { kind, zenith, ground, factor: 1.0, sun: primitive.point(7).normalize_or_zero(), to_sky: turn })
+        Some(Sky { kind, zenith, ground, factor: 1.0, sun: primitive.point(7).normalize_or_zero(), to_sky })
     }
 
     /// Returns the radiance in a unit direction in world space.

@@ -38,9 +38,9 @@ pub(super) fn open_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
     let mut findings = flat_glass(scene_probe);
     for mesh in scene_probe.meshes() {
         let Some(glass) = mesh.glass(scene_probe) else { continue };
-        let Topology { open, non_manifold: crowded, some_edge, .. } = &mesh.topology;
+        let Topology { open, non_manifold, some_edge, .. } = &mesh.topology;
         let Some([p, q]) = some_edge.map(|edge| edge.map(vector)) else { continue };
-        let what = match (open, crowded) {
+        let what = match (open, non_manifold) {
             (0, n) => format!("has {} with more than two triangles", counted(*n, "edge", "edges")),
             (n, 0) => format!("is open: {} with one triangle only", counted(*n, "edge", "edges")),
             (n, m) => format!("is open: {} with one triangle, {m} with more than two", counted(*n, "edge", "edges")),

@@ -66,8 +66,8 @@ pub struct Teacher {
 impl Teacher {
     /// Creates a teacher for a scene. `transfer` is the curve after which pictures are compared.
     pub fn new(stage: LessonScene, transfer: Transfer) -> Self {
-        let ours = LessonScene::built_in(stage.size());
-        Teacher { stages: [stage, ours], transfer }
+        let uses_built_in_scene = LessonScene::built_in(stage.size());
+        Teacher { stages: [stage, uses_built_in_scene], transfer }
     }
 
     /// Renders the steps of a topic. There is at least one step, unless a path-tracing topic has no
@@ -83,12 +83,14 @@ impl Teacher {
             return Ok(with_reason(picture, topic.lacking));
         }
         let unknown = self.stages[0].unsupported_by_method(topic);
-        let lacking = self.stages[0].unsupported_by_dialect(topic.name).or(unknown).unwrap_or(topic.lacking);
+        let missing_because = self.stages[0].unsupported_by_dialect(topic.name).or(unknown).unwrap_or(topic.lacking);
         let stages = [false, true].into_iter().zip(&mut self.stages);
-        for (ours, stage) in stages.filter(|(ours, _)| *ours || unknown.is_none()) {
-            let steps = steps(topic, stage, self.transfer, ours, control)?;
+        for (uses_built_in_scene, stage) in
+            stages.filter(|(uses_built_in_scene, _)| *uses_built_in_scene || unknown.is_none())
+        {
+            let steps = steps(topic, stage, self.transfer, uses_built_in_scene, control)?;
             if !steps.is_empty() {
-                return Ok(with_reason(steps, lacking));
+                return Ok(with_reason(steps, missing_because));
             }
         }
         // Not reached: a test checks that the built-in scene shows every topic.
@@ -97,12 +99,8 @@ impl Teacher {
 }
 
 /// Sets why the steps use the built-in scene, and which of them continue the previous step.
-fn with_reason(steps: Vec<Step>, lacking: &'static str) -> Vec<Step> {
-    steps
-        .into_iter()
-        .enumerate()
-        .map(|(i, step)| Step { missing_because: lacking, continues_topic: i > 0, ..step })
-        .collect()
+fn with_reason(steps: Vec<Step>, missing_because: &'static str) -> Vec<Step> {
+    steps.into_iter().enumerate().map(|(i, step)| Step { missing_because, continues_topic: i > 0, ..step }).collect()
 }
 
 /// Renders the steps of a topic in a scene; none if the first step makes no visible change.
@@ -110,7 +108,7 @@ fn steps(
     topic: &'static Topic,
     stage: &mut LessonScene,
     transfer: Transfer,
-    ours: bool,
+    uses_built_in_scene: bool,
     control: &Control,
 ) -> Result<Vec<Step>, RenderError> {
     let one = |picture: &LessonPicture, shot: &Shot| Picture { caption: shot.caption, layer: picture.layer.clone() };
@@ -123,7 +121,7 @@ fn steps(
         let step = |before, change, words| Step {
             topic,
             title: title.clone(),
-            uses_built_in_scene: ours,
+            uses_built_in_scene,
             missing_because: topic.lacking,
             continues_topic: false,
             before,

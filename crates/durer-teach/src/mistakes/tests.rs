@@ -87,12 +87,12 @@ fn every_row_has_a_unique_name_and_a_lesson_step() {
 }
 
 /// Renders the eight-bit picture of a variant; also returns its brightest value.
-fn picture(variant: &SceneVariant, job: &Job, brightest: f32) -> (Picture, f32) {
+fn picture(variant: &SceneVariant, job: &Job, max_value: f32) -> (Picture, f32) {
     let places: Vec<(u32, u32)> = job.whole().places().collect();
-    let view = View { job, scale: Scale::Display, transfer: Transfer::Course, max_value: brightest };
-    let brightest = view.light(variant, &places).iter().map(|light| light.max_element()).fold(0.0, f32::max);
+    let view = View { job, scale: Scale::Display, transfer: Transfer::Course, max_value };
+    let max_value = view.light(variant, &places).iter().map(|light| light.max_element()).fold(0.0, f32::max);
     let image = Image::from_pixels(job.width, job.height, view.picture(variant, &places)).unwrap();
-    (Picture { image, scale: Scale::Display }, brightest)
+    (Picture { image, scale: Scale::Display }, max_value)
 }
 
 fn found(names: &[(&str, f32)]) -> Diagnosis {
@@ -106,8 +106,8 @@ fn found_in(text: &str, job: Job, names: &[(&str, f32)]) -> Diagnosis {
     for (name, value) in names {
         (super::mistake_by_name(name).unwrap().apply)(&mut wrong, *value);
     }
-    let (reference, brightest) = picture(&right, &job, 1.0);
-    let (test, _) = picture(&wrong, &job, brightest);
+    let (reference, max_value) = picture(&right, &job, 1.0);
+    let (test, _) = picture(&wrong, &job, max_value);
     let transfer = Transfer::Course;
     let input =
         DiagnosisInput { scene: &scene, world: &right.world, job: &job, transfer, reference: &reference, test: &test };

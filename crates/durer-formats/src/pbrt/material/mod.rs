@@ -43,7 +43,7 @@ impl MaterialDef {
     fn is_pictured(&self) -> bool {
         match self {
             MaterialDef::Principled(layers, _) => layers.has_pictures(),
-            MaterialDef::Mix { has_picture: pictured, .. } => *pictured,
+            MaterialDef::Mix { has_picture, .. } => *has_picture,
             MaterialDef::Hair(..) | MaterialDef::Interface => false,
         }
     }
@@ -128,12 +128,12 @@ impl Reader<'_> {
     fn mix_by(&self, parts: [usize; 2], (share, picture): (f32, Option<FileName>), at: Span) -> MaterialDef {
         let [first, second] = parts.map(|number| &self.materials[number]);
         let depth = 1 + first.depth().max(second.depth());
-        let pictured = first.is_pictured() || second.is_pictured() || picture.is_some();
+        let has_picture = first.is_pictured() || second.is_pictured() || picture.is_some();
         if depth > MAX_DEPTH {
             self.report.error(at, format!("mixes of materials are nested more than {MAX_DEPTH} levels deep"));
             return MaterialDef::Interface;
         }
-        MaterialDef::Mix { parts, share, picture, depth, has_picture: pictured, at }
+        MaterialDef::Mix { parts, share, picture, depth, has_picture, at }
     }
 
     /// Returns the index of a material that a mix names.

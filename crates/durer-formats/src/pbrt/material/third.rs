@@ -93,13 +93,13 @@ impl Reader<'_> {
             }
             "mirror" => {
                 let (color, picture) = self.color_or_texture(params, "Kr", 0.9);
-                let most = color.max_element().clamp(1e-6, 1.0);
+                let max_reflectance = color.max_element().clamp(1e-6, 1.0);
                 // The reflectance is the same at all angles.
                 let m = PrincipledMaterial {
                     base_metalness: 1.0,
-                    base_color: color / most,
+                    base_color: color / max_reflectance,
                     base_color_texture: picture,
-                    specular_weight: most,
+                    specular_weight: max_reflectance,
                     specular_roughness: 0.0,
                     ..PrincipledMaterial::default()
                 };
@@ -133,9 +133,9 @@ impl Reader<'_> {
             }
         };
         let mut bent = Vec::with_capacity(parts.len());
-        for Lobe { mut layers, max_reflectance: most } in parts {
+        for Lobe { mut layers, max_reflectance } in parts {
             self.surface(&mut layers, params, "bumpmap");
-            bent.push(Lobe { layers, max_reflectance: most });
+            bent.push(Lobe { layers, max_reflectance });
         }
         self.sum(bent, at)
     }
@@ -162,8 +162,8 @@ impl Reader<'_> {
         parts.push(match through.0 == Vec3::ZERO {
             true => Lobe { max_reflectance: reflected.0.max_element(), layers: glossy(reflected, index, &smooth) },
             false => {
-                let most = reflected.0.max_element().max(through.0.max_element());
-                Lobe { max_reflectance: most, layers: glass(reflected, through, index, None) }
+                let max_reflectance = reflected.0.max_element().max(through.0.max_element());
+                Lobe { max_reflectance, layers: glass(reflected, through, index, None) }
             }
         });
         let (share, picture) = match self.texture_value(params, "opacity", true, Vec3::ONE) {
