@@ -13,7 +13,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Points of the triangles at which the rays are aimed.
-const AIMS: [&str; 4] = ["vertices", "edge midpoints", "points on edges", "centroids"];
+const TARGETS: [&str; 4] = ["vertices", "edge midpoints", "points on edges", "centroids"];
 
 /// Returns a sphere with 10,242 vertices: an icosahedron that is subdivided five times.
 fn sphere(center: Vec3, radius: f32) -> Mesh {
@@ -60,10 +60,10 @@ fn sphere(center: Vec3, radius: f32) -> Mesh {
 
 /// Returns ray `i`, which is aimed at one of the triangles, and true if it starts inside the
 /// sphere. Otherwise it starts on the triangle's front side.
-fn ray(mesh: &Mesh, center: Vec3, radius: f32, aim: usize, i: u32) -> (Ray, bool) {
+fn ray(mesh: &Mesh, center: Vec3, radius: f32, target: usize, i: u32) -> (Ray, bool) {
     let [a, b, c] = mesh.corners(i % mesh.triangles.len() as u32);
-    let unit = random_2d(4, i, aim as u32, 0, 0).x;
-    let goal = [a, 0.5 * (a + b), a + unit * (b - a), (a + b + c) / 3.0][aim];
+    let unit = random_2d(4, i, target as u32, 0, 0).x;
+    let goal = [a, 0.5 * (a + b), a + unit * (b - a), (a + b + c) / 3.0][target];
     let normal = (goal - center).normalize();
     let inside = (i / mesh.triangles.len() as u32).is_multiple_of(2);
     let origin = match inside {
@@ -71,7 +71,7 @@ fn ray(mesh: &Mesh, center: Vec3, radius: f32, aim: usize, i: u32) -> (Ray, bool
         // Keep the ray steep enough that it cannot pass the sphere if the target is rounded.
         false => {
             let back = (normal + cosine(normal, i, 9)).normalize();
-            goal + radius * (0.5 + 100.0 * random_2d(4, i, aim as u32, 0, 1).x) * back
+            goal + radius * (0.5 + 100.0 * random_2d(4, i, target as u32, 0, 1).x) * back
         }
     };
     (Ray::new(origin, goal - origin), inside)
@@ -79,8 +79,8 @@ fn ray(mesh: &Mesh, center: Vec3, radius: f32, aim: usize, i: u32) -> (Ray, bool
 
 /// Returns the number of rays, out of `count`, that miss the mesh, for each kind of target.
 fn lost(mesh: &Mesh, place: (Vec3, f32), count: u32, closest: impl Fn(&Ray) -> BenchHit + Sync) -> [usize; 4] {
-    [0, 1, 2, 3].map(|aim| {
-        let is_lost = |i: &u32| closest(&ray(mesh, place.0, place.1, aim, *i).0) == BenchHit::NONE;
+    [0, 1, 2, 3].map(|target| {
+        let is_lost = |i: &u32| closest(&ray(mesh, place.0, place.1, target, *i).0) == BenchHit::NONE;
         (0..count).into_par_iter().filter(is_lost).count()
     })
 }
@@ -96,14 +96,14 @@ pub fn run(options: &Options, count: u32) -> Result<()> {
     );
     for (center, radius) in [(Vec3::ZERO, 1.0), (Vec3::new(1e6, -1e6, 1e6), 64.0)] {
         let mesh = sphere(center, radius);
-        println!("\nsphere of radius {radius} at {center}: {}", AIMS.join(", "));
+        println!("\nsphere of radius {radius} at {center}: {}", TARGETS.join(", "));
         let show = |name: &str, lost: [usize; 4]| println!("  {name:<22}{:?}", lost);
         let tree = TriangleBvh::build(&mesh.vertices, &mesh.triangles, BuildQuality::Best);
         let ours = |ray: &Ray| BenchHit::from(tree.closest(ray));
         show("Dürer", lost(&mesh, (center, radius), count, ours));
-        let wrong = [0, 1, 2, 3].map(|aim| {
+        let wrong = [0, 1, 2, 3].map(|target| {
             let is_wrong = |i: &u32| {
-                let (ray, inside) = ray(&mesh, center, radius, aim, *i);
+                let (ray, inside) = ray(&mesh, center, radius, target, *i);
                 tree.hit_count(&ray) % 2 != usize::from(inside)
             };
             (0..count).into_par_iter().filter(is_wrong).count()

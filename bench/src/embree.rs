@@ -12,7 +12,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 
 /// Instructions for installing Embree.
-pub const HOW: &str = "Embree 4 was not found. To install it, for example:
+pub const INSTALL_HINT: &str = "Embree 4 was not found. To install it, for example:
   pip download embreex --no-deps -d /tmp/embreex && cd /tmp/embreex && unzip -o embreex-*.whl
 and set DURER_EMBREE=/tmp/embreex/embreex.libs (a folder, or the file libembree4*.so itself). Debian's libembree-dev 4 also
 works. Without Embree, pass --no-embree.";
@@ -55,7 +55,7 @@ struct RayHit16 {
 
 /// Embree's `RTCIntersectArguments` and `RTCOccludedArguments`.
 #[repr(C)]
-struct Arguments {
+struct QueryArguments {
     flags: c_uint,
     feature_mask: c_uint,
     context: Handle,
@@ -107,10 +107,10 @@ functions! {
     rtcAttachGeometry: fn(Handle, Handle) -> c_uint;
     rtcSetGeometryInstancedScene: fn(Handle, Handle);
     rtcSetGeometryTransform: fn(Handle, c_uint, c_int, *const f32);
-    rtcIntersect1: fn(Handle, *mut RayHit1, *const Arguments);
-    rtcOccluded1: fn(Handle, *mut RayHit1, *const Arguments);
-    rtcIntersect16: fn(*const c_int, Handle, *mut RayHit16, *const Arguments);
-    rtcOccluded16: fn(*const c_int, Handle, *mut RayHit16, *const Arguments);
+    rtcIntersect1: fn(Handle, *mut RayHit1, *const QueryArguments);
+    rtcOccluded1: fn(Handle, *mut RayHit1, *const QueryArguments);
+    rtcIntersect16: fn(*const c_int, Handle, *mut RayHit16, *const QueryArguments);
+    rtcOccluded16: fn(*const c_int, Handle, *mut RayHit16, *const QueryArguments);
 }
 impl Embree {
     /// Loads the library and creates a device.
@@ -306,8 +306,8 @@ impl Scene {
     }
 
     /// Traces rays in packets of sixteen, which are marked as coherent or not.
-    pub fn packets(&self, rays: &[Ray], found: &mut [BenchHit], any: bool, coherent: bool) {
-        let arguments = Arguments {
+    pub fn trace_packets(&self, rays: &[Ray], found: &mut [BenchHit], any: bool, coherent: bool) {
+        let arguments = QueryArguments {
             flags: if coherent { COHERENT } else { 0 },
             feature_mask: c_uint::MAX,
             context: std::ptr::null_mut(),
@@ -387,7 +387,7 @@ pub fn find() -> Result<PathBuf> {
         let platlib = String::from_utf8_lossy(&output.stdout).trim().to_owned();
         folders.push(Path::new(&platlib).join("embreex.libs"));
     }
-    folders.iter().find_map(|folder| siblings(folder, "libembree4").pop()).context(HOW)
+    folders.iter().find_map(|folder| siblings(folder, "libembree4").pop()).context(INSTALL_HINT)
 }
 
 const _: () = assert!(size_of::<RayHit1>() == 96 && size_of::<RayHit16>() == 64 * 21);

@@ -52,7 +52,7 @@ pub struct Options {
 
 impl Options {
     /// Returns true if this kind of rays is selected.
-    pub fn wants(&self, case: &rays::Case) -> bool {
+    pub fn wants(&self, case: &rays::RayCase) -> bool {
         self.cases.is_empty() || self.cases.iter().any(|name| name == case.name)
     }
 }

@@ -56,7 +56,7 @@ impl Mesh {
 }
 
 /// Rays of one kind to be timed; `any` is true if they need any hit instead of the closest.
-pub struct Case {
+pub struct RayCase {
     pub name: &'static str,
     pub any: bool,
     /// True if consecutive rays are close to each other in space.
@@ -65,14 +65,14 @@ pub struct Case {
 }
 
 /// Returns true if the mesh is a room that is seen from inside.
-fn is_hall(mesh: &Mesh) -> bool {
+fn is_interior(mesh: &Mesh) -> bool {
     ["hall", "kitchen"].contains(&mesh.name.as_str())
 }
 
 /// Returns camera rays: from outside for objects, from the middle for rooms.
 fn primary(mesh: &Mesh, side: u32) -> Vec<Ray> {
     let bounds = mesh.bounds();
-    let hall = is_hall(mesh);
+    let hall = is_interior(mesh);
     let radius = 0.5 * bounds.size().length();
     let (eye, forward, spread) = if hall {
         let forward = Vec3::new(0.8, -0.1, 0.59).normalize();
@@ -114,12 +114,12 @@ pub fn cosine(n: Vec3, i: u32, dimension: u32) -> Vec3 {
 
 /// Generates rays of every kind for a mesh, with `side`^2 primary rays. `closest` returns their
 /// hits.
-pub fn cases(mesh: &Mesh, side: u32, closest: impl Fn(&Ray) -> BenchHit) -> Vec<Case> {
+pub fn cases(mesh: &Mesh, side: u32, closest: impl Fn(&Ray) -> BenchHit) -> Vec<RayCase> {
     let size = mesh.bounds().size().length();
     let first = primary(mesh, side);
     let (mut bounces, mut shadows, mut occlusions) = (Vec::new(), Vec::new(), Vec::new());
     // The light is above objects, or between floor and ceiling in rooms.
-    let hall = is_hall(mesh);
+    let hall = is_interior(mesh);
     let away = if hall { 0.3 * mesh.bounds().size() } else { Vec3::splat(size) };
     let light = mesh.bounds().center() + away * Vec3::new(0.32, 0.81, 0.47);
     for (i, ray) in first.iter().enumerate() {
@@ -142,10 +142,10 @@ pub fn cases(mesh: &Mesh, side: u32, closest: impl Fn(&Ray) -> BenchHit) -> Vec<
         shuffled.swap(i, at);
     }
     vec![
-        Case { name: "primary", any: false, coherent: true, rays: first },
-        Case { name: "bounce", any: false, coherent: false, rays: bounces },
-        Case { name: "shuffled", any: false, coherent: false, rays: shuffled },
-        Case { name: "shadow", any: true, coherent: true, rays: shadows },
-        Case { name: "ambient", any: true, coherent: false, rays: occlusions },
+        RayCase { name: "primary", any: false, coherent: true, rays: first },
+        RayCase { name: "bounce", any: false, coherent: false, rays: bounces },
+        RayCase { name: "shuffled", any: false, coherent: false, rays: shuffled },
+        RayCase { name: "shadow", any: true, coherent: true, rays: shadows },
+        RayCase { name: "ambient", any: true, coherent: false, rays: occlusions },
     ]
 }

@@ -3,7 +3,7 @@
 use crate::Options;
 use crate::embree::{Embree, Quality, Scene};
 use crate::peers::{BvhCrate, Obvhs, Parry};
-use crate::rays::{Case, BenchHit, Mesh, cases};
+use crate::rays::{RayCase, BenchHit, Mesh, cases};
 use anyhow::{Context, Result};
 use durer::bvh::{BuildQuality, Instance, InstanceBvh, InstanceHit, SimdLevel, TraversalStats, TriangleBvh};
 use durer::math::{Affine, Ray, Vec3, fp};
@@ -47,9 +47,9 @@ macro_rules! single {
 }
 
 /// Dürer's BVH of one mesh, with the interface of the other tracers.
-struct OurTree(TriangleBvh);
+struct DurerTracer(TriangleBvh);
 
-impl OurTree {
+impl DurerTracer {
     #[inline]
     fn closest(&self, ray: &Ray) -> BenchHit {
         self.0.closest(ray).into()
@@ -165,7 +165,7 @@ pub fn arrays(folder: &Path, options: &Options) -> Result<()> {
     let tree = TriangleBvh::try_build(&points("vertices.f32")?, faces.as_chunks().0, options.preset)?;
     let rays: Vec<Ray> =
         points("origins.f32")?.into_iter().zip(points("directions.f32")?).map(|(o, d)| Ray::new(o, d)).collect();
-    let ours = OurTree(tree);
+    let ours = DurerTracer(tree);
     let trace = |rays: &[Ray], found: &mut [BenchHit]| ours.batch(rays, found, false);
     let tracer = Tracer { name: "Dürer batch", trace: Box::new(trace) };
     let mut found = vec![BenchHit::NONE; rays.len()];
@@ -176,7 +176,7 @@ pub fn arrays(folder: &Path, options: &Options) -> Result<()> {
 
 fn one_mesh(mesh: &Mesh, options: &Options, embree: Option<&Arc<Embree>>, ratios: &mut Vec<f64>) {
     println!("{}: {} triangles", mesh.name, mesh.triangles.len());
-    let ours = OurTree(TriangleBvh::build(&mesh.vertices, &mesh.triangles, options.preset));
+    let ours = DurerTracer(TriangleBvh::build(&mesh.vertices, &mesh.triangles, options.preset));
     let scenes = embree.map(|embree| builds(mesh, embree, options.rounds.min(5)));
     let peers = options.peers.then(|| (Obvhs::build(mesh), BvhCrate::build(mesh), Parry::build(mesh)));
     for case in cases(mesh, options.side, |ray| ours.closest(ray)) {
@@ -190,7 +190,7 @@ fn one_mesh(mesh: &Mesh, options: &Options, embree: Option<&Arc<Embree>>, ratios
             tracers.push(single!("Embree medium", medium, case.any));
             tracers.push(single!("Embree high", high, case.any));
             let (any, coherent) = (case.any, case.coherent);
-            let packets = move |rays: &[Ray], found: &mut [BenchHit]| high.packets(rays, found, any, coherent);
+            let packets = move |rays: &[Ray], found: &mut [BenchHit]| high.trace_packets(rays, found, any, coherent);
             tracers.push(Tracer { name: "Embree 16-wide", trace: Box::new(packets) });
         }
         if let Some((obvhs, bvh, parry)) = &peers {
@@ -210,11 +210,11 @@ fn one_mesh(mesh: &Mesh, options: &Options, embree: Option<&Arc<Embree>>, ratios
 /// Compares instances of one mesh, each with its own rotation and scale.
 fn instances(mesh: &Mesh, count: u32, options: &Options, embree: Option<&Arc<Embree>>, ratios: &mut Vec<f64>) {
     println!("{} instances of {}: {} triangles", count, mesh.name, mesh.triangles.len());
-    let places = places(mesh, count);
+    let places = instance_transforms(mesh, count);
     let tree = Arc::new(TriangleBvh::build(&mesh.vertices, &mesh.triangles, options.preset));
     let place = |place: &DAffine3| Instance::new(tree.clone(), Affine::new(*place).expect("places can be inverted"));
     let clock = Instant::now();
-    let ours = OurInstances(InstanceBvh::new(places.iter().map(place).collect()), mesh.triangles.len() as u32);
+    let ours = DurerInstances(InstanceBvh::new(places.iter().map(place).collect()), mesh.triangles.len() as u32);
     let time = clock.elapsed().as_secs_f64();
     let theirs = embree.map(|embree| {
         let object = embree.build(mesh, Quality::High, false).0;
@@ -242,9 +242,9 @@ fn instances(mesh: &Mesh, count: u32, options: &Options, embree: Option<&Arc<Emb
 
 /// Dürer's BVH over instances with the interface of the other tracers, and the number of triangles
 /// of an instance.
-struct OurInstances(InstanceBvh, u32);
+struct DurerInstances(InstanceBvh, u32);
 
-impl OurInstances {
+impl DurerInstances {
     #[inline]
     fn closest(&self, ray: &Ray) -> BenchHit {
         let found = |hit: InstanceHit| BenchHit { t: hit.t, triangle: hit.instance * self.1 + hit.triangle };
@@ -257,7 +257,7 @@ impl OurInstances {
 }
 
 /// Returns transforms to the cells of a cube. Each cell is about as large as the mesh.
-fn places(mesh: &Mesh, count: u32) -> Vec<DAffine3> {
+fn instance_transforms(mesh: &Mesh, count: u32) -> Vec<DAffine3> {
     let side = (1..).find(|side| side * side * side >= count).expect("some cube is large enough");
     let (center, size) = (mesh.bounds().center().as_dvec3(), f64::from(mesh.bounds().size().max_element()));
     let place = |i: u32| {
@@ -284,7 +284,7 @@ fn flattened(mesh: &Mesh, places: &[DAffine3]) -> Mesh {
 }
 
 fn one_case(
-    case: &Case,
+    case: &RayCase,
     count: &dyn Fn(&Ray, &mut TraversalStats),
     tracers: &[Tracer],
     options: &Options,

@@ -7,7 +7,7 @@ mod mutated;
 mod names;
 mod signals;
 
-use crate::build::durer;
+use crate::build::build_durer;
 use anyhow::{Context, Result, bail};
 use durer::sampler::hash;
 use std::path::{Path, PathBuf};
@@ -15,21 +15,26 @@ use std::process::{Command, ExitCode, Output, Stdio};
 use std::time::{Duration, Instant};
 
 /// A kind of attack, with its default number of trials and a description of what a trial is.
-struct Kind {
+struct AttackKind {
     name: &'static str,
     count: u64,
-    of: &'static str,
+    trial_description: &'static str,
     run: fn(&Attack) -> Result<Outcome>,
 }
 
-const KINDS: [Kind; 7] = [
-    Kind { name: "names", count: 2000, of: "names that lead out of a folder", run: names::run },
-    Kind { name: "templates", count: 10_000, of: "hostile names in job files", run: templates },
-    Kind { name: "growth", count: 200, of: "small files that describe huge data", run: growth::run },
-    Kind { name: "signals", count: 100, of: "signals during all commands", run: signals::run },
-    Kind { name: "far", count: 500, of: "closed rooms far from the origin", run: far::run },
-    Kind { name: "kills", count: 100, of: "kills during renders", run: kills },
-    Kind { name: "mutated", count: 20_000, of: "mutated files", run: mutated::run },
+const KINDS: [AttackKind; 7] = [
+    AttackKind { name: "names", count: 2000, trial_description: "names that lead out of a folder", run: names::run },
+    AttackKind { name: "templates", count: 10_000, trial_description: "hostile names in job files", run: templates },
+    AttackKind {
+        name: "growth",
+        count: 200,
+        trial_description: "small files that describe huge data",
+        run: growth::run,
+    },
+    AttackKind { name: "signals", count: 100, trial_description: "signals during all commands", run: signals::run },
+    AttackKind { name: "far", count: 500, trial_description: "closed rooms far from the origin", run: far::run },
+    AttackKind { name: "kills", count: 100, trial_description: "kills during renders", run: kills },
+    AttackKind { name: "mutated", count: 20_000, trial_description: "mutated files", run: mutated::run },
 ];
 
 /// Settings of one attack: the program, a temporary folder, the number of trials and the seed.
@@ -46,7 +51,7 @@ struct Attack {
 struct Outcome {
     tried: u64,
     /// Descriptions of the failures, one line each.
-    fallen: Vec<String>,
+    failures: Vec<String>,
     /// Text to append to the summary.
     note: String,
 }
@@ -61,26 +66,26 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         value.map(|value| value.parse().with_context(|| format!("{name} needs a number"))).transpose()
     };
     let requested = arguments.first().filter(|word| !word.starts_with('-'));
-    let kinds: Vec<&Kind> =
+    let kinds: Vec<&AttackKind> =
         KINDS.iter().filter(|kind| requested.is_none_or(|requested| requested == kind.name)).collect();
     if kinds.is_empty() {
         bail!("unknown attack; known attacks: {}", KINDS.map(|kind| kind.name).join(", "));
     }
-    let (durer, seed) = (durer()?, number("--seed")?.unwrap_or(1));
+    let (durer, seed) = (build_durer()?, number("--seed")?.unwrap_or(1));
     let only = crate::value(arguments, "--only").cloned().unwrap_or_default();
-    let mut fallen = 0;
+    let mut failures = 0;
     for kind in kinds {
         let count = number("--count")?.unwrap_or(kind.count);
         let folder = tempfile::tempdir()?;
         let start = Instant::now();
         let attack = Attack { durer: durer.clone(), folder, count, seed, only: only.clone() };
         let found = (kind.run)(&attack).with_context(|| kind.name)?;
-        let (tried, fell, seconds) = (found.tried, found.fallen.len(), start.elapsed().as_secs_f64());
-        println!("{:<10}{tried:>9} {}: {fell} failed, {seconds:.0} s{}", kind.name, kind.of, found.note);
-        found.fallen.iter().take(20).for_each(|line| println!("    {line}"));
-        fallen += fell;
+        let (tried, fell, seconds) = (found.tried, found.failures.len(), start.elapsed().as_secs_f64());
+        println!("{:<10}{tried:>9} {}: {fell} failed, {seconds:.0} s{}", kind.name, kind.trial_description, found.note);
+        found.failures.iter().take(20).for_each(|line| println!("    {line}"));
+        failures += fell;
     }
-    Ok(if fallen == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(if failures == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 impl Attack {
@@ -112,7 +117,7 @@ impl Attack {
 
 /// Returns the reason if a run crashed or did not end by itself; `None` if it ended with a picture
 /// or an error.
-fn broken(output: &Output) -> Option<String> {
+fn failure_reason(output: &Output) -> Option<String> {
     let messages = String::from_utf8_lossy(&output.stderr);
     let last = messages.lines().last().unwrap_or_default();
     match output.status.code() {
@@ -132,15 +137,15 @@ fn templates(attack: &Attack) -> Result<Outcome> {
     let output = command.env("DURER_ROUNDS", rounds).current_dir(crate::root()?).output()?;
     let messages = String::from_utf8_lossy(&output.stdout).into_owned();
     let skipped: Vec<&str> = messages.lines().filter(|line| line.contains("skipped")).collect();
-    let fallen = if output.status.success() { Vec::new() } else { messages.lines().map(String::from).collect() };
-    Ok(Outcome { tried: attack.count, fallen, note: skipped.iter().map(|line| format!("; {line}")).collect() })
+    let failures = if output.status.success() { Vec::new() } else { messages.lines().map(String::from).collect() };
+    Ok(Outcome { tried: attack.count, failures, note: skipped.iter().map(|line| format!("; {line}")).collect() })
 }
 
 fn kills(attack: &Attack) -> Result<Outcome> {
     let done = crate::torture::kills_in(&attack.durer, attack.folder.path(), attack.count, attack.seed);
     Ok(Outcome {
         tried: attack.count,
-        fallen: done.err().into_iter().map(|e| format!("{e:#}")).collect(),
+        failures: done.err().into_iter().map(|e| format!("{e:#}")).collect(),
         note: String::new(),
     })
 }

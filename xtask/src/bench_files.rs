@@ -19,7 +19,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let (millions, runs) = (number("--triangles", 8)?, number("--runs", 3)?);
     let folder = crate::root()?.join("target/bench-files");
     std::fs::create_dir_all(&folder)?;
-    let files = written(&folder, millions)?;
+    let files = write_files(&folder, millions)?;
     let mut ours = Vec::new();
     for path in &files {
         let bytes: Arc<[u8]> = std::fs::read(path)?.into();
@@ -82,7 +82,7 @@ fn read(path: &Path, bytes: &Arc<[u8]>) -> Result<usize> {
 
 /// Writes a hilly square in all formats and returns the paths. It has `millions` million triangles;
 /// in text formats and STL only a tenth of that.
-fn written(folder: &Path, millions: u32) -> Result<Vec<PathBuf>> {
+fn write_files(folder: &Path, millions: u32) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for (extension, share) in [("ply", 1.0), ("glb", 1.0), ("stl", 0.1), ("obj", 0.1)] {
         let side = (f64::from(millions) * share * 0.5e6).sqrt() as u32;

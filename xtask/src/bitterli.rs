@@ -20,7 +20,7 @@ const SAMPLES: u32 = 256;
 const STEP: u32 = 4;
 
 /// Maximum relative deviation of the mean, and maximum FLIP at equal exposure.
-const MAX_OFF: f64 = 0.02;
+const MAX_DEVIATION: f64 = 0.02;
 const MAX_FLIP: f64 = 0.08;
 
 /// Scenes whose file specifies another depth than Tungsten used, with the number of scattering
@@ -78,7 +78,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     for scene in &scenes {
         let row = compared(scene, samples, keep.as_deref())?;
         let cause = CAUSES.iter().find(|known| known.0 == row.name).map_or("", |known| known.1);
-        let met = (row.ratio - 1.0).abs() <= MAX_OFF && row.flip <= MAX_FLIP;
+        let met = (row.ratio - 1.0).abs() <= MAX_DEVIATION && row.flip <= MAX_FLIP;
         let line = format!(
             "| {} | {} x {} | {} | {:+.2} % | {:.3} | {:.3} | {}{cause} |",
             row.name,

@@ -6,7 +6,7 @@ use std::process::Command;
 
 /// Builds `durer` in release mode and returns its path. If the variable `DURER_EXE` is set, returns
 /// that path instead.
-pub fn durer() -> Result<PathBuf> {
+pub fn build_durer() -> Result<PathBuf> {
     if let Some(built) = std::env::var_os("DURER_EXE") {
         return Ok(PathBuf::from(built).canonicalize()?);
     }

@@ -52,7 +52,7 @@ const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
 /// Sums of a pixel's samples as in the film, but in floating point, for comparing the speed.
 #[derive(Clone, Default)]
-struct Plain {
+struct FloatSums {
     color: Vec3,
     squares: f32,
     luminance: f32,
@@ -62,7 +62,7 @@ struct Plain {
     rejected: u32,
 }
 
-impl Plain {
+impl FloatSums {
     fn add(&mut self, color: Vec3, weight: f32) {
         if !(color.is_finite() && weight.is_finite()) {
             self.rejected += 1;
@@ -93,7 +93,7 @@ fn film(world: &World) -> [Duration; 2] {
     };
     let sample = std::hint::black_box(sample);
     let mut exact = Film::new(SIDE, SIDE);
-    let mut plain = vec![Plain::default(); (SIDE * SIDE) as usize];
+    let mut plain = vec![FloatSums::default(); (SIDE * SIDE) as usize];
     let mut least = [[Duration::MAX; SIDE as usize]; 2];
     for _ in 0..12 {
         for y in 0..SIDE {

@@ -1,6 +1,6 @@
 //! `cargo xtask course`: compares our pictures with the official pictures of the course.
 
-mod faults;
+mod regressions;
 
 use anyhow::{Context, Result, bail};
 use durer::image::{Image8, read8};
@@ -29,7 +29,7 @@ pub struct Row {
 }
 
 /// Result of comparing one of our pictures with the official one.
-struct Finding {
+struct RowResult {
     /// Percentage of pixels that differ by more than rounding, or another measure.
     share: f64,
     largest: u8,
@@ -42,11 +42,11 @@ struct Finding {
 enum Verdict {
     Pass,
     Fail,
-    Look,
+    ByEye,
 }
 
 /// An official picture that differs from ours for a known reason.
-struct Reason {
+struct KnownDifference {
     picture: &'static str,
     /// Percentage of differing pixels that this reason explains. A larger percentage has another
     /// cause.
@@ -54,19 +54,19 @@ struct Reason {
     words: &'static str,
 }
 
-const fn reason(picture: &'static str, most: f64, words: &'static str) -> Reason {
-    Reason { picture, most, words }
+const fn reason(picture: &'static str, most: f64, words: &'static str) -> KnownDifference {
+    KnownDifference { picture, most, words }
 }
 
 /// Pictures with known differences. They do not count as passed.
-const REASONS: &[Reason] = &[reason(
+const REASONS: &[KnownDifference] = &[reason(
     "output7_02e.png",
     0.17,
     "at the horizon, fields are far smaller than a pixel, so rounding of the old program decides",
 )];
 
 /// Pictures that were rendered from an edited scene, with the old and the new text of each edit.
-const AMENDED: &[(&str, &[(&str, &str)])] = &[
+const EDITED_SCENES: &[(&str, &[(&str, &str)])] = &[
     // Recovered from the picture: 5 of its 40,000 pixels differ.
     (
         "output5_03.png",
@@ -88,13 +88,13 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let (only, keep) = (value("--only"), value("--keep").map(PathBuf::from));
     let corpus = crate::corpus();
     let course = corpus.join("course").canonicalize().context("the course is missing; set DURER_CORPUS")?;
-    let durer = crate::build::durer()?;
+    let durer = crate::build::build_durer()?;
     let out = keep.clone().unwrap_or_else(|| std::env::temp_dir().join(format!("durer-course-{}", std::process::id())));
     std::fs::create_dir_all(&out)?;
     let out = out.canonicalize()?;
     let rows = rows(&course)?;
     let (mut passed, mut failed, mut looked, mut explained) = (0, 0, 0, 0);
-    let mut bench = Bench { durer, course, out: out.clone(), guess, made: HashMap::new() };
+    let mut bench = Comparison { durer, course, out: out.clone(), guess, made: HashMap::new() };
     for row in rows.iter().filter(|row| only.is_none_or(|text| format!("{row:?}").contains(text.as_str()))) {
         if row.arguments.is_empty() {
             looked += 1;
@@ -102,13 +102,15 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         }
         let finding = match bench.compare(row) {
             Ok(finding) => finding,
-            Err(error) => Finding { share: 100.0, largest: 255, verdict: Verdict::Fail, remark: format!("{error:#}") },
+            Err(error) => {
+                RowResult { share: 100.0, largest: 255, verdict: Verdict::Fail, remark: format!("{error:#}") }
+            }
         };
-        let known = |reason: &&Reason| row.picture.ends_with(reason.picture) && finding.share <= reason.most;
+        let known = |reason: &&KnownDifference| row.picture.ends_with(reason.picture) && finding.share <= reason.most;
         let reason = REASONS.iter().find(known).map(|reason| reason.words);
         let verdict = match (&finding.verdict, reason) {
             (Verdict::Pass, _) => "pass",
-            (Verdict::Look, _) => "look",
+            (Verdict::ByEye, _) => "look",
             (Verdict::Fail, Some(_)) => "ODD",
             (Verdict::Fail, None) => "FAIL",
         };
@@ -131,7 +133,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let small = corpus.join("faults/course");
     let (durer, scenes) = (bench.durer, bench.course.join("scenes"));
     let wrong = match small.canonicalize() {
-        Ok(folder) if !guess => faults::run(&durer, &folder, &scenes, &out, only.map(String::as_str))?,
+        Ok(folder) if !guess => regressions::run(&durer, &folder, &scenes, &out, only.map(String::as_str))?,
         _ => 0,
     };
     failed += wrong;
@@ -164,7 +166,7 @@ pub fn rows(course: &Path) -> Result<Vec<Row>> {
 }
 
 /// State of the comparison: paths, options, and the pictures rendered so far.
-struct Bench {
+struct Comparison {
     durer: PathBuf,
     course: PathBuf,
     out: PathBuf,
@@ -173,8 +175,8 @@ struct Bench {
     made: HashMap<String, PathBuf>,
 }
 
-impl Bench {
-    fn compare(&mut self, row: &Row) -> Result<Finding> {
+impl Comparison {
+    fn compare(&mut self, row: &Row) -> Result<RowResult> {
         let reference = read(&self.course.join(&row.picture))?;
         let ours = self.picture(row, 0)?;
         if (ours.width, ours.height) != (reference.width, reference.height) {
@@ -194,10 +196,10 @@ impl Bench {
             "procedural" => 1.0,
             "random" => return self.compare_random(row, &reference, share, largest),
             "grid" => return Ok(compare_silhouettes(&ours, &reference, largest)),
-            _ => return Ok(Finding { share, largest, verdict: Verdict::Look, remark: String::new() }),
+            _ => return Ok(RowResult { share, largest, verdict: Verdict::ByEye, remark: String::new() }),
         };
         let verdict = if share <= limit { Verdict::Pass } else { Verdict::Fail };
-        Ok(Finding { share, largest, verdict, remark: String::new() })
+        Ok(RowResult { share, largest, verdict, remark: String::new() })
     }
 
     /// Returns our picture for a row. Each combination of arguments and seed is rendered only once.
@@ -226,7 +228,7 @@ impl Bench {
             command.args(["--compat", "exit-r0"]);
         }
         let words: Vec<&str> = row.arguments.split_whitespace().collect();
-        let amended = AMENDED.iter().find(|(picture, _)| row.picture.ends_with(picture));
+        let amended = EDITED_SCENES.iter().find(|(picture, _)| row.picture.ends_with(picture));
         for (i, word) in words.iter().enumerate() {
             if let (Some((_, edits)), Some(&"-input")) = (amended, i.checked_sub(1).map(|i| &words[i])) {
                 let scene = self.course.join("scenes").join(&row.dialect).join(word);
@@ -263,7 +265,7 @@ impl Bench {
 
     /// Compares mean and spread: the official picture should look like one of our pictures with
     /// another seed.
-    fn compare_random(&mut self, row: &Row, reference: &Image8, share: f64, largest: u8) -> Result<Finding> {
+    fn compare_random(&mut self, row: &Row, reference: &Image8, share: f64, largest: u8) -> Result<RowResult> {
         let ours: Vec<Image8> = (0..SEEDS).map(|seed| self.picture(row, seed)).collect::<Result<_>>()?;
         let n = SEEDS as f64;
         let channels = |image: &Image8| -> Vec<f64> { image.pixels.iter().flatten().map(|&c| f64::from(c)).collect() };
@@ -295,7 +297,7 @@ impl Bench {
             "mean {mean_difference:+.3} (deviation {deviation:.3}), \
              spread {own_spread:.3} {spread_difference:+.3} (deviation {spread_deviation:.3})"
         );
-        Ok(Finding { share, largest, verdict, remark })
+        Ok(RowResult { share, largest, verdict, remark })
     }
 
     fn keep_difference(&self, row: &Row, ours: &Image8, reference: &Image8) -> Result<()> {
@@ -372,7 +374,7 @@ fn difference(a: &Image8, b: &Image8) -> (f64, u8) {
 
 /// Checks that both pictures differ from the background at the same pixels. The background is the
 /// most common colour on the border.
-fn compare_silhouettes(ours: &Image8, reference: &Image8, largest: u8) -> Finding {
+fn compare_silhouettes(ours: &Image8, reference: &Image8, largest: u8) -> RowResult {
     let background = |image: &Image8| {
         let (w, h) = (image.width as usize, image.height as usize);
         let mut counts: HashMap<[u8; 3], usize> = HashMap::new();
@@ -387,5 +389,5 @@ fn compare_silhouettes(ours: &Image8, reference: &Image8, largest: u8) -> Findin
     let differ = ours.pixels.iter().zip(&reference.pixels).filter(|(p, q)| (**p == a) != (**q == b)).count();
     let share = 100.0 * differ as f64 / ours.pixels.len() as f64;
     let verdict = if share <= 0.1 { Verdict::Pass } else { Verdict::Fail };
-    Finding { share, largest, verdict, remark: "silhouette".into() }
+    RowResult { share, largest, verdict, remark: "silhouette".into() }
 }

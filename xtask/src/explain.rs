@@ -15,8 +15,8 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 /// Number of timed explanations per scene, and number of slowest scenes that are printed.
-const TIMED: u32 = 5;
-const SLOWEST: usize = 5;
+const RUNS: u32 = 5;
+const MAX_SLOWEST: usize = 5;
 
 /// A scene compiled in one dialect, whose explanations are checked.
 struct DialectScene {
@@ -64,7 +64,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     println!("{explained} pixels explained with {} samplers: {differ} differ", SAMPLINGS.len());
     found.sort_by_key(|found| std::cmp::Reverse(found.slowest));
     println!("slowest explanations (16 samples per pixel, 512x512):");
-    for SceneResult { name, slowest, .. } in found.iter().take(SLOWEST) {
+    for SceneResult { name, slowest, .. } in found.iter().take(MAX_SLOWEST) {
         println!("{:>8.2} ms  {name}", slowest.as_secs_f64() * 1e3);
     }
     Ok(if differ == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
@@ -101,7 +101,7 @@ impl DialectScene {
         let differences = check(&self.world, &job, pixels, seed)?;
         let sampling = Sampling::Filtered { samples: 16, filter: Default::default() };
         let job = Job { width: 512, height: 512, sampling, ..job };
-        let timed = (0..TIMED).map(|i| {
+        let timed = (0..RUNS).map(|i| {
             let start = Instant::now();
             explain(&self.world, &job, 60 + 97 * i, 80 + 83 * i).map(|_| start.elapsed())
         });

@@ -40,7 +40,7 @@ const LIMIT: Duration = Duration::from_secs(240);
 const MEMORY: &str = "4G";
 
 /// Extensions of scenes and models, in lower case.
-const ENDINGS: [&str; 11] = ["3mf", "glb", "gltf", "obj", "pbrt", "ply", "rad", "rif", "stl", "txt", "xml"];
+const EXTENSIONS: [&str; 11] = ["3mf", "glb", "gltf", "obj", "pbrt", "ply", "rad", "rif", "stl", "txt", "xml"];
 
 /// Commands that render, each with one thread.
 const RENDER: &str = "render --hash --threads 1 --no-checkpoint -o @p.pfm";
@@ -48,7 +48,7 @@ const PROGRAM: &str = "course --threads 1";
 
 /// Options for our own scenes: first all pictures with few samples, then the other integrators and
 /// samplers at a lower resolution.
-const OURS: [&str; 6] = [
+const SCENE_OPTIONS: [&str; 6] = [
     "--size 64x48 --samples 4 --show color,depth,normals,geometric-normals,position,uv,barycentric,albedo,object,\
      material,luminance,illuminance,sample-count,variance",
     "--size 32x24 --samples 2 --integrator whitted --transparent-shadows",
@@ -59,7 +59,7 @@ const OURS: [&str; 6] = [
 ];
 
 /// Options for the files of other programs.
-const THEIRS: &str = "--size 32x24 --samples 2";
+const FOREIGN_OPTIONS: &str = "--size 32x24 --samples 2";
 
 /// Options for course scenes without a reference picture.
 const COURSE: &str = "-size 48 48 -output @color.tga -depth 0 20 @depth.tga -normals @normals.tga";
@@ -88,11 +88,11 @@ struct Case {
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     /// `durer render`.
-    Film,
+    Render,
     /// `durer course`.
     Course,
     /// `durer convert`.
-    Converted,
+    Convert,
     /// `durer info`.
     Info,
     /// `durer check`.
@@ -117,7 +117,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let only = value("--only");
     let durer = match value("--program") {
         Some(program) => Path::new(program).canonicalize().with_context(|| program.clone())?,
-        None => crate::build::durer()?,
+        None => crate::build::build_durer()?,
     };
     let old = value("--against").map(|file| {
         let text = fs::read_to_string(file).with_context(|| file.clone())?;
@@ -127,7 +127,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let cases = cases(only)?;
     ensure!(!cases.is_empty(), "no case matches");
     let lines = all(&durer, &cases)?;
-    let text = written(&lines);
+    let text = format_lines(&lines);
     if let Some(file) = value("-o") {
         fs::write(file, &text).with_context(|| file.clone())?;
     }
@@ -151,10 +151,10 @@ fn cases(only: Option<&String>) -> Result<Vec<Case>> {
     let mut cases = Vec::new();
     let root = crate::root()?;
     for folder in ["scenes", "scenes/photographs"] {
-        for file in below(&root, folder, false)? {
-            cases.extend(OURS.iter().enumerate().map(|(i, options)| {
+        for file in files_below(&root, folder, false)? {
+            cases.extend(SCENE_OPTIONS.iter().enumerate().map(|(i, options)| {
                 let name = if i == 0 { file.clone() } else { format!("{file} {options}") };
-                Case::new(Kind::Film, name, &root, &format!("{RENDER} {options}"), Some(&file))
+                Case::new(Kind::Render, name, &root, &format!("{RENDER} {options}"), Some(&file))
             }));
             read_only(&root, &file, "", &mut cases);
         }
@@ -163,8 +163,14 @@ fn cases(only: Option<&String>) -> Result<Vec<Case>> {
     course(&corpus, &mut cases)?;
     for folder in ["samples", "meshes"] {
         // In these folders, text files are licences and tables.
-        for file in below(&corpus, folder, true)?.iter().filter(|file| !file.ends_with(".txt")) {
-            cases.push(Case::new(Kind::Film, file.clone(), &corpus, &format!("{RENDER} {THEIRS}"), Some(file)));
+        for file in files_below(&corpus, folder, true)?.iter().filter(|file| !file.ends_with(".txt")) {
+            cases.push(Case::new(
+                Kind::Render,
+                file.clone(),
+                &corpus,
+                &format!("{RENDER} {FOREIGN_OPTIONS}"),
+                Some(file),
+            ));
             cases.push(converted(&corpus, file, "json", ""));
         }
     }
@@ -182,7 +188,7 @@ fn read_only(folder: &Path, file: &str, assets: &str, cases: &mut Vec<Case>) {
 
 fn converted(folder: &Path, file: &str, ending: &str, assets: &str) -> Case {
     let words = format!("convert -o {OUTPUT}p.{ending} {assets}");
-    Case::new(Kind::Converted, format!("{file} as {ending}"), folder, &words, Some(file))
+    Case::new(Kind::Convert, format!("{file} as {ending}"), folder, &words, Some(file))
 }
 
 /// Adds the cases with reference pictures, then those of the other course scenes.
@@ -206,7 +212,7 @@ fn course(corpus: &Path, cases: &mut Vec<Case>) -> Result<()> {
         let folder = corpus.join("course/scenes").join(&dialect);
         cases.push(Case::new(Kind::Course, format!("{dialect} {program} {arguments}"), &folder, &all, None));
     }
-    for file in below(corpus, "course/scenes", true)?.iter().filter(|file| file.ends_with(".txt")) {
+    for file in files_below(corpus, "course/scenes", true)?.iter().filter(|file| file.ends_with(".txt")) {
         read_only(corpus, file, MESHES, cases);
         if !known.contains(file) {
             let dialect = file.split('/').nth(2).context("a scene without a folder")?;
@@ -221,7 +227,7 @@ fn course(corpus: &Path, cases: &mut Vec<Case>) -> Result<()> {
 
 /// Returns the scenes and models in a folder as sorted paths relative to `root`. Includes
 /// subfolders if `deep` is true.
-fn below(root: &Path, folder: &str, deep: bool) -> Result<Vec<String>> {
+fn files_below(root: &Path, folder: &str, deep: bool) -> Result<Vec<String>> {
     let mut found = Vec::new();
     for entry in fs::read_dir(root.join(folder)).with_context(|| folder.to_string())? {
         let entry = entry?;
@@ -231,9 +237,9 @@ fn below(root: &Path, folder: &str, deep: bool) -> Result<Vec<String>> {
         let path = format!("{folder}/{name}");
         if entry.path().is_dir() {
             if deep {
-                found.extend(below(root, &path, deep)?);
+                found.extend(files_below(root, &path, deep)?);
             }
-        } else if ENDINGS.contains(&ending.as_str()) {
+        } else if EXTENSIONS.contains(&ending.as_str()) {
             found.push(path);
         }
     }
@@ -325,11 +331,11 @@ impl Case {
         hashed(&files, "", &mut written)?;
         match self.kind {
             // Print one line for all files of a scene.
-            Kind::Converted => {
+            Kind::Convert => {
                 written.sort();
                 lines.push(line(kind, Digest::of(format!("{written:?}").as_bytes()).to_string()));
             }
-            Kind::Film => {
+            Kind::Render => {
                 lines.push(line(kind, out.lines().last().unwrap_or_default().into()));
                 // The output is `p.pfm`, or files such as `p.depth.pfm` if there are several.
                 lines.extend(written.into_iter().map(|(name, digest)| {
@@ -352,9 +358,9 @@ impl Kind {
     /// Returns the first word of the kind's lines.
     fn word(self) -> &'static str {
         match self {
-            Kind::Film => "film",
+            Kind::Render => "film",
             Kind::Course => "course",
-            Kind::Converted => "converted",
+            Kind::Convert => "converted",
             Kind::Info => "info",
             Kind::Check => "check",
         }
@@ -395,11 +401,11 @@ fn ended(command: &mut Command, place: &Path) -> Result<RunOutcome> {
     Ok(RunOutcome { code: status.code(), late, out: fs::read(out)?, errors: fs::read(errors)? })
 }
 
-fn written(lines: &Lines) -> String {
+fn format_lines(lines: &Lines) -> String {
     lines.iter().map(|((kind, path), value)| format!("{kind}\t{path}\t{value}\n")).collect()
 }
 
-/// Parses lines written by [`written`]; `None` for any other text.
+/// Parses lines written by [`format_lines`]; `None` for any other text.
 fn parsed(text: &str) -> Option<Lines> {
     let line = |line: &str| {
         let (kind, rest) = line.split_once('\t')?;
@@ -424,7 +430,7 @@ fn changed_new_and_missing_lines_are_reported() {
     let old = lines("film\ta b.txt\t01\nfilm\tgone.txt\t02\npixels\ta b.txt: depth\t03\n");
     let new = lines("film\ta b.txt\t01\nfilm\tnew.txt\t02\npixels\ta b.txt: depth\t04\n");
     assert_eq!(differences(&old, &old), [""; 0]);
-    assert_eq!(lines(&written(&new)), new);
+    assert_eq!(lines(&format_lines(&new)), new);
     let outcome = ["film\tgone.txt\t02 -> absent", "film\tnew.txt\tabsent -> 02", "pixels\ta b.txt: depth\t03 -> 04"];
     assert_eq!(differences(&old, &new), outcome);
     assert_eq!(parsed("film without tabs\n"), None);

@@ -92,7 +92,7 @@ const USAGE: &str = "Commands:
   cargo xtask validate [--samples N]
       Compare light with known answers, test white furnaces, and test sampled directions against their pdf. Writes
       docs/validation.md.
-  cargo xtask lamps
+  cargo xtask many-lights
       Cost of a hundred thousand lights relative to ten, at equal error.
   cargo xtask bitterli [--samples 256] [--only TEXT] [--keep FOLDER]
       Compare Bitterli's scenes, read from pbrt files, with their pictures by Tungsten, and write the table in
@@ -140,7 +140,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("long") => long::run(&arguments[1..]),
         Some("fuzz") => fuzz::run(&arguments[1..]),
         Some("validate") => validate::run(&arguments[1..]),
-        Some("lamps") => many_lights::run(),
+        Some("many-lights") => many_lights::run(),
         Some("peers") => peers::run(&arguments[1..]),
         Some("manual") => manual::run(),
         Some("page") => page::run(&arguments[1..]),

@@ -22,7 +22,7 @@ pub fn run() -> Result<ExitCode> {
         std::fs::write(&path, text)?;
         println!("wrote {}", path.display());
     }
-    let durer = crate::build::durer()?;
+    let durer = crate::build::build_durer()?;
     std::fs::create_dir_all(pictures())?;
     for entry in entries() {
         let Some(scene) = entry.scene() else { continue };

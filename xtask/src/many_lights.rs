@@ -17,11 +17,11 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 /// Maximum acceptable ratio of the costs.
-const MOST: f64 = 2.0;
+const MAX_COST_RATIO: f64 = 2.0;
 
 /// Number of random placements of the lights in each room, because the noise of ten lights depends
 /// on their positions.
-const PLACINGS: u64 = 4;
+const PLACEMENTS: u64 = 4;
 
 /// Number of pictures per placement, each with another seed.
 const RUNS: u64 = 3;
@@ -125,7 +125,7 @@ pub fn run() -> Result<ExitCode> {
     let mut all_hold = true;
     for given in ROOMS {
         let (mut few_cost, mut many_cost) = (0.0, 0.0);
-        for placing in 0..PLACINGS {
+        for placing in 0..PLACEMENTS {
             let found = |lights| RoomResult::new(room(given, lights, placing)?);
             let (mut few, mut many) = (found(10)?, found(100_000)?);
             // Alternate between both rooms, so that they see the same machine load.
@@ -141,7 +141,7 @@ pub fn run() -> Result<ExitCode> {
         }
         let ratio = many_cost / few_cost;
         println!("at equal error, a hundred thousand lights take {ratio:.2} x the time of ten");
-        all_hold &= ratio <= MOST;
+        all_hold &= ratio <= MAX_COST_RATIO;
     }
     Ok(if all_hold { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

@@ -40,7 +40,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
 /// clients.
 fn measure(web: &Path) -> Result<ExitCode> {
     let root = root()?;
-    let durer = crate::build::durer()?;
+    let durer = crate::build::build_durer()?;
     install(web)?;
     for scene in [root.join("scenes/whitted.txt"), crate::corpus().join("meshes/dragon.ply")] {
         if !scene.exists() {

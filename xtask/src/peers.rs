@@ -28,7 +28,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         None => environment(&root.join("target/peers"), script == "peers_direct.py")?,
     };
     let mut command = Command::new(python);
-    command.arg(root.join("xtask/src").join(script)).arg(crate::build::durer()?);
+    command.arg(root.join("xtask/src").join(script)).arg(crate::build::build_durer()?);
     if script != "peers.py" {
         command.arg(crate::corpus().join("meshes"));
     }

@@ -12,7 +12,7 @@ use std::process::ExitCode;
 /// Maximum number of columns of a comment.
 const MAX_COLUMNS: usize = 100;
 /// Marker for a line of code in which listed words are allowed.
-const KEEP: &str = "// prose: keep";
+const KEEP_MARKER: &str = "// prose: keep";
 
 /// A phrase to avoid, from `xtask/prose.txt`, and what to write instead.
 struct Rule {
@@ -51,7 +51,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
             continue;
         }
         let text = std::fs::read_to_string(&path).with_context(|| name.clone())?;
-        for (line, message, rule) in found(&text, name.ends_with(".md"), &rules) {
+        for (line, message, rule) in find_phrases(&text, name.ends_with(".md"), &rules) {
             *counts.entry(rule).or_default() += 1;
             if !quiet {
                 println!("{name}:{line}: {message}");
@@ -102,7 +102,7 @@ fn sources(root: &Path) -> Result<Vec<PathBuf>> {
 }
 
 /// Returns the findings in a file: line, message and rule.
-fn found(text: &str, is_document: bool, rules: &[Rule]) -> Vec<(usize, String, String)> {
+fn find_phrases(text: &str, is_document: bool, rules: &[Rule]) -> Vec<(usize, String, String)> {
     let mut all = Vec::new();
     for (number, line) in text.lines().enumerate() {
         let is_comment = !is_document && line.trim_start().starts_with("//");
@@ -118,7 +118,7 @@ fn found(text: &str, is_document: bool, rules: &[Rule]) -> Vec<(usize, String, S
     for paragraph in &paragraphs {
         let lower = paragraph.text.to_lowercase();
         for rule in rules {
-            for at in places(&lower, rule, paragraph.begins) {
+            for at in positions(&lower, rule, paragraph.begins) {
                 let message = match rule.instead.as_str() {
                     "" => format!("`{}`", rule.phrase),
                     instead => format!("`{}`: write {instead}", rule.phrase),
@@ -133,7 +133,7 @@ fn found(text: &str, is_document: bool, rules: &[Rule]) -> Vec<(usize, String, S
 }
 
 /// Returns the byte offsets at which a rule matches whole words in a lower-case text.
-fn places(lower: &str, rule: &Rule, begins: bool) -> Vec<usize> {
+fn positions(lower: &str, rule: &Rule, begins: bool) -> Vec<usize> {
     let (phrase, open) = rule.phrase.strip_suffix('*').map_or((rule.phrase.as_str(), false), |phrase| (phrase, true));
     let is_word = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
     let whole = |&at: &usize| {
@@ -180,7 +180,7 @@ fn code(text: &str) -> Vec<Paragraph> {
             continue;
         }
         before = None;
-        if line.ends_with(KEEP) {
+        if line.ends_with(KEEP_MARKER) {
             continue;
         }
         for literal in literals(line).into_iter().filter(|literal| literal.trim().contains(' ')) {
@@ -242,7 +242,7 @@ mod tests {
     fn messages(text: &str, is_document: bool) -> Vec<(usize, String)> {
         let rules =
             rules("[begin]\nwhat | a noun\n[phrase]\nno number | NaN\nlamp | light\nreckon* | compute").unwrap();
-        found(text, is_document, &rules).into_iter().map(|(line, _, rule)| (line, rule)).collect()
+        find_phrases(text, is_document, &rules).into_iter().map(|(line, _, rule)| (line, rule)).collect()
     }
 
     #[test]

@@ -18,7 +18,7 @@ const SIDE: u32 = 256;
 const ACROSS: u32 = 6;
 const DOWN: u32 = 5;
 
-const ENDINGS: [&str; 6] = ["glb", "gltf", "obj", "ply", "stl", "3mf"];
+const EXTENSIONS: [&str; 6] = ["glb", "gltf", "obj", "ply", "stl", "3mf"];
 
 /// Runs `cargo xtask sheet`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
@@ -28,7 +28,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let front = arguments.iter().any(|argument| argument == "--front");
     let mut paths = Vec::new();
     for folder in ["samples/gltf/khronos", "samples/gltf/bevy", "samples/gltf/transform", "samples/meshes", "meshes"] {
-        below(&crate::corpus().join(folder), &mut paths);
+        files_below(&crate::corpus().join(folder), &mut paths);
     }
     paths.retain(|path| only.is_none_or(|only| path.to_string_lossy().contains(only.as_str())));
     if paths.is_empty() {
@@ -65,15 +65,15 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
 }
 
 /// Collects the models in a folder and below.
-fn below(folder: &Path, found: &mut Vec<PathBuf>) {
+fn files_below(folder: &Path, found: &mut Vec<PathBuf>) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
     paths.sort();
     for path in paths {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
         match path.is_dir() {
-            true => below(&path, found),
-            false if ENDINGS.contains(&ending.as_str()) => found.push(path),
+            true => files_below(&path, found),
+            false if EXTENSIONS.contains(&ending.as_str()) => found.push(path),
             false => {}
         }
     }

@@ -16,10 +16,10 @@ use std::time::{Duration, Instant};
 
 /// Fraction of the time after which memory must not grow any more, and the growth in bytes that is
 /// allowed.
-const WARM: f64 = 0.3;
-const SLACK: u64 = 96 << 20;
+const WARM_UP_FRACTION: f64 = 0.3;
+const MAX_GROWTH: u64 = 96 << 20;
 /// One in this many rounds is also rendered with the command.
-const COMMANDS: u64 = 25;
+const COMMAND_INTERVAL: u64 = 25;
 /// Maximum size of a file in bytes, because larger files take too long.
 const MAX_BYTES: u64 = 256 << 10;
 const MEMORY: u64 = 1 << 30;
@@ -37,7 +37,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
             .map_or(Ok(usual), |value| value.parse().with_context(|| format!("{name} needs a number")))
     };
     let (minutes, seed) = (number("--minutes", 2.0)?, number("--seed", 1.0)? as u64);
-    let (durer, folder) = (crate::build::durer()?, tempfile::tempdir()?);
+    let (durer, folder) = (crate::build::build_durer()?, tempfile::tempdir()?);
     let files = files()?;
     ensure!(!files.is_empty(), "there are no scenes");
     let methods: Vec<IntegratorKind> = IntegratorKind::kinds();
@@ -59,7 +59,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         };
         let method = methods[pick(2, methods.len())].name();
         let options = [("size", "24x18"), ("samples", "2"), ("integrator", method), ("seed", ["1", "7"][pick(3, 2)])];
-        let path = written(&scene, seed, folder.path())?;
+        let path = write_scene(&scene, seed, folder.path())?;
         let found = rendered(&path, &options)?;
         refused += u64::from(found.is_none());
         match known.get(&key) {
@@ -73,7 +73,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
             }
             None => drop(known.insert(key, found.clone())),
         }
-        if let (Some(found), 0) = (found, rounds % COMMANDS) {
+        if let (Some(found), 0) = (found, rounds % COMMAND_INTERVAL) {
             commands += 1;
             let own = command(&durer, &path, &options, folder.path())?;
             ensure!(
@@ -84,8 +84,8 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         }
         let used = Usage::now();
         match &warm {
-            None if start.elapsed() > time.mul_f64(WARM) => warm = Some(most),
-            Some(warm) if used.bytes > warm.bytes + SLACK => {
+            None if start.elapsed() > time.mul_f64(WARM_UP_FRACTION) => warm = Some(most),
+            Some(warm) if used.bytes > warm.bytes + MAX_GROWTH => {
                 bail!(
                     "memory grows: {} MiB after {rounds} rounds, {} MiB at most before",
                     used.bytes >> 20,
@@ -132,7 +132,7 @@ fn files() -> Result<Vec<PathBuf>> {
 }
 
 /// Returns the path of a scene. A random scene is written to `folder`.
-fn written(scene: &Scene, seed: u64, folder: &Path) -> Result<PathBuf> {
+fn write_scene(scene: &Scene, seed: u64, folder: &Path) -> Result<PathBuf> {
     Ok(match scene {
         Scene::File(path) => path.clone(),
         Scene::Random(key) => {

@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 const POINTS: usize = 1_000_000;
 const RAYS: u32 = 200_000;
 /// Number of alternating runs. Times are minima over these runs.
-const TURNS: usize = 7;
+const RUNS: usize = 7;
 
 /// Runs `cargo xtask solids`.
 pub fn run() -> Result<ExitCode> {
@@ -34,7 +34,7 @@ pub fn run() -> Result<ExitCode> {
         let holes = holes(radius)?;
         let rows = [("as plain objects", &plain), ("merged", &merged), ("subtracted from a box", &holes)];
         let mut least = [Duration::MAX; 3];
-        for _ in 0..TURNS {
+        for _ in 0..RUNS {
             for (time, (_, world)) in least.iter_mut().zip(&rows) {
                 *time = (*time).min(timed(world));
             }

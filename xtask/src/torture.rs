@@ -1,7 +1,7 @@
 //! `cargo xtask torture`: tests programs that are killed while they render and save, full disks,
 //! and read-only folders.
 
-use crate::build::durer;
+use crate::build::build_durer;
 use anyhow::{Context, Result, bail, ensure};
 use durer::image::{FORMATS, read};
 use durer::render::PartialRender;
@@ -22,20 +22,20 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     };
     let folder = tempfile::tempdir()?;
     let scene = crate::root()?.join("scenes/whitted.txt");
-    let bench = Bench { durer: durer()?, scene, folder: folder.path().into() };
+    let bench = TortureTest { durer: build_durer()?, scene, folder: folder.path().into() };
     kills(&bench, number("--kills", 100)?, number("--seed", 1)?)?;
     full_disks(&bench, number("--offsets", 50)?)?;
     Ok(ExitCode::SUCCESS)
 }
 
 /// Program, scene and temporary folder of the torture tests.
-struct Bench {
+struct TortureTest {
     durer: PathBuf,
     scene: PathBuf,
     folder: PathBuf,
 }
 
-impl Bench {
+impl TortureTest {
     fn render(&self, options: &str, output: &Path) -> Command {
         let mut command = Command::new(&self.durer);
         command.arg("render").arg(&self.scene).arg("-o").arg(output).args(options.split_whitespace());
@@ -44,7 +44,7 @@ impl Bench {
     }
 
     /// Creates an empty folder.
-    fn place(&self, name: &str) -> Result<PathBuf> {
+    fn path(&self, name: &str) -> Result<PathBuf> {
         let place = self.folder.join(name);
         fs::create_dir_all(&place)?;
         Ok(place)
@@ -67,18 +67,18 @@ fn last_line(output: &Output) -> String {
 /// Runs the kill test of [`kills`] with a program in a folder.
 pub fn kills_in(durer: &Path, folder: &Path, count: u64, seed: u64) -> Result<()> {
     let scene = crate::root()?.join("scenes/whitted.txt");
-    kills(&Bench { durer: durer.into(), scene, folder: folder.into() }, count, seed)
+    kills(&TortureTest { durer: durer.into(), scene, folder: folder.into() }, count, seed)
 }
 
 /// Starts the program repeatedly and kills it at random times, until there were `kills` kills. The
 /// final film must be the same as without kills.
-fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
-    let (calm, wild) = (bench.place("calm")?.join("p.exr"), bench.place("wild")?.join("p.exr"));
+fn kills(bench: &TortureTest, kills: u64, seed: u64) -> Result<()> {
+    let (calm, wild) = (bench.path("calm")?.join("p.exr"), bench.path("wild")?.join("p.exr"));
     let start = Instant::now();
     let reference = bench.render(WORK, &calm).output()?;
     let (expected, usual) = (last_line(&reference), start.elapsed());
     ensure!(expected.len() == 64, "no hash: {reference:?}");
-    let (mut killed, mut finished, mut litter, mut parts) = (0, 0, 0, 0);
+    let (mut killed, mut finished, mut leftover, mut parts) = (0, 0, 0, 0);
     while killed < kills {
         let mut child = bench.render(WORK, &wild).spawn()?;
         // Some kills happen during start-up, most during rendering, and some during saving.
@@ -102,7 +102,7 @@ fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
                     PartialRender::read(&fs::read(path)?).with_context(|| format!("damaged: {name}"))?;
                     parts += 1;
                 }
-                _ => litter += 1,
+                _ => leftover += 1,
             }
         }
     }
@@ -113,23 +113,23 @@ fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
     ensure!(left == ["p.exr"], "files left over: {left:?}");
     println!(
         "{killed} kills: {parts} checkpoints read, none damaged; {finished} runs finished, all with the same hash; \
-         {litter} temporary files seen, 0 left at the end"
+         {leftover} temporary files seen, 0 left at the end"
     );
     Ok(())
 }
 
 /// Tests every image writer on a disk with space for only some bytes, and on a read-only disk.
-fn full_disks(bench: &Bench, offsets: u64) -> Result<()> {
+fn full_disks(bench: &TortureTest, offsets: u64) -> Result<()> {
     let mut writers: Vec<(String, String)> =
         FORMATS.iter().map(|format| (format!("p.{}", format.extensions[0]), "--size 48x36".into())).collect();
     writers.push(("p.part".into(), "--size 48x36 --shard 1/2".into()));
     for (name, options) in &writers {
-        let whole = bench.place("whole")?.join(name);
+        let whole = bench.path("whole")?.join(name);
         ensure!(bench.render(&format!("{options} --quiet"), &whole).output()?.status.success(), "cannot make {name}");
         let size = fs::metadata(&whole)?.len();
         for i in 0..offsets {
             let limit = size * i / offsets;
-            let place = bench.place("limited")?;
+            let place = bench.path("limited")?;
             let path = place.join(name);
             fs::write(&path, "old")?;
             // With SIGXFSZ ignored, a write beyond the limit fails as on a full disk.
@@ -156,11 +156,11 @@ const PAGE: u64 = 4096;
 
 /// Renders to a small separate disk, after the shell command `spoil`. Returns the number of tries,
 /// or 0 if disks cannot be mounted.
-fn tiny_disk(bench: &Bench, name: &str, options: &str, spoil: &str, tries: u64) -> Result<u64> {
+fn tiny_disk(bench: &TortureTest, name: &str, options: &str, spoil: &str, tries: u64) -> Result<u64> {
     const SCRIPT: &str = "mount -t tmpfs -o size=64k tmpfs \"$0\" || exit 99; cd \"$0\"; echo old > \"$NAME\"
         eval \"$SPOIL\" 2> /dev/null; \"$@\" 2>&1; code=$?
         [ \"$(cat \"$NAME\")\" = old ] || exit 98; [ -z \"$(ls -A | grep -v filler | grep -vx \"$NAME\")\" ] || exit 97; exit $code";
-    let place = bench.place("disk")?;
+    let place = bench.path("disk")?;
     for i in 0..tries {
         let inner = bench.render(&format!("{options} --quiet --threads 1"), &place.join(name));
         let mut command = Command::new("unshare");

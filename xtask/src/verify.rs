@@ -1,6 +1,6 @@
 //! `cargo xtask verify`: runs `durer verify` on all scenes.
 
-use crate::build::durer;
+use crate::build::build_durer;
 use anyhow::{Context, Result};
 use std::path::PathBuf;
 use std::process::{Command, ExitCode};
@@ -26,7 +26,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     scenes.retain(|path| path.extension().is_some_and(|e| e == "txt"));
     scenes.retain(|path| only.is_none_or(|only| path.to_string_lossy().contains(only.as_str())));
     scenes.sort();
-    let (durer, mut failed) = (durer()?, 0);
+    let (durer, mut failed) = (build_durer()?, 0);
     for (scene, job) in scenes.iter().zip(JOBS.iter().cycle()) {
         let mut command = Command::new(&durer);
         command.arg("verify").arg(scene).args(["--trials", trials]).args(job.split_whitespace());

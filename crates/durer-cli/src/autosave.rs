@@ -1,10 +1,10 @@
 //! Checkpoints, part files and previews of long renders.
 
-use crate::failure::{Failure, bad};
-use crate::guard::{Guard, start_of};
+use crate::failure::{Failure, invalid_input};
+use crate::file_registry::{FileRegistry, start_of};
 use crate::options::RenderArgs;
-use crate::output::{encode, format, lengthened, wrote};
-use crate::terminal::complain;
+use crate::output::{encode, format, print_written, with_suffix};
+use crate::terminal::print_error_line;
 use crate::{progress, report};
 use durer::format::folder::FolderSource;
 use durer::image::{Destination, Display, Format, save_all};
@@ -22,10 +22,10 @@ const SAVED_PER_SECOND: u64 = 200_000_000;
 /// Saves unfinished work and previews while a long picture is rendered, and restores saved work.
 pub struct Autosave {
     /// File of the saved work.
-    place: Option<Destination>,
+    destination: Option<Destination>,
     /// True if the saved work is an output that the user asked for. Otherwise it is kept only until
     /// the picture is written.
-    wanted: bool,
+    is_output: bool,
     /// Earlier work to continue, if any.
     saved: Cell<Option<Box<PartialRender>>>,
     resume: bool,
@@ -34,40 +34,42 @@ pub struct Autosave {
     preview: Option<(Destination, &'static Format)>,
     display: Display,
     start: Instant,
-    short: Duration,
+    first_save_after: Duration,
     /// True if this run has saved work to the file.
-    is_ours: Cell<bool>,
+    saved_by_this_run: Cell<bool>,
     /// Duration of the last save.
     saving: Cell<Option<Duration>>,
     /// True after the first warning that saving failed.
-    complained: Cell<bool>,
+    warned: Cell<bool>,
 }
 
 impl Autosave {
     /// Checks before the render that its files can be written. Discards saved work only with
     /// `--restart`.
-    pub fn new(args: &RenderArgs, output: &Path, guard: &mut Guard) -> Result<Self, Failure> {
+    pub fn new(args: &RenderArgs, output: &Path, registry: &mut FileRegistry) -> Result<Self, Failure> {
         let work = &args.work;
         let (path, option) = match (&work.checkpoint, work.shard) {
             (_, Some(_)) => (output.to_path_buf(), "--output"),
             (Some(path), _) => (path.clone(), "--checkpoint"),
-            _ => (lengthened(output, ".part"), "--checkpoint (default PICTURE.part)"),
+            _ => (with_suffix(output, ".part"), "--checkpoint (default PICTURE.part)"),
         };
         let wanted = work.shard.is_some() || work.checkpoint.is_some();
         // A stream has no folder in which to put a checkpoint.
         let beside_stream = !wanted && (output.starts_with("/dev") || output.starts_with("/proc"));
-        let place = match work.no_checkpoint || beside_stream {
+        let destination = match work.no_checkpoint || beside_stream {
             true => None,
-            false => Some(guard.saves(option, &path)?),
+            false => Some(registry.register_saved_work(option, &path)?),
         };
-        if let Some(place) = place.as_ref().filter(|place| place.is_stream() && work.shard.is_none()) {
-            return Err(bad(format!(
+        if let Some(destination) =
+            destination.as_ref().filter(|destination| destination.is_stream() && work.shard.is_none())
+        {
+            return Err(invalid_input(format!(
                 "{option}: `{}` is not a regular file and cannot hold saved work",
-                place.path().display()
+                destination.path().display()
             )));
         }
-        let saved = match &place {
-            Some(place) if !place.is_stream() => what_was_saved(args, place.path())?,
+        let saved = match &destination {
+            Some(destination) if !destination.is_stream() => read_saved_work(args, destination.path())?,
             _ => None,
         };
         // With --watch, the picture grows while it is rendered.
@@ -76,11 +78,11 @@ impl Autosave {
         let preview = work.preview.as_ref().map(|path| {
             // Check the format first, because the name can be invalid.
             let format = format(path)?;
-            Ok::<_, Failure>((guard.writes("--preview", path)?, format))
+            Ok::<_, Failure>((registry.register_output("--preview", path)?, format))
         });
         Ok(Autosave {
-            place,
-            wanted,
+            destination,
+            is_output: wanted,
             saved: Cell::new(saved),
             resume: work.resume,
             restart: work.restart,
@@ -88,43 +90,44 @@ impl Autosave {
             preview: preview.transpose()?.or(growing),
             display: args.display.display()?,
             start: Instant::now(),
-            short: SHORT.min(work.checkpoint_every),
-            is_ours: Cell::new(false),
+            first_save_after: SHORT.min(work.checkpoint_every),
+            saved_by_this_run: Cell::new(false),
             saving: Cell::new(None),
-            complained: Cell::new(false),
+            warned: Cell::new(false),
         })
     }
 
     /// Returns the saved work if it belongs to this render, otherwise `fresh`.
     pub fn begin(&self, fresh: PartialRender) -> Result<PartialRender, Failure> {
-        let (Some(saved), Some(place)) = (self.saved.take(), &self.place) else { return Ok(fresh) };
-        let name = place.path().display();
-        let other = |error| bad(format!("cannot continue `{name}`: {error}; --restart discards it and starts again"));
+        let (Some(saved), Some(destination)) = (self.saved.take(), &self.destination) else { return Ok(fresh) };
+        let name = destination.path().display();
+        let other =
+            |error| invalid_input(format!("cannot continue `{name}`: {error}; --restart discards it and starts again"));
         fresh.same_work(&saved).map_err(other)?;
         if !self.quiet {
-            complain(&format!("note: continuing {name}: {} % done", percent(&saved)));
+            print_error_line(&format!("note: continuing {name}: {} % done", percent(&saved)));
         }
         Ok(*saved)
     }
 
     /// Saves the work and the preview if they are due.
     pub fn watch(&self, part: &PartialRender, moment: RenderEvent) {
-        let due = self.start.elapsed() >= self.short && self.is_worth_saving(part);
-        if let Some(place) = self.place.as_ref().filter(|place| due && !place.is_stream()) {
+        let due = self.start.elapsed() >= self.first_save_after && self.is_worth_saving(part);
+        if let Some(destination) = self.destination.as_ref().filter(|destination| due && !destination.is_stream()) {
             let before = Instant::now();
-            match save_part(place, part) {
-                Ok(()) => self.is_ours.set(true),
+            match save_part(destination, part) {
+                Ok(()) => self.saved_by_this_run.set(true),
                 // Do not abort: the picture can still be saved elsewhere.
-                Err(error) => self.complain(&error),
+                Err(error) => self.warn_once(&error),
             }
             self.saving.set(Some(before.elapsed()));
         }
-        if let (RenderEvent::PassDone, Some((place, format))) = (moment, &self.preview) {
+        if let (RenderEvent::PassDone, Some((destination, format))) = (moment, &self.preview) {
             let first = part.pictures().ok().and_then(|rendered| rendered.pictures.into_iter().next());
             let Some(layer) = first else { return };
             let bytes = encode(format, &[layer], self.display, &[]);
-            if let Ok(Err(error)) = bytes.map(|bytes| save_all(&[(place, bytes)])) {
-                self.complain(&error.to_string());
+            if let Ok(Err(error)) = bytes.map(|bytes| save_all(&[(destination, bytes)])) {
+                self.warn_once(&error.to_string());
             }
         }
     }
@@ -138,48 +141,48 @@ impl Autosave {
         left > saving
     }
 
-    fn complain(&self, error: &str) {
-        if !self.complained.replace(true) {
-            complain(&format!("warning: {error}; rendering continues"));
+    fn warn_once(&self, error: &str) {
+        if !self.warned.replace(true) {
+            print_error_line(&format!("warning: {error}; rendering continues"));
         }
     }
 
     /// Writes the finished part file of `--shard`.
     pub fn save(&self, part: &PartialRender) -> Result<(), Failure> {
-        let Some(place) = &self.place else { return Ok(()) };
+        let Some(destination) = &self.destination else { return Ok(()) };
         progress::saving();
-        save_part(place, part).map_err(|error| Failure::Other(anyhow::anyhow!(error)))?;
-        wrote(place, self.quiet);
+        save_part(destination, part).map_err(|error| Failure::Other(anyhow::anyhow!(error)))?;
+        print_written(destination, self.quiet);
         Ok(())
     }
 
     /// Removes saved work that is no longer needed, after the picture was written. Keeps unfinished
     /// work if the user asked for it.
     pub fn done(&self, part: &PartialRender, finished: bool) {
-        let Some(place) = &self.place else { return };
-        if !finished && (self.wanted || self.resume) {
-            if let Err(error) = save_part(place, part) {
-                self.complain(&error);
+        let Some(destination) = &self.destination else { return };
+        if !finished && (self.is_output || self.resume) {
+            if let Err(error) = save_part(destination, part) {
+                self.warn_once(&error);
             }
         } else if self.restart
-            || self.is_ours.get()
-            || read_part(place.path()).is_ok_and(|old| part.same_work(&old).is_ok())
+            || self.saved_by_this_run.get()
+            || read_part(destination.path()).is_ok_and(|old| part.same_work(&old).is_ok())
         {
             // Remove only work on this picture, or work that `--restart` discards. If that fails,
             // the file is useless but harmless.
-            let _ = std::fs::remove_file(place.path());
+            let _ = std::fs::remove_file(destination.path());
         }
     }
 
     /// Saves the work so far. Returns the names of the written files.
     pub fn after_interrupt(&self, part: &PartialRender) -> Vec<String> {
-        let due = |place: &&Destination| part.work().1 > 0 && !place.is_stream();
-        let Some(place) = self.place.as_ref().filter(due) else { return Vec::new() };
+        let due = |destination: &&Destination| part.work().1 > 0 && !destination.is_stream();
+        let Some(destination) = self.destination.as_ref().filter(due) else { return Vec::new() };
         progress::saving();
-        match save_part(place, part) {
-            Ok(()) => vec![format!("{} (--resume continues it)", place.path().display())],
+        match save_part(destination, part) {
+            Ok(()) => vec![format!("{} (--resume continues it)", destination.path().display())],
             Err(error) => {
-                self.complain(&error);
+                self.warn_once(&error);
                 Vec::new()
             }
         }
@@ -188,19 +191,19 @@ impl Autosave {
     /// Saves the work after a panic and returns a failure that says how to reproduce the panic.
     pub fn after_panic(&self, part: &PartialRender, panicked: &Panicked, command: &str) -> Failure {
         let saved = self.after_interrupt(part);
-        let kept = if saved.is_empty() { String::new() } else { format!("\nthe work so far is in {}", saved.join("")) };
-        Failure::Other(anyhow::anyhow!("{panicked}\nto reproduce it: {command}{kept}"))
+        let note = if saved.is_empty() { String::new() } else { format!("\nthe work so far is in {}", saved.join("")) };
+        Failure::Other(anyhow::anyhow!("{panicked}\nto reproduce it: {command}{note}"))
     }
 }
 
 /// Reads earlier work to continue. Fails if the file is not a part file, or if it holds unfinished
 /// work and neither `--resume` nor `--restart` is given.
-fn what_was_saved(args: &RenderArgs, path: &Path) -> Result<Option<Box<PartialRender>>, Failure> {
+fn read_saved_work(args: &RenderArgs, path: &Path) -> Result<Option<Box<PartialRender>>, Failure> {
     let name = path.display();
     if !path.exists() {
         return Ok(None);
     }
-    check_is_part(path).map_err(bad)?;
+    check_is_part(path).map_err(invalid_input)?;
     let (work, empty) = (&args.work, path.metadata().is_ok_and(|file| file.len() == 0));
     if work.restart || empty && !work.resume {
         return Ok(None);
@@ -209,8 +212,10 @@ fn what_was_saved(args: &RenderArgs, path: &Path) -> Result<Option<Box<PartialRe
     let part = match (read_part_of(path), work.resume) {
         (Ok(Ok(part)), true) => return Ok(Some(Box::new(part))),
         (Ok(Ok(part)), false) => part,
-        (Ok(Err(error)), true) => return Err(bad(format!("`{name}` cannot be used: {error}; {restart}"))),
-        (Ok(Err(error)), false) => return Err(bad(format!("`{name}` holds earlier work, but {error}; {restart}"))),
+        (Ok(Err(error)), true) => return Err(invalid_input(format!("`{name}` cannot be used: {error}; {restart}"))),
+        (Ok(Err(error)), false) => {
+            return Err(invalid_input(format!("`{name}` holds earlier work, but {error}; {restart}")));
+        }
         (Err(failure), _) => return Err(failure),
     };
     // A finished shard is an output, like a picture. Other part files are removed when the picture
@@ -219,7 +224,7 @@ fn what_was_saved(args: &RenderArgs, path: &Path) -> Result<Option<Box<PartialRe
         return Ok(None);
     }
     let percent = percent(&part);
-    Err(bad(format!("`{name}` holds unfinished work, {percent} % done: --resume continues it, {restart}")))
+    Err(invalid_input(format!("`{name}` holds unfinished work, {percent} % done: --resume continues it, {restart}")))
 }
 
 fn percent(part: &PartialRender) -> u64 {
@@ -243,16 +248,16 @@ fn check_is_part(path: &Path) -> Result<(), String> {
 }
 
 /// Writes a part file. Replaces only part files.
-fn save_part(place: &Destination, part: &PartialRender) -> Result<(), String> {
-    if !place.is_stream() {
-        check_is_part(place.path())?;
+fn save_part(destination: &Destination, part: &PartialRender) -> Result<(), String> {
+    if !destination.is_stream() {
+        check_is_part(destination.path())?;
     }
-    save_all(&[(place, part)]).map_err(|error| error.to_string())
+    save_all(&[(destination, part)]).map_err(|error| error.to_string())
 }
 
 /// Reads a part file.
 pub fn read_part(path: &Path) -> Result<PartialRender, Failure> {
-    read_part_of(path)?.map_err(|error| bad(format!("`{}` cannot be used: {error}", path.display())))
+    read_part_of(path)?.map_err(|error| invalid_input(format!("`{}` cannot be used: {error}", path.display())))
 }
 
 fn read_part_of(path: &Path) -> Result<Result<PartialRender, PartError>, Failure> {

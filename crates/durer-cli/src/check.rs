@@ -3,14 +3,14 @@
 mod args;
 mod change;
 mod checked_scene;
+mod fix;
 mod json;
-mod mend;
 mod render_review;
 
-use crate::failure::{Failure, bad};
-use crate::guard::Guard;
+use crate::failure::{Failure, invalid_input};
+use crate::file_registry::FileRegistry;
 use crate::report::counted;
-use crate::terminal::say;
+use crate::terminal::print_line;
 use crate::{output, report};
 use codespan_reporting::term::termcolor::StandardStream;
 use durer::check::{CHECKS, Finding};
@@ -20,18 +20,18 @@ use std::path::Path;
 
 pub use args::CheckArgs;
 use change::Change;
-use checked_scene::{CheckedScene, look};
-pub use render_review::{after_course, after_render, looks};
+use checked_scene::{CheckedScene, check_text};
+pub use render_review::{after_course, after_render, scan};
 
 /// Runs `durer check`. Fails with exit code 1 if there are warnings or errors.
 pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     if args.codes {
         let width = CHECKS.iter().map(|check| check.code.len()).max().unwrap_or_default();
-        CHECKS.iter().for_each(|check| say(&format!("{:width$}  {}", check.code, check.about)));
+        CHECKS.iter().for_each(|check| print_line(&format!("{:width$}  {}", check.code, check.about)));
         return Ok(());
     }
     if args.output.is_some() && args.scenes.len() > 1 {
-        return Err(bad("--output takes one scene; without it, each scene is fixed in place"));
+        return Err(invalid_input("--output takes one scene; without it, each scene is fixed in place"));
     }
     let mut all = Vec::with_capacity(args.scenes.len());
     let mut unread = false;
@@ -47,39 +47,39 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
         }
     }
     if args.json {
-        say(&serde_json::to_string_pretty(&json::document(&all))?);
+        print_line(&serde_json::to_string_pretty(&json::document(&all))?);
     }
     if unread || all.iter().any(|(checked, _)| !checked.readable) {
         return Err(Failure::Input(None));
     }
     let serious = all.iter().any(|(checked, _)| checked.count(Finding::is_serious) > 0);
-    if serious { Err(Failure::Found) } else { Ok(()) }
+    if serious { Err(Failure::FindingsReported) } else { Ok(()) }
 }
 
 /// Checks one scene, applies fixes with `--fix`, and prints the findings.
 fn one(path: &Path, args: &CheckArgs) -> Result<(CheckedScene, Vec<Change>), Failure> {
     let bytes = FolderSource::new(".").allow_outside().read_path(path, &path.display().to_string());
     let bytes = bytes.map_err(report::unreadable)?;
-    let mut checked = look(path, bytes.clone(), args)?;
+    let mut checked = check_text(path, bytes.clone(), args)?;
     let mut changes = Vec::new();
     if !args.fix {
-        mend::withdraw(&mut checked, &bytes, args)?;
+        fix::remove_useless_fixes(&mut checked, &bytes, args)?;
     }
     if args.fix {
-        let mut guard = Guard::default();
+        let mut registry = FileRegistry::default();
         let place = match &args.output {
             Some(other) => {
-                guard.reads(path)?;
-                guard.writes("--output", other)?
+                registry.register_input(path)?;
+                registry.register_output("--output", other)?
             }
             // Without --output, the scene itself is replaced.
-            None => guard.writes("--fix", path)?,
+            None => registry.register_output("--fix", path)?,
         };
-        checked.named.iter().try_for_each(|named| guard.reads(named))?;
-        let (text, made) = mend::mend(&mut checked, bytes.clone(), args)?;
-        changes = made;
+        checked.referenced_files.iter().try_for_each(|named| registry.register_input(named))?;
+        let (text, fixes) = fix::apply_fixes(&mut checked, bytes.clone(), args)?;
+        changes = fixes;
         if !args.json {
-            changes.iter().for_each(|change| say(&change.line()));
+            changes.iter().for_each(|change| print_line(&change.line()));
         }
         if args.output.is_some() || text != bytes {
             output::save(&[(&place, text.to_vec())], args.json)?;
@@ -105,10 +105,10 @@ fn does(edits: &[Edit]) -> String {
 }
 
 /// Prints findings and their counts.
-fn print(checked: &CheckedScene, mended: bool) {
+fn print(checked: &CheckedScene, fixed: bool) {
     let offer = |finding: &Finding| {
         let mut diagnostic = finding.diagnostic.clone();
-        if !diagnostic.fix.is_empty() && !mended {
+        if !diagnostic.fix.is_empty() && !fixed {
             let does = does(&diagnostic.fix);
             let help = diagnostic.help.get_or_insert_default();
             *help += &if help.is_empty() { format!("`--fix` {does}") } else { format!(" (`--fix` {does})") };
@@ -127,11 +127,11 @@ fn print(checked: &CheckedScene, mended: bool) {
         (count > 0).then(|| counted(count, word))
     });
     let counts = counts.collect::<Vec<_>>().join(", ");
-    let found = match (counts.is_empty(), mended) {
+    let found = match (counts.is_empty(), fixed) {
         (true, false) => "no findings".to_string(),
         (true, true) => "no findings left".to_string(),
         (false, true) => format!("{counts} left"),
         (false, false) => counts,
     };
-    say(&format!("{}: {found}", checked.path.display()));
+    print_line(&format!("{}: {found}", checked.path.display()));
 }

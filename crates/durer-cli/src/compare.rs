@@ -9,12 +9,12 @@ mod pixel_hit;
 mod stage;
 mod text;
 
-use crate::failure::{Failure, bad};
-use crate::guard::Guard;
+use crate::failure::{Failure, invalid_input};
+use crate::file_registry::FileRegistry;
 use crate::output::{encode, format, save};
 use crate::progress;
 use crate::report::counted;
-use crate::terminal::say;
+use crate::terminal::print_line;
 pub use args::CompareArgs;
 use compared_pair::{ComparedPair, Outcome, name};
 use durer::diag::{format_bytes_down, format_bytes_up};
@@ -24,7 +24,7 @@ use durer::image::{Destination, Encoded, Transfer};
 use page::heat;
 use pairs::Pair;
 use pixel_hit::pixel_hits;
-use stage::{Stage, stage};
+use stage::{ReferenceScene, stage};
 use std::path::{Path, PathBuf};
 
 /// Runs `durer compare`. Failures have the exit code of invalid input, because 1 means that
@@ -37,81 +37,92 @@ pub fn run(args: &CompareArgs) -> Result<(), Failure> {
 }
 
 fn work(args: &CompareArgs) -> Result<(), Failure> {
-    let found = pairs::find(&args.reference, &args.picture)?;
+    let comparison = pairs::find(&args.reference, &args.picture)?;
     let heat_format = args.heat.as_deref().map(format).transpose()?;
-    if args.heat.is_some() && found.folders {
-        return Err(bad("`--heat` compares two pictures; for folders, use `--report`, which includes heat maps"));
+    if args.heat.is_some() && comparison.folders {
+        return Err(invalid_input(
+            "`--heat` compares two pictures; for folders, use `--report`, which includes heat maps",
+        ));
     }
-    let mut guard = Guard::default();
-    for pair in &found.pairs {
-        guard.reads(&pair.reference)?;
-        pair.picture.iter().try_for_each(|path| guard.reads(path))?;
+    let mut registry = FileRegistry::default();
+    for pair in &comparison.pairs {
+        registry.register_input(&pair.reference)?;
+        pair.picture.iter().try_for_each(|path| registry.register_input(path))?;
     }
-    let report = args.report.as_ref().map(|path| guard.writes("--report", path)).transpose()?;
-    let heat_file = args.heat.as_ref().map(|path| guard.writes("--heat", path)).transpose()?;
+    let report = args.report.as_ref().map(|path| registry.register_output("--report", path)).transpose()?;
+    let heat_file = args.heat.as_ref().map(|path| registry.register_output("--heat", path)).transpose()?;
     let memory = args.reading.memory.bytes().unwrap_or(u64::MAX);
     let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
     let options = Options { tolerance: args.tolerance, allowed_share: args.allow / 100.0, transfer };
 
-    let (names, folders, extra) = (found.pairs.iter().map(name).collect::<Vec<_>>(), found.folders, found.extra);
+    let (names, folders, extra) =
+        (comparison.pairs.iter().map(name).collect::<Vec<_>>(), comparison.folders, comparison.extra);
     let mut all: Vec<ComparedPair> =
-        progress::each(&names, found.pairs, false, |pair| one(pair, &options, memory, args.report.is_some()));
+        progress::each(&names, comparison.pairs, false, |pair| one(pair, &options, memory, args.report.is_some()));
     if let ([ComparedPair { outcome: Outcome::Failed(reason), .. }], false) = (&all[..], folders) {
-        return Err(bad(reason));
+        return Err(invalid_input(reason));
     }
-    explain(args, &mut all, memory, &mut guard)?;
+    explain(args, &mut all, memory, &mut registry)?;
 
     if args.json {
-        say(&serde_json::to_string_pretty(&text::json(&all, &extra, args))?);
+        print_line(&serde_json::to_string_pretty(&text::json(&all, &extra, args))?);
     } else if args.csv {
-        say(text::csv(&all).trim_end());
+        print_line(text::csv(&all).trim_end());
     } else if folders {
         text::table(&all, &extra);
     } else {
         text::single(&all[0], &options);
     }
     let mut files: Vec<(&Destination, Vec<u8>)> = Vec::new();
-    if let (Some(place), Some(format), Outcome::Compared(found)) = (&heat_file, heat_format, &all[0].outcome) {
-        files.push((place, encode(format, &[heat(found)], Transfer::Linear, &[])?));
+    if let (Some(destination), Some(format), Outcome::Compared(comparison)) = (&heat_file, heat_format, &all[0].outcome)
+    {
+        files.push((destination, encode(format, &[heat(comparison)], Transfer::Linear, &[])?));
     }
-    if let Some(place) = &report {
-        files.push((place, page::page(&all, &extra, args)?.into_bytes()));
+    if let Some(destination) = &report {
+        files.push((destination, page::page(&all, &extra, args)?.into_bytes()));
     }
     if !files.is_empty() {
         save(&files, args.json)?;
     }
     let failed = all.iter().filter(|c| matches!(c.outcome, Outcome::Failed(_))).count();
     let bad_verdict = |c: &ComparedPair| match &c.outcome {
-        Outcome::Compared(found) => found.verdict == Verdict::Different,
+        Outcome::Compared(comparison) => comparison.verdict == Verdict::Different,
         _ => true,
     };
     match failed {
         0 if all.iter().any(bad_verdict) => Err(Failure::Different),
         0 => Ok(()),
-        count => Err(bad(format!("{count} of {} could not be compared", counted(all.len(), "picture")))),
+        count => Err(invalid_input(format!("{count} of {} could not be compared", counted(all.len(), "picture")))),
     }
 }
 
 /// Traces the scene where pictures differ, and finds the mistakes that explain the difference.
-fn explain(args: &CompareArgs, all: &mut [ComparedPair], memory: u64, guard: &mut Guard) -> Result<(), Failure> {
+fn explain(
+    args: &CompareArgs,
+    all: &mut [ComparedPair],
+    memory: u64,
+    registry: &mut FileRegistry,
+) -> Result<(), Failure> {
     if args.scene.is_none() {
         return Ok(());
     }
-    let mut stages: Vec<(PathBuf, Option<Stage>)> = Vec::new();
+    let mut stages: Vec<(PathBuf, Option<ReferenceScene>)> = Vec::new();
     for compared in all {
-        let (Outcome::Compared(found), Some(picture)) = (&compared.outcome, &compared.pair.picture) else { continue };
-        let [reference, test] = read_both([&compared.pair.reference, picture], memory).map_err(bad)?;
+        let (Outcome::Compared(comparison), Some(picture)) = (&compared.outcome, &compared.pair.picture) else {
+            continue;
+        };
+        let [reference, test] = read_both([&compared.pair.reference, picture], memory).map_err(invalid_input)?;
         // Open the scene once per reference, because all pictures of a class share it.
         if stages.iter().all(|(path, _)| *path != compared.pair.reference) {
             stages.truncate(16);
-            stages.insert(0, (compared.pair.reference.clone(), stage(args, &compared.pair, &reference, guard)?));
+            stages.insert(0, (compared.pair.reference.clone(), stage(args, &compared.pair, &reference, registry)?));
         }
-        let known = stages.iter().find(|(path, _)| *path == compared.pair.reference);
-        let Some((_, Some(stage))) = known else { continue };
-        if found.verdict == Verdict::Different {
+        let index = stages.iter().find(|(path, _)| *path == compared.pair.reference);
+        let Some((_, Some(stage))) = index else { continue };
+        if comparison.verdict == Verdict::Different {
             compared.note = stage.note.clone();
-            compared.hits = pixel_hits(stage, found)?;
-            compared.diagnosis = Some(mistakes::named(stage, &reference, &test));
+            compared.hits = pixel_hits(stage, comparison)?;
+            compared.diagnosis = Some(mistakes::find_mistakes(stage, &reference, &test));
         }
     }
     Ok(())
@@ -123,13 +134,13 @@ fn one(pair: Pair, options: &Options, memory: u64, page: bool) -> ComparedPair {
         return ComparedPair::new(pair, Outcome::Missing, None);
     };
     let compared = read_both([&pair.reference, path], memory).and_then(|[reference, picture]| {
-        let found = compare(&reference, &picture, options)
+        let comparison = compare(&reference, &picture, options)
             .map_err(|error| format!("`{}` and `{}`: {error}", pair.reference.display(), path.display()))?;
-        let shown = page.then(|| page::shown(&reference, &picture, &found)).transpose()?;
-        Ok((found, shown))
+        let pictures = page.then(|| page::pair_pictures(&reference, &picture, &comparison)).transpose()?;
+        Ok((comparison, pictures))
     });
     match compared {
-        Ok((found, shown)) => ComparedPair::new(pair, Outcome::Compared(Box::new(found)), shown),
+        Ok((comparison, pictures)) => ComparedPair::new(pair, Outcome::Compared(Box::new(comparison)), pictures),
         Err(reason) => ComparedPair::new(pair, Outcome::Failed(reason), None),
     }
 }

@@ -1,7 +1,7 @@
 //! `durer convert`: writes scenes and meshes in other formats.
 
-use crate::failure::{Failure, bad};
-use crate::guard::Guard;
+use crate::failure::{Failure, invalid_input};
+use crate::file_registry::FileRegistry;
 use crate::open::load_options;
 use crate::options::SceneArgs;
 use crate::report::counted;
@@ -11,7 +11,7 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use durer::diag::{Diagnostic, Diagnostics, Files};
 use durer::dialect::Dialect;
-use durer::format::asset_export::{AssetFile, plain};
+use durer::format::asset_export::{AssetFile, sanitize_name};
 use durer::format::course::write;
 use durer::format::{json, mesh_format_for, scene_format_for};
 use durer::load;
@@ -38,9 +38,9 @@ pub struct ConvertArgs {
 
 /// Runs `durer convert`.
 pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
-    let mut guard = Guard::default();
-    guard.reads(&args.scene)?;
-    let place = guard.writes("--output", &args.output)?;
+    let mut registry = FileRegistry::default();
+    registry.register_input(&args.scene)?;
+    let destination = registry.register_output("--output", &args.output)?;
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let mut options = load_options(&args.reading);
     let name = args.output.to_string_lossy();
@@ -54,7 +54,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let has_words = args.to.is_none() && (mesh_format_for(&name).is_some() || scene_format_for(&name).is_some());
     if !["", "txt", "json"].contains(&&*ending) && !has_words || has_words && is_only_read(&name) {
         let message = format!("`.{ending}` cannot be written: a scene is written as .txt or .json");
-        return Err(bad(format!("{message}, a model as .gltf or .glb, its meshes as .ply, .obj or .stl")));
+        return Err(invalid_input(format!("{message}, a model as .gltf or .glb, its meshes as .ply, .obj or .stl")));
     }
     let as_scene = scene_format_for(&name).filter(|format| format.write.is_some() && args.to.is_none());
     // Write only the model: the renderer adds a missing camera and lights later.
@@ -65,24 +65,24 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     report::print(&files, &diagnostics, false);
     let loaded = loaded.ok_or(Failure::Input(None))?;
     // Do not overwrite the files that the converted scene refers to.
-    loaded.named_files().iter().try_for_each(|path| guard.reads(path))?;
+    loaded.named_files().iter().try_for_each(|path| registry.register_input(path))?;
     if as_scene.is_some() {
-        let mut found = Diagnostics::default();
-        let bytes = loaded.write(&name, &mut found);
-        report::print(&files, &found, false);
-        return output::save(&[(&place, bytes.unwrap_or_default())], false);
+        let mut warnings = Diagnostics::default();
+        let bytes = loaded.write(&name, &mut warnings);
+        report::print(&files, &warnings, false);
+        return output::save(&[(&destination, bytes.unwrap_or_default())], false);
     }
     if let Some(format) = as_mesh {
-        let mut found = Diagnostics::default();
-        let world = loaded.compile(&options, &mut files, &mut found);
-        report::print(&files, &found, true);
+        let mut warnings = Diagnostics::default();
+        let world = loaded.compile(&options, &mut files, &mut warnings);
+        report::print(&files, &warnings, true);
         let (mesh, left_out) = world.ok_or(Failure::Input(None))?.merged_mesh();
         if left_out > 0 {
             let objects = counted(left_out, "object");
             let message = format!("left out {objects} without triangles: {} can store only meshes", format.name);
             report::note(&Diagnostic::warning(message));
         }
-        return output::save(&[(&place, (format.write)(&mesh))], false);
+        return output::save(&[(&destination, (format.write)(&mesh))], false);
     }
     let dialect = args.to.as_deref().and_then(Dialect::from_name).unwrap_or(loaded.dialect);
     let text = |scene: &Scene| match as_json {
@@ -90,13 +90,13 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         false => write(scene, dialect).into_bytes(),
     };
     if !loaded.scene.assets.has_in_memory() {
-        return output::save(&[(&place, text(&loaded.scene))], false);
+        return output::save(&[(&destination, text(&loaded.scene))], false);
     }
     // A text scene refers to files, so write those of a model to a folder named after the output.
     let stem = args.output.file_stem().unwrap_or_default().to_string_lossy();
-    let folder = plain(&stem);
+    let folder = sanitize_name(&stem);
     if folder == name {
-        return Err(bad(
+        return Err(invalid_input(
             "the output needs an extension, for example `scene.txt`: the name without the extension is the folder \
              for the model's files",
         ));
@@ -104,9 +104,10 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let (scene, files) = loaded.export_assets(&folder);
     let base = args.output.parent().unwrap_or(Path::new(""));
     std::fs::create_dir_all(base.join(&folder)).with_context(|| format!("cannot create the folder `{folder}`"))?;
-    let writes = |(path, bytes): AssetFile| Ok((guard.writes("a file of the model", &base.join(path))?, bytes));
+    let writes =
+        |(path, bytes): AssetFile| Ok((registry.register_output("a file of the model", &base.join(path))?, bytes));
     let mut all = files.into_iter().map(writes).collect::<Result<Vec<_>, Failure>>()?;
-    all.push((place, text(&scene)));
+    all.push((destination, text(&scene)));
     if let Some(options) = requested_picture(&loaded.scene.render_defaults) {
         let message = "the file also sets the size and quality of its picture, which a scene file cannot store";
         report::note(&Diagnostic::note(message).help(format!("render it with `{options}`")));

@@ -6,11 +6,11 @@ mod year;
 pub use options::{Program, program};
 
 use crate::diagrams::{self, filter_layer, samples_layer};
-use crate::failure::{Failure, bad, failed};
-use crate::guard::Guard;
+use crate::failure::{Failure, from_render_error, invalid_input};
+use crate::file_registry::FileRegistry;
 use crate::open::CompiledInput;
 use crate::report::rejected;
-use crate::terminal::say;
+use crate::terminal::print_line;
 use crate::values::weight;
 use crate::{check, output, progress};
 use clap::Args;
@@ -58,17 +58,17 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     let quiet = parsed.has("--quiet");
     let options = load_options(&parsed, program_name)?;
     parsed.check_unknown(options.dialect, quiet)?;
-    let scene = parsed.text("-input").ok_or_else(|| bad("-input is missing: give the scene file"))?;
+    let scene = parsed.text("-input").ok_or_else(|| invalid_input("-input is missing: give the scene file"))?;
     // Report invalid file names before the render.
-    let mut guard = Guard::default();
-    let outputs = Outputs::of(&parsed, options.dialect, &mut guard)?;
-    let compiled = year::open(Path::new(scene), &options, &parsed, &mut guard)?;
+    let mut registry = FileRegistry::default();
+    let outputs = Outputs::of(&parsed, options.dialect, &mut registry)?;
+    let compiled = year::open(Path::new(scene), &options, &parsed, &mut registry)?;
     let job = job(&parsed, &compiled)?;
     let control = Arc::new(Control { threads: threads(&parsed)?, memory: MEMORY.bytes(), ..Control::default() });
     let world = &compiled.world;
     let zooms = (parsed.zoom("-render_samples")?, parsed.zoom("-render_filter")?);
     for zoom in [zooms.0, zooms.1].into_iter().flatten() {
-        diagrams::check(&job, zoom).map_err(failed)?;
+        diagrams::check(&job, zoom).map_err(from_render_error)?;
     }
     // The picture of the grid is written instead of the colour picture.
     let grid_wanted = job.color && parsed.has("-visualize_grid");
@@ -80,10 +80,10 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
         let filter = zooms.1.map(|zoom| filter_layer(&job, zoom)).transpose()?;
         Ok((rendered, grid.map(|image| Layer::color("color", image)), [samples, filter]))
     })
-    .map_err(failed)?;
+    .map_err(from_render_error)?;
     // If the interrupt arrives after the work is done, it still ends the program.
     if control.cancel.load(Relaxed) {
-        return Err(failed(RenderError::Cancelled));
+        return Err(from_render_error(RenderError::Cancelled));
     }
     rejected(&rendered.statistics, Some(world), quiet);
     if parsed.has("-stats") {
@@ -95,8 +95,8 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     }
     let layers = grid.iter().chain(&rendered.pictures).chain(diagrams.iter().flatten());
     let mut files = Vec::new();
-    for (layer, (place, format)) in layers.zip(&outputs.0) {
-        files.push((place, output::encode(format, std::slice::from_ref(layer), Transfer::Course, &[])?));
+    for (layer, (destination, format)) in layers.zip(&outputs.0) {
+        files.push((destination, output::encode(format, std::slice::from_ref(layer), Transfer::Course, &[])?));
     }
     output::save(&files, quiet)?;
     if !quiet {
@@ -108,20 +108,23 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
 fn load_options(arguments: &Arguments, program_name: Option<&'static Program>) -> Result<LoadOptions, Failure> {
     let named = match arguments.text("--program") {
         Some(name) => Some(program(name).ok_or_else(|| {
-            bad(format!("unknown program {name}; known programs: {}", PROGRAMS.map(|p| p.name).join(", ")))
+            invalid_input(format!("unknown program {name}; known programs: {}", PROGRAMS.map(|p| p.name).join(", ")))
         })?),
         None => program_name,
     };
     let dialect = match arguments.text("--dialect") {
         Some(name) => Some(Dialect::from_name(name).ok_or_else(|| {
-            bad(format!("unknown dialect {name}; known dialects: {}", Dialect::ALL.map(Dialect::name).join(", ")))
+            invalid_input(format!(
+                "unknown dialect {name}; known dialects: {}",
+                Dialect::ALL.map(Dialect::name).join(", ")
+            ))
         })?),
         None => named.map(|program| program.dialect),
     };
     let mut compat: Vec<(Quirk, bool)> = named.iter().flat_map(|p| p.compat).map(|&compat| (compat, true)).collect();
     for word in arguments.text("--compat").into_iter().flat_map(|names| names.split(',')) {
         let (name, on) = word.strip_prefix("no-").map_or((word, true), |name| (name, false));
-        let known = Quirk::from_name(name).ok_or_else(|| bad(format!("--compat: unknown quirk {name}")))?;
+        let known = Quirk::from_name(name).ok_or_else(|| invalid_input(format!("--compat: unknown quirk {name}")))?;
         compat.push((known, on));
     }
     let cells = arguments.numbers::<u32>("-grid", 3)?.and_then(|cells| <[u32; 3]>::try_from(cells).ok());
@@ -147,7 +150,7 @@ fn load_options(arguments: &Arguments, program_name: Option<&'static Program>) -
 struct Outputs(Vec<(Destination, &'static Format)>);
 
 impl Outputs {
-    fn of(arguments: &Arguments, requested: Option<Dialect>, guard: &mut Guard) -> Result<Self, Failure> {
+    fn of(arguments: &Arguments, requested: Option<Dialect>, registry: &mut FileRegistry) -> Result<Self, Failure> {
         let names = [
             ("-output", arguments.text("-output")),
             ("-depth", arguments.values("-depth").map(|values| values[2].as_str())),
@@ -158,10 +161,12 @@ impl Outputs {
         let named = names.into_iter().filter_map(|(option, name)| Some((option, name?)));
         let format = |(option, name)| Ok((option, name, course_format(name, requested)?));
         let named: Vec<_> = named.map(format).collect::<Result<_, Failure>>()?;
-        let place = |(option, name, format)| Ok((guard.writes(option, Path::new(name))?, format));
-        let files: Vec<_> = named.into_iter().map(place).collect::<Result<_, Failure>>()?;
+        let destination = |(option, name, format)| Ok((registry.register_output(option, Path::new(name))?, format));
+        let files: Vec<_> = named.into_iter().map(destination).collect::<Result<_, Failure>>()?;
         if files.is_empty() {
-            return Err(bad("nothing to write: pass -output, -depth, -normals, -render_samples or -render_filter"));
+            return Err(invalid_input(
+                "nothing to write: pass -output, -depth, -normals, -render_samples or -render_filter",
+            ));
         }
         Ok(Outputs(files))
     }
@@ -172,7 +177,7 @@ impl Outputs {
 fn course_format(name: &str, requested: Option<Dialect>) -> Result<&'static Format, Failure> {
     let nameless = Path::new(name).extension().is_none();
     let is_tga = nameless || requested == Some(Dialect::F12a4) && !name.ends_with(".bmp");
-    format_for(if is_tga { "picture.tga" } else { name }).map_err(|error| bad(error.to_string()))
+    format_for(if is_tga { "picture.tga" } else { name }).map_err(|error| invalid_input(error.to_string()))
 }
 
 fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> {
@@ -183,7 +188,7 @@ fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> 
     let natural = || Raster::natural_size(compiled.world.camera().proportions(), rules.size);
     let (width, height) = size.map_or_else(natural, |size| (size[0], size[1]));
     if width == 0 || height == 0 {
-        return Err(bad("-size: a picture needs at least one pixel"));
+        return Err(invalid_input("-size: a picture needs at least one pixel"));
     }
     let odd = odd_size(arguments, compiled);
     let (width, height) = match odd {
@@ -191,22 +196,28 @@ fn job(arguments: &Arguments, compiled: &CompiledInput) -> Result<Job, Failure> 
         _ => (width, height),
     };
     if odd == Some(OddSize::Third) && (width < 3 || height < 3) {
-        return Err(bad("-filter without -jitter averages three by three pixels, but the picture is smaller"));
+        return Err(invalid_input(
+            "-filter without -jitter averages three by three pixels, but the picture is smaller",
+        ));
     }
     let depth = arguments.numbers::<f32>("-depth", 2)?;
     let depth_range = depth.map(|range| (range[0], range[1]));
     let clamped = compiled.world.display_rules().clamped_depths;
     if depth_range.is_some_and(|(min, max)| !(min.is_finite() && max.is_finite() && (min != max || clamped))) {
-        return Err(bad("-depth needs two different numbers"));
+        return Err(invalid_input("-depth needs two different numbers"));
     }
     // For an empty range the course's program divides zero by zero and writes black, as if all
     // depths were beyond the range.
     let depth_range = depth_range.map(|range| if range.0 == range.1 { (-2.0, -1.0) } else { range });
     let bounces = arguments.number("-bounces")?.unwrap_or(rules.bounces);
     if bounces > RenderSettings::MAX_BOUNCES {
-        return Err(bad(format!("-bounces: must be at most {}", RenderSettings::MAX_BOUNCES)));
+        return Err(invalid_input(format!("-bounces: must be at most {}", RenderSettings::MAX_BOUNCES)));
     }
-    let weight = arguments.text("-weight").map(weight).transpose().map_err(|error| bad(format!("-weight: {error}")))?;
+    let weight = arguments
+        .text("-weight")
+        .map(weight)
+        .transpose()
+        .map_err(|error| invalid_input(format!("-weight: {error}")))?;
     let wanted = [("-depth", "depth"), ("-normals", "normals")];
     Ok(Job {
         width,
@@ -255,7 +266,8 @@ fn odd_size(arguments: &Arguments, compiled: &CompiledInput) -> Option<OddSize> 
 fn third(layer: &mut Layer) -> Result<(), Failure> {
     let &Image { width, height, ref pixels } = &*layer.image;
     let pixels = average_3x3(pixels, width, height);
-    layer.image = Arc::new(Image::from_pixels(width / 3, height / 3, pixels).map_err(|error| bad(error.to_string()))?);
+    layer.image =
+        Arc::new(Image::from_pixels(width / 3, height / 3, pixels).map_err(|error| invalid_input(error.to_string()))?);
     layer.coverage = None;
     Ok(())
 }
@@ -276,7 +288,7 @@ fn sampling(arguments: &Arguments, dialect: Dialect) -> Result<Sampling, Failure
     let radius = |name: &str| -> Result<Option<f32>, Failure> {
         let radius = arguments.number::<f32>(name)?;
         if radius.is_some_and(|r| !(0.0..=64.0).contains(&r)) {
-            return Err(bad(format!("{name}: must be from 0 to 64")));
+            return Err(invalid_input(format!("{name}: must be from 0 to 64")));
         }
         Ok(radius)
     };
@@ -289,7 +301,7 @@ fn sampling(arguments: &Arguments, dialect: Dialect) -> Result<Sampling, Failure
     };
     let samples = sampler.map(|(name, _)| arguments.number::<u32>(name)).transpose()?.flatten();
     if samples.is_some_and(|n| n == 0 || n > 1 << 16) {
-        return Err(bad("the number of samples must be from 1 to 65536"));
+        return Err(invalid_input("the number of samples must be from 1 to 65536"));
     }
     Ok(match (sampler, filter) {
         (None, None) => Sampling::Center,
@@ -304,7 +316,7 @@ fn sampling(arguments: &Arguments, dialect: Dialect) -> Result<Sampling, Failure
 fn threads(arguments: &Arguments) -> Result<Option<usize>, Failure> {
     let threads = arguments.number("--threads")?;
     if threads.is_some_and(|n| !(1..=1024).contains(&n)) {
-        return Err(bad("--threads must be from 1 to 1024"));
+        return Err(invalid_input("--threads must be from 1 to 1024"));
     }
     Ok(threads)
 }
@@ -312,5 +324,5 @@ fn threads(arguments: &Arguments) -> Result<Option<usize>, Failure> {
 /// Prints the output of the option `-stats`.
 fn stats(compiled: &CompiledInput, control: &Control) {
     let rays = control.rays.load(Relaxed);
-    say(&format!("objects {}, rays {rays}", compiled.world.objects().len()));
+    print_line(&format!("objects {}, rays {rays}", compiled.world.objects().len()));
 }

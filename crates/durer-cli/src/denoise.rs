@@ -2,7 +2,7 @@
 
 mod oidn;
 
-use crate::failure::{Failure, bad};
+use crate::failure::{Failure, invalid_input};
 use crate::report;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use durer::diag::Diagnostic;
@@ -40,10 +40,12 @@ impl Denoiser {
         }
         match oidn::denoise(&noisy, threads) {
             Ok(clean) => Ok(noisy.layer(clean)),
-            Err(why) if self == Denoiser::Oidn => Err(bad(format!("{why}; {HOW}"))),
+            Err(why) if self == Denoiser::Oidn => Err(invalid_input(format!("{why}; {INSTALL_HINT}"))),
             Err(why) => {
                 if !quiet {
-                    report::note(&Diagnostic::note(format!("using the built-in denoiser because {why}; {HOW}")));
+                    report::note(&Diagnostic::note(format!(
+                        "using the built-in denoiser because {why}; {INSTALL_HINT}"
+                    )));
                 }
                 Ok(noisy.denoised())
             }
@@ -52,5 +54,5 @@ impl Denoiser {
 }
 
 /// Advice on how to install Open Image Denoise.
-const HOW: &str = "to install Open Image Denoise, run `pip install pyoidn` and set OIDN_DIR to its folder \
+const INSTALL_HINT: &str = "to install Open Image Denoise, run `pip install pyoidn` and set OIDN_DIR to its folder \
                    `pyoidn/oidn`, or to any other folder with the library; `--denoise=own` needs no library";

@@ -16,13 +16,13 @@ pub fn add(
     rendered: &mut Rendered,
 ) -> Result<(), RenderError> {
     for show in shows {
-        let made = match show.as_str() {
+        let picture = match show.as_str() {
             "samples" => samples_layer(world, job, control, zoom)?,
             "filter" => filter_layer(job, zoom)?,
             _ => continue,
         };
-        rendered.layers.push(made.clone());
-        rendered.pictures.push(made);
+        rendered.layers.push(picture.clone());
+        rendered.pictures.push(picture);
     }
     Ok(())
 }
@@ -35,7 +35,7 @@ pub fn samples_layer(world: &World, job: &Job, control: &Control, zoom: u32) -> 
 
 /// Renders a diagram of the filter weights.
 pub fn filter_layer(job: &Job, zoom: u32) -> Result<Layer, RenderError> {
-    let made = match job.sampling {
+    let picture = match job.sampling {
         Sampling::Course2004 { filter, .. } => {
             diagram::filter(job.width, job.height, zoom, filter.unwrap_or(CourseFilter::Box { radius: 0.5 }))
         }
@@ -47,7 +47,7 @@ pub fn filter_layer(job: &Job, zoom: u32) -> Result<Layer, RenderError> {
         }
         _ => diagram::filter(job.width, job.height, zoom, CourseFilter::Box { radius: 0.5 }),
     };
-    layer("filter", made)
+    layer("filter", picture)
 }
 
 /// Fails if a diagram would be too large.
@@ -61,6 +61,6 @@ pub fn check(job: &Job, zoom: u32) -> Result<(), RenderError> {
     Ok(())
 }
 
-fn layer(name: &str, made: diagram::Diagram) -> Result<Layer, RenderError> {
-    Ok(Layer::data(name, Image::from_pixels(made.width, made.height, made.pixels)?))
+fn layer(name: &str, picture: diagram::Diagram) -> Result<Layer, RenderError> {
+    Ok(Layer::data(name, Image::from_pixels(picture.width, picture.height, picture.pixels)?))
 }

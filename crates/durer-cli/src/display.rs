@@ -1,6 +1,6 @@
 //! Options for the conversion to 8-bit pictures.
 
-use crate::failure::{Failure, bad};
+use crate::failure::{Failure, invalid_input};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use durer::image::{Display, Tone, Transfer};
@@ -41,7 +41,7 @@ impl ExposureArgs {
     pub fn factor(&self) -> Result<f32, Failure> {
         let stops = self.exposure;
         if !(stops.is_finite() && stops.abs() <= 60.0) {
-            return Err(bad("--exposure must be between -60 and 60"));
+            return Err(invalid_input("--exposure must be between -60 and 60"));
         }
         let factor = durer::math::fp::pow(2.0, stops);
         Ok(match (self.shutter, self.f_number) {

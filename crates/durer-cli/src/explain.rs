@@ -2,12 +2,12 @@
 
 mod page;
 
-use crate::failure::{Failure, bad, failed};
-use crate::guard::Guard;
+use crate::failure::{Failure, from_render_error, invalid_input};
+use crate::file_registry::FileRegistry;
 use crate::job::job;
 use crate::open::{CompiledInput, load_options, open};
 use crate::options::{RenderArgs, accel, aspect};
-use crate::terminal::say;
+use crate::terminal::print_line;
 use crate::values::{percent, pixel};
 use crate::{output, progress};
 use clap::Args;
@@ -72,7 +72,7 @@ pub struct ExplainArgs {
 
 /// Splits the numbers of a quoted `--ray` into separate words, because clap would treat `-1 0 0` as
 /// an option.
-pub fn apart(words: Vec<OsString>) -> Vec<OsString> {
+pub fn split_ray_argument(words: Vec<OsString>) -> Vec<OsString> {
     let mut all: Vec<OsString> = Vec::with_capacity(words.len());
     for word in words {
         match word.to_str() {
@@ -88,16 +88,16 @@ pub fn apart(words: Vec<OsString>) -> Vec<OsString> {
 /// Runs `durer explain`.
 pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     if args.render.work.time.is_some() {
-        return Err(bad(
+        return Err(invalid_input(
             "--time-limit leads to a different number of samples on each run: set the number with --samples instead",
         ));
     }
     let mut options = load_options(&args.render.reading);
     options.accel = accel(&args.render.job)?;
     options.scene_defaults.aspect = aspect(&args.render.job);
-    let mut guard = Guard::default();
-    let page_file = args.html.as_ref().map(|path| guard.writes("--html", path)).transpose()?;
-    let compiled = open(&args.render.scene, &options, args.render.quiet, &mut guard)?;
+    let mut registry = FileRegistry::default();
+    let page_file = args.html.as_ref().map(|path| registry.register_output("--html", path)).transpose()?;
+    let compiled = open(&args.render.scene, &options, args.render.quiet, &mut registry)?;
     let job = job(&args.render.job, Some(&args.render.view), &compiled.loaded, false)?;
     let (picture, counts) = match args.brightest || args.worst || args.html.is_some() {
         true => picture(args, &compiled, &job)?,
@@ -115,13 +115,13 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         Explained::Ray(_) => 0,
     };
     let transfer = args.render.display.transfer();
-    if let (Some(place), Some(picture)) = (&page_file, &picture) {
+    if let (Some(destination), Some(picture)) = (&page_file, &picture) {
         let page = page::page(report::explanation(&subject, &names), sample, &compiled.world, picture, transfer)?;
-        output::save(&[(place, page.into_bytes())], args.render.quiet)?;
+        output::save(&[(destination, page.into_bytes())], args.render.quiet)?;
         return Ok(());
     }
     if args.json {
-        say(&serde_json::to_string_pretty(&report::explanation(&subject, &names))?);
+        print_line(&serde_json::to_string_pretty(&report::explanation(&subject, &names))?);
         return Ok(());
     }
     let max_depth = args.depth.map_or(usize::MAX, |depth| depth as usize);
@@ -131,11 +131,11 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         Explained::Pixel(pixel) => pixel.lines(&names, sample, &detail),
     };
     let colored = std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-    lines.iter().for_each(|line| say(&shown(line, colored, transfer)));
+    lines.iter().for_each(|line| print_line(&format_line(line, colored, transfer)));
     if let Explained::Pixel(pixel) = &subject
         && job.method.is_stochastic()
     {
-        pixel.firefly().iter().for_each(|sentence| say(&format!("  {sentence}")));
+        pixel.firefly().iter().for_each(|sentence| print_line(&format!("  {sentence}")));
     }
     Ok(())
 }
@@ -146,7 +146,7 @@ fn picture(args: &ExplainArgs, compiled: &CompiledInput, job: &Job) -> Result<(O
     let job = Job { crop: None, color: true, aovs: counts.into_iter().collect(), ..job.clone() };
     let control = Arc::new(Control { threads: args.render.work.threads.map(usize::from), ..Control::default() });
     let render = || durer::render::render(&compiled.world, &job, &control);
-    let rendered = progress::watch(&control, args.render.quiet, render).map_err(failed)?;
+    let rendered = progress::watch(&control, args.render.quiet, render).map_err(from_render_error)?;
     let mut images = rendered.layers.into_iter().map(|layer| Arc::unwrap_or_clone(layer.image));
     Ok((images.next(), images.next()))
 }
@@ -160,34 +160,41 @@ fn subject(
 ) -> Result<Explained, Failure> {
     let pixel = match (&args.ray, args.pixel, picture) {
         (Some(numbers), ..) => {
-            let [ox, oy, oz, dx, dy, dz] = numbers[..] else { return Err(bad("--ray needs six numbers")) };
+            let [ox, oy, oz, dx, dy, dz] = numbers[..] else { return Err(invalid_input("--ray needs six numbers")) };
             let ray = Ray::new(Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
             if !(ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != Vec3::ZERO) {
-                return Err(bad("--ray needs finite numbers and a direction other than 0 0 0"));
+                return Err(invalid_input("--ray needs finite numbers and a direction other than 0 0 0"));
             }
             let world = &compiled.world;
             let light = explain_ray(world, job, &ray, SampleId::new(job.seed, (0, 0), 0));
-            return light.map(|light| Explained::Ray(light.into())).ok_or_else(|| bad("this ray cannot be explained"));
+            return light
+                .map(|light| Explained::Ray(light.into()))
+                .ok_or_else(|| invalid_input("this ray cannot be explained"));
         }
         (None, Some(pixel), _) => pixel,
-        (None, None, Some(picture)) if args.brightest => most(picture, |x, y| luminance_of(at(picture, x, y))),
+        (None, None, Some(picture)) if args.brightest => max_pixel(picture, |x, y| luminance_of(at(picture, x, y))),
         (None, None, Some(picture)) if job.method.is_stochastic() => {
             return worst(compiled, job, picture, counts).map(Explained::Pixel);
         }
-        (None, None, Some(picture)) => most(picture, |x, y| oddness(picture, x, y)),
-        (None, None, None) => return Err(bad("choose a pixel or a ray: --pixel X,Y, --brightest, --worst, or --ray")),
+        (None, None, Some(picture)) => max_pixel(picture, |x, y| deviation_from_neighbours(picture, x, y)),
+        (None, None, None) => {
+            return Err(invalid_input("choose a pixel or a ray: --pixel X,Y, --brightest, --worst, or --ray"));
+        }
     };
     if pixel.0 >= job.width || pixel.1 >= job.height {
         let (x, y) = pixel;
-        return Err(bad(format!("pixel {x},{y} is outside the picture of {} x {} pixels", job.width, job.height)));
+        return Err(invalid_input(format!(
+            "pixel {x},{y} is outside the picture of {} x {} pixels",
+            job.width, job.height
+        )));
     }
     let world = &compiled.world;
     // With adaptive sampling, a crop has different sample counts from the whole picture.
     let samples = counted(counts.filter(|_| job.crop.is_none()), pixel);
-    let explanation = explain_samples(world, job, pixel, samples).map_err(failed)?;
+    let explanation = explain_samples(world, job, pixel, samples).map_err(from_render_error)?;
     if let Some(sample) = args.sample.filter(|&sample| sample as usize >= explanation.samples.len()) {
         let last = explanation.samples.len() - 1;
-        return Err(bad(format!("no sample {sample}: the pixel's samples are numbered from 0 to {last}")));
+        return Err(invalid_input(format!("no sample {sample}: the pixel's samples are numbered from 0 to {last}")));
     }
     Ok(Explained::Pixel(explanation))
 }
@@ -201,22 +208,23 @@ fn counted(counts: Option<&Image>, (x, y): (u32, u32)) -> Option<u32> {
 /// with the largest contribution of a single sample.
 fn worst(compiled: &CompiledInput, job: &Job, picture: &Image, counts: Option<&Image>) -> Result<Explanation, Failure> {
     const CANDIDATES: usize = 256;
-    let places = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));
-    let mut odd: Vec<(f64, (u32, u32))> = places.map(|(x, y)| (oddness(picture, x, y), (x, y))).collect();
+    let pixels = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));
+    let mut odd: Vec<(f64, (u32, u32))> =
+        pixels.map(|(x, y)| (deviation_from_neighbours(picture, x, y), (x, y))).collect();
     odd.sort_by(|a, b| b.0.total_cmp(&a.0));
     odd.truncate(CANDIDATES);
     let mut best: Option<(f64, Explanation)> = None;
     for (_, (x, y)) in odd {
         let samples = counted(counts, (x, y));
-        let explanation = explain_samples(&compiled.world, job, (x, y), samples).map_err(failed)?;
+        let explanation = explain_samples(&compiled.world, job, (x, y), samples).map_err(from_render_error)?;
         // Pixels at the edge of a visible light are bright too, but not fireflies.
-        let standing_out = if explanation.outlier().is_some() { 1.0 } else { 1e-6 };
-        let adds = explanation.brightest().map_or(0.0, |(_, adds)| standing_out * adds);
+        let outlier_weight = if explanation.outlier().is_some() { 1.0 } else { 1e-6 };
+        let adds = explanation.brightest().map_or(0.0, |(_, adds)| outlier_weight * adds);
         if best.as_ref().is_none_or(|(most, _)| adds > *most) {
             best = Some((adds, explanation));
         }
     }
-    best.map(|(_, explanation)| explanation).ok_or_else(|| bad("the picture has no pixels"))
+    best.map(|(_, explanation)| explanation).ok_or_else(|| invalid_input("the picture has no pixels"))
 }
 
 fn at(picture: &Image, x: u32, y: u32) -> Color {
@@ -224,7 +232,7 @@ fn at(picture: &Image, x: u32, y: u32) -> Color {
 }
 
 /// Returns the absolute difference between a pixel's luminance and the median of its neighbours.
-fn oddness(picture: &Image, x: u32, y: u32) -> f64 {
+fn deviation_from_neighbours(picture: &Image, x: u32, y: u32) -> f64 {
     let mut around: Vec<f64> = (0..9)
         .filter(|&i| i != 4)
         .filter_map(|i| picture.get((x + i % 3).checked_sub(1)?, (y + i / 3).checked_sub(1)?))
@@ -236,10 +244,10 @@ fn oddness(picture: &Image, x: u32, y: u32) -> f64 {
 }
 
 /// Returns the pixel with the greatest value; of equal ones, the first in reading order.
-fn most(picture: &Image, value: impl Fn(u32, u32) -> f64) -> (u32, u32) {
-    let places = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));
+fn max_pixel(picture: &Image, value: impl Fn(u32, u32) -> f64) -> (u32, u32) {
+    let pixels = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));
     let mut best = ((0, 0), f64::NEG_INFINITY);
-    for (x, y) in places {
+    for (x, y) in pixels {
         let value = value(x, y);
         if value > best.1 {
             best = ((x, y), value);
@@ -259,7 +267,7 @@ fn percentage(share: f32) -> String {
 }
 
 /// Formats a line of an explanation, preceded by its contribution.
-pub fn shown(line: &TextLine, colored: bool, transfer: Transfer) -> String {
+pub fn format_line(line: &TextLine, colored: bool, transfer: Transfer) -> String {
     let indent = "  ".repeat(line.depth);
     let text = match line.adds {
         Some(adds) if line.depth > 0 => {

@@ -1,6 +1,6 @@
 //! Failures of a command and their exit codes.
 
-use crate::terminal::{OTHER_FAILURE, complain};
+use crate::terminal::{OTHER_FAILURE, print_error_line};
 use durer::render::RenderError;
 use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
@@ -10,7 +10,7 @@ const BAD_INPUT: u8 = 2;
 /// and 2 means errors.
 const DIFFERENT: u8 = 1;
 /// Exit code of `durer check` if it reports warnings or errors.
-const FOUND: u8 = 1;
+const FINDINGS: u8 = 1;
 
 /// Number of the last signal; 2 is Ctrl-C.
 static SIGNAL: AtomicU8 = AtomicU8::new(2);
@@ -30,7 +30,7 @@ pub enum Failure {
     /// `durer compare` found differences, which are already printed.
     Different,
     /// `durer check` found problems, which are already printed.
-    Found,
+    FindingsReported,
     /// The user interrupted the work; the message says what was saved.
     Interrupted(String),
 }
@@ -41,18 +41,18 @@ impl Failure {
         match self {
             Failure::Input(message) => {
                 if let Some(message) = message {
-                    complain(&format!("error: {message}"));
+                    print_error_line(&format!("error: {message}"));
                 }
                 BAD_INPUT
             }
             Failure::Other(error) => {
-                complain(&format!("error: {error}"));
+                print_error_line(&format!("error: {error}"));
                 OTHER_FAILURE
             }
             Failure::Different => DIFFERENT,
-            Failure::Found => FOUND,
+            Failure::FindingsReported => FINDINGS,
             Failure::Interrupted(what) => {
-                complain(&format!("interrupted; {what}"));
+                print_error_line(&format!("interrupted; {what}"));
                 128 + SIGNAL.load(Relaxed)
             }
         }
@@ -66,16 +66,16 @@ impl<E: Into<anyhow::Error>> From<E> for Failure {
 }
 
 /// Returns a failure for invalid input.
-pub fn bad(message: impl Into<String>) -> Failure {
+pub fn invalid_input(message: impl Into<String>) -> Failure {
     Failure::Input(Some(message.into()))
 }
 
 /// Converts a render error into a failure.
-pub fn failed(error: RenderError) -> Failure {
+pub fn from_render_error(error: RenderError) -> Failure {
     match error {
         RenderError::Cancelled => Failure::Interrupted("nothing was written".into()),
         RenderError::Panic(_) => error.into(),
-        RenderError::Memory { .. } | RenderError::NoMemory(_) => bad(format!("{error}; see --memory")),
-        _ => bad(error.to_string()),
+        RenderError::Memory { .. } | RenderError::NoMemory(_) => invalid_input(format!("{error}; see --memory")),
+        _ => invalid_input(error.to_string()),
     }
 }

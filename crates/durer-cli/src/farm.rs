@@ -2,10 +2,10 @@
 
 mod quote;
 
-use crate::failure::{Failure, bad};
+use crate::failure::{Failure, invalid_input};
 use crate::frames::{self, Frames, FramesArgs, MotionSource};
 use crate::render::RenderCommand;
-use crate::terminal::say;
+use crate::terminal::print_line;
 use clap::{Args, FromArgMatches};
 use quote::{bash_word, bash_word_of_frame, not_an_option, python_list, python_string};
 use std::path::PathBuf;
@@ -48,26 +48,27 @@ pub struct FarmArgs {
 /// Runs `durer farm`: prints the job file.
 pub fn run(args: &FarmArgs) -> Result<(), Failure> {
     check_options(&args.options)?;
-    say(job_file(args)?.trim_end());
+    print_line(job_file(args)?.trim_end());
     Ok(())
 }
 
 /// Maximum length of a job name in characters. Kubernetes allows 63, including the index of the
 /// task.
-const LONGEST_NAME: usize = 52;
+const MAX_NAME_LENGTH: usize = 52;
 
 /// Returns the name of a job, with letters, digits and dashes only.
 fn job_name(stem: &str) -> String {
     let allowed = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
     let name: String = stem.trim_matches(|c: char| !c.is_ascii_alphanumeric()).chars().map(allowed).collect();
-    let name = &name[..name.len().min(LONGEST_NAME - "durer-".len())];
+    let name = &name[..name.len().min(MAX_NAME_LENGTH - "durer-".len())];
     format!("durer-{name}").trim_end_matches('-').into()
 }
 
 /// Returns the template with the values of the job filled in.
 fn job_file(args: &FarmArgs) -> Result<String, Failure> {
-    let text =
-        |path: &std::path::Path| path.to_str().map(String::from).ok_or_else(|| bad(format!("{path:?} is not UTF-8")));
+    let text = |path: &std::path::Path| {
+        path.to_str().map(String::from).ok_or_else(|| invalid_input(format!("{path:?} is not UTF-8")))
+    };
     let scene = text(&args.scene)?;
     let names: Vec<&str> = std::iter::once(&scene).chain(&args.options).map(String::as_str).collect();
     let frames = args.frames.resolve(&args.scene, &names)?;
@@ -85,7 +86,7 @@ fn job_file(args: &FarmArgs) -> Result<String, Failure> {
     let is_animation = frames.is_some();
     let (numbers, moves) = frames.unwrap_or((Frames { first: 0, last: 0, step: 1 }, MotionSource::Names));
     let Some(tasks) = numbers.count().checked_mul(shards) else {
-        return Err(bad(format!("{} frames of {shards} shards are too many tasks", numbers.count())));
+        return Err(invalid_input(format!("{} frames of {shards} shards are too many tasks", numbers.count())));
     };
     // The animation as command-line words, and as an expression in the template's language.
     let (moving, words) = match moves {
@@ -122,13 +123,13 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
     let matches = RenderCommand::augment_args(clap::Command::new("render")).try_get_matches_from(words);
     match matches.and_then(|matches| RenderCommand::from_arg_matches(&matches)) {
         Ok(command) if command.frames.is_requested() => {
-            Err(bad("--frames and --turntable are options of the farm: put them before the render options"))
+            Err(invalid_input("--frames and --turntable are options of the farm: put them before the render options"))
         }
         Ok(_) => Ok(()),
         Err(error) => {
             let text = error.render().to_string();
             let text = text.trim().trim_start_matches("error: ");
-            Err(bad(text.split("\n\nUsage:").next().unwrap_or(text).trim_end()))
+            Err(invalid_input(text.split("\n\nUsage:").next().unwrap_or(text).trim_end()))
         }
     }
 }
@@ -148,19 +149,19 @@ fn chosen(template: &str, frames: bool) -> String {
 /// Replaces each `@KEY@` in a template by its value, in one pass, so that values are not expanded
 /// again.
 fn filled(template: &str, values: &[(&str, String)]) -> String {
-    let (mut made, mut rest) = (String::new(), template);
+    let (mut name, mut rest) = (String::new(), template);
     while let Some((before, after)) = rest.split_once('@') {
-        made += before;
+        name += before;
         let known = after.split_once('@').and_then(|(key, after)| {
             let (_, value) = values.iter().find(|(known, _)| *known == key)?;
             Some((value, after))
         });
         match known {
-            Some((value, after)) => (made, rest) = (made + value, after),
-            None => (made, rest) = (made + "@", after),
+            Some((value, after)) => (name, rest) = (name + value, after),
+            None => (name, rest) = (name + "@", after),
         }
     }
-    made + rest
+    name + rest
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! `--frames` and `--turntable`: renders the pictures of an animation, one file each.
 
-use crate::failure::{Failure, bad};
+use crate::failure::{Failure, invalid_input};
 use crate::options::RenderArgs;
-use crate::picture::{WatchState, once, output_of};
+use crate::picture::{WatchState, output_of, render_picture};
 use clap::Args;
 use durer::compile::AssetCache;
 use std::path::{Path, PathBuf};
@@ -37,16 +37,16 @@ impl std::str::FromStr for Frames {
     type Err = &'static str;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let number = |text: &str| text.parse().ok().filter(|&number| number <= MOST).ok_or(WANTED);
+        let number = |text: &str| text.parse().ok().filter(|&number| number <= MAX_FRAME).ok_or(EXPECTED);
         let (range, step) = text.split_once(':').map_or((text, Ok(1)), |(range, step)| (range, number(step)));
         let (first, last) = range.split_once('-').unwrap_or((range, range));
         let frames = Frames { first: number(first)?, last: number(last)?, step: step? };
-        if frames.step == 0 || frames.last < frames.first { Err(WANTED) } else { Ok(frames) }
+        if frames.step == 0 || frames.last < frames.first { Err(EXPECTED) } else { Ok(frames) }
     }
 }
 
-const MOST: u32 = 9_999_999;
-const WANTED: &str = "expected frames from 0 to 9999999 in ascending order, for example 7, 1-100 or 0-90:10";
+const MAX_FRAME: u32 = 9_999_999;
+const EXPECTED: &str = "expected frames from 0 to 9999999 in ascending order, for example 7, 1-100 or 0-90:10";
 
 impl Frames {
     /// Iterates over the frame numbers.
@@ -97,7 +97,7 @@ impl FramesArgs {
             None if names.iter().any(|name| place(name).is_some()) => MotionSource::Names,
             None if ["gltf", "glb"].contains(&extension.as_str()) => MotionSource::Time(self.fps),
             None => {
-                return Err(bad(
+                return Err(invalid_input(
                     "--frames: all frames would be equal; put %d in the name of the scene, --camera or --view-file, \
                      pass --turntable, or render a glTF file with an animation",
                 ));
@@ -139,17 +139,20 @@ pub fn run(args: &mut RenderArgs, frames: Frames, moves: MotionSource) -> Result
     let scene_defaults = &args.reading.scene_defaults;
     let own = scene_defaults.camera.is_some() || scene_defaults.view_file.is_some() || scene_defaults.turned.is_some();
     if matches!(moves, MotionSource::Turntable(_)) && own {
-        return Err(bad("--turntable sets the view of each frame: remove --camera, --view-file and --turned"));
+        return Err(invalid_input(
+            "--turntable sets the view of each frame: remove --camera, --view-file and --turned",
+        ));
     }
     if matches!(moves, MotionSource::Time(_)) && scene_defaults.at.is_some() {
-        return Err(bad("--frames sets the time of each frame: remove --at"));
+        return Err(invalid_input("--frames sets the time of each frame: remove --at"));
     }
-    let utf8 = |path: &Path| path.to_str().map(String::from).ok_or_else(|| bad(format!("{path:?} is not UTF-8")));
+    let utf8 =
+        |path: &Path| path.to_str().map(String::from).ok_or_else(|| invalid_input(format!("{path:?} is not UTF-8")));
     let (scene, output) = (utf8(&args.scene)?, pattern(&utf8(&output_of(args))?));
     let (camera, view_file) =
         (scene_defaults.camera.clone(), scene_defaults.view_file.as_deref().map(utf8).transpose()?);
     // Read meshes and images that frames share only once.
-    let kept = Arc::new(AssetCache::default());
+    let cache = Arc::new(AssetCache::default());
     for frame in frames.numbers() {
         (args.scene, args.output) = (numbered(&scene, frame).into(), Some(numbered(&output, frame).into()));
         let scene_defaults = &mut args.reading.scene_defaults;
@@ -162,7 +165,7 @@ pub fn run(args: &mut RenderArgs, frames: Frames, moves: MotionSource) -> Result
             MotionSource::Time(rate) => scene_defaults.at = Some((f64::from(frame) / rate) as f32),
             MotionSource::Names => {}
         }
-        once(args, None, &WatchState::keeping(&kept))?;
+        render_picture(args, None, &WatchState::keeping(&cache))?;
     }
     Ok(())
 }
@@ -179,7 +182,7 @@ mod tests {
         assert_eq!(read("0-90:40"), Ok(vec![0, 40, 80]));
         assert_eq!("0-90:40".parse::<Frames>().unwrap().count(), 3);
         for wrong in ["", "-3", "4-1", "1-4:0", "1-", "1-4:", "a", "1,2", "1-4-5", "10000000", "99999999999"] {
-            assert_eq!(read(wrong), Err(WANTED), "{wrong}");
+            assert_eq!(read(wrong), Err(EXPECTED), "{wrong}");
         }
     }
 

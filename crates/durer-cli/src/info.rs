@@ -1,10 +1,10 @@
 //! `durer info`: prints a summary of a scene.
 
 use crate::failure::Failure;
-use crate::guard::Guard;
+use crate::file_registry::FileRegistry;
 use crate::open::{load_options, open};
 use crate::options::SceneArgs;
-use crate::terminal::say;
+use crate::terminal::print_line;
 use clap::Args;
 use durer::bvh::TraversalStats;
 use durer::camera::{Projection, Raster};
@@ -30,7 +30,7 @@ pub struct InfoArgs {
 
 /// Runs `durer info`.
 pub fn run(args: &InfoArgs) -> Result<(), Failure> {
-    let compiled = open(&args.scene, &load_options(&args.reading), args.json, &mut Guard::default())?;
+    let compiled = open(&args.scene, &load_options(&args.reading), args.json, &mut FileRegistry::default())?;
     let (loaded, world) = (&compiled.loaded, &compiled.world);
     let dialect = loaded.dialect;
     let count = WorldCounts::of(world);
@@ -53,37 +53,37 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
             "tests_per_ray": per_ray(rays.primitive_tests),
             "scene": scene,
         });
-        say(&serde_json::to_string_pretty(&value)?);
+        print_line(&serde_json::to_string_pretty(&value)?);
         return Ok(());
     }
     let bounds = world.bounds();
     let pose = world.camera().pose();
-    say(&format!("scene      {}", args.scene.display()));
-    say(&format!("dialect    {} ({})", dialect.name(), dialect.rules().title));
+    print_line(&format!("scene      {}", args.scene.display()));
+    print_line(&format!("dialect    {} ({})", dialect.name(), dialect.rules().title));
     let camera = world.camera();
     let (name, rest) = (camera.keyword(dialect), fields(camera, &["center", "direction"]));
-    say(&format!("camera     {name} at {}, looking along {}: {rest}", pose.center, pose.direction));
+    print_line(&format!("camera     {name} at {}, looking along {}: {rest}", pose.center, pose.direction));
     let natural = || Raster::natural_size(camera.proportions(), loaded.rules.size);
     let (width, height) = loaded.scene.render_defaults.size.unwrap_or_else(natural);
-    say(&format!("picture    {width}x{height} by default"));
+    print_line(&format!("picture    {width}x{height} by default"));
     for light in world.lights() {
-        say(&format!("light      {}: {}", light.keyword(dialect), fields(light, &[])));
+        print_line(&format!("light      {}: {}", light.keyword(dialect), fields(light, &[])));
     }
     let shapes: Vec<String> = count.shapes.iter().map(|(name, n)| format!("{n} {name}")).collect();
-    say(&format!(
+    print_line(&format!(
         "objects    {}{}{}",
         world.objects().len(),
         if shapes.is_empty() { "" } else { ": " },
         shapes.join(", ")
     ));
     if count.triangles > 0 {
-        say(&format!("triangles  {} in meshes, {} of them distinct", count.triangles, count.distinct_triangles));
+        print_line(&format!("triangles  {} in meshes, {} of them distinct", count.triangles, count.distinct_triangles));
     }
-    say(&format!("materials  {}", world.materials().len()));
+    print_line(&format!("materials  {}", world.materials().len()));
     if !bounds.is_empty() {
-        say(&format!("bounds     {} to {}", bounds.min, bounds.max));
+        print_line(&format!("bounds     {} to {}", bounds.min, bounds.max));
     }
-    say(&format!(
+    print_line(&format!(
         "memory     {:.1} MiB: geometry and trees {:.1}, pictures {:.1}",
         mib(count.bytes),
         mib(count.bytes - count.picture_bytes),
@@ -93,13 +93,13 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let visits = visits.into_iter().filter_map(|(cost, of)| Some(format!("{:.1} nodes over {of}", cost?)));
     let visits = visits.collect::<Vec<_>>().join(", ");
     if !visits.is_empty() {
-        say(&format!("trees      a random ray is expected to visit {visits}"));
+        print_line(&format!("trees      a random ray is expected to visit {visits}"));
     }
     if let Some(bytes) = count.tree_bytes_each() {
-        say(&format!("           {bytes:.0} bytes per triangle"));
+        print_line(&format!("           {bytes:.0} bytes per triangle"));
     }
     if let (Some(nodes), Some(tests)) = (per_ray(rays.nodes), per_ray(rays.primitive_tests)) {
-        say(&format!("rays       {nodes:.1} nodes and {tests:.1} tests per ray, for {} camera rays", rays.rays));
+        print_line(&format!("rays       {nodes:.1} nodes and {tests:.1} tests per ray, for {} camera rays", rays.rays));
     }
     Ok(())
 }
@@ -108,8 +108,8 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
 fn rays(world: &World) -> TraversalStats {
     const SIDE: u32 = 64;
     let (raster, mut counts) = (raster(world, SIDE, SIDE), TraversalStats::default());
-    let places = (0..SIDE * SIDE).map(|i| (i % SIDE, i / SIDE));
-    for ray in places.filter_map(|place| center_ray(world, &raster, place)) {
+    let pixels = (0..SIDE * SIDE).map(|i| (i % SIDE, i / SIDE));
+    for ray in pixels.filter_map(|pixel| center_ray(world, &raster, pixel)) {
         world.closest(&ray, &mut counts);
     }
     counts

@@ -1,6 +1,6 @@
 //! Converts command-line options to a render job.
 
-use crate::failure::{Failure, bad};
+use crate::failure::{Failure, invalid_input};
 use crate::options::{JobArgs, SceneArgs, ViewArgs};
 use crate::report;
 use durer::LoadedScene;
@@ -15,7 +15,7 @@ use durer::world::World;
 /// true if a time limit ends the render.
 pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &LoadedScene, timed: bool) -> Result<Job, Failure> {
     let view = view.map(|view| OutputSelection { crop: view.crop, show: view.show.clone() });
-    args.options.resolve(&loaded.job_context(timed), view.as_ref()).map_err(bad)
+    args.options.resolve(&loaded.job_context(timed), view.as_ref()).map_err(invalid_input)
 }
 
 /// Warns if the camera leaves part of the picture empty, or if depth of field needs more samples.

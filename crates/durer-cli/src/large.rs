@@ -1,11 +1,11 @@
 //! Renders pictures that are larger than memory while they are written.
 
-use crate::failure::{Failure, bad, failed};
+use crate::failure::{Failure, from_render_error, invalid_input};
 use crate::options::RenderArgs;
-use crate::output::{Target, wrote};
+use crate::output::{Target, print_written};
 use crate::progress;
 use crate::report::rejected;
-use crate::terminal::say;
+use crate::terminal::print_line;
 use durer::image::{Content, FORMATS, Format, MAX_PIXELS, WriteOptions, save_all};
 use durer::render::{BandedRender, BandsError, Control, Job, RenderError, Statistics};
 use durer::source::Digest;
@@ -21,7 +21,7 @@ pub fn is_large(job: &Job, needed: u64, memory: Option<u64>) -> bool {
 
 /// Divides a large picture into bands. Fails with the reason if that is not possible.
 pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>) -> Result<BandedRender, Failure> {
-    let refuse = |why: &str| Err(failed(RenderError::Bands(why.into())));
+    let refuse = |why: &str| Err(from_render_error(RenderError::Bands(why.into())));
     let (work, window) = (&args.work, job.window());
     let Some((_, format)) = target.single() else {
         return refuse("it includes pictures other than the colour picture");
@@ -30,7 +30,7 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
         let others: Vec<_> = FORMATS.iter().filter(|format| format.rows.is_some()).map(|format| format.name).collect();
         return refuse(&format!("{} needs all rows at once; use one of {}", format.name, others.join(", ")));
     }
-    format.check_sides(window.width, window.height).map_err(|error| bad(error.to_string()))?;
+    format.check_sides(window.width, window.height).map_err(|error| invalid_input(error.to_string()))?;
     for (given, option) in [
         (work.resume || work.restart || work.checkpoint.is_some(), "saved work"),
         (work.preview.is_some(), "--preview"),
@@ -45,9 +45,9 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
     // The scene's size is not known yet, so reserve half of the memory for it.
     BandedRender::new(job, memory.map_or(u64::MAX, |memory| memory / 2)).map_err(|error| match (error, memory) {
         (RenderError::Memory { needed, .. }, Some(allowed)) => {
-            failed(RenderError::Memory { needed: needed.saturating_mul(2), allowed })
+            from_render_error(RenderError::Memory { needed: needed.saturating_mul(2), allowed })
         }
-        (error, _) => failed(error),
+        (error, _) => from_render_error(error),
     })
 }
 
@@ -55,23 +55,23 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
 type WriteResult = Result<(Statistics, Option<Digest>), BandsError>;
 
 /// Source of a large picture's file content: renders the picture in bands while it is written.
-struct Large<'a> {
+struct BandedPicture<'a> {
     bands: &'a BandedRender,
     world: &'a World,
     control: &'a Control,
     format: &'a Format,
     options: WriteOptions<'a>,
     /// Result of the render, set by `write_to`.
-    made: RefCell<Option<WriteResult>>,
+    result: RefCell<Option<WriteResult>>,
 }
 
-impl Content for &Large<'_> {
+impl Content for &BandedPicture<'_> {
     fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
         let mut out = io::BufWriter::new(out);
-        let made = self.bands.write(self.world, self.control, self.format, &self.options, &mut out);
-        let made = made.and_then(|made| Ok(out.flush().map(|()| made)?));
-        let result = if made.is_ok() { Ok(()) } else { Err(io::Error::other("the picture was not rendered")) };
-        *self.made.borrow_mut() = Some(made);
+        let written = self.bands.write(self.world, self.control, self.format, &self.options, &mut out);
+        let written = written.and_then(|written| Ok(out.flush().map(|()| written)?));
+        let result = if written.is_ok() { Ok(()) } else { Err(io::Error::other("the picture was not rendered")) };
+        *self.result.borrow_mut() = Some(written);
         result
     }
 }
@@ -84,25 +84,26 @@ pub fn render(
     target: &Target,
     args: &RenderArgs,
 ) -> Result<(), Failure> {
-    let Some((place, format)) = target.single() else { return Ok(()) };
+    let Some((destination, format)) = target.single() else { return Ok(()) };
     let options = WriteOptions { display: args.display.display()?, attributes: &[] };
-    let large = Large { bands, world, control, format, options, made: RefCell::new(None) };
-    let saved = progress::watch(control, args.quiet, || Ok(save_all(&[(place, &large)]))).map_err(failed)?;
-    let (statistics, hash) = match large.made.take() {
-        Some(Err(BandsError::Render(error))) => return Err(failed(error)),
-        Some(Err(BandsError::Image(error))) => return Err(bad(error.to_string())),
+    let large = BandedPicture { bands, world, control, format, options, result: RefCell::new(None) };
+    let saved =
+        progress::watch(control, args.quiet, || Ok(save_all(&[(destination, &large)]))).map_err(from_render_error)?;
+    let (statistics, hash) = match large.result.take() {
+        Some(Err(BandsError::Render(error))) => return Err(from_render_error(error)),
+        Some(Err(BandsError::Image(error))) => return Err(invalid_input(error.to_string())),
         Some(Err(BandsError::Io(error))) => {
-            return Err(Failure::Other(anyhow::anyhow!("cannot write `{}`: {error}", place.path().display())));
+            return Err(Failure::Other(anyhow::anyhow!("cannot write `{}`: {error}", destination.path().display())));
         }
-        Some(Ok(made)) => saved.map(|()| made)?,
+        Some(Ok(result)) => saved.map(|()| result)?,
         None => return Ok(saved?),
     };
-    wrote(place, args.quiet);
+    print_written(destination, args.quiet);
     rejected(&statistics, None, args.quiet);
     match hash {
-        Some(hash) if args.hash => say(&hash.to_string()),
+        Some(hash) if args.hash => print_line(&hash.to_string()),
         None if args.hash => {
-            return Err(bad("--hash: this format stores the bottom row first; use PNG, PPM or HDR"));
+            return Err(invalid_input("--hash: this format stores the bottom row first; use PNG, PPM or HDR"));
         }
         _ => {}
     }

@@ -5,19 +5,19 @@ mod markdown;
 mod page;
 mod step_files;
 
-use crate::failure::{Failure, bad, failed};
-use crate::guard::Guard;
+use crate::failure::{Failure, from_render_error, invalid_input};
+use crate::file_registry::FileRegistry;
 use crate::job::{job, warn};
 use crate::open::{load_options, open};
 use crate::options::{JobArgs, SceneArgs, accel, aspect};
-use crate::output::lengthened;
+use crate::output::with_suffix;
 use crate::progress;
-use crate::terminal::say;
+use crate::terminal::print_line;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use durer::camera::{Projection, Raster};
 use durer::image::{Transfer, checked_count};
-use durer::lesson::{OWN_SCENE, OWN_SCENE_NAME, Stage, TOPICS, Teacher};
+use durer::lesson::{LessonScene, OWN_SCENE, OWN_SCENE_NAME, TOPICS, Teacher};
 use durer::render::Control;
 use folder::Folder;
 use std::path::{Path, PathBuf};
@@ -69,38 +69,39 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
         return crate::live::lesson(&args.scene);
     }
     let stem = Path::new(args.scene.file_stem().unwrap_or_default());
-    let mut guard = Guard::default();
-    let folder = Folder::new(args.output.clone().unwrap_or_else(|| lengthened(stem, "-lesson")), &mut guard)?;
+    let mut registry = FileRegistry::default();
+    let folder = Folder::new(args.output.clone().unwrap_or_else(|| with_suffix(stem, "-lesson")), &mut registry)?;
     let mut options = load_options(&args.reading);
     (options.accel, options.threads) = (accel(&args.job)?, args.threads.map(usize::from));
     options.scene_defaults.aspect = aspect(&args.job);
-    let compiled = open(&args.scene, &options, args.quiet, &mut guard)?;
+    let compiled = open(&args.scene, &options, args.quiet, &mut registry)?;
     let mut job = job(&args.job, None, &compiled.loaded, false)?;
     if args.job.options.requested_size().is_none() {
         let proportions = compiled.world.camera().proportions();
         (job.width, job.height) = Raster::natural_size(proportions, (SIDE, SIDE));
     }
-    checked_count(job.width, job.height).map_err(|error| bad(error.to_string()))?;
+    checked_count(job.width, job.height).map_err(|error| invalid_input(error.to_string()))?;
     if !args.quiet {
         warn(&job, &compiled.world);
     }
     let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
-    let mut teacher = Teacher::new(Stage::new(compiled.loaded.scene, compiled.files, compiled.world, job), transfer);
+    let mut teacher =
+        Teacher::new(LessonScene::new(compiled.loaded.scene, compiled.files, compiled.world, job), transfer);
     let control = Control { threads: options.threads, ..Control::default() };
     let scene = args.scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut lesson = Lesson { scene, steps: Vec::new(), pictures: Vec::new(), transfer };
     let names: Vec<String> = TOPICS.iter().map(|topic| topic.title.to_string()).collect();
     // Nothing has been written yet, so Ctrl-C can end the program here.
-    let made = progress::each(&names, TOPICS.iter().collect(), args.quiet, |topic| {
-        let steps = teacher.steps(topic, &control).map_err(failed)?;
+    let pages = progress::each(&names, TOPICS.iter().collect(), args.quiet, |topic| {
+        let steps = teacher.steps(topic, &control).map_err(from_render_error)?;
         steps.into_iter().try_for_each(|step| lesson.add(step))
     });
-    made.into_iter().collect::<Result<(), Failure>>()?;
+    pages.into_iter().collect::<Result<(), Failure>>()?;
     let files = files(lesson)?;
     let count = files.len() - 2;
-    let path = folder.write(files, &mut guard)?;
+    let path = folder.write(files, &mut registry)?;
     if !args.quiet {
-        say(&format!("wrote {}, {TEXT} and {count} linked files", path.join(PAGE).display()));
+        print_line(&format!("wrote {}, {TEXT} and {count} linked files", path.join(PAGE).display()));
     }
     Ok(())
 }

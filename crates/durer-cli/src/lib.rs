@@ -12,8 +12,8 @@ mod display;
 mod explain;
 mod failure;
 mod farm;
+mod file_registry;
 mod frames;
-mod guard;
 mod info;
 mod job;
 mod large;
@@ -23,12 +23,12 @@ mod manual;
 mod measure;
 mod merge;
 mod open;
+mod option_hints;
 mod options;
 mod output;
 mod page;
 mod photo;
 mod picture;
-mod pointers;
 mod progress;
 mod render;
 mod report;
@@ -42,22 +42,22 @@ mod words;
 
 use args::{Cli, Command};
 use clap::{CommandFactory, Parser};
-use failure::bad;
+use failure::invalid_input;
 use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::path::Path;
 
 #[cfg(unix)]
-pub use terminal::look_at_standard_output;
+pub use terminal::check_standard_output;
 
 /// Executes a command line, whose first word is the program's name, and returns the exit code.
 /// Handles signals. `end` is called to end the process at once with an exit code: after a second
 /// Ctrl-C, or if standard output cannot be written to.
 pub fn run(words: Vec<OsString>, end: terminal::ExitFn) -> u8 {
     terminal::set_end(end);
-    progress::hear_interrupts();
+    progress::handle_signals();
     if let Err(error) = durer::bvh::SimdLevel::from_environment() {
-        return bad(error.to_string()).report();
+        return invalid_input(error.to_string()).report();
     }
     durer::threads::prepare();
     // If `durer` is started under the name of an official program, it emulates that program.
@@ -67,10 +67,10 @@ pub fn run(words: Vec<OsString>, end: terminal::ExitFn) -> u8 {
         Some(program) => words
             .into_iter()
             .skip(1)
-            .map(|word| word.into_string().map_err(|word| bad(format!("{word:?} is not UTF-8"))))
+            .map(|word| word.into_string().map_err(|word| invalid_input(format!("{word:?} is not UTF-8"))))
             .collect::<Result<_, _>>()
             .and_then(|arguments| course::run(arguments, Some(program))),
-        None => match parsed(explain::apart(words)).command {
+        None => match parsed(explain::split_ray_argument(words)).command {
             Command::Render(args) => render::run(*args),
             Command::Farm(args) => farm::run(&args),
             Command::Merge(args) => merge::run(&args),
@@ -100,13 +100,13 @@ pub fn run(words: Vec<OsString>, end: terminal::ExitFn) -> u8 {
 /// Parses a command line. Prints help like other output, so that write errors are reported.
 fn parsed(words: Vec<OsString>) -> Cli {
     Cli::try_parse_from(&words).unwrap_or_else(|error| {
-        let error = pointers::corrected(error, &words, &Cli::command());
+        let error = option_hints::with_hint(error, &words, &Cli::command());
         if error.use_stderr() || std::io::stdout().is_terminal() {
             // Ignore errors: a closed terminal cannot show a message.
             let _ = error.print();
             terminal::end(u8::try_from(error.exit_code()).unwrap_or(terminal::OTHER_FAILURE));
         }
-        terminal::say(error.render().to_string().trim_end());
+        terminal::print_line(error.render().to_string().trim_end());
         terminal::end(0)
     })
 }

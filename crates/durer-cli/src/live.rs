@@ -1,7 +1,7 @@
 //! `durer live`: shows a scene in the browser.
 
-use crate::failure::{Failure, bad};
-use crate::terminal::say;
+use crate::failure::{Failure, invalid_input};
+use crate::terminal::print_line;
 use clap::Args;
 use durer_live::{Server, SessionFiles};
 use std::path::{Path, PathBuf};
@@ -36,11 +36,11 @@ pub fn run(args: &LiveArgs) -> Result<(), Failure> {
 fn readable(path: &Path) -> Result<(), Failure> {
     // Opening a pipe would block.
     let compiled = match std::fs::metadata(path) {
-        Ok(metadata) if !metadata.is_file() => return Err(bad(format!("{}: not a file", path.display()))),
+        Ok(metadata) if !metadata.is_file() => return Err(invalid_input(format!("{}: not a file", path.display()))),
         Ok(_) => std::fs::File::open(path).map(drop),
         Err(error) => Err(error),
     };
-    compiled.map_err(|error| bad(format!("{}: {error}", path.display())))
+    compiled.map_err(|error| invalid_input(format!("{}: {error}", path.display())))
 }
 
 /// Serves a lesson that a teacher wrote in Markdown.
@@ -52,9 +52,9 @@ pub fn lesson(path: &Path) -> Result<(), Failure> {
 fn serve(start: SessionFiles, port: u16, open: bool) -> Result<(), Failure> {
     let page = if start.lesson.is_some() { "#/lesson" } else { "" };
     let server = Server::bind(port, start);
-    let server = server.map_err(|error| bad(format!("port {port}: {error}")))?;
+    let server = server.map_err(|error| invalid_input(format!("port {port}: {error}")))?;
     let address = format!("{}{page}", server.address().map_err(anyhow::Error::from)?);
-    say(&format!("{address}\nPress Ctrl-C to stop"));
+    print_line(&format!("{address}\nPress Ctrl-C to stop"));
     if open {
         let opener = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
         // Ignore errors: the address is printed and can be copied.

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 #[cfg(unix)]
 #[ctor::ctor(unsafe)]
 fn before_main() {
-    durer_cli::look_at_standard_output();
+    durer_cli::check_standard_output();
 }
 
 fn main() -> ExitCode {

@@ -1,11 +1,11 @@
 //! `durer measure`: computes illuminance and irradiance at points.
 
-use crate::failure::{Failure, bad};
-use crate::guard::Guard;
+use crate::failure::{Failure, invalid_input};
+use crate::file_registry::FileRegistry;
 use crate::open::{load_options, open};
 use crate::options::{IntegratorArgs, SceneArgs};
 use crate::report;
-use crate::terminal::say;
+use crate::terminal::print_line;
 use clap::Args;
 use durer::diag::Diagnostic;
 use durer::integrator::{Integrate, Integrator, IntegratorContext, IntegratorKind, RenderSettings};
@@ -128,7 +128,7 @@ impl Sums {
 }
 
 /// Returns the first point that is not on a surface: a short ray along its normal hits nothing.
-fn in_the_air(world: &World, places: &[(Vec3, Vec3)]) -> Option<Vec3> {
+fn in_the_air(world: &World, points: &[(Vec3, Vec3)]) -> Option<Vec3> {
     let bounds = world.bounds();
     let size = (bounds.max - bounds.min).length();
     let near = 0.01 * if size.is_finite() { size } else { 1.0 };
@@ -136,7 +136,7 @@ fn in_the_air(world: &World, places: &[(Vec3, Vec3)]) -> Option<Vec3> {
         let from = point.as_dvec3() + f64::from(near) * normal.as_dvec3();
         world.closest(&Ray64::new(from, -*normal, 0.0, 2.0 * near), &mut ()).is_some()
     };
-    places.iter().find(|place| !lies_on_a_surface(place)).map(|place| place.0)
+    points.iter().find(|entry| !lies_on_a_surface(entry)).map(|entry| entry.0)
 }
 
 fn vector_of(v: Vec3) -> String {
@@ -148,7 +148,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let mut options = load_options(&args.reading);
     // Measure only the scene's own light.
     options.scene_defaults.own_light = options.scene_defaults.lighting.is_none();
-    let compiled = open(&args.scene, &options, false, &mut Guard::default())?;
+    let compiled = open(&args.scene, &options, false, &mut FileRegistry::default())?;
     let scene = &compiled.loaded.scene;
     let up = ModelAxes::new(scene.up.unwrap_or(Axis::Y)).up.as_vec3();
     let lumens = compiled.world.lumens().unwrap_or(LUMINANCE);
@@ -158,36 +158,38 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         grid.points().map(move |point| (point, normal))
     });
     let own = args.points.iter().map(|&point| (point, up)).chain(grids);
-    let mut places: Vec<(Vec3, Vec3)> = own.take(MAX_POINTS + 1).collect();
-    if places.is_empty() || places.len() > MAX_POINTS {
-        return Err(bad(format!("the number of points must be from 1 to {MAX_POINTS}: pass --at X,Y,Z or --grid")));
+    let mut points: Vec<(Vec3, Vec3)> = own.take(MAX_POINTS + 1).collect();
+    if points.is_empty() || points.len() > MAX_POINTS {
+        return Err(invalid_input(format!(
+            "the number of points must be from 1 to {MAX_POINTS}: pass --at X,Y,Z or --grid"
+        )));
     }
     if let Some(normal) = args.normal {
-        let Some(normal) = normal.try_normalize() else { return Err(bad("--normal must not be 0,0,0")) };
-        places.iter_mut().for_each(|place| place.1 = normal);
+        let Some(normal) = normal.try_normalize() else { return Err(invalid_input("--normal must not be 0,0,0")) };
+        points.iter_mut().for_each(|entry| entry.1 = normal);
     }
     let settings = RenderSettings { bounces: args.bounces, ..Job::default().settings };
-    let method = args.method.0.resolve_integrator(IntegratorKind::PATH).map_err(bad)?;
+    let method = args.method.0.resolve_integrator(IntegratorKind::PATH).map_err(invalid_input)?;
     let context = IntegratorContext { world: &compiled.world, settings, cone: None, seed: args.seed, cancel: None };
     let (Integrator::Path(path) | Integrator::Photons(path)) = method.create(context) else {
-        return Err(bad("only path tracing can measure illuminance: set --integrator path or photons"));
+        return Err(invalid_input("only path tracing can measure illuminance: set --integrator path or photons"));
     };
     if path.photons.is_some()
-        && let Some(point) = in_the_air(&compiled.world, &places)
+        && let Some(point) = in_the_air(&compiled.world, &points)
     {
         let message = format!(
             "photons are stored on surfaces, but {} is not on one: light from mirrors and glass would be missing",
             vector_of(point)
         );
-        return Err(bad(format!("{message}; use --integrator path, or add a surface there")));
+        return Err(invalid_input(format!("{message}; use --integrator path, or add a surface there")));
     }
-    let mut sums = vec![Sums::default(); places.len()];
+    let mut sums = vec![Sums::default(); points.len()];
     // Photons are traced again for every sample.
     let step = if method.prepares() { 1 } else { args.samples };
     threads::install(args.threads.map(usize::from), || {
         for first in (0..args.samples).step_by(step as usize) {
             path.prepare(first);
-            sums.par_iter_mut().zip(&places).enumerate().for_each(|(number, (sums, &(point, normal)))| {
+            sums.par_iter_mut().zip(&points).enumerate().for_each(|(number, (sums, &(point, normal)))| {
                 for sample in first..first + step {
                     let id = SampleId::new(args.seed, (number as u32, 0), sample);
                     sums.add(path.irradiance(point.as_dvec3(), normal, id, &mut ()), lumens);
@@ -196,13 +198,13 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         }
     });
     let rare = f64::from(path.max_rare_contribution(|color| color.dot(lumens)));
-    say("x,y,z,nx,ny,nz,illuminance,illuminance_error,irradiance_r,irradiance_g,irradiance_b");
+    print_line("x,y,z,nx,ny,nz,illuminance,illuminance_error,irradiance_r,irradiance_g,irradiance_b");
     let mut missed = false;
-    for ((point, normal), sums) in places.iter().zip(sums) {
+    for ((point, normal), sums) in points.iter().zip(sums) {
         let (light, mean, error) = sums.mean(args.samples, rare);
         missed |= rare / f64::from(args.samples) > 0.01 * mean.max(error);
         let [p, n, c] = [*point, *normal, Color::from(light.map(|x| x as f32))].map(vector_of);
-        say(&format!("{p},{n},{mean:.6},{error:.6},{c}"));
+        print_line(&format!("{p},{n},{mean:.6},{error:.6},{c}"));
     }
     if missed {
         let message = "only BSDF sampling finds some lights (in mirrors or glass, on solids, or textured ones): the \

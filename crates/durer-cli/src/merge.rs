@@ -2,12 +2,12 @@
 
 use crate::autosave::read_part;
 use crate::display::DisplayArgs;
-use crate::failure::{Failure, bad, failed};
-use crate::guard::Guard;
+use crate::failure::{Failure, from_render_error, invalid_input};
+use crate::file_registry::FileRegistry;
 use crate::output;
 use crate::output::Target;
 use crate::report::rejected;
-use crate::terminal::say;
+use crate::terminal::print_line;
 use clap::Args;
 use durer::render::merge;
 use std::path::PathBuf;
@@ -39,24 +39,24 @@ pub struct MergeArgs {
 
 /// Runs `durer merge`.
 pub fn run(args: &MergeArgs) -> Result<(), Failure> {
-    let mut guard = Guard::default();
+    let mut registry = FileRegistry::default();
     let read = |path: &PathBuf| {
-        guard.reads(path)?;
+        registry.register_input(path)?;
         Ok((path.display().to_string(), read_part(path)?))
     };
     let parts: Vec<_> = args.parts.iter().map(read).collect::<Result<_, Failure>>()?;
-    let Some((_, first)) = parts.first() else { return Err(bad("no parts to merge")) };
+    let Some((_, first)) = parts.first() else { return Err(invalid_input("no parts to merge")) };
     let names: Vec<&str> = first.job().picture_names().collect();
-    let target = Target::new(&args.output, &names, &mut guard)?;
-    let whole = merge(&parts).map_err(|error| bad(error.to_string()))?;
+    let target = Target::new(&args.output, &names, &mut registry)?;
+    let whole = merge(&parts).map_err(|error| invalid_input(error.to_string()))?;
     drop(parts);
     rejected(&whole.statistics(), None, args.quiet);
     let display = args.display.display()?;
     if target.save_colors(&whole, display, args.quiet)?.is_none() {
-        output::save(&target.files(&whole.pictures().map_err(failed)?, display)?, args.quiet)?;
+        output::save(&target.files(&whole.pictures().map_err(from_render_error)?, display)?, args.quiet)?;
     }
     if args.hash {
-        say(&whole.hash().to_string());
+        print_line(&whole.hash().to_string());
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Reads and compiles scenes, and prints their diagnostics.
 
 use crate::failure::Failure;
-use crate::guard::Guard;
+use crate::file_registry::FileRegistry;
 use crate::options::SceneArgs;
 use crate::report;
 use durer::diag::{Diagnostics, Files};
@@ -28,8 +28,13 @@ pub struct ParsedInput {
 }
 
 /// Reads a scene without compiling it.
-pub fn read(path: &Path, options: &LoadOptions, quiet: bool, guard: &mut Guard) -> Result<ParsedInput, Failure> {
-    guard.reads(path)?;
+pub fn read(
+    path: &Path,
+    options: &LoadOptions,
+    quiet: bool,
+    registry: &mut FileRegistry,
+) -> Result<ParsedInput, Failure> {
+    registry.register_input(path)?;
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     match load(path, options, &mut files, &mut diagnostics).map_err(report::unreadable)? {
         Some(loaded) => Ok(ParsedInput { loaded, files, diagnostics, quiet }),
@@ -47,18 +52,23 @@ impl ParsedInput {
     }
 
     /// Compiles the scene and prints the diagnostics.
-    pub fn compile(mut self, options: &LoadOptions, guard: &mut Guard) -> Result<CompiledInput, Failure> {
+    pub fn compile(mut self, options: &LoadOptions, registry: &mut FileRegistry) -> Result<CompiledInput, Failure> {
         let world = self.loaded.compile(options, &mut self.files, &mut self.diagnostics);
         report::print(&self.files, &self.diagnostics, self.quiet);
         let world = world.ok_or(Failure::Input(None))?;
-        self.loaded.files().iter().try_for_each(|path| guard.reads(path))?;
+        self.loaded.files().iter().try_for_each(|path| registry.register_input(path))?;
         Ok(CompiledInput { loaded: self.loaded, world, files: self.files, diagnostics: self.diagnostics })
     }
 }
 
 /// Reads and compiles a scene.
-pub fn open(path: &Path, options: &LoadOptions, quiet: bool, guard: &mut Guard) -> Result<CompiledInput, Failure> {
-    read(path, options, quiet, guard)?.compile(options, guard)
+pub fn open(
+    path: &Path,
+    options: &LoadOptions,
+    quiet: bool,
+    registry: &mut FileRegistry,
+) -> Result<CompiledInput, Failure> {
+    read(path, options, quiet, registry)?.compile(options, registry)
 }
 
 /// Returns true if a scene can be read and compiled. Prints nothing.

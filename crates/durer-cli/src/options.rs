@@ -1,7 +1,7 @@
 //! Options shared by several commands.
 
+mod integrator;
 mod job;
-mod method;
 
 use crate::denoise::Denoiser;
 use crate::display::DisplayArgs;
@@ -16,8 +16,8 @@ use durer::render::Shard;
 use std::path::PathBuf;
 use std::time::Duration;
 
+pub use integrator::IntegratorArgs;
 pub use job::{JobArgs, accel, aspect};
-pub use method::IntegratorArgs;
 
 /// Options for reading a scene
 #[derive(Args)]

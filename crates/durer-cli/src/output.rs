@@ -1,10 +1,10 @@
 //! Writes pictures to files.
 
-use crate::failure::{Failure, bad};
-use crate::guard::Guard;
+use crate::failure::{Failure, invalid_input};
+use crate::file_registry::FileRegistry;
 use crate::options::DIAGRAMS;
 use crate::progress;
-use crate::terminal::say;
+use crate::terminal::print_line;
 use durer::check::picture::PictureScan;
 use durer::image::{Content, Depth, Destination, Display, Format, Layer, WriteOptions, format_for, save_all};
 use durer::render::{BandsError, PartialRender, Rendered};
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 /// Returns the image format for a file name.
 pub fn format(path: &Path) -> Result<&'static Format, Failure> {
-    format_for(path).map_err(|error| bad(error.to_string()))
+    format_for(path).map_err(|error| invalid_input(error.to_string()))
 }
 
 /// Returns the layers to write in a format: values for floating-point formats, displayed pictures
@@ -37,23 +37,24 @@ pub struct Target {
 impl Target {
     /// Prepares the files for the named pictures. Fails before the render if a file could not be
     /// written.
-    pub fn new(path: &Path, names: &[&str], guard: &mut Guard) -> Result<Self, Failure> {
+    pub fn new(path: &Path, names: &[&str], registry: &mut FileRegistry) -> Result<Self, Failure> {
         let format = format(path)?;
         let diagram = names.iter().any(|name| DIAGRAMS.contains(name));
         if names.len() == 1 || format.supports_layers && !diagram {
-            return Ok(Target { format, files: vec![(None, guard.writes("--output", path)?)] });
+            return Ok(Target { format, files: vec![(None, registry.register_output("--output", path)?)] });
         }
         let extension = path.extension().unwrap_or_default().to_string_lossy();
         // Separate files are named picture.depth.png and so on.
         let own = |name: &&str| path.with_extension(format!("{name}.{extension}"));
-        let files = names.iter().map(|name| Ok((Some(name.to_string()), guard.writes("--output", &own(name))?)));
+        let files =
+            names.iter().map(|name| Ok((Some(name.to_string()), registry.register_output("--output", &own(name))?)));
         Ok(Target { format, files: files.collect::<Result<_, Failure>>()? })
     }
 
     /// Returns the file and its format, if all pictures share one file.
     pub fn single(&self) -> Option<(&Destination, &'static Format)> {
         match &self.files[..] {
-            [(None, place)] => Some((place, self.format)),
+            [(None, destination)] => Some((destination, self.format)),
             _ => None,
         }
     }
@@ -68,47 +69,47 @@ impl Target {
     ) -> Result<Option<PictureScan>, Failure> {
         let only_colors = part.job().color && part.job().aovs.is_empty();
         let rows = |format: &Format| only_colors && format.rows.is_some() && !format.supports_layers;
-        let Some((place, format)) = self.single().filter(|(_, format)| rows(format)) else { return Ok(None) };
+        let Some((destination, format)) = self.single().filter(|(_, format)| rows(format)) else { return Ok(None) };
         progress::saving();
-        let colors = Colors { part, format, display, looks: RefCell::new(PictureScan::new(display.exposure)) };
-        save_all(&[(place, &colors)])?;
-        wrote(place, quiet);
-        Ok(Some(colors.looks.into_inner()))
+        let colors = PartColors { part, format, display, scan: RefCell::new(PictureScan::new(display.exposure)) };
+        save_all(&[(destination, &colors)])?;
+        print_written(destination, quiet);
+        Ok(Some(colors.scan.into_inner()))
     }
 
     /// Checks that the formats support a picture size.
     pub fn check_size(&self, width: u32, height: u32) -> Result<(), Failure> {
-        self.format.check_size(width, height).map_err(|error| bad(error.to_string()))
+        self.format.check_size(width, height).map_err(|error| invalid_input(error.to_string()))
     }
 
     /// Encodes the pictures as the contents of their files.
     pub fn files(&self, rendered: &Rendered, display: Display) -> Result<Vec<(&Destination, Vec<u8>)>, Failure> {
         let layers = layers(rendered, self.format);
         let own = |name: &str| layers.iter().position(|layer| layer.name == name).map(|i| &layers[i..=i]);
-        let file = |(name, place)| {
+        let file = |(name, destination)| {
             let layers = match name {
                 None => layers,
                 Some(name) => own(name).ok_or_else(|| anyhow::anyhow!("no picture `{name}`"))?,
             };
-            Ok((place, encode(self.format, layers, display, &rendered.attributes)?))
+            Ok((destination, encode(self.format, layers, display, &rendered.attributes)?))
         };
-        self.files.iter().map(|(name, place)| file((name.as_deref(), place))).collect()
+        self.files.iter().map(|(name, destination)| file((name.as_deref(), destination))).collect()
     }
 }
 
 /// Source of a file's content: colours of a part file, encoded while they are written.
-struct Colors<'a> {
+struct PartColors<'a> {
     part: &'a PartialRender,
     format: &'static Format,
     display: Display,
     /// Scan of the written colours.
-    looks: RefCell<PictureScan>,
+    scan: RefCell<PictureScan>,
 }
 
-impl Content for &Colors<'_> {
+impl Content for &PartColors<'_> {
     fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
-        let (mut out, mut looks) = (io::BufWriter::new(out), self.looks.borrow_mut());
-        let written = self.part.write_colors(self.format, self.display, &mut out, |pixels| looks.add(pixels));
+        let (mut out, mut scan) = (io::BufWriter::new(out), self.scan.borrow_mut());
+        let written = self.part.write_colors(self.format, self.display, &mut out, |pixels| scan.add(pixels));
         written.map_err(|error| match error {
             BandsError::Io(error) => error,
             error => io::Error::other(error),
@@ -127,7 +128,7 @@ pub fn encode(
     let mut bytes = Vec::new();
     // Errors such as an unsupported size are due to the user's input.
     let options = WriteOptions { display: display.into(), attributes };
-    format.write(layers, &options, &mut bytes).map_err(|error| bad(error.to_string()))?;
+    format.write(layers, &options, &mut bytes).map_err(|error| invalid_input(error.to_string()))?;
     Ok(bytes)
 }
 
@@ -140,20 +141,20 @@ pub fn save_silently(files: &[(&Destination, Vec<u8>)]) -> Result<(), Failure> {
 /// Saves all files or none, and prints their names.
 pub fn save(files: &[(&Destination, Vec<u8>)], quiet: bool) -> Result<(), Failure> {
     save_silently(files)?;
-    files.iter().for_each(|(place, _)| wrote(place, quiet));
+    files.iter().for_each(|(destination, _)| print_written(destination, quiet));
     Ok(())
 }
 
 /// Prints the name of a written file. Streams are not mentioned, because the picture may be on
 /// standard output.
-pub fn wrote(place: &Destination, quiet: bool) {
-    if !quiet && !place.is_stream() {
-        say(&format!("wrote {}", place.path().display()));
+pub fn print_written(destination: &Destination, quiet: bool) {
+    if !quiet && !destination.is_stream() {
+        print_line(&format!("wrote {}", destination.path().display()));
     }
 }
 
 /// Appends `end` to a file name.
-pub fn lengthened(path: &Path, end: &str) -> PathBuf {
+pub fn with_suffix(path: &Path, end: &str) -> PathBuf {
     let mut name = path.as_os_str().to_os_string();
     name.push(end);
     name.into()

@@ -13,7 +13,7 @@ mod tour;
 pub use args::PhotoArgs;
 
 use crate::failure::Failure;
-use crate::guard::Guard;
+use crate::file_registry::FileRegistry;
 use args::PhotoCommand;
 use inputs::read;
 use results::{Results, report};
@@ -27,9 +27,9 @@ pub fn run(args: &PhotoArgs) -> Result<(), Failure> {
         PhotoCommand::Place(args) => place::run(args),
         PhotoCommand::Explain(args) => explain::run(args),
         PhotoCommand::Convert(args) => {
-            let mut guard = Guard::default();
-            let mut results = Results::new(&args.results, &mut guard)?;
-            let all = read(&args.file, args.pictures.as_deref(), &mut guard)?;
+            let mut registry = FileRegistry::default();
+            let mut results = Results::new(&args.results, &mut registry)?;
+            let all = read(&args.file, args.pictures.as_deref(), &mut registry)?;
             results.add(&all)?;
             results.save(args.quiet)?;
             if !args.quiet {

@@ -1,14 +1,14 @@
 //! Renders one picture, from the scene file to the written files.
 
 use crate::autosave::Autosave;
-use crate::failure::{Failure, bad, failed};
-use crate::guard::Guard;
+use crate::failure::{Failure, from_render_error, invalid_input};
+use crate::file_registry::FileRegistry;
 use crate::open::{load_options, read};
 use crate::options::{DIAGRAMS, ERROR, RenderArgs, accel, aspect};
-use crate::output::{Target, lengthened};
+use crate::output::{Target, with_suffix};
 use crate::report::rejected;
-use crate::stats::Stages;
-use crate::terminal::{complain, say};
+use crate::stats::StageTimer;
+use crate::terminal::{print_error_line, print_line};
 use crate::{check, diagrams, job, large, output, progress};
 use durer::compile::AssetCache;
 use durer::image::checked_count;
@@ -26,7 +26,7 @@ pub struct WatchState {
     /// Files that the scene refers to, without the scene file itself.
     pub files: Mutex<Vec<PathBuf>>,
     /// True if a file has been saved since the render began.
-    pub stale: AtomicBool,
+    pub outdated: AtomicBool,
     /// Meshes and images kept from earlier renders.
     pub cache: Option<Arc<AssetCache>>,
     control: Mutex<Option<Arc<Control>>>,
@@ -40,18 +40,18 @@ impl WatchState {
 
     /// Marks the render as outdated and cancels it.
     pub fn cancel(&self) {
-        self.stale.store(true, Relaxed);
+        self.outdated.store(true, Relaxed);
         if let Ok(Some(control)) = self.control.lock().as_deref() {
             control.cancel.store(true, Relaxed);
         }
     }
 
     /// Registers a render, so that it can be cancelled.
-    fn begins(&self, control: &Arc<Control>) {
+    fn register(&self, control: &Arc<Control>) {
         if let Ok(mut place) = self.control.lock() {
             *place = Some(Arc::clone(control));
         }
-        if self.stale.load(Relaxed) {
+        if self.outdated.load(Relaxed) {
             control.cancel.store(true, Relaxed);
         }
     }
@@ -66,25 +66,25 @@ pub struct Pixel {
 
 /// Returns the file of the picture: that of `--output` or the default.
 pub fn output_of(args: &RenderArgs) -> PathBuf {
-    let default_name = || lengthened(Path::new(args.scene.file_stem().unwrap_or_default()), ".png");
+    let default_name = || with_suffix(Path::new(args.scene.file_stem().unwrap_or_default()), ".png");
     args.output.clone().unwrap_or_else(default_name)
 }
 
 /// Renders a scene and writes its pictures.
-pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Result<(), Failure> {
+pub fn render_picture(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Result<(), Failure> {
     let shard = match args.work.shard {
         Some(shard) if args.work.shard_by == "samples" => Shard { by: ShardBy::Samples, ..shard },
         shard => shard.unwrap_or(Shard::WHOLE),
     };
     let output = output_of(args);
     // Check that the output can be written before starting the work.
-    let mut guard = Guard::default();
+    let mut registry = FileRegistry::default();
     let (target, autosave) = match (pixel, args.work.shard) {
         (Some(_), _) => (None, None),
-        (_, Some(_)) => (None, Some(Autosave::new(args, &output, &mut guard)?)),
+        (_, Some(_)) => (None, Some(Autosave::new(args, &output, &mut registry)?)),
         _ => {
-            let target = Target::new(&output, &shows(args)?, &mut guard)?;
-            (Some(target), Some(Autosave::new(args, &output, &mut guard)?))
+            let target = Target::new(&output, &shows(args)?, &mut registry)?;
+            (Some(target), Some(Autosave::new(args, &output, &mut registry)?))
         }
     };
     let mut options = load_options(&args.reading);
@@ -93,9 +93,9 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Re
     (options.accel, options.threads) = (accel(&args.job)?, threads);
     options.scene_defaults.aspect = aspect(&args.job);
     options.cache = watched.cache.clone();
-    let mut stages = Stages::begin();
-    let scene = read(&args.scene, &options, args.quiet, &mut guard)?;
-    stages.ends("reading");
+    let mut stages = StageTimer::start();
+    let scene = read(&args.scene, &options, args.quiet, &mut registry)?;
+    stages.end_stage("reading");
     let job = job::job(&args.job, Some(&args.view), &scene.loaded, args.work.time.is_some())?;
     let window = job.window();
     let mut needed = PartialRender::bytes_needed(&job, shard);
@@ -103,7 +103,7 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Re
         Some(target) if large::is_large(&job, needed, memory) => Some(large::bands(args, &job, target, memory)?),
         target => {
             // Report an invalid size as such, whatever the memory limit is.
-            checked_count(window.width, window.height).map_err(|error| bad(error.to_string()))?;
+            checked_count(window.width, window.height).map_err(|error| invalid_input(error.to_string()))?;
             target.as_ref().map_or(Ok(()), |target| target.check_size(window.width, window.height))?;
             None
         }
@@ -112,11 +112,11 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Re
     needed = bands.as_ref().map_or(needed, BandedRender::bytes_needed);
     options.memory = memory.map(|memory| memory.saturating_sub(needed));
     if let Some(allowed) = memory.filter(|&memory| needed > memory) {
-        return Err(failed(RenderError::Memory { needed, allowed }));
+        return Err(from_render_error(RenderError::Memory { needed, allowed }));
     }
     options.rays = Some(window.pixels().saturating_mul(u64::from(job.sampling.samples())));
-    let compiled = scene.compile(&options, &mut guard)?;
-    stages.ends("meshes, pictures and trees");
+    let compiled = scene.compile(&options, &mut registry)?;
+    stages.end_stage("meshes, pictures and trees");
     if let Ok(mut files) = watched.files.lock() {
         *files = compiled.loaded.files();
     }
@@ -132,7 +132,7 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Re
         accumulates: bands.is_some(),
         ..Control::default()
     });
-    watched.begins(&control);
+    watched.register(&control);
     if let (Some(bands), Some(target)) = (&bands, &target) {
         return large::render(bands, &compiled.world, &control, target, args);
     }
@@ -142,29 +142,31 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Re
     };
     let shows_error = args.view.show.iter().any(|show| show == ERROR);
     if shows_error && (target.is_none() || job.method.path_options().is_none()) {
-        return Err(bad(
+        return Err(invalid_input(
             "--show error needs the full picture and the integrator path or photons: remove --shard, or set \
              --integrator",
         ));
     }
     if args.view.show.iter().any(|show| DIAGRAMS.contains(&show.as_str())) {
         if target.is_none() {
-            return Err(bad("diagrams cannot be split into parts: remove --shard, or the diagram from --show"));
+            return Err(invalid_input(
+                "diagrams cannot be split into parts: remove --shard, or the diagram from --show",
+            ));
         }
-        diagrams::check(&job, args.view.zoom).map_err(failed)?;
+        diagrams::check(&job, args.view.zoom).map_err(from_render_error)?;
     }
-    let part = autosave.begin(PartialRender::new(&compiled.world, &job, shard).map_err(failed)?)?;
+    let part = autosave.begin(PartialRender::new(&compiled.world, &job, shard).map_err(from_render_error)?)?;
     let stop = progress::watch(&control, args.quiet, || {
         part.render(&compiled.world, &control, &mut |part, moment| autosave.watch(part, moment))
     })
-    .map_err(failed)?;
-    stages.ends("rendering");
+    .map_err(from_render_error)?;
+    stages.end_stage("rendering");
     rejected(&part.statistics(), Some(&compiled.world), args.quiet);
     let finished = match &stop {
         RenderOutcome::Finished => true,
         RenderOutcome::OutOfTime => part.is_finished(),
-        RenderOutcome::Cancelled if watched.stale.load(Relaxed) => return Err(Failure::Interrupted(String::new())),
-        RenderOutcome::Cancelled => return Err(stopped(args, &part, &autosave, target.as_ref())),
+        RenderOutcome::Cancelled if watched.outdated.load(Relaxed) => return Err(Failure::Interrupted(String::new())),
+        RenderOutcome::Cancelled => return Err(save_after_interrupt(args, &part, &autosave, target.as_ref())),
         RenderOutcome::Panicked(panicked) => return Err(autosave.after_panic(&part, panicked, &replaying(panicked))),
     };
     match target {
@@ -179,7 +181,7 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Re
                     let rendered = pictures(args, &compiled.world, &part, &control)?;
                     let files = durer::threads::install(threads, || target.files(&rendered, display))?;
                     output::save(&files, args.quiet)?;
-                    (check::looks(&job, &rendered.pictures, display.exposure), rendered.pictures)
+                    (check::scan(&job, &rendered.pictures, display.exposure), rendered.pictures)
                 }
             };
             autosave.done(&part, finished);
@@ -189,14 +191,14 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &WatchState) -> Re
         }
     }
     if !finished && !args.quiet {
-        complain(&format!("note: the time limit ended the render after {} samples", part.statistics().samples));
+        print_error_line(&format!("note: the time limit ended the render after {} samples", part.statistics().samples));
     }
-    stages.ends("writing");
+    stages.end_stage("writing");
     if args.stats {
         stages.report(&compiled.world, &part)?;
     }
     if args.hash {
-        say(&part.hash().to_string());
+        print_line(&part.hash().to_string());
     }
     Ok(())
 }
@@ -209,15 +211,15 @@ fn pictures(
     control: &Arc<Control>,
 ) -> Result<Rendered, Failure> {
     let (job, threads) = (part.job(), control.threads);
-    let mut rendered = durer::threads::install(threads, || part.pictures()).map_err(failed)?;
-    diagrams::add(&args.view.show, args.view.zoom, world, job, control, &mut rendered).map_err(failed)?;
+    let mut rendered = durer::threads::install(threads, || part.pictures()).map_err(from_render_error)?;
+    diagrams::add(&args.view.show, args.view.zoom, world, job, control, &mut rendered).map_err(from_render_error)?;
     if args.view.show.iter().any(|show| show == ERROR) {
-        let [values, shown] = part.error(world, threads).map_err(failed)?;
+        let [values, shown] = part.error(world, threads).map_err(from_render_error)?;
         rendered.layers.push(values);
         rendered.pictures.push(shown);
     }
     if let (Some(denoiser), true) = (args.denoise, job.color) {
-        let noisy = part.noisy(world, threads).map_err(failed)?;
+        let noisy = part.noisy(world, threads).map_err(from_render_error)?;
         let clean = denoiser.clean(noisy, threads, args.quiet)?;
         for shown in rendered.pictures.iter_mut().filter(|layer| layer.name == "color") {
             shown.image = clean.image.clone();
@@ -231,18 +233,23 @@ fn pictures(
 fn shows(args: &RenderArgs) -> Result<Vec<&str>, Failure> {
     let names: Vec<&str> = args.view.show.iter().map(String::as_str).collect();
     match (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
-        Some(twice) => Err(bad(format!("--show: `{}` is given twice", names[twice]))),
+        Some(twice) => Err(invalid_input(format!("--show: `{}` is given twice", names[twice]))),
         None => Ok(names),
     }
 }
 
 /// Saves the work after Ctrl-C. Writes the picture only if every pixel has a sample, because it
 /// could replace a better one.
-fn stopped(args: &RenderArgs, part: &PartialRender, autosave: &Autosave, target: Option<&Target>) -> Failure {
+fn save_after_interrupt(
+    args: &RenderArgs,
+    part: &PartialRender,
+    autosave: &Autosave,
+    target: Option<&Target>,
+) -> Failure {
     let mut written = autosave.after_interrupt(part);
     if let Some(target) = target.filter(|_| part.is_whole()) {
         let display = args.display.display().unwrap_or_default();
-        let files = part.pictures().map_err(failed).and_then(|rendered| target.files(&rendered, display));
+        let files = part.pictures().map_err(from_render_error).and_then(|rendered| target.files(&rendered, display));
         if let Ok(files) = files.and_then(|files| output::save_silently(&files).map(|()| files)) {
             written.extend(files.into_iter().map(|(place, _)| place.path().display().to_string()));
         }
@@ -265,9 +272,9 @@ fn replaying(panicked: &Panicked) -> String {
 /// Prints the colour of a pixel or sample, for `--pixel`.
 fn print_pixel(world: &World, job: &Job, control: &Control, pixel: Pixel) -> Result<(), Failure> {
     let Pixel { place: (x, y), sample } = pixel;
-    let color = replay(world, job, control, (x, y), sample).map_err(failed)?;
+    let color = replay(world, job, control, (x, y), sample).map_err(from_render_error)?;
     let sample = sample.map(|sample| format!(", sample {sample}")).unwrap_or_default();
     let shown = color.map_or("the camera sees nothing there".into(), |c| format!("{:?} {:?} {:?}", c.x, c.y, c.z));
-    say(&format!("pixel {x},{y}{sample}: {shown}"));
+    print_line(&format!("pixel {x},{y}{sample}: {shown}"));
     Ok(())
 }

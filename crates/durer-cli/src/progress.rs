@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 /// Phase of the program, which determines how it reacts to a signal such as Ctrl-C.
 enum Phase {
     /// Before anything is written: the signal ends the program.
-    Harmless,
+    BeforeWriting,
     /// The program waits for changes: the signal ends it without an error.
     Idle,
     /// The signal cancels the render; a second one ends the program.
@@ -24,11 +24,11 @@ enum Phase {
 
 /// Signals within this interval count as one, because some programs send a signal to both the
 /// process and its group.
-const SAME: Duration = Duration::from_millis(500);
+const SIGNAL_INTERVAL: Duration = Duration::from_millis(500);
 
 /// Current phase. It is locked while it changes, so that no save starts while the program ends.
-static PHASE: Mutex<Phase> = Mutex::new(Phase::Harmless);
-/// Time of the last signal. Repeats within [`SAME`] do not count.
+static PHASE: Mutex<Phase> = Mutex::new(Phase::BeforeWriting);
+/// Time of the last signal. Repeats within [`SIGNAL_INTERVAL`] do not count.
 static LAST: Mutex<Option<Instant>> = Mutex::new(None);
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -38,7 +38,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 /// Reacts to a signal according to the current phase.
 fn interrupt(signal: u8) {
     let (mut last, mut phase) = (locked(&LAST), locked(&PHASE));
-    if last.is_some_and(|last| last.elapsed() < SAME) {
+    if last.is_some_and(|last| last.elapsed() < SIGNAL_INTERVAL) {
         return;
     }
     *last = Some(Instant::now());
@@ -49,7 +49,7 @@ fn interrupt(signal: u8) {
         Phase::Idle => end(0),
         phase => {
             let what =
-                if matches!(phase, Phase::Harmless) { "nothing was written" } else { "not everything was saved" };
+                if matches!(phase, Phase::BeforeWriting) { "nothing was written" } else { "not everything was saved" };
             end(Failure::Interrupted(what.into()).report())
         }
     }
@@ -57,7 +57,7 @@ fn interrupt(signal: u8) {
 
 /// Starts to handle signals. If that fails, signals end the program as usual.
 #[cfg(unix)]
-pub fn hear_interrupts() {
+pub fn handle_signals() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
     // With SIGXFSZ handled, exceeding the file size limit becomes a write error that names the
     // file.
@@ -89,7 +89,7 @@ fn ignored_signals() -> u64 {
 /// Starts to handle Ctrl-C, Ctrl-Break and the other console events. If the window is closed, the
 /// system ends the program anyway, and only earlier saves remain.
 #[cfg(not(unix))]
-pub fn hear_interrupts() {
+pub fn handle_signals() {
     let _ = ctrlc::set_handler(|| interrupt(2));
 }
 
@@ -100,7 +100,7 @@ pub fn idle() {
 
 /// Leaves the phase in which the program waits for changes.
 pub fn busy() {
-    *locked(&PHASE) = Phase::Harmless;
+    *locked(&PHASE) = Phase::BeforeWriting;
 }
 
 /// Enters the phase in which files are written.
@@ -115,14 +115,14 @@ pub fn watch<T>(
     render: impl FnOnce() -> Result<T, RenderError>,
 ) -> Result<T, RenderError> {
     *locked(&PHASE) = Phase::Rendering(Arc::clone(control));
-    let result = show(control, quiet, render);
-    *locked(&PHASE) = Phase::Harmless;
+    let result = with_progress(control, quiet, render);
+    *locked(&PHASE) = Phase::BeforeWriting;
     result
 }
 
 /// Runs work with a progress bar on a terminal. Unlike in [`watch`], signals end the program at
 /// once, because nothing needs to be saved.
-pub fn show<T>(control: &Control, quiet: bool, work: impl FnOnce() -> T) -> T {
+pub fn with_progress<T>(control: &Control, quiet: bool, work: impl FnOnce() -> T) -> T {
     if !quiet && std::io::stderr().is_terminal() { with_bar(control, work) } else { work() }
 }
 
@@ -205,7 +205,7 @@ pub fn each<T, R>(names: &[String], items: Vec<T>, quiet: bool, mut work: impl F
 }
 
 /// Runs `work`, and shows its progress from 0 to 1 on a terminal if it takes long.
-pub fn shares<R>(name: &'static str, work: impl FnOnce(&(dyn Fn(f64) + Sync)) -> R) -> R {
+pub fn show_progress<R>(name: &'static str, work: impl FnOnce(&(dyn Fn(f64) + Sync)) -> R) -> R {
     let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::hidden());
     let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {elapsed}");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));

@@ -1,9 +1,9 @@
 //! `durer render`: renders one picture, an animation, or a picture again and again with `--watch`.
 
-use crate::failure::{Failure, bad};
+use crate::failure::{Failure, invalid_input};
 use crate::frames::FramesArgs;
 use crate::options::RenderArgs;
-use crate::picture::{Pixel, WatchState, once};
+use crate::picture::{Pixel, WatchState, render_picture};
 use crate::values::pixel;
 use crate::{frames, watching};
 use clap::Args;
@@ -57,7 +57,7 @@ pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
         (Some((frames, moves)), _) => {
             let work = &args.work;
             if work.checkpoint.is_some() || work.preview.is_some() || args.watch || command.pixel.is_some() {
-                return Err(bad(
+                return Err(invalid_input(
                     "--checkpoint, --preview, --watch and --pixel apply to one picture, not to an animation",
                 ));
             }
@@ -70,7 +70,7 @@ pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
         }
         (None, false) => {
             let sample = command.sample;
-            once(args, command.pixel.map(|place| Pixel { place, sample }), &WatchState::default())
+            render_picture(args, command.pixel.map(|place| Pixel { place, sample }), &WatchState::default())
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Prints diagnostics on the terminal.
 
 use crate::failure::Failure;
-use crate::terminal::complain;
+use crate::terminal::print_error_line;
 use codespan_reporting::diagnostic::{Diagnostic as Shown, Label, Severity as Level};
 use codespan_reporting::files::{self, SimpleFiles};
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
@@ -17,11 +17,11 @@ use std::ops::Range;
 
 /// Prints diagnostics to standard error: all of them, or only errors.
 pub fn print(files: &Files, diagnostics: &Diagnostics, errors_only: bool) {
-    let wanted: Vec<&Diagnostic> =
+    let selected: Vec<&Diagnostic> =
         diagnostics.iter().filter(|d| !errors_only || d.severity == Severity::Error).collect();
-    print_to(StandardStream::stderr(colors(&std::io::stderr())), files, &wanted);
+    print_to(StandardStream::stderr(colors(&std::io::stderr())), files, &selected);
     if diagnostics.error_count() > ERROR_LIMIT {
-        complain(&format!("and {} more errors", diagnostics.error_count() - ERROR_LIMIT));
+        print_error_line(&format!("and {} more errors", diagnostics.error_count() - ERROR_LIMIT));
     }
 }
 
@@ -36,18 +36,18 @@ pub fn colors(stream: &impl IsTerminal) -> ColorChoice {
 }
 
 /// Prints diagnostics to a stream.
-pub fn print_to(stream: StandardStream, files: &Files, wanted: &[&Diagnostic]) {
-    if wanted.is_empty() {
+pub fn print_to(stream: StandardStream, files: &Files, diagnostics: &[&Diagnostic]) {
+    if diagnostics.is_empty() {
         return;
     }
     let mut shown = SimpleFiles::new();
     for file in 0.. {
         let (Some(name), Some(bytes)) = (files.name(file), files.bytes(file)) else { break };
         // Leave out the text of files without a diagnostic.
-        let used = wanted.iter().any(|d| spans(d).any(|span| span.file == file));
+        let used = diagnostics.iter().any(|d| spans(d).any(|span| span.file == file));
         shown.add(name.to_string(), if used { text(bytes) } else { String::new() });
     }
-    for diagnostic in wanted {
+    for diagnostic in diagnostics {
         // Ignore errors: a closed stream cannot show a message.
         let excerpt = Excerpt { files: &shown, around: diagnostic.span };
         let _ = emit_to_write_style(&mut stream.lock(), &Config::default(), &excerpt, &show(diagnostic, files));
@@ -56,7 +56,7 @@ pub fn print_to(stream: StandardStream, files: &Files, wanted: &[&Diagnostic]) {
 
 /// Prints a note on one line.
 pub fn note(diagnostic: &Diagnostic) {
-    complain(&format!("note: {}", diagnostic.message));
+    print_error_line(&format!("note: {}", diagnostic.message));
 }
 
 /// Prints the number of rejected samples, the first of them and, if the world is given, the cause.

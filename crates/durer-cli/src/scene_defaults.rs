@@ -13,9 +13,9 @@ pub struct SceneDefaultsArgs {
     #[arg(long, value_name = "AXIS", value_enum, help = doc("up"))]
     pub up: Option<Up>,
     #[arg(long, value_name = "FROM", value_enum, help = doc("view"))]
-    pub view: Option<From>,
+    pub view: Option<ViewDirection>,
     #[arg(long, value_name = "LIGHT", value_enum, help = doc("studio"))]
-    pub studio: Option<Light>,
+    pub studio: Option<StudioLight>,
     #[arg(long, value_name = "FILE", help = doc("environment"))]
     pub environment: Option<PathBuf>,
     #[arg(long, value_name = "FILE", conflicts_with = "view", help = doc("view-file"))]
@@ -42,7 +42,7 @@ pub enum Up {
 
 /// View of a model, given with `--view`.
 #[derive(Clone, Copy, ValueEnum)]
-pub enum From {
+pub enum ViewDirection {
     /// From the front, slightly from the right and above, in perspective
     ThreeQuarter,
     /// From the front, without perspective
@@ -57,7 +57,7 @@ pub enum From {
 
 /// Lights that are added to a model, given with `--studio`.
 #[derive(Clone, Copy, ValueEnum)]
-pub enum Light {
+pub enum StudioLight {
     /// No lights and no ground
     None,
     /// A soft key light, a fill light and a bright ground
@@ -86,16 +86,16 @@ impl SceneDefaultsArgs {
                 Up::Z => Axis::Z,
             }),
             view: self.view.map(|view| match view {
-                From::ThreeQuarter => PresetView::ThreeQuarter,
-                From::Front => PresetView::Front,
-                From::Side => PresetView::Side,
-                From::Top => PresetView::Top,
-                From::Iso => PresetView::Iso,
+                ViewDirection::ThreeQuarter => PresetView::ThreeQuarter,
+                ViewDirection::Front => PresetView::Front,
+                ViewDirection::Side => PresetView::Side,
+                ViewDirection::Top => PresetView::Top,
+                ViewDirection::Iso => PresetView::Iso,
             }),
             lighting: self.studio.map(|studio| match studio {
-                Light::None => DefaultLighting::None,
-                Light::Soft => DefaultLighting::Soft,
-                Light::Sun => DefaultLighting::Sun,
+                StudioLight::None => DefaultLighting::None,
+                StudioLight::Soft => DefaultLighting::Soft,
+                StudioLight::Sun => DefaultLighting::Sun,
             }),
             camera: self.camera.clone(),
             variant: self.variant.clone(),

@@ -1,7 +1,7 @@
 //! `--stats`: prints times and ray counts of a render.
 
-use crate::failure::{Failure, failed};
-use crate::terminal::complain;
+use crate::failure::{Failure, from_render_error};
+use crate::terminal::print_error_line;
 use durer::render::{PartialRender, Profile, profile};
 use durer::world::World;
 use std::time::{Duration, Instant};
@@ -10,46 +10,49 @@ use std::time::{Duration, Instant};
 const SAMPLES: u64 = 4096;
 
 /// Stopwatch for the stages of a render, such as reading and rendering.
-pub struct Stages {
+pub struct StageTimer {
     last: Instant,
     done: Vec<(&'static str, Duration)>,
 }
 
-impl Stages {
+impl StageTimer {
     /// Starts the first stage.
-    pub fn begin() -> Self {
-        Stages { last: Instant::now(), done: Vec::new() }
+    pub fn start() -> Self {
+        StageTimer { last: Instant::now(), done: Vec::new() }
     }
 
     /// Ends the current stage, which gets this name, and starts the next.
-    pub fn ends(&mut self, name: &'static str) {
+    pub fn end_stage(&mut self, name: &'static str) {
         self.done.push((name, self.last.elapsed()));
         self.last = Instant::now();
     }
 
     /// Prints the times of the stages and the ray counts of a finished part.
     pub fn report(&self, world: &World, part: &PartialRender) -> Result<(), Failure> {
-        complain("time");
+        print_error_line("time");
         for (name, time) in &self.done {
-            complain(&format!("  {:>9.1} ms  {name}", time.as_secs_f64() * 1e3));
+            print_error_line(&format!("  {:>9.1} ms  {name}", time.as_secs_f64() * 1e3));
         }
         let statistics = part.statistics();
         let rendering =
             self.done.iter().find(|(name, _)| *name == "rendering").map_or(0.0, |(_, time)| time.as_secs_f64());
-        complain("rays");
-        complain(&format!("  {:>12}  in total, for {} samples", statistics.rays, statistics.samples));
-        complain(&format!("  {:>12.2}  million per second", statistics.rays as f64 / rendering.max(1e-9) / 1e6));
+        print_error_line("rays");
+        print_error_line(&format!("  {:>12}  in total, for {} samples", statistics.rays, statistics.samples));
+        print_error_line(&format!(
+            "  {:>12.2}  million per second",
+            statistics.rays as f64 / rendering.max(1e-9) / 1e6
+        ));
         if let Some(Profile { samples, rays, time, intersection_time }) =
-            profile(world, part.job(), SAMPLES).map_err(failed)?
+            profile(world, part.job(), SAMPLES).map_err(from_render_error)?
         {
-            complain(&format!("{samples} samples repeated on one thread"));
+            print_error_line(&format!("{samples} samples repeated on one thread"));
             for (name, count) in rays.iter().filter(|(_, count)| *count > 0) {
-                complain(&format!("  {count:>12}  {name} rays"));
+                print_error_line(&format!("  {count:>12}  {name} rays"));
             }
             let per_sample = time.as_secs_f64() * 1e9 / samples.max(1) as f64;
-            complain(&format!("  {per_sample:>12.0}  ns per sample"));
+            print_error_line(&format!("  {per_sample:>12.0}  ns per sample"));
             let share = 100.0 * intersection_time.as_secs_f64() / time.as_secs_f64().max(1e-9);
-            complain(&format!("  {share:>12.0}  % of that in ray traversal"));
+            print_error_line(&format!("  {share:>12.0}  % of that in ray traversal"));
         }
         Ok(())
     }

@@ -35,7 +35,7 @@ pub fn end(code: u8) -> ! {
 
 /// Records whether the program was started with a standard output.
 #[cfg(unix)]
-pub fn look_at_standard_output() {
+pub fn check_standard_output() {
     CLOSED.store(rustix::io::fcntl_getfd(rustix::stdio::stdout()).is_err(), Relaxed);
 }
 
@@ -46,14 +46,14 @@ pub fn has_standard_output() -> bool {
 
 /// Prints a line on standard output. A closed pipe is not an error, because the reader has what it
 /// needs.
-pub fn say(line: &str) {
+pub fn print_line(line: &str) {
     let written = match has_standard_output() {
         true => writeln!(std::io::stdout(), "{line}"),
         false => Err(std::io::Error::other("it is closed")),
     };
     match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            complain(&format!("error: cannot write to standard output: {error}"));
+            print_error_line(&format!("error: cannot write to standard output: {error}"));
             end(OTHER_FAILURE);
         }
         _ => {}
@@ -61,6 +61,6 @@ pub fn say(line: &str) {
 }
 
 /// Prints a line on standard error. Errors are ignored, because there is nowhere to report them.
-pub fn complain(line: &str) {
+pub fn print_error_line(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }

@@ -1,10 +1,10 @@
 //! `durer verify`: checks that renders are deterministic.
 
 use crate::failure::Failure;
-use crate::guard::Guard;
+use crate::file_registry::FileRegistry;
 use crate::open::{load_options, open};
 use crate::options::{JobArgs, SceneArgs, ViewArgs};
-use crate::terminal::say;
+use crate::terminal::print_line;
 use crate::{job, progress};
 use anyhow::Context;
 use clap::Args;
@@ -62,14 +62,14 @@ const SIZE: (u32, u32) = (64, 48);
 /// Runs `durer verify`.
 pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
     let mut worlds: Vec<(&str, World)> = Vec::new();
-    let mut wanted = None;
+    let mut first_job = None;
     for (name, accel) in STRUCTURES {
         let mut options = load_options(&args.reading);
         options.accel = accel;
         let (width, height) = args.job.options.requested_size().unwrap_or(SIZE);
         options.scene_defaults.aspect = Some(width as f32 / height as f32);
         // Print diagnostics only for the first acceleration structure.
-        let compiled = open(&args.scene, &options, args.quiet || !worlds.is_empty(), &mut Guard::default())?;
+        let compiled = open(&args.scene, &options, args.quiet || !worlds.is_empty(), &mut FileRegistry::default())?;
         let mut job = job::job(&args.job, Some(&args.view), &compiled.loaded, false)?;
         (job.width, job.height) = (width, height);
         // The cost picture depends on the acceleration structure.
@@ -77,14 +77,14 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
         if ["samples", "noise-threshold"].iter().all(|name| args.job.options.get(name).is_none()) {
             job.sampling = job.sampling.with_samples(if job.adaptive { MIN_ADAPTIVE_SAMPLES } else { 8 });
         }
-        wanted = Some(job);
+        first_job = Some(job);
         worlds.push((name, compiled.world));
     }
-    let Some(job) = wanted else { return Ok(()) };
+    let Some(job) = first_job else { return Ok(()) };
     let control = Control::default();
     control.total_work.store(args.trials.into(), Relaxed);
     let never = AtomicBool::new(false);
-    let made = progress::show(&control, args.quiet, || {
+    let verified = progress::with_progress(&control, args.quiet, || {
         let plain = RenderVariant::PLAIN.render_job(&worlds[0].1, &job, &never).map_err(cancelled)?;
         for number in 0..u64::from(args.trials) {
             let way = RenderVariant::numbered(number, &job, worlds.len());
@@ -105,7 +105,7 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
         Ok(Ok(plain))
     });
     let plain: PartialRender =
-        made.map_err(crate::failure::failed)?.map_err(|text| Failure::Other(anyhow::anyhow!(text)))?;
+        verified.map_err(crate::failure::from_render_error)?.map_err(|text| Failure::Other(anyhow::anyhow!(text)))?;
     let hash = plain.hash().to_string();
     let levels = simd_levels();
     for level in levels.iter().filter(|level| **level != SimdLevel::chosen().name()) {
@@ -114,14 +114,14 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
         }
     }
     if !args.quiet {
-        say(&format!(
+        print_line(&format!(
             "{} ways, structures {}, instructions {}: one hash",
             args.trials,
             STRUCTURES.map(|s| s.0).join(", "),
             levels.join(", ")
         ));
     }
-    say(&hash);
+    print_line(&hash);
     Ok(())
 }
 

@@ -2,8 +2,8 @@
 
 use crate::failure::Failure;
 use crate::options::RenderArgs;
-use crate::picture::{WatchState, once};
-use crate::terminal::complain;
+use crate::picture::{WatchState, render_picture};
+use crate::terminal::print_error_line;
 use crate::{progress, report};
 use durer::compile::AssetCache;
 use durer::format::folder::stamp_of;
@@ -15,9 +15,9 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
 /// Interval between checks of the files; short, because the user is waiting for the picture.
-const LOOK: Duration = Duration::from_millis(10);
+const CHECK_INTERVAL: Duration = Duration::from_millis(10);
 /// Time for which files must stay unchanged, because some programs save in several steps.
-const PAUSE: Duration = Duration::from_millis(50);
+const SETTLE_TIME: Duration = Duration::from_millis(50);
 
 /// Returns the current time stamps of the files.
 fn stamp(files: &[PathBuf]) -> Vec<Option<Stamp>> {
@@ -30,12 +30,12 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let always: Vec<PathBuf> =
         [Some(args.scene.clone())].into_iter().chain(named.map(Clone::clone)).flatten().collect();
     let mut files = always.clone();
-    let kept = Arc::new(AssetCache::default());
+    let cache = Arc::new(AssetCache::default());
     loop {
         let before = stamp(&files);
-        let watched = WatchState::keeping(&kept);
-        let result = while_watching(&files, &before, &watched, || once(args, None, &watched));
-        let stale = watched.stale.load(Relaxed);
+        let watched = WatchState::keeping(&cache);
+        let result = while_watching(&files, &before, &watched, || render_picture(args, None, &watched));
+        let stale = watched.outdated.load(Relaxed);
         match result {
             Ok(()) => {}
             Err(Failure::Interrupted(_)) if stale => {}
@@ -61,26 +61,26 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         };
         if !args.quiet {
             let count = report::counted(files.len(), "file");
-            let reused = match kept.statistics().reused {
+            let reused = match cache.statistics().reused {
                 0 => String::new(),
                 n => format!(" ({n} meshes and pictures reused)"),
             };
-            complain(&format!("watching {count}{reused}; press Ctrl-C to stop"));
+            print_error_line(&format!("watching {count}{reused}; press Ctrl-C to stop"));
         }
         progress::idle();
         while stamp(&files) == before {
-            std::thread::sleep(LOOK);
+            std::thread::sleep(CHECK_INTERVAL);
         }
-        settle(&files);
+        wait_until_unchanged(&files);
         progress::busy();
     }
 }
 
-/// Waits until the files stay unchanged for [`PAUSE`], but at most 40 times as long.
-fn settle(files: &[PathBuf]) {
+/// Waits until the files stay unchanged for [`SETTLE_TIME`], but at most 40 times as long.
+fn wait_until_unchanged(files: &[PathBuf]) {
     let mut last = stamp(files);
     for _ in 0..40 {
-        std::thread::sleep(PAUSE);
+        std::thread::sleep(SETTLE_TIME);
         let now = stamp(files);
         if now == last && now.iter().all(Option::is_some) {
             return;
@@ -94,7 +94,7 @@ fn while_watching<R>(files: &[PathBuf], before: &[Option<Stamp>], watched: &Watc
     let (finished, wait) = mpsc::channel::<()>();
     std::thread::scope(|scope| {
         let look = move || {
-            while wait.recv_timeout(PAUSE) == Err(RecvTimeoutError::Timeout) {
+            while wait.recv_timeout(SETTLE_TIME) == Err(RecvTimeoutError::Timeout) {
                 if stamp(files) != before {
                     watched.cancel();
                     return;

@@ -1,7 +1,7 @@
 //! `durer words`: prints the language reference.
 
-use crate::failure::{Failure, bad};
-use crate::terminal::say;
+use crate::failure::{Failure, invalid_input};
+use crate::terminal::print_line;
 use durer::diag::did_you_mean;
 use durer::dialect::Dialect;
 use durer::format::course::reference::{Chapter, Entry, FieldEntry, all_words, dialect_names, entries};
@@ -18,7 +18,7 @@ pub struct WordsArgs {
 
 /// Runs `durer words`.
 pub fn run(args: &WordsArgs) -> Result<(), Failure> {
-    let dialect = args.dialect.as_deref().map(named).transpose()?;
+    let dialect = args.dialect.as_deref().map(dialect_by_name).transpose()?;
     let has = |set| dialect.is_none_or(|dialect: Dialect| dialect.is_in(set));
     let all: Vec<Entry> = entries().into_iter().filter(|entry| has(entry.dialects())).collect();
     let Some(word) = &args.word else {
@@ -35,20 +35,21 @@ pub fn run(args: &WordsArgs) -> Result<(), Failure> {
         let suggestion = did_you_mean(word, all_words());
         let suggestion =
             suggestion.map_or("`durer words` lists them all".to_string(), |near| format!("did you mean `{near}`?"));
-        return Err(bad(format!("`{word}` is not a word of {place}: {suggestion}")));
+        return Err(invalid_input(format!("`{word}` is not a word of {place}: {suggestion}")));
     }
     let mut parts: Vec<String> = begun.into_iter().map(described).collect();
     if !in_blocks.is_empty() {
         let rows = in_blocks.into_iter().map(|(entry, field)| format!("in {}\n{}", entry.name(), field_text(field)));
         parts.push(rows.collect::<Vec<_>>().join("\n"));
     }
-    say(&parts.join("\n\n"));
+    print_line(&parts.join("\n\n"));
     Ok(())
 }
 
-fn named(name: &str) -> Result<Dialect, Failure> {
+fn dialect_by_name(name: &str) -> Result<Dialect, Failure> {
     let known = || Dialect::ALL.map(Dialect::name).join(", ");
-    Dialect::from_name(name).ok_or_else(|| bad(format!("`{name}` is not a dialect; known dialects: {}", known())))
+    Dialect::from_name(name)
+        .ok_or_else(|| invalid_input(format!("`{name}` is not a dialect; known dialects: {}", known())))
 }
 
 fn list(all: &[Entry], dialect: Option<Dialect>) {
@@ -57,14 +58,14 @@ fn list(all: &[Entry], dialect: Option<Dialect>) {
         if of_chapter.is_empty() {
             continue;
         }
-        say(chapter.title());
+        print_line(chapter.title());
         for entry in of_chapter {
             let own = entry.keywords.iter().find(|keyword| dialect.is_none_or(|dialect| dialect.is_in(keyword.1)));
             let first = entry.doc.split_inclusive(". ").next().unwrap_or_default().trim();
-            say(&format!("  {:<22}{first}", own.unwrap_or(&entry.keywords[0]).0));
+            print_line(&format!("  {:<22}{first}", own.unwrap_or(&entry.keywords[0]).0));
         }
     }
-    say("\n`durer words WORD` describes a word and its fields.");
+    print_line("\n`durer words WORD` describes a word and its fields.");
 }
 
 fn described(entry: &Entry) -> String {

@@ -14,8 +14,8 @@ const POSE: &str = "center 0 1 8 direction 0 -0.1 -1 up 0 1 0";
 
 /// Returns the bits per pixel and the RGBA pixels of an uncompressed Targa picture, bottom row
 /// first.
-fn targa(place: &TestFolder, name: &str) -> (u8, Vec<[u8; 4]>) {
-    let bytes = place.bytes(name);
+fn targa(folder: &TestFolder, name: &str) -> (u8, Vec<[u8; 4]>) {
+    let bytes = folder.bytes(name);
     let (head, rest) = bytes.split_at(18);
     let pixels = match head[16] {
         32 => rest.chunks_exact(4).map(|p| [p[0], p[1], p[2], p[3]]).collect(),
@@ -26,8 +26,8 @@ fn targa(place: &TestFolder, name: &str) -> (u8, Vec<[u8; 4]>) {
 
 #[test]
 fn pixels_outside_the_camera_are_transparent_with_any_sampling() {
-    let place = TestFolder::new();
-    place.put("eye.txt", seen_by(&format!("FisheyeCamera {{ {POSE} angle 160 }}")));
+    let folder = TestFolder::new();
+    folder.write("eye.txt", seen_by(&format!("FisheyeCamera {{ {POSE} angle 160 }}")));
     let ways = [
         "--samples 1",
         "--samples 16",
@@ -38,8 +38,8 @@ fn pixels_outside_the_camera_are_transparent_with_any_sampling() {
         "--show object",
     ];
     for way in ways {
-        place.expect_exit(0, &format!("render eye.txt --size 40x40 -o eye.tga {way}"));
-        let (bits, pixels) = targa(&place, "eye.tga");
+        folder.expect_exit(0, &format!("render eye.txt --size 40x40 -o eye.tga {way}"));
+        let (bits, pixels) = targa(&folder, "eye.tga");
         assert_eq!(bits, 32, "{way}");
         let at = |x: usize, y: usize| pixels[y * 40 + x];
         assert_eq!([at(0, 0), at(39, 0), at(0, 39), at(39, 39)], [[0; 4]; 4], "{way}");
@@ -53,15 +53,15 @@ fn pixels_outside_the_camera_are_transparent_with_any_sampling() {
     }
     // Formats without alpha show black outside the image circle. A fully covered picture has no
     // alpha.
-    place.expect_exit(0, "render eye.txt --size 40x40 -o eye.ppm");
-    assert_eq!(place.image8("eye.ppm").pixels[0], [0; 3]);
-    place.expect_exit(0, "render eye.txt --size 40x40 -o inside.tga --crop 10,10,20x20");
-    assert_eq!(targa(&place, "inside.tga").0, 24);
+    folder.expect_exit(0, "render eye.txt --size 40x40 -o eye.ppm");
+    assert_eq!(folder.image8("eye.ppm").pixels[0], [0; 3]);
+    folder.expect_exit(0, "render eye.txt --size 40x40 -o inside.tga --crop 10,10,20x20");
+    assert_eq!(targa(&folder, "inside.tga").0, 24);
 }
 
 #[test]
 fn pictures_have_the_aspect_ratio_of_their_cameras() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     for (camera, size) in [
         ("FisheyeCamera {@}", (512, 512)),
         ("EquirectangularCamera {@}", (720, 360)),
@@ -73,49 +73,49 @@ fn pictures_have_the_aspect_ratio_of_their_cameras() {
         ("CaveCamera {center 0 1 8 walls {-3 0 4 3 0 4 -3 4 4 3 0 4 3 0 8 3 4 4}}", (810, 324)),
         ("PerspectiveCamera {@ angle 40}", (512, 512)),
     ] {
-        place.put("shape.txt", seen_by(&camera.replace('@', POSE)));
-        let output = place.expect_exit(0, "info shape.txt").out;
+        folder.write("shape.txt", seen_by(&camera.replace('@', POSE)));
+        let output = folder.expect_exit(0, "info shape.txt").out;
         let (width, height) = size;
         assert!(output.contains(&format!("picture    {width}x{height} by default")), "{camera}: {output}");
     }
     // With another aspect ratio the image is not distorted, and a warning reports the empty pixels.
-    place.put("sphere.txt", seen_by(&format!("EquirectangularCamera {{ {POSE} }}")));
-    let output = place.expect_exit(0, "render sphere.txt -o a.tga --size 40x40 --samples 1").err;
+    folder.write("sphere.txt", seen_by(&format!("EquirectangularCamera {{ {POSE} }}")));
+    let output = folder.expect_exit(0, "render sphere.txt -o a.tga --size 40x40 --samples 1").err;
     assert!(output.contains("20 rows of 40x40 stay empty") && output.contains("--size 56x28"), "{output}");
-    let (_, square) = targa(&place, "a.tga");
-    let output = place.expect_exit(0, "render sphere.txt -o b.tga --size 40x20 --samples 1").err;
+    let (_, square) = targa(&folder, "a.tga");
+    let output = folder.expect_exit(0, "render sphere.txt -o b.tga --size 40x20 --samples 1").err;
     assert!(!output.contains("empty"), "{output}");
-    let (bits, whole) = targa(&place, "b.tga");
+    let (bits, whole) = targa(&folder, "b.tga");
     assert_eq!((bits, &square[400..1200], square[0]), (24, &whole[..], [0; 4]));
 }
 
 #[test]
 fn lens_pictures_are_identical_in_crops_and_on_any_number_of_threads() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let lens = format!("ThinLensCamera {{ {POSE} angle 40 aperture 0.8 focusDistance 8 blades 5 }}");
-    place.put("lens.txt", seen_by(&lens));
-    place.put("sharp.txt", seen_by(&lens.replace("aperture 0.8", "aperture 0")));
+    folder.write("lens.txt", seen_by(&lens));
+    folder.write("sharp.txt", seen_by(&lens.replace("aperture 0.8", "aperture 0")));
     for way in ["--samples 8", "--sampler random --samples 8"] {
-        place.expect_exit(0, &format!("render lens.txt -o whole.pfm --size 40x40 --threads 2 {way}"));
-        place.expect_exit(0, &format!("render lens.txt -o part.pfm --size 40x40 --crop 7,9,20x21 --threads 1 {way}"));
-        let (whole, part) = (place.image("whole.pfm"), place.image("part.pfm"));
+        folder.expect_exit(0, &format!("render lens.txt -o whole.pfm --size 40x40 --threads 2 {way}"));
+        folder.expect_exit(0, &format!("render lens.txt -o part.pfm --size 40x40 --crop 7,9,20x21 --threads 1 {way}"));
+        let (whole, part) = (folder.image("whole.pfm"), folder.image("part.pfm"));
         for (x, y) in (0..21).flat_map(|y| (0..20).map(move |x| (x, y))) {
             assert_eq!(part.get(x, y), whole.get(x + 7, y + 9), "{way} {x},{y}");
         }
     }
     // A single sample passes through the centre of the lens, so everything is in focus.
-    let output = place.expect_exit(0, "render lens.txt -o one.pfm --size 40x40 --samples 1").err;
+    let output = folder.expect_exit(0, "render lens.txt -o one.pfm --size 40x40 --samples 1").err;
     assert!(output.contains("everything is in focus"), "{output}");
-    place.expect_exit(0, "render sharp.txt -o sharp.pfm --size 40x40 --samples 1");
-    assert_eq!(place.bytes("one.pfm"), place.bytes("sharp.pfm"));
+    folder.expect_exit(0, "render sharp.txt -o sharp.pfm --size 40x40 --samples 1");
+    assert_eq!(folder.bytes("one.pfm"), folder.bytes("sharp.pfm"));
 }
 
 #[test]
 fn invalid_cameras_are_refused() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let refused = |camera: &str, words: &[&str]| {
-        place.put("wrong.txt", seen_by(&camera.replace('@', POSE)));
-        place.refused(2, "render wrong.txt -o p.png --dialect durer", words);
+        folder.write("wrong.txt", seen_by(&camera.replace('@', POSE)));
+        folder.expect_failure(2, "render wrong.txt -o p.png --dialect durer", words);
     };
     refused("FisheyeCamera {@ projection equdistant}", &["wrong.txt:2:", "equdistant", "did you mean `equidistant`?"]);
     refused("FisheyeCamera {@ projection 3}", &["cannot be `3`", "stereographic"]);
@@ -136,17 +136,17 @@ fn invalid_cameras_are_refused() {
     refused("FishEyeCamera {@}", &["did you mean `FisheyeCamera`?"]);
     refused("FisheyeCamera {@} FisheyeCamera {@ walls 3}", &["no field `walls`"]);
     // These keywords are extensions of the language, so --strict rejects them.
-    place.put("ours.txt", seen_by(&format!("FisheyeCamera {{ {POSE} }}")).replace("# ours\n", ""));
-    place.refused(2, "render ours.txt -o p.png --strict", &["`FisheyeCamera` is a Dürer extension"]);
-    place.refused(2, "render ours.txt -o p.png --strict --dialect f04", &["`FisheyeCamera`"]);
-    let output = place.expect_exit(0, "render ours.txt -o p.png --size 9x9 --dialect f04").err;
+    folder.write("ours.txt", seen_by(&format!("FisheyeCamera {{ {POSE} }}")).replace("# ours\n", ""));
+    folder.expect_failure(2, "render ours.txt -o p.png --strict", &["`FisheyeCamera` is a Dürer extension"]);
+    folder.expect_failure(2, "render ours.txt -o p.png --strict --dialect f04", &["`FisheyeCamera`"]);
+    let output = folder.expect_exit(0, "render ours.txt -o p.png --size 9x9 --dialect f04").err;
     assert!(output.contains("`FisheyeCamera` is not a word of f04"), "{output}");
     assert_eq!(output.matches("warning").count(), 1, "{output}");
-    place.put("short.txt", seen_by("FisheyeCamera { center 0 1 8 up 0 1 0 }").replace("# ours\n", ""));
-    place.refused(2, "render short.txt -o q.png --dialect f04", &["`FisheyeCamera` has no `direction`"]);
+    folder.write("short.txt", seen_by("FisheyeCamera { center 0 1 8 up 0 1 0 }").replace("# ours\n", ""));
+    folder.expect_failure(2, "render short.txt -o q.png --dialect f04", &["`FisheyeCamera` has no `direction`"]);
     // Converted scenes give the same picture.
-    place.expect_exit(0, "convert ours.txt -o again.txt");
-    place.expect_exit(0, "render ours.txt -o a.pfm --size 20x20 --samples 2");
-    place.expect_exit(0, "render again.txt -o b.pfm --size 20x20 --samples 2");
-    assert_eq!(place.bytes("a.pfm"), place.bytes("b.pfm"));
+    folder.expect_exit(0, "convert ours.txt -o again.txt");
+    folder.expect_exit(0, "render ours.txt -o a.pfm --size 20x20 --samples 2");
+    folder.expect_exit(0, "render again.txt -o b.pfm --size 20x20 --samples 2");
+    assert_eq!(folder.bytes("a.pfm"), folder.bytes("b.pfm"));
 }

@@ -76,45 +76,45 @@ fn cases() -> Vec<Case> {
 }
 
 /// Writes a cube of quads, a cube of triangles, and a height map of hills.
-fn put_files(place: &TestFolder) {
+fn put_files(folder: &TestFolder) {
     let corners = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
     let faces = [[1, 4, 3, 2], [5, 6, 7, 8], [1, 2, 6, 5], [2, 3, 7, 6], [3, 4, 8, 7], [4, 1, 5, 8]];
     let quads: String = faces.iter().map(|[a, b, c, d]| format!("f {a} {b} {c} {d}\n")).collect();
     let halves: String = faces.iter().map(|[a, b, c, d]| format!("f {a} {b} {c}\nf {a} {c} {d}\n")).collect();
-    place.put("quads.obj", format!("{corners}{quads}"));
-    place.put("box.obj", format!("{corners}{halves}"));
+    folder.write("quads.obj", format!("{corners}{quads}"));
+    folder.write("box.obj", format!("{corners}{halves}"));
     // The cube without its top face.
     let cup: String =
         halves.lines().enumerate().filter(|(i, _)| i / 2 != 4).map(|(_, face)| format!("{face}\n")).collect();
-    place.put("cup.obj", format!("{corners}{cup}"));
-    place.put("bad.obj", format!("{corners}f 1 2 19\n"));
+    folder.write("cup.obj", format!("{corners}{cup}"));
+    folder.write("bad.obj", format!("{corners}f 1 2 19\n"));
     let sheet =
         |uvs: &str| format!("v -2 0.2 0\nv -0.4 0.2 0\nv -0.4 1.8 0\nv -2 1.8 0\n{uvs}f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
-    place.put("sheet.obj", sheet("vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"));
-    place.put("point.obj", sheet(&"vt 0 0\n".repeat(4)));
-    place.put("grey.ppm", "P3\n2 1\n255\n99 99 99 99 99 99\n");
-    place.put("two.ppm", "P3\n2 1\n255\n99 99 99 200 20 20\n");
-    place.put("level.pgm", format!("P2\n4 4\n255\n{}\n", "180\n".repeat(16)));
+    folder.write("sheet.obj", sheet("vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"));
+    folder.write("point.obj", sheet(&"vt 0 0\n".repeat(4)));
+    folder.write("grey.ppm", "P3\n2 1\n255\n99 99 99 99 99 99\n");
+    folder.write("two.ppm", "P3\n2 1\n255\n99 99 99 200 20 20\n");
+    folder.write("level.pgm", format!("P2\n4 4\n255\n{}\n", "180\n".repeat(16)));
     let hills: Vec<String> = (0..256).map(|i| ((i % 16) * (i / 16) % 50 * 5).to_string()).collect();
-    place.put("hills.pgm", format!("P2\n16 16\n255\n{}\n", hills.join("\n")));
+    folder.write("hills.pgm", format!("P2\n16 16\n255\n{}\n", hills.join("\n")));
 }
 
 #[test]
 fn each_cause_is_reported_first_and_its_near_miss_is_not() {
-    let place = TestFolder::new();
-    put_files(&place);
+    let folder = TestFolder::new();
+    put_files(&folder);
     let cases = cases();
     let (mut wrong, mut text) = (Vec::new(), BTreeSet::new());
     // Check scenes with the same options in one run.
     let mut of_options: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (number, case) in cases.iter().enumerate() {
-        place.put(&format!("{number}.txt"), &case.text);
+        folder.write(&format!("{number}.txt"), &case.text);
         of_options.entry(case.options.join(" ")).or_default().push(number);
     }
     let mut found: BTreeMap<usize, Value> = BTreeMap::new();
     for (options, numbers) in of_options {
         let names: String = numbers.iter().map(|number| format!("{number}.txt ")).collect();
-        let output = place.run(&format!("check {names} --json {options}"));
+        let output = folder.run(&format!("check {names} --json {options}"));
         let json: Value =
             serde_json::from_str(&output.out).unwrap_or_else(|error| panic!("{options}: {error}\n{}", output.err));
         found.extend(numbers.into_iter().zip(json["scenes"].as_array().unwrap().iter().cloned()));

@@ -28,7 +28,7 @@ fn with_broken() -> (TestFolder, Vec<String>) {
     let place = TestFolder::new();
     for entry in std::fs::read_dir(&folder).unwrap() {
         let path = entry.unwrap().path();
-        place.put(&path.file_name().unwrap().to_string_lossy(), std::fs::read(&path).unwrap());
+        place.write(&path.file_name().unwrap().to_string_lossy(), std::fs::read(&path).unwrap());
     }
     (place, names)
 }
@@ -44,8 +44,8 @@ fn codes(scene: &Value) -> Vec<String> {
 
 #[test]
 fn cause_is_among_the_first_two() {
-    let (place, names) = with_broken();
-    let output = place.expect_exit(2, &format!("check --json {}", names.join(" ")));
+    let (folder, names) = with_broken();
+    let output = folder.expect_exit(2, &format!("check --json {}", names.join(" ")));
     let all = json(&output);
     assert_eq!(all["version"], 1);
     let mut wrong = Vec::new();
@@ -59,7 +59,7 @@ fn cause_is_among_the_first_two() {
             // Each span must be within an existing file.
             let span = &finding["place"];
             if !span.is_null() {
-                let bytes = place.bytes(span["file"].as_str().unwrap());
+                let bytes = folder.bytes(span["file"].as_str().unwrap());
                 assert!(span["end"].as_u64().unwrap() as usize <= bytes.len(), "{name}: {finding}");
                 assert!(span["line"].as_u64() >= Some(1) && span["column"].as_u64() >= Some(1), "{name}: {finding}");
             }
@@ -106,15 +106,15 @@ const MENDED: [&str; 32] = [
 
 #[test]
 fn mechanical_faults_are_fixed() {
-    let (place, names) = with_broken();
+    let (folder, names) = with_broken();
     for name in &names {
-        let before = place.bytes(name);
-        let output = place.run(&format!("check {name} --fix -o mended.txt --json"));
-        assert_eq!(place.bytes(name), before, "{name} itself was changed");
+        let before = folder.bytes(name);
+        let output = folder.run(&format!("check {name} --fix -o mended.txt --json"));
+        assert_eq!(folder.bytes(name), before, "{name} itself was changed");
         let scene = &json(&output)["scenes"][0];
         let mended = scene["mended"].as_array().unwrap();
         // Repaired findings are not reported in a second run either.
-        let again = place.run("check mended.txt --json");
+        let again = folder.run("check mended.txt --json");
         assert_eq!(again.code, output.code, "{name}\n{}", output.out);
         let found = codes(&json(&again)["scenes"][0]);
         assert_eq!(codes(scene), found, "{name}");
@@ -125,14 +125,14 @@ fn mechanical_faults_are_fixed() {
             assert_eq!(output.code, Some(0), "{name}\n{}", output.out);
             assert!(!mended.is_empty(), "{name}");
         }
-        assert_eq!(mended.is_empty(), place.bytes("mended.txt") == before, "{name}");
+        assert_eq!(mended.is_empty(), folder.bytes("mended.txt") == before, "{name}");
     }
 }
 
 #[test]
 fn fixing_in_place_reports_the_changes() {
-    let (place, _) = with_broken();
-    let output = place.expect_exit(0, "check wrong-count.group.txt --fix");
+    let (folder, _) = with_broken();
+    let output = folder.expect_exit(0, "check wrong-count.group.txt --fix");
     assert!(
         output.out.contains("wrong-count.group.txt:8:9: `numObjects 3` is now `numObjects 2` [wrong-count]"),
         "{}",
@@ -141,47 +141,47 @@ fn fixing_in_place_reports_the_changes() {
     assert!(output.out.contains("wrote wrong-count.group.txt"), "{}", output.out);
     assert!(output.out.contains("no findings left"), "{}", output.out);
     // A second run changes nothing.
-    let output = place.expect_exit(0, "check wrong-count.group.txt --fix");
+    let output = folder.expect_exit(0, "check wrong-count.group.txt --fix");
     assert!(!output.out.contains("wrote"), "{}", output.out);
     // A finding without a fix is reported, and the scene stays unchanged.
-    let before = place.bytes("camera-inside.sphere.txt");
-    let output = place.expect_exit(1, "check camera-inside.sphere.txt --fix");
+    let before = folder.bytes("camera-inside.sphere.txt");
+    let output = folder.expect_exit(1, "check camera-inside.sphere.txt --fix");
     assert!(output.out.contains("1 warning left"), "{}", output.out);
-    assert_eq!(place.bytes("camera-inside.sphere.txt"), before);
+    assert_eq!(folder.bytes("camera-inside.sphere.txt"), before);
     // A failed write changes nothing.
-    let before = place.bytes("extra-brace.txt");
-    let output = place.run("check extra-brace.txt --fix -o no/such/folder.txt");
+    let before = folder.bytes("extra-brace.txt");
+    let output = folder.run("check extra-brace.txt --fix -o no/such/folder.txt");
     assert_ne!(output.code, Some(0));
     assert!(output.err.contains("does not exist"), "{}", output.err);
-    assert_eq!(place.bytes("extra-brace.txt"), before);
-    place.refused(2, "check extra-brace.txt scene.txt --fix -o one.txt", &["--output takes one scene"]);
+    assert_eq!(folder.bytes("extra-brace.txt"), before);
+    folder.expect_failure(2, "check extra-brace.txt scene.txt --fix -o one.txt", &["--output takes one scene"]);
 }
 
 #[test]
 fn exit_code_reflects_the_worst_finding() {
-    let (place, _) = with_broken();
-    assert!(place.expect_exit(0, "check scene.txt").out.contains("scene.txt: no findings"));
+    let (folder, _) = with_broken();
+    assert!(folder.expect_exit(0, "check scene.txt").out.contains("scene.txt: no findings"));
     // Notes do not change the exit code.
-    assert!(place.expect_exit(0, "check material-index.counted-from-1.txt --fix").out.contains("no findings left"));
-    assert!(place.expect_exit(1, "check scene.txt light-inside.txt").out.contains("[light-inside]"));
+    assert!(folder.expect_exit(0, "check material-index.counted-from-1.txt --fix").out.contains("no findings left"));
+    assert!(folder.expect_exit(1, "check scene.txt light-inside.txt").out.contains("[light-inside]"));
     assert!(
-        place.expect_exit(2, "check light-inside.txt no-camera.txt scene.txt").out.contains("scene.txt: no findings")
+        folder.expect_exit(2, "check light-inside.txt no-camera.txt scene.txt").out.contains("scene.txt: no findings")
     );
-    let output = place.expect_exit(2, "check nowhere.txt scene.txt");
+    let output = folder.expect_exit(2, "check nowhere.txt scene.txt");
     assert!(
         output.err.contains("nowhere.txt") && output.out.contains("scene.txt: no findings"),
         "{}{}",
         output.err,
         output.out
     );
-    place.refused(2, "check nowhere.txt", &["nowhere.txt"]);
-    place.refused(2, "check", &["SCENE"]);
+    folder.expect_failure(2, "check nowhere.txt", &["nowhere.txt"]);
+    folder.expect_failure(2, "check", &["SCENE"]);
 }
 
 #[test]
 fn options_affect_the_findings() {
-    let place = TestFolder::new();
-    place.put(
+    let folder = TestFolder::new();
+    folder.write(
         "back.txt",
         "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }
 Lights { numLights 1 DirectionalLight { direction 0 0 -1 color 1 1 1 } }
@@ -189,32 +189,32 @@ Materials { numMaterials 1 PhongMaterial { diffuseColor 1 1 1 } }
 Group { numObjects 1 MaterialIndex 0 Triangle { vertex0 -1 0 0 vertex1 0 1 0 vertex2 1 0 0 } }
 ",
     );
-    place.expect_exit(0, "check back.txt");
+    folder.expect_exit(0, "check back.txt");
     // The course's programs do not shade back faces, so here the triangle is wrong.
-    let output = place.expect_exit(1, "check back.txt --dialect f04");
+    let output = folder.expect_exit(1, "check back.txt --dialect f04");
     assert!(output.out.contains("[seen-from-behind]") && output.out.contains("its back stays black"), "{}", output.out);
-    place.expect_exit(0, "check back.txt --dialect f04 --fix -o front.txt");
-    place.expect_exit(0, "check front.txt --dialect f04");
-    place.expect_exit(0, "check back.txt --dialect f04 --shade-back");
+    folder.expect_exit(0, "check back.txt --dialect f04 --fix -o front.txt");
+    folder.expect_exit(0, "check front.txt --dialect f04");
+    folder.expect_exit(0, "check back.txt --dialect f04 --shade-back");
 
-    place.expect_exit(0, "check scene.txt --depth-range 6 30");
+    folder.expect_exit(0, "check scene.txt --depth-range 6 30");
     for range in ["100 200", "0.1 1", "0 100000"] {
-        let output = place.expect_exit(1, &format!("check scene.txt --depth-range {range}"));
+        let output = folder.expect_exit(1, &format!("check scene.txt --depth-range {range}"));
         assert!(
             output.out.contains("[depth-range]") && output.out.contains("the picture has depths from"),
             "{}",
             output.out
         );
     }
-    let output = place.expect_exit(1, "check scene.txt --bounces 0");
+    let output = folder.expect_exit(1, "check scene.txt --bounces 0");
     assert!(output.out.contains("[no-bounces]"), "{}", output.out);
 }
 
 #[test]
 fn faulty_picture_is_reported_after_the_render() {
-    let (place, _) = with_broken();
+    let (folder, _) = with_broken();
     let render = |scene: &str, more: &str| {
-        place.expect_exit(0, &format!("render {scene} -o p.png --size 40x30 --samples 2 {more}")).err
+        folder.expect_exit(0, &format!("render {scene} -o p.png --size 40x30 --samples 2 {more}")).err
     };
     let err = render("scene.txt", "");
     assert!(!err.contains("the picture"), "{err}");
@@ -229,7 +229,7 @@ fn faulty_picture_is_reported_after_the_render() {
     assert!(err.contains("[depth-range]"), "{err}");
     assert_eq!(render("camera-away.point.txt", "--quiet"), "");
 
-    let course = |scene: &str| place.expect_exit(0, &format!("course -input {scene} -output p.tga -size 30 30")).err;
+    let course = |scene: &str| folder.expect_exit(0, &format!("course -input {scene} -output p.tga -size 30 30")).err;
     assert!(!course("scene.txt").contains("the picture"));
     // Students judge brightness themselves, so report only pictures of a single colour.
     assert!(!course("color-range.light.txt").contains("the picture"));
@@ -238,8 +238,8 @@ fn faulty_picture_is_reported_after_the_render() {
 
 #[test]
 fn every_code_is_listed_once() {
-    let place = TestFolder::new();
-    let list = place.expect_exit(0, "check --codes").out;
+    let folder = TestFolder::new();
+    let list = folder.expect_exit(0, "check --codes").out;
     let listed: Vec<&str> = list.lines().map(|line| line.split(' ').next().unwrap()).collect();
     let distinct: BTreeSet<&str> = listed.iter().copied().collect();
     assert_eq!(listed.len(), distinct.len());

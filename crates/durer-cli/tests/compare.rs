@@ -17,7 +17,7 @@ fn put(place: &TestFolder, name: &str, picture: &Image8) {
     if let Some(folder) = place.path(name).parent() {
         std::fs::create_dir_all(folder).unwrap();
     }
-    place.put(name, bytes);
+    place.write(name, bytes);
 }
 
 fn changed(picture: &Image8, change: impl Fn(u32, u32, &dyn Fn(u32, u32) -> [u8; 3]) -> [u8; 3]) -> Image8 {
@@ -32,32 +32,32 @@ fn json(text: &str) -> Value {
 
 /// Renders `a.png`, and the same picture in floating point as `a.exr`.
 fn rendered() -> (TestFolder, Image8) {
-    let place = TestFolder::new();
-    place.expect_exit(0, "render scene.txt --size 60x50 --samples 1 -q -o a.png");
-    place.expect_exit(0, "render scene.txt --size 60x50 --samples 1 -q -o a.exr");
-    let picture = place.image8("a.png");
-    (place, picture)
+    let folder = TestFolder::new();
+    folder.expect_exit(0, "render scene.txt --size 60x50 --samples 1 -q -o a.png");
+    folder.expect_exit(0, "render scene.txt --size 60x50 --samples 1 -q -o a.exr");
+    let picture = folder.image8("a.png");
+    (folder, picture)
 }
 
 #[test]
 fn exit_codes_and_words() {
-    let (place, a) = rendered();
-    assert!(place.expect_exit(0, "compare a.png a.png").out.starts_with("identical\n"));
-    put(&place, "mirror.ppm", &changed(&a, |x, y, at| at(a.width - 1 - x, y)));
-    let output = place.expect_exit(1, "compare a.png mirror.ppm");
+    let (folder, a) = rendered();
+    assert!(folder.expect_exit(0, "compare a.png a.png").out.starts_with("identical\n"));
+    put(&folder, "mirror.ppm", &changed(&a, |x, y, at| at(a.width - 1 - x, y)));
+    let output = folder.expect_exit(1, "compare a.png mirror.ppm");
     assert!(output.out.starts_with("different: ") && output.err.is_empty(), "{}{}", output.out, output.err);
     for word in ["mirrored left to right: explains 100.0 %", "RMSE", "PSNR", "SSIM", "FLIP", "largest", "where"] {
         assert!(output.out.contains(word), "{word}: {}", output.out);
     }
-    put(&place, "near.ppm", &changed(&a, |x, y, at| at(x, y).map(|v| v.saturating_add(2))));
-    place.expect_exit(1, "compare a.png near.ppm");
-    assert!(place.expect_exit(0, "compare a.png near.ppm --tolerance 2/255").out.starts_with("same: 0 of"));
-    place.expect_exit(0, "compare a.png near.ppm --tolerance 0.008");
-    place.expect_exit(0, "compare a.png near.ppm --allow 100");
+    put(&folder, "near.ppm", &changed(&a, |x, y, at| at(x, y).map(|v| v.saturating_add(2))));
+    folder.expect_exit(1, "compare a.png near.ppm");
+    assert!(folder.expect_exit(0, "compare a.png near.ppm --tolerance 2/255").out.starts_with("same: 0 of"));
+    folder.expect_exit(0, "compare a.png near.ppm --tolerance 0.008");
+    folder.expect_exit(0, "compare a.png near.ppm --allow 100");
     // A floating point picture equals its 8-bit version.
-    place.expect_exit(0, "compare a.png a.exr");
-    place.expect_exit(1, "compare a.png a.exr --transfer linear");
-    let light = json(&place.expect_exit(0, "compare a.exr a.exr --json").out);
+    folder.expect_exit(0, "compare a.png a.exr");
+    folder.expect_exit(1, "compare a.png a.exr --transfer linear");
+    let light = json(&folder.expect_exit(0, "compare a.exr a.exr --json").out);
     assert_eq!(light["pairs"][0]["hdr_flip"].as_f64(), Some(0.0));
 }
 
@@ -88,20 +88,20 @@ fn regions_name_the_hit_objects() {
     let text = place.expect_exit(1, "compare a/scene.png b/scene.png --scene scene.txt").out;
     assert!(text.contains("Plane scene.txt:") && text.contains("durer explain scene.txt --pixel"), "{text}");
     assert!(place.expect_exit(1, "compare a/scene.png b/scene.png --json").out.contains("\"there\": null"));
-    place.refused(2, "compare a b --scene a", &["no `scene.txt`"]);
-    place.refused(2, "compare a b --scene none.txt", &["none.txt"]);
+    place.expect_failure(2, "compare a b --scene a", &["no `scene.txt`"]);
+    place.expect_failure(2, "compare a b --scene none.txt", &["none.txt"]);
     place.expect_exit(1, "compare a/scene.png b/scene.png --scene scene.txt --report r.html");
     assert!(String::from_utf8(place.bytes("r.html")).unwrap().contains("durer explain scene.txt --pixel"));
 }
 
 #[test]
 fn bad_input_is_exit_code_2() {
-    let (place, a) = rendered();
+    let (folder, a) = rendered();
     let small = Image8 { width: 1, height: 1, pixels: vec![[0; 3]], alpha: Vec::new() };
-    put(&place, "small.ppm", &small);
-    place.put("broken.png", &place.bytes("a.png")[..200]);
-    place.put("no.png", "no picture");
-    std::fs::create_dir(place.path("empty")).unwrap();
+    put(&folder, "small.ppm", &small);
+    folder.write("broken.png", &folder.bytes("a.png")[..200]);
+    folder.write("no.png", "no picture");
+    std::fs::create_dir(folder.path("empty")).unwrap();
     for (arguments, words) in [
         ("a.png small.ppm", "60 x 50 and 1 x 1"),
         ("a.png missing.png", "missing.png"),
@@ -120,21 +120,21 @@ fn bad_input_is_exit_code_2() {
         ("a.png a.png --report missing/r.html", "does not exist"),
         ("a.png", "PICTURE"),
     ] {
-        place.refused(2, &format!("compare {arguments}"), &[words]);
+        folder.expect_failure(2, &format!("compare {arguments}"), &[words]);
     }
-    put(&place, "f/a.ppm", &a);
-    put(&place, "g/a.ppm", &a);
-    place.refused(2, "compare f g --heat heat.png", &["--heat"]);
+    put(&folder, "f/a.ppm", &a);
+    put(&folder, "g/a.ppm", &a);
+    folder.expect_failure(2, "compare f g --heat heat.png", &["--heat"]);
     #[cfg(target_os = "linux")]
     {
-        std::os::unix::fs::symlink("/dev/full", place.path("full.html")).unwrap();
-        assert!(place.expect_exit(2, "compare a.png a.png --report full.html").err.contains("No space left"));
+        std::os::unix::fs::symlink("/dev/full", folder.path("full.html")).unwrap();
+        assert!(folder.expect_exit(2, "compare a.png a.png --report full.html").err.contains("No space left"));
     }
 }
 
 #[test]
 fn folders_of_pictures_and_of_students() {
-    let (place, a) = rendered();
+    let (folder, a) = rendered();
     let dark = changed(&a, |x, y, at| at(x, y).map(|v| v / 2));
     for (name, picture) in [
         ("ref/one.ppm", &a),
@@ -147,24 +147,24 @@ fn folders_of_pictures_and_of_students() {
         ("class/bob/one.ppm", &dark),
         ("class/eve/deep/two.ppm", &a),
     ] {
-        put(&place, name, picture);
+        put(&folder, name, picture);
     }
-    let output = place.expect_exit(1, "compare ref mine");
+    let output = folder.expect_exit(1, "compare ref mine");
     assert!(
         output.out.contains("darker by a factor of 0.49") && output.err.contains("more.ppm"),
         "{}{}",
         output.out,
         output.err
     );
-    place.expect_exit(0, "compare ref/deep mine/deep --allow 100");
-    let found = json(&place.expect_exit(1, "compare ref mine --json").out);
+    folder.expect_exit(0, "compare ref/deep mine/deep --allow 100");
+    let found = json(&folder.expect_exit(1, "compare ref mine --json").out);
     assert_eq!(
         (found["version"].as_u64(), found["identical"].as_u64(), found["different"].as_u64()),
         (Some(1), Some(1), Some(1))
     );
     assert_eq!(found["pairs"][0]["findings"][0]["kind"], "factor");
 
-    let output = place.expect_exit(1, "compare ref class");
+    let output = folder.expect_exit(1, "compare ref class");
     let row = |who: &str| {
         output
             .out
@@ -185,25 +185,25 @@ fn folders_of_pictures_and_of_students() {
         )
     );
     // An unreadable picture does not affect the others.
-    place.put("class/bob/deep.png", "");
-    place.put("class/ada/one.ppm", "P6 9 9");
-    let output = place.expect_exit(2, "compare ref class --report class.html");
+    folder.write("class/bob/deep.png", "");
+    folder.write("class/ada/one.ppm", "P6 9 9");
+    let output = folder.expect_exit(2, "compare ref class --report class.html");
     assert!(
         output.out.contains("eve/one.ppm") && output.out.contains("error") && output.err.contains("1 of 6"),
         "{}{}",
         output.out,
         output.err
     );
-    assert!(place.path("class.html").is_file());
+    assert!(folder.path("class.html").is_file());
 }
 
 #[test]
 fn heat_map_is_black_where_nothing_differs() {
-    let (place, a) = rendered();
-    put(&place, "patch.ppm", &changed(&a, |x, y, at| if x > 50 && y > 40 { [255, 0, 255] } else { at(x, y) }));
-    let output = place.expect_exit(1, "compare a.png patch.ppm --heat heat.png");
+    let (folder, a) = rendered();
+    put(&folder, "patch.ppm", &changed(&a, |x, y, at| if x > 50 && y > 40 { [255, 0, 255] } else { at(x, y) }));
+    let output = folder.expect_exit(1, "compare a.png patch.ppm --heat heat.png");
     assert!(output.out.contains("wrote heat.png"));
-    let heat = place.image8("heat.png");
+    let heat = folder.image8("heat.png");
     assert_eq!((heat.width, heat.height, heat.pixels[0]), (60, 50, [0, 0, 8]));
     assert!(heat.pixels[60 * 50 - 1][0] > 200);
 }
@@ -212,7 +212,7 @@ fn heat_map_is_black_where_nothing_differs() {
 #[test]
 fn mistakes_in_real_pictures_are_named() {
     let Some(course) = corpus() else { return };
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     for name in ["f04/f04-handout/output2_14.png", "f04/f04-handout/output6_04ab.png", "f12a4/binary-f12-a4/07.png"] {
         let path = course.join("reference").join(name);
         let a = read8(&std::fs::read(&path).unwrap(), name).unwrap();
@@ -233,9 +233,9 @@ fn mistakes_in_real_pictures_are_named() {
             ("dark-speckles", changed(&a, |x, y, at| if speckle(x, y) { at(x, y).map(|v| v / 5) } else { at(x, y) })),
         ];
         for (kind, picture) in &wrong {
-            put(&place, "wrong.ppm", picture);
+            put(&folder, "wrong.ppm", picture);
             let arguments = ["compare", "--json", path.to_str().unwrap(), "wrong.ppm"];
-            let output = Command::new(common::durer()).args(arguments).current_dir(place.path("")).output().unwrap();
+            let output = Command::new(common::durer()).args(arguments).current_dir(folder.path("")).output().unwrap();
             let found = json(&String::from_utf8(output.stdout).unwrap());
             let findings = &found["pairs"][0]["findings"];
             assert_eq!(findings[0]["kind"], *kind, "{name}: {findings}");
@@ -246,13 +246,13 @@ fn mistakes_in_real_pictures_are_named() {
 /// Students often trace rays through the corners of pixels instead of their centres.
 #[test]
 fn border_pixels_and_missing_shadows_are_recognised() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/whitted.txt");
-    std::fs::copy(&scene, place.path("whitted.txt")).unwrap();
+    std::fs::copy(&scene, folder.path("whitted.txt")).unwrap();
     for (name, options) in [("right", ""), ("border", "--compat border-pixels"), ("bare", "--shadows=off")] {
-        place.expect_exit(0, &format!("render whitted.txt --size 150x150 --samples 1 -q -o {name}.png {options}"));
+        folder.expect_exit(0, &format!("render whitted.txt --size 150x150 --samples 1 -q -o {name}.png {options}"));
     }
-    let words = |name: &str| place.expect_exit(1, &format!("compare right.png {name}.png")).out;
+    let words = |name: &str| folder.expect_exit(1, &format!("compare right.png {name}.png")).out;
     // A fine pattern changes everywhere, so pixels alone give no diagnosis.
     assert!(!words("border").contains("noise"), "{}", words("border"));
     // Brightness has many possible causes, so pixels alone give no diagnosis.
@@ -261,7 +261,7 @@ fn border_pixels_and_missing_shadows_are_recognised() {
         "{}",
         words("bare")
     );
-    let tried = |name: &str| place.expect_exit(1, &format!("compare right.png {name}.png --scene whitted.txt")).out;
+    let tried = |name: &str| folder.expect_exit(1, &format!("compare right.png {name}.png --scene whitted.txt")).out;
     assert!(tried("bare").contains("there are no shadows: explains 100.0 %"), "{}", tried("bare"));
     assert!(tried("border").contains("on the picture's border"), "{}", tried("border"));
 }
@@ -290,17 +290,17 @@ setTimeout(() => { see(`blinked ${getComputedStyle($("over")).visibility}`); don
 /// The report of a class groups equal mistakes, and its table can be saved.
 #[test]
 fn class_report_is_a_matrix_of_students_and_pictures() {
-    let place = TestFolder::new();
-    std::fs::create_dir_all(place.path("ref")).unwrap();
-    place.expect_exit(0, "render scene.txt --size 60x50 --samples 1 -q -o ref/scene.png");
+    let folder = TestFolder::new();
+    std::fs::create_dir_all(folder.path("ref")).unwrap();
+    folder.expect_exit(0, "render scene.txt --size 60x50 --samples 1 -q -o ref/scene.png");
     for (who, options) in [("ada", "--shadows=off"), ("bob", "--shadows=off"), ("eve", "")] {
-        std::fs::create_dir_all(place.path(&format!("class/{who}"))).unwrap();
-        place.expect_exit(
+        std::fs::create_dir_all(folder.path(&format!("class/{who}"))).unwrap();
+        folder.expect_exit(
             0,
             &format!("render scene.txt --size 60x50 --samples 1 -q -o class/{who}/scene.png {options}"),
         );
     }
-    place.expect_exit(1, "compare ref class --scene . --report class.html");
+    folder.expect_exit(1, "compare ref class --scene . --report class.html");
     let clicks = r##"
 see(`cells ${document.querySelectorAll("#matrix td figure img").length}`);
 see(`same ${document.querySelector(".group").textContent}`);
@@ -312,20 +312,20 @@ done();
 "##;
     let wanted =
         ["cells 3", "same ada, bob - scene.png: there are no shadows", "csv 5", "picked ada/scene.png", "narrow true"];
-    sees(&place, "class.html", clicks, &wanted);
+    sees(&folder, "class.html", clicks, &wanted);
 }
 
 #[test]
 fn page_works_in_a_browser_without_network() {
-    let (place, a) = rendered();
+    let (folder, a) = rendered();
     // Names that would end the script if they were not escaped.
     for (name, left) in
         [("ref/one.ppm", 99), ("ref/</script><b>.ppm", 99), ("mine/one.ppm", 99), ("mine/</script><b>.ppm", 30)]
     {
         let name = name.replace("</", "<").replace('/', std::path::MAIN_SEPARATOR_STR);
-        put(&place, &name, &changed(&a, |x, y, at| if x > left { [255, 0, 0] } else { at(x, y) }));
+        put(&folder, &name, &changed(&a, |x, y, at| if x > left { [255, 0, 0] } else { at(x, y) }));
     }
-    place.expect_exit(1, "compare ref mine --report report.html");
+    folder.expect_exit(1, "compare ref mine --report report.html");
     let wanted = [
         "rows 2",
         "natural 60x50",
@@ -339,7 +339,7 @@ fn page_works_in_a_browser_without_network() {
         "different",
         "blinked hidden",
     ];
-    sees(&place, "report.html", CLICKS, &wanted);
+    sees(&folder, "report.html", CLICKS, &wanted);
 }
 
 const ROOM: &str = "PerspectiveCamera { center 2 1.6 5.8 direction 0 -0.06 -1 up 0 1 0 angle 60 }
@@ -369,11 +369,11 @@ Group {
 /// other dialects are not printed.
 #[test]
 fn pictures_of_paths_are_judged_against_their_noise() {
-    let place = TestFolder::new();
-    place.put("room.txt", ROOM);
+    let folder = TestFolder::new();
+    folder.write("room.txt", ROOM);
     let options = "--integrator path --samples 32 --bounces 6";
     let render = |name: &str, options: &str| {
-        place.expect_exit(0, &format!("render room.txt -o {name}.png -q --size 64x48 --integrator path {options}"));
+        folder.expect_exit(0, &format!("render room.txt -o {name}.png -q --size 64x48 --integrator path {options}"));
     };
     render("right", "--samples 32 --bounces 6");
     render("other", "--samples 32 --bounces 6 --seed 5");
@@ -381,7 +381,7 @@ fn pictures_of_paths_are_judged_against_their_noise() {
     render("direct", "--samples 32 --bounces 0");
     render("one", "--samples 32 --bounces 1 --seed 9");
     let text = |name: &str| {
-        let output = place.expect_exit(1, &format!("compare right.png {name}.png --scene room.txt {options} --json"));
+        let output = folder.expect_exit(1, &format!("compare right.png {name}.png --scene room.txt {options} --json"));
         assert!(!output.err.contains("error["), "{}", output.err);
         json(&output.out)["pairs"][0]["diagnosis"].clone()
     };
@@ -394,24 +394,24 @@ fn pictures_of_paths_are_judged_against_their_noise() {
     }
     // The reference of another scene is reported as such, because more of its pixels differ than
     // noise explains.
-    place.put(
+    folder.write(
         "other.txt",
         ROOM.replace("baseColor 0.7 0.2 0.1", "baseColor 0.1 0.7 0.2").replace("0.6 2 radius", "1.6 2 radius"),
     );
-    let output = place.expect_exit(1, &format!("compare right.png one.png --scene other.txt {options}"));
+    let output = folder.expect_exit(1, &format!("compare right.png one.png --scene other.txt {options}"));
     assert!(output.out.contains("cause unknown") && !output.err.contains("error["), "{}{}", output.out, output.err);
 }
 
 #[test]
-fn a_class_is_a_table_of_comma_separated_values() {
-    let (place, picture) = rendered();
-    std::fs::create_dir_all(place.path("ref")).unwrap();
-    std::fs::create_dir_all(place.path("class/ann")).unwrap();
-    put(&place, "ref/a.ppm", &picture);
-    put(&place, "class/ann/a.ppm", &changed(&picture, |x, y, at| at(picture.width - 1 - x, y)));
-    let output = place.expect_exit(1, "compare ref class --csv");
+fn class_table_is_comma_separated() {
+    let (folder, picture) = rendered();
+    std::fs::create_dir_all(folder.path("ref")).unwrap();
+    std::fs::create_dir_all(folder.path("class/ann")).unwrap();
+    put(&folder, "ref/a.ppm", &picture);
+    put(&folder, "class/ann/a.ppm", &changed(&picture, |x, y, at| at(picture.width - 1 - x, y)));
+    let output = folder.expect_exit(1, "compare ref class --csv");
     let lines: Vec<&str> = output.out.lines().collect();
     assert_eq!(lines[0], "student,picture,verdict,differ_percent,rmse,ssim,flip,mistake,why");
     assert!(lines[1].starts_with("ann,a.ppm,different,") && lines[1].contains(",mirrored,"), "{}", output.out);
-    place.refused(2, "compare ref class --csv --json", &["--csv"]);
+    folder.expect_failure(2, "compare ref class --csv --json", &["--csv"]);
 }

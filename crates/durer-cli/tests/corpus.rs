@@ -63,21 +63,21 @@ fn year_of_every_official_command_is_guessed() {
 fn models_converted_to_text_render_the_same_picture() {
     let Some(course) = corpus() else { return };
     let models = course.join("../samples/gltf/khronos");
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     // Models with transformed and repeated textures, vertex colours, tangents, skins, thin films,
     // glass and instances.
     for name in MODELS {
         let model = models.join(name);
         let picture = |path: &str| {
-            place.expect_exit(
+            folder.expect_exit(
                 0,
                 &format!("render {path} -o a.ppm --integrator path --size 24x24 --samples 4 -q --restart"),
             );
-            std::fs::read(place.path("a.ppm")).unwrap()
+            std::fs::read(folder.path("a.ppm")).unwrap()
         };
         let first = picture(&model.display().to_string());
         for written in ["m.txt", "m.json"] {
-            place.expect_exit(0, &format!("convert {} -o {written}", model.display()));
+            folder.expect_exit(0, &format!("convert {} -o {written}", model.display()));
             assert!(picture(written) == first, "{name} as {written}");
         }
     }

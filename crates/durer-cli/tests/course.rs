@@ -11,8 +11,8 @@ fn plain() -> String {
 
 #[test]
 fn every_option_of_2004() {
-    let place = TestFolder::new();
-    let output = place.expect_exit(
+    let folder = TestFolder::new();
+    let output = folder.expect_exit(
         0,
         "course -input scene.txt -size 20 10 -output o.tga -depth 9 10 d.tga -normals n.tga -shadows -bounces 4 \
          -shade_back -weight 0.01 -gui -tessellation 100 50 -gouraud -stats -grid 10 10 10 -transparent_shadows \
@@ -22,26 +22,26 @@ fn every_option_of_2004() {
     assert!(!output.err.contains("read as"), "{}", output.err);
     assert!(output.out.starts_with("objects 2, rays "), "{}", output.out);
     for (name, size) in [("o", (20, 10)), ("d", (20, 10)), ("n", (20, 10)), ("s", (60, 30)), ("f", (81, 41))] {
-        let image = place.image8(&format!("{name}.tga"));
+        let image = folder.image8(&format!("{name}.tga"));
         assert_eq!((image.width, image.height), size, "{name}");
         assert!(output.out.contains(&format!("wrote {name}.tga\n")));
     }
     for samples in ["random", "uniform", "jittered"] {
         for filter in ["box", "tent", "gaussian"] {
-            place.expect_exit(
+            folder.expect_exit(
                 0,
                 &format!("course -input scene.txt -output o.tga -{samples}_samples 9 -{filter}_filter 1.5"),
             );
         }
     }
-    place.expect_exit(0, "course -input scene.txt -depth -2 -1.5 d.tga");
-    place.expect_exit(0, "course -input scene.txt -render_filter f.tga 2 -size 9 9");
+    folder.expect_exit(0, "course -input scene.txt -depth -2 -1.5 d.tga");
+    folder.expect_exit(0, "course -input scene.txt -render_filter f.tga 2 -size 9 9");
 }
 
 #[test]
 fn options_of_later_years() {
-    let place = TestFolder::new();
-    place.put("plain.txt", plain());
+    let folder = TestFolder::new();
+    folder.write("plain.txt", plain());
     for options in [
         "--dialect f12a4 -output o.bmp -depth 8 18 d.bmp -normals n.bmp",
         "--program a5soln -output o.bmp -shadows -bounces 4 -jitter -filter",
@@ -49,43 +49,43 @@ fn options_of_later_years() {
         "--program a4 -output o.png -shadows -bounces 4 -jitter -filter -depth 8 18 d.png -normals n.png",
         "--dialect f16 -size 20 20 -output o.png --seed 3 --threads 2 --compat no-stretch,raw-up --assets .",
     ] {
-        let output = place.expect_exit(0, &format!("course -input plain.txt -size 12 12 {options} --quiet"));
+        let output = folder.expect_exit(0, &format!("course -input plain.txt -size 12 12 {options} --quiet"));
         assert_eq!((output.out.as_str(), output.err.as_str()), ("", ""), "{options}");
     }
 }
 
 #[test]
 fn grid_picture_replaces_the_colour_picture() {
-    let place = TestFolder::new();
-    place.expect_exit(
+    let folder = TestFolder::new();
+    folder.expect_exit(
         0,
         "course -input scene.txt -size 60 60 -output a.tga -grid 1 1 1 -visualize_grid -depth 5 9 d.tga",
     );
-    place.expect_exit(0, "course -input scene.txt -size 60 60 -output b.tga -visualize_grid");
-    place.expect_exit(0, "course -input scene.txt -size 60 60 -output c.tga");
-    let pictures = ["a.tga", "b.tga", "c.tga"].map(|name| place.bytes(name));
+    folder.expect_exit(0, "course -input scene.txt -size 60 60 -output b.tga -visualize_grid");
+    folder.expect_exit(0, "course -input scene.txt -size 60 60 -output c.tga");
+    let pictures = ["a.tga", "b.tga", "c.tga"].map(|name| folder.bytes(name));
     // Without a number of cells the program chooses one. Here it is a single cell, as in the first
     // run.
     assert!(pictures[0] == pictures[1] && pictures[1] != pictures[2]);
-    assert!(place.bytes("d.tga") != pictures[0]);
+    assert!(folder.bytes("d.tga") != pictures[0]);
 }
 
 #[test]
 fn values_are_truncated_without_a_curve() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     // In the corners the sky is visible (0.2 0.1 0.5), and the depth is black.
-    place.expect_exit(0, "course -input scene.txt --dialect f04 -output o.tga -depth 5 10 d.tga -normals n.tga");
-    let image = place.image8("o.tga");
+    folder.expect_exit(0, "course -input scene.txt --dialect f04 -output o.tga -depth 5 10 d.tga -normals n.tga");
+    let image = folder.image8("o.tga");
     assert_eq!((image.width, image.height, image.pixels[0]), (100, 100, [51, 25, 127]));
-    assert_eq!(place.image8("d.tga").pixels[0], [0, 0, 0]);
-    assert_eq!(place.image8("n.tga").pixels[0], [0, 0, 0]);
+    assert_eq!(folder.image8("d.tga").pixels[0], [0, 0, 0]);
+    assert_eq!(folder.image8("n.tga").pixels[0], [0, 0, 0]);
     // The floor's normal is straight up.
-    assert_eq!(place.image8("n.tga").pixels[9999], [0, 255, 0]);
+    assert_eq!(folder.image8("n.tga").pixels[9999], [0, 255, 0]);
 }
 
 #[test]
 fn invalid_arguments_are_refused() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     for (options, words) in [
         ("-output o.tga", "-input is missing"),
         ("-input scene.txt", "nothing to write"),
@@ -118,20 +118,20 @@ fn invalid_arguments_are_refused() {
         ("-input scene.txt -output o.tga -normals o.tga", "both name"),
         ("-input missing.txt -output o.tga", "missing.txt"),
     ] {
-        place.refused(2, &format!("course {options}"), &[words]);
+        folder.expect_failure(2, &format!("course {options}"), &[words]);
     }
-    assert!(place.expect_exit(2, "course").out.contains("-tent_filter"));
-    assert!(place.expect_exit(0, "course --help").out.contains("-tent_filter"));
+    assert!(folder.expect_exit(2, "course").out.contains("-tent_filter"));
+    assert!(folder.expect_exit(0, "course --help").out.contains("-tent_filter"));
 }
 
 #[test]
 fn only_f12a4_ignores_unknown_options() {
-    let place = TestFolder::new();
-    place.put("plain.txt", plain());
-    let output = place.expect_exit(0, "course --dialect f12a4 -input plain.txt -size 4 4 -output o.bmp -frobnicate");
+    let folder = TestFolder::new();
+    folder.write("plain.txt", plain());
+    let output = folder.expect_exit(0, "course --dialect f12a4 -input plain.txt -size 4 4 -output o.bmp -frobnicate");
     assert!(output.err.contains("warning: unknown option -frobnicate"), "{}", output.err);
     for dialect in ["f04", "f12a5", "f16"] {
-        place.refused(
+        folder.expect_failure(
             2,
             &format!("course --dialect {dialect} -input plain.txt -output p.tga -frobnicate"),
             &["-frobnicate"],
@@ -141,36 +141,36 @@ fn only_f12a4_ignores_unknown_options() {
 
 #[test]
 fn f12a4_writes_tga_unless_the_name_ends_in_bmp() {
-    let place = TestFolder::new();
-    place.put("plain.txt", plain());
+    let folder = TestFolder::new();
+    folder.write("plain.txt", plain());
     for name in ["o.tga", "o.foo", "o.png", "o", "o.bmp"] {
-        place.expect_exit(0, &format!("course --dialect f12a4 -input plain.txt -size 4 4 -output {name}"));
-        let is_bmp = place.bytes(name).starts_with(b"BM");
+        folder.expect_exit(0, &format!("course --dialect f12a4 -input plain.txt -size 4 4 -output {name}"));
+        let is_bmp = folder.bytes(name).starts_with(b"BM");
         assert_eq!(is_bmp, name == "o.bmp", "{name}");
-        assert_eq!(durer::image::read8(&place.bytes(name), "o.tga").unwrap().width, 4);
+        assert_eq!(durer::image::read8(&folder.bytes(name), "o.tga").unwrap().width, 4);
     }
     // In other dialects, names have their usual meaning.
-    place.expect_exit(0, "course -input plain.txt -size 4 4 -output p.png");
-    assert!(place.bytes("p.png").starts_with(b"\x89PNG"));
+    folder.expect_exit(0, "course -input plain.txt -size 4 4 -output p.png");
+    assert!(folder.bytes("p.png").starts_with(b"\x89PNG"));
 }
 
 #[test]
 fn last_occurrence_of_an_option_counts() {
-    let place = TestFolder::new();
-    place.expect_exit(0, "course -input missing.txt -input scene.txt -size 9 9 -size 5 4 -output a.tga -output b.tga");
-    assert_eq!((place.image8("b.tga").width, place.path("a.tga").exists()), (5, false));
+    let folder = TestFolder::new();
+    folder.expect_exit(0, "course -input missing.txt -input scene.txt -size 9 9 -size 5 4 -output a.tga -output b.tga");
+    assert_eq!((folder.image8("b.tga").width, folder.path("a.tga").exists()), (5, false));
 }
 
 #[cfg(unix)]
 #[test]
 fn link_with_a_programs_name_acts_as_that_program() {
-    let place = TestFolder::new();
-    place.put("plain.txt", plain());
+    let folder = TestFolder::new();
+    folder.write("plain.txt", plain());
     let nodes = "Camera { center 0 0 8 direction 0 0 -1 up 0 1 0 fov 40 }
 Background { color 0.2 0.1 0.5 ambient_light 0.2 0.2 0.2 }
 Materials { Material { diffuse 0.8 0.3 0.2 } }
 Scene { Node { Component<Light> { type directional direction 0 0 -1 color 1 1 1 } Component<Material> { index 0 } Component<Object> { type sphere radius 1 } } }";
-    place.put("nodes.txt", nodes);
+    folder.write("nodes.txt", nodes);
     for (name, scene, side) in [
         ("raytracer", "scene.txt", 100),
         ("a4soln", "plain.txt", 100),
@@ -179,13 +179,13 @@ Scene { Node { Component<Light> { type directional direction 0 0 -1 color 1 1 1 
         ("a4", "plain.txt", 100),
         ("assignment4", "nodes.txt", 200),
     ] {
-        std::os::unix::fs::symlink(common::durer(), place.path(name)).unwrap();
-        let mut command = std::process::Command::new(place.path(name));
-        let output = command.args(["-input", scene, "-output", "o.bmp"]).current_dir(place.path("")).output().unwrap();
+        std::os::unix::fs::symlink(common::durer(), folder.path(name)).unwrap();
+        let mut command = std::process::Command::new(folder.path(name));
+        let output = command.args(["-input", scene, "-output", "o.bmp"]).current_dir(folder.path("")).output().unwrap();
         let err = String::from_utf8_lossy(&output.stderr);
         // If the program is known, the dialect is not guessed.
         assert!(output.status.success() && err.is_empty(), "{name}: {err}");
-        assert_eq!(place.image8("o.bmp").width, side, "{name}");
+        assert_eq!(folder.image8("o.bmp").width, side, "{name}");
     }
 }
 
@@ -194,10 +194,10 @@ fn files_are_found_from_the_current_folder_and_beside_the_scene() {
     let place = TestFolder::new();
     std::fs::create_dir(place.path("scenes")).unwrap();
     let scene = plain().replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file one.obj }");
-    place.put("scenes/mesh.txt", scene);
+    place.write("scenes/mesh.txt", scene);
     for folder in ["", "scenes/"] {
         let mesh = format!("{folder}one.obj");
-        place.put(&mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        place.write(&mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
         for dialect in ["f04", "f12a4", "f16"] {
             let arguments = format!("course --dialect {dialect} -input scenes/mesh.txt -size 4 4 -output o.bmp");
             let output = place.run(&arguments);
@@ -212,14 +212,14 @@ fn files_are_found_from_the_current_folder_and_beside_the_scene() {
         }
         std::fs::remove_file(place.path(&mesh)).unwrap();
     }
-    place.refused(2, "course --dialect f04 -input scenes/mesh.txt -output o.tga", &["one.obj", "mesh.txt:8"]);
+    place.expect_failure(2, "course --dialect f04 -input scenes/mesh.txt -output o.tga", &["one.obj", "mesh.txt:8"]);
 }
 
 #[test]
 fn options_of_another_year_do_not_change_the_guess() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let shiny = plain().replace("diffuseColor 0.8", "specularColor 0.9 0.9 0.9 shininess 20 diffuseColor 0.8");
-    place.put("shiny.txt", shiny);
+    folder.write("shiny.txt", shiny);
     // Depth values and highlights differ between the years.
     for (options, dialect, expected) in [
         ("-output o.bmp", "f12a4", false),
@@ -229,72 +229,75 @@ fn options_of_another_year_do_not_change_the_guess() {
         ("-output o.png -depth 5 20 d.png", "f16", true),
         ("-output o.tga -grid 3 3 3 -shadows", "f12a5", true),
     ] {
-        let output = place.expect_exit(0, &format!("course -input shiny.txt -size 40 40 {options}"));
+        let output = folder.expect_exit(0, &format!("course -input shiny.txt -size 40 40 {options}"));
         assert_eq!(output.err.contains(&format!("note: read as {dialect}")), expected, "{options}: {}", output.err);
         assert_eq!(output.err.contains("read as"), expected, "{options}: {}", output.err);
         assert_eq!(output.err.matches("read as").count(), usize::from(expected));
     }
-    let output = place.expect_exit(0, "course -input scene.txt -size 4 4 -output o.png -jitter");
+    let output = folder.expect_exit(0, "course -input scene.txt -size 4 4 -output o.png -jitter");
     assert!(!output.err.contains("read as"), "{}", output.err);
 }
 
 #[test]
 fn guess_is_reported_only_where_it_changed_the_picture() {
-    let place = TestFolder::new();
-    place.put("matte.txt", plain().replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8"));
+    let folder = TestFolder::new();
+    folder.write("matte.txt", plain().replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8"));
     // At this size, the pictures of 2012 and 2016 look the same.
-    let output = place.expect_exit(0, "course -input matte.txt -size 20 20 -output o.png");
+    let output = folder.expect_exit(0, "course -input matte.txt -size 20 20 -output o.png");
     assert!(!output.err.contains("read as"), "{}", output.err);
-    let official = place.expect_exit(0, "course --dialect f16 -input matte.txt -size 20 20 -output f.png");
-    assert_eq!(place.bytes("o.png"), place.bytes("f.png"), "{}", official.err);
+    let official = folder.expect_exit(0, "course --dialect f16 -input matte.txt -size 20 20 -output f.png");
+    assert_eq!(folder.bytes("o.png"), folder.bytes("f.png"), "{}", official.err);
 }
 
 #[test]
 fn year_whose_picture_has_nan_samples_is_not_guessed() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let light = |falloff: &str| format!("PointLight {{ position 2 4 3 color 0.9 0.9 0.8 {falloff} }}");
     let sun = "DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 }";
     let shiny = plain().replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8");
     // In 2016, both lights cause a division by zero.
-    place.put("none.txt", shiny.replace(sun, &light("")));
-    place.put("zero.txt", shiny.replace(sun, &light("falloff 0")));
+    folder.write("none.txt", shiny.replace(sun, &light("")));
+    folder.write("zero.txt", shiny.replace(sun, &light("falloff 0")));
     for (scene, options, year) in [
         ("none", "", "f12a4"),
         ("none", "-shadows -bounces 2", "f12a5"),
         ("zero", "", "f12a5"),
         ("zero", "-shadows", "f12a5"),
     ] {
-        let output = place.expect_exit(0, &format!("course -input {scene}.txt -size 30 30 -output o.png {options}"));
+        let output = folder.expect_exit(0, &format!("course -input {scene}.txt -size 30 30 -output o.png {options}"));
         assert!(!output.err.contains("not finite"), "{scene} {options}: {}", output.err);
         assert!(output.err.matches("read as").count() <= 1, "{}", output.err);
         // The programs of 2012 write TGA files.
-        place
+        folder
             .expect_exit(0, &format!("course --dialect {year} -input {scene}.txt -size 30 30 -output y.tga {options}"));
-        let compared = place.run("compare o.png y.tga");
+        let compared = folder.run("compare o.png y.tga");
         assert!(compared.out.contains("identical"), "{scene} {options}: {}", compared.out);
     }
     // If no other year fits, the picture is rendered and its fault is reported.
-    place.put("only.txt", shiny.replace(sun, &light("falloff 0")).replace("Background {", "Background { cubeMap sky "));
-    std::fs::create_dir(place.path("sky")).unwrap();
+    folder.write(
+        "only.txt",
+        shiny.replace(sun, &light("falloff 0")).replace("Background {", "Background { cubeMap sky "),
+    );
+    std::fs::create_dir(folder.path("sky")).unwrap();
     for face in ["left", "right", "up", "down", "front", "back"] {
-        place.expect_exit(0, &format!("course -input scene.txt -size 4 4 -output sky/{face}.png"));
+        folder.expect_exit(0, &format!("course -input scene.txt -size 4 4 -output sky/{face}.png"));
     }
-    let output = place.expect_exit(0, "course -input only.txt -size 30 30 -output o.png");
+    let output = folder.expect_exit(0, "course -input only.txt -size 30 30 -output o.png");
     assert!(output.err.contains("not finite") && output.err.contains("the first in pixel"), "{}", output.err);
 }
 
 #[test]
 fn output_name_alone_does_not_decide_the_year() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let light = "PointLight { position 2 4 3 color 0.9 0.9 0.8 }";
     let lit = plain().replace("DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 }", light);
     // In 2016, this light would cause a division by zero. But another keyword in the scene
     // identifies the year.
-    place.put("bulb.txt", lit.replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8"));
+    folder.write("bulb.txt", lit.replace("diffuseColor 0.8", "shininess 20 diffuseColor 0.8"));
     let picture = |ending: &str| {
-        let output = place.expect_exit(0, &format!("course -input bulb.txt -size 9 9 -output o.{ending}"));
+        let output = folder.expect_exit(0, &format!("course -input bulb.txt -size 9 9 -output o.{ending}"));
         assert!(!output.err.contains("read as"), "{ending}: {}", output.err);
-        place.image8(&format!("o.{ending}")).pixels
+        folder.image8(&format!("o.{ending}")).pixels
     };
     let pictures = ["png", "bmp", "tga"].map(picture);
     assert!(pictures[0].iter().any(|pixel| *pixel != pictures[0][0]));
@@ -304,11 +307,11 @@ fn output_name_alone_does_not_decide_the_year() {
 
 #[test]
 fn nan_light_is_reported_with_its_pixel_and_cause() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let light = "PointLight { position 2 4 3 color 0.9 0.9 0.8 }";
     let lit = plain().replace("DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 }", light);
-    place.put("bulb.txt", lit);
-    let output = place.expect_exit(0, "course --dialect f16 -input bulb.txt -size 9 9 -output o.png");
+    folder.write("bulb.txt", lit);
+    let output = folder.expect_exit(0, "course --dialect f16 -input bulb.txt -size 9 9 -output o.png");
     let text = output.err.lines().find(|line| line.contains("not finite")).unwrap_or_else(|| panic!("{}", output.err));
     assert!(
         text.contains("the first in pixel ") && text.contains("light 0 divides by its falloff, which is missing"),
@@ -318,17 +321,17 @@ fn nan_light_is_reported_with_its_pixel_and_cause() {
 
 #[test]
 fn empty_depth_range_is_black_in_2012() {
-    let place = TestFolder::new();
-    place.put("plain.txt", plain());
-    place.expect_exit(0, "course --dialect f12a4 -input plain.txt -size 9 9 -depth 5 5 d.bmp");
-    assert!(place.image8("d.bmp").pixels.iter().all(|pixel| *pixel == [0; 3]));
-    place.refused(2, "course --dialect f16 -input plain.txt -size 9 9 -depth 5 5 d.bmp", &["two different"]);
+    let folder = TestFolder::new();
+    folder.write("plain.txt", plain());
+    folder.expect_exit(0, "course --dialect f12a4 -input plain.txt -size 9 9 -depth 5 5 d.bmp");
+    assert!(folder.image8("d.bmp").pixels.iter().all(|pixel| *pixel == [0; 3]));
+    folder.expect_failure(2, "course --dialect f16 -input plain.txt -size 9 9 -depth 5 5 d.bmp", &["two different"]);
 }
 
 #[test]
 fn jitter_or_filter_alone_has_the_picture_size_of_2012() {
-    let place = TestFolder::new();
-    place.put("plain.txt", plain());
+    let folder = TestFolder::new();
+    folder.write("plain.txt", plain());
     for (options, dialect, size) in [
         ("-jitter -filter", "f12a5", (20, 11)),
         ("-jitter", "f12a5", (60, 33)),
@@ -336,34 +339,38 @@ fn jitter_or_filter_alone_has_the_picture_size_of_2012() {
         ("-jitter", "f16", (20, 11)),
         ("-filter", "f16", (20, 11)),
     ] {
-        place.expect_exit(
+        folder.expect_exit(
             0,
             &format!("course --dialect {dialect} -input plain.txt -size 20 11 {options} -output o.bmp"),
         );
-        let image = place.image8("o.bmp");
+        let image = folder.image8("o.bmp");
         assert_eq!((image.width, image.height), size, "{options} {dialect}");
     }
-    place.refused(2, "course --dialect f12a5 -input plain.txt -size 2 2 -filter -output o.bmp", &["three by three"]);
+    folder.expect_failure(
+        2,
+        "course --dialect f12a5 -input plain.txt -size 2 2 -filter -output o.bmp",
+        &["three by three"],
+    );
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn standard_output_has_only_the_picture() {
-    let place = TestFolder::new();
-    let output = place.command("course -input scene.txt -size 8 4 -output /dev/stdout").output().unwrap();
+    let folder = TestFolder::new();
+    let output = folder.command("course -input scene.txt -size 8 4 -output /dev/stdout").output().unwrap();
     let image = durer::image::read8(&output.stdout, "o.tga").unwrap();
     assert_eq!((output.status.code(), image.width, image.height, output.stdout.len()), (Some(0), 8, 4, 18 + 96));
 }
 
 #[test]
 fn camera_with_fixed_aspect_ratio_sets_the_picture_size() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let camera = "EquirectangularCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 }";
     let rest = SCENE.split_once("Lights").unwrap().1;
-    place.put("around.txt", format!("{camera}\nLights{rest}"));
+    folder.write("around.txt", format!("{camera}\nLights{rest}"));
     for (options, size) in [("--dialect durer", (720, 360)), ("--dialect durer -size 30 20", (30, 20))] {
-        place.expect_exit(0, &format!("course -input around.txt {options} -output o.png --quiet"));
-        let image = place.image8("o.png");
+        folder.expect_exit(0, &format!("course -input around.txt {options} -output o.png --quiet"));
+        let image = folder.image8("o.png");
         assert_eq!((image.width, image.height), size, "{options}");
     }
 }

@@ -28,11 +28,11 @@ fn sum(node: &Value) -> [f32; 3] {
 
 #[test]
 fn tree_sums_to_the_pixel_of_the_picture() {
-    let place = TestFolder::new();
-    place.expect_exit(0, &format!("render scene.txt -o p.pfm --samples 1 {SMALL}"));
-    let picture = place.image("p.pfm");
+    let folder = TestFolder::new();
+    folder.expect_exit(0, &format!("render scene.txt -o p.pfm --samples 1 {SMALL}"));
+    let picture = folder.image("p.pfm");
     for (x, y) in [(20, 12), (20, 26), (3, 3), (31, 20)] {
-        let output = place.expect_exit(0, &format!("explain scene.txt --pixel {x},{y} --samples 1 --json {SMALL}"));
+        let output = folder.expect_exit(0, &format!("explain scene.txt --pixel {x},{y} --samples 1 --json {SMALL}"));
         let json: Value = serde_json::from_str(&output.out).unwrap();
         let light = &json["pixel"]["samples"][0]["light"];
         assert_eq!(sum(light), picture.get(x, y).unwrap().to_array(), "{x},{y}");
@@ -41,9 +41,9 @@ fn tree_sums_to_the_pixel_of_the_picture() {
 
 #[test]
 fn course_samplers_are_explained_with_neighbouring_pixels() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let output =
-        |options: &str| place.expect_exit(0, &format!("explain scene.txt --pixel 20,13 {options} {SMALL}")).out;
+        |options: &str| folder.expect_exit(0, &format!("explain scene.txt --pixel 20,13 {options} {SMALL}")).out;
     let text = output("--sampler jittered --samples 4 --filter gaussian");
     assert!(text.contains("weighted mean of 36 samples, including samples of neighbouring pixels; "), "{text}");
     assert!(text.contains("(number 3 of pixel 21,14) at 21."), "{text}");
@@ -57,9 +57,9 @@ fn course_samplers_are_explained_with_neighbouring_pixels() {
 }
 
 #[test]
-fn text_names_objects_by_their_place_in_the_file() {
-    let place = TestFolder::new();
-    let result = place.expect_exit(0, &format!("explain scene.txt --pixel 20,13 {SMALL}"));
+fn text_names_objects_by_file_position() {
+    let folder = TestFolder::new();
+    let result = folder.expect_exit(0, &format!("explain scene.txt --pixel 20,13 {SMALL}"));
     for wanted in [
         "pixel 20,13 = (",
         "weighted mean of 16 samples",
@@ -74,7 +74,7 @@ fn text_names_objects_by_their_place_in_the_file() {
     }
     assert!(!result.out.contains('\x1b'), "no colours into a pipe");
     // The numbers of a ray are separated by spaces, not by commas.
-    let result = place.expect_exit(2, "explain scene.txt --quiet --ray 0,3,0,0,-1,0");
+    let result = folder.expect_exit(2, "explain scene.txt --quiet --ray 0,3,0,0,-1,0");
     assert!(result.err.contains("--ray"), "{}", result.err);
     for ray in [
         &["0 3 0 0 -1 0"][..],
@@ -82,7 +82,7 @@ fn text_names_objects_by_their_place_in_the_file() {
         &["-0 3 0  0 -1 0"],
         &["-0", "3", "0", "0", "-1", "0"],
     ] {
-        let output = place.command("explain scene.txt --quiet --ray").args(ray).output().unwrap();
+        let output = folder.command("explain scene.txt --quiet --ray").args(ray).output().unwrap();
         let out = String::from_utf8(output.stdout).unwrap();
         assert!(out.contains("camera ray") && out.contains("hits Sphere of line 8 at t = 1.5"), "{out}");
     }
@@ -91,7 +91,7 @@ fn text_names_objects_by_their_place_in_the_file() {
 /// Prints the vectors of highlights and the weight of the colour in the glass of 2012.
 #[test]
 fn formulas_show_all_factors() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let scene = common::SCENE
         .replace("diffuseColor 0.8 0.3 0.2", "diffuseColor 0.8 0.3 0.2 specularColor 0.5 0.5 0.5 shininess 4");
     for (year, words, wanted) in [
@@ -99,21 +99,21 @@ fn formulas_show_all_factors() {
         ("f12a4", "shininess 4", "R = d - 2 (d·N) N = ("),
         ("f12a5", "refractionIndex 1.5", "`specularColor` (0.5, 0.5, 0.5) · 0.04"),
     ] {
-        place.put("year.txt", scene.replace("shininess 4", words));
+        folder.write("year.txt", scene.replace("shininess 4", words));
         let output =
-            place.expect_exit(0, &format!("explain year.txt --pixel 19,13 --bounces 1 --dialect {year} {SMALL}"));
+            folder.expect_exit(0, &format!("explain year.txt --pixel 19,13 --bounces 1 --dialect {year} {SMALL}"));
         assert!(output.out.contains(wanted), "{year}: {}", output.out);
     }
-    place.expect_exit(0, &format!("explain scene.txt --pixel 19,13 --transfer linear --html linear.html {SMALL}"));
-    assert!(String::from_utf8(place.bytes("linear.html")).unwrap().contains("\"transfer\":\"linear\""));
+    folder.expect_exit(0, &format!("explain scene.txt --pixel 19,13 --transfer linear --html linear.html {SMALL}"));
+    assert!(String::from_utf8(folder.bytes("linear.html")).unwrap().contains("\"transfer\":\"linear\""));
 }
 
 /// Omits small and deep terms and says so. Prints no minus before 0, and at most four digits.
 #[test]
 fn text_is_readable() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let output = |options: &str| {
-        place.expect_exit(0, &format!("explain scene.txt --pixel 20,26 --samples 1 {options} {SMALL}")).out
+        folder.expect_exit(0, &format!("explain scene.txt --pixel 20,26 --samples 1 {options} {SMALL}")).out
     };
     let all = output("");
     assert!(all.contains("mirrored light\n") && !all.contains("index 1 to 1"), "{all}");
@@ -129,23 +129,23 @@ fn text_is_readable() {
 
 #[test]
 fn brightest_and_worst_pixels_are_found() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let scene = common::SCENE.replace("color 0.2 0.1 0.5", "color 0 0 0");
-    place.put("dark.txt", scene);
-    place.expect_exit(0, &format!("render dark.txt -o p.pfm {SMALL}"));
-    let picture = place.image("p.pfm");
+    folder.write("dark.txt", scene);
+    folder.expect_exit(0, &format!("render dark.txt -o p.pfm {SMALL}"));
+    let picture = folder.image("p.pfm");
     let light = |x, y| picture.get(x, y).unwrap().dot([0.2126, 0.7152, 0.0722].into());
-    let output = place.expect_exit(0, &format!("explain dark.txt --brightest --json {SMALL}"));
+    let output = folder.expect_exit(0, &format!("explain dark.txt --brightest --json {SMALL}"));
     let json: Value = serde_json::from_str(&output.out).unwrap();
     let (x, y) = (json["pixel"]["x"].as_u64().unwrap() as u32, json["pixel"]["y"].as_u64().unwrap() as u32);
     let most = (0..30).flat_map(|y| (0..40).map(move |x| (x, y))).map(|(x, y)| light(x, y)).fold(0.0, f32::max);
     assert_eq!(light(x, y), most);
-    place.expect_exit(0, &format!("explain dark.txt --worst {SMALL}"));
+    folder.expect_exit(0, &format!("explain dark.txt --worst {SMALL}"));
 }
 
 #[test]
 fn invalid_options_are_refused() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     for (question, answer) in [
         ("", "choose a pixel or a ray"),
         ("--pixel 40,3", "pixel 40,3 is outside the picture of 40 x 30 pixels"),
@@ -154,18 +154,18 @@ fn invalid_options_are_refused() {
         ("--pixel 4,3 --time 1s", "a different number of samples on each run"),
         ("--pixel 4,3 --brightest", "cannot be used with"),
     ] {
-        let output = place.expect_exit(2, &format!("explain scene.txt {SMALL} {question}"));
+        let output = folder.expect_exit(2, &format!("explain scene.txt {SMALL} {question}"));
         assert!(output.err.contains(answer), "{question}: {}", output.err);
     }
 }
 
 #[test]
 fn page_is_self_contained() {
-    let place = TestFolder::new();
-    place.put("a<b.txt", common::SCENE);
-    let output = place.expect_exit(0, "explain a<b.txt --pixel 20,12 --size 40x30 --html why.html");
+    let folder = TestFolder::new();
+    folder.write("a<b.txt", common::SCENE);
+    let output = folder.expect_exit(0, "explain a<b.txt --pixel 20,12 --size 40x30 --html why.html");
     assert!(output.out.contains("wrote why.html"), "{}", output.out);
-    let page = std::fs::read_to_string(place.path("why.html")).unwrap();
+    let page = std::fs::read_to_string(folder.path("why.html")).unwrap();
     assert!(page.contains("data:image/png;base64,iVBOR") && page.contains("a\\u003cb.txt") && !page.contains("@DATA@"));
     assert!(!page.contains("http:") && !page.contains("https:"), "nothing is fetched");
 }
@@ -192,16 +192,16 @@ fn words(json: &Value, found: &mut std::collections::BTreeSet<String>) {
 
 #[test]
 fn every_json_field_is_documented() {
-    let (place, mut found) = (TestFolder::new(), Default::default());
+    let (folder, mut found) = (TestFolder::new(), Default::default());
     let glass = common::ENDLESS.replace("indexOfRefraction", "refractionIndex");
-    place.put("glass.txt", glass);
+    folder.write("glass.txt", glass);
     for arguments in [
         "scene.txt --pixel 20,26 --bounces 1 --samples 1",
         "scene.txt --pixel 0,0 --jitter --blur",
         "scene.txt --pixel 20,13 --sampler random --samples 2 --filter box",
         "glass.txt --pixel 20,13 --bounces 3 --min-throughput 0.5 --samples 1",
     ] {
-        let output = place.expect_exit(0, &format!("explain {arguments} --json {SMALL}"));
+        let output = folder.expect_exit(0, &format!("explain {arguments} --json {SMALL}"));
         words(&serde_json::from_str(&output.out).unwrap(), &mut found);
     }
     assert!(found.len() > 60, "{found:?}");
@@ -252,8 +252,8 @@ setTimeout(() => {
 
 #[test]
 fn page_works_in_a_browser_without_network() {
-    let place = TestFolder::new();
-    place.expect_exit(0, &format!("explain scene.txt --pixel 20,26 --html why.html --samples 4 {SMALL}"));
+    let folder = TestFolder::new();
+    folder.expect_exit(0, &format!("explain scene.txt --pixel 20,26 --html why.html --samples 4 {SMALL}"));
     let wanted = [
         "terms true",
         "folded true",
@@ -269,7 +269,7 @@ fn page_works_in_a_browser_without_network() {
         "keys true",
         "picture true 40x30",
     ];
-    sees(&place, "why.html", CLICKS, &wanted);
+    sees(&folder, "why.html", CLICKS, &wanted);
 }
 
 const ORIGINS: &str = "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 60 }
@@ -293,10 +293,10 @@ Group {
 /// Terms show where they come from: the equation of a hit, a matrix, a cell, texels, Snell's law.
 #[test]
 fn numbers_say_where_they_come_from() {
-    let place = TestFolder::new();
-    place.put("s.txt", ORIGINS);
-    place.put("two.ppm", "P3\n2 1\n255\n99 99 99 200 20 20\n");
-    place.put(
+    let folder = TestFolder::new();
+    folder.write("s.txt", ORIGINS);
+    folder.write("two.ppm", "P3\n2 1\n255\n99 99 99 200 20 20\n");
+    folder.write(
         "sheet.obj",
         "v -4 -1 0\nv -2 -1 0\nv -2 1 0\nv -4 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n",
     );
@@ -309,11 +309,11 @@ fn numbers_say_where_they_come_from() {
         ("-3.2 0.1 5 0 0 -1", &["texture `two.ppm` of 2 x 1 texels", "99 99 99 by the sRGB curve", "· texel (0, 0)"]),
         ("3.3 0 5 0 0 -1", &["Snell: sin i = 0.3, sin t = n₁/n₂ sin i = 1 / 1.5 · 0.3 = 0.2"]),
     ] {
-        let text = place.expect_exit(0, &format!("explain s.txt --bounces 2 --ray {ray}")).out;
+        let text = folder.expect_exit(0, &format!("explain s.txt --bounces 2 --ray {ray}")).out;
         for word in words {
             assert!(text.contains(word), "`{word}` is not in:\n{text}");
         }
-        let json = place.expect_exit(0, &format!("explain s.txt --bounces 2 --json --ray {ray}")).out;
+        let json = folder.expect_exit(0, &format!("explain s.txt --bounces 2 --json --ray {ray}")).out;
         assert!(json.contains("\"origins\"") && json.contains(words[0]), "{json}");
     }
 }

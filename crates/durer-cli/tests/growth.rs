@@ -10,9 +10,9 @@ use std::fmt::Write;
 /// Checks that the program rejects a command line with an error, under limits of address space and
 /// time.
 #[track_caller]
-fn refused(place: &TestFolder, line: &str, words: &str) {
+fn refused(folder: &TestFolder, line: &str, words: &str) {
     let script = format!("ulimit -v 900000; export RAYON_NUM_THREADS=2; timeout 60 $DURER {line}");
-    let output = place.shell(&script);
+    let output = folder.shell(&script);
     assert_eq!(output.code, Some(2), "{line}: {}", output.err);
     assert!(output.err.contains(words), "{line}: {}", output.err);
     assert!(output.err.len() < 40_000, "{line}: {}", output.err.len());
@@ -31,34 +31,34 @@ fn doubled(first: &str, double: impl Fn(usize) -> String, last: &str) -> String 
 }
 
 #[test]
-fn what_doubles_forty_times_in_a_mitsuba_scene_is_refused() {
-    let place = TestFolder::new();
+fn doubling_in_mitsuba_scene_is_refused() {
+    let folder = TestFolder::new();
     let variable = doubled(
         r#"<default name="a0" value="xx"/>"#,
         |i| format!("<default name=\"a{i}\" value=\"$a{0}$a{0}\"/>\n", i - 1),
         r#"<shape type="sphere"><string name="x" value="$a40"/></shape>"#,
     );
-    place.put("variable.xml", variable);
-    refused(&place, &render("variable.xml"), "with its variables replaced, this is longer than");
+    folder.write("variable.xml", variable);
+    refused(&folder, &render("variable.xml"), "with its variables replaced, this is longer than");
     let many = r#"<shape type="sphere"><string name="x" value="$a18"/></shape>"#.repeat(2000);
     let values = doubled(
         r#"<default name="a0" value="xx"/>"#,
         |i| format!("<default name=\"a{i}\" value=\"$a{0}$a{0}\"/>\n", (i - 1).min(17)),
         &many,
     );
-    place.put("values.xml", values);
-    refused(&place, &render("values.xml"), "needs more memory than");
+    folder.write("values.xml", values);
+    refused(&folder, &render("values.xml"), "needs more memory than");
     for (file, words, inner) in [("empty.xml", "objects", ""), ("ball.xml", "objects", r#"<shape type="sphere"/>"#)] {
         let group = |i: usize, inner: &str| format!("<shape type=\"shapegroup\" id=\"g{i}\">{inner}</shape>\n");
         let instance = |i: usize| format!(r#"<shape type="instance"><ref id="g{i}"/></shape>"#);
         let two = |i: usize| group(i, &instance(i - 1).repeat(2));
-        place.put(file, doubled(&group(0, inner), two, &instance(40)));
-        refused(&place, &render(file), "error");
+        folder.write(file, doubled(&group(0, inner), two, &instance(40)));
+        refused(&folder, &render(file), "error");
         // Fewer levels, which are within the depth limit.
         let shallow = (1..=25).map(two).collect::<String>();
         let scene = format!("<scene version=\"3.0.0\">{}{shallow}{}</scene>", group(0, inner), instance(25));
-        place.put(file, scene);
-        refused(&place, &render(file), words);
+        folder.write(file, scene);
+        refused(&folder, &render(file), words);
     }
     let shown = r#"<shape type="sphere"><ref id="b30"/></shape>"#;
     for (file, material) in [("blend.xml", "blendbsdf"), ("sides.xml", "twosided")] {
@@ -67,8 +67,8 @@ fn what_doubles_forty_times_in_a_mitsuba_scene_is_refused() {
             let part = format!(r#"<ref id="b{}"/>"#, i - 1);
             format!("<bsdf type=\"{material}\" id=\"b{i}\">{part}{part}</bsdf>\n")
         };
-        place.put(file, doubled(first, both, shown));
-        refused(&place, &render(file), "this material is too large: it consists of more than 4096 materials");
+        folder.write(file, doubled(first, both, shown));
+        refused(&folder, &render(file), "this material is too large: it consists of more than 4096 materials");
     }
     // Many copies of a material that is just below the size limit.
     let mut copies = String::from("<scene version=\"3.0.0\"><bsdf type=\"diffuse\" id=\"b0\"/>\n");
@@ -80,18 +80,18 @@ fn what_doubles_forty_times_in_a_mitsuba_scene_is_refused() {
         let mask = format!(r#"<bsdf type="mask" id="m{i}"><ref id="b11"/></bsdf>"#);
         let _ = writeln!(copies, "{mask}<shape type=\"sphere\"><ref id=\"m{i}\"/></shape>");
     }
-    place.put("copies.xml", copies + "</scene>");
-    refused(&place, &render("copies.xml"), "needs more memory than");
+    folder.write("copies.xml", copies + "</scene>");
+    refused(&folder, &render("copies.xml"), "needs more memory than");
 }
 
 #[test]
-fn names_that_double_in_the_scene_language_are_refused() {
-    let place = TestFolder::new();
+fn doubling_names_in_scene_are_refused() {
+    let folder = TestFolder::new();
     for inner in ["Group { }", "Sphere { center 0 0 0 radius 1 }"] {
         let mut text = format!("define a0 {inner}\n");
         (1..=40).for_each(|i| text += &format!("define a{i} Group {{ use a{0} use a{0} }}\n", i - 1));
-        place.put("a.txt", SCENE.replace("Group {", &format!("{text} Group {{ use a40")));
-        refused(&place, &format!("{} --dialect durer", render("a.txt")), "objects");
+        folder.write("a.txt", SCENE.replace("Group {", &format!("{text} Group {{ use a40")));
+        refused(&folder, &format!("{} --dialect durer", render("a.txt")), "objects");
     }
 }
 
@@ -126,17 +126,17 @@ fn gltf(nodes: usize, primitives: usize, copies: usize) -> String {
 }
 
 #[test]
-fn a_gltf_file_shows_no_more_objects_than_another_scene() {
-    let place = TestFolder::new();
+fn gltf_has_same_object_limit_as_other_scenes() {
+    let folder = TestFolder::new();
     for (nodes, primitives, copies) in [(1, 5000, 5000), (5000, 5000, 0), (50, 50, 5000)] {
-        place.put("many.gltf", gltf(nodes, primitives, copies));
-        refused(&place, &render("many.gltf"), "too many objects: more than 1048576");
+        folder.write("many.gltf", gltf(nodes, primitives, copies));
+        refused(&folder, &render("many.gltf"), "too many objects: more than 1048576");
     }
 }
 
 #[test]
 fn rows_that_no_file_holds_count_as_memory() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let model = |attributes: &str, count: u32, more: &str| {
         format!(
             r#"{{"asset":{{"version":"2.0"}},"nodes":[{{"mesh":0}}],"scenes":[{{"nodes":[0]}}],
@@ -154,9 +154,9 @@ fn rows_that_no_file_holds_count_as_memory() {
         ("", 12_000_000, r#","mode":5"#),
         ("", 6_000_000, r#","mode":0"#),
     ] {
-        place.put("rows.gltf", model(attributes, count, more));
+        folder.write("rows.gltf", model(attributes, count, more));
         let script = format!("ulimit -v 900000; export RAYON_NUM_THREADS=2; timeout 60 $DURER {}", render("rows.gltf"));
-        let output = place.shell(&script);
+        let output = folder.shell(&script);
         assert_eq!(output.code, Some(2), "{count} {attributes} {more}: {}", output.err);
         assert!(output.err.contains("memory"), "{count} {attributes} {more}: {}", output.err);
     }
@@ -188,8 +188,8 @@ fn jpeg(kind: u8, [width, height]: [u16; 2], factors: &[u8]) -> Vec<u8> {
 
 #[test]
 fn photographs_take_the_memory_that_their_heads_announce() {
-    let place = TestFolder::new();
-    place.put("texture.txt", SCENE.replace("Material { diffuse", "PhongMaterial { texture p.jpg diffuse"));
+    let folder = TestFolder::new();
+    folder.write("texture.txt", SCENE.replace("Material { diffuse", "PhongMaterial { texture p.jpg diffuse"));
     for (size, factors) in [
         ([65_500, 64], &[0x44, 0x11, 0x11][..]),
         ([65_500, 1], &[0x44, 0x44, 0x44]),
@@ -197,13 +197,13 @@ fn photographs_take_the_memory_that_their_heads_announce() {
         ([2000, 2000], &[0x22, 0x11, 0x11, 0x22]),
     ] {
         for kind in [0xc0, 0xc1, 0xc2] {
-            place.put("p.jpg", jpeg(kind, size, factors));
+            folder.write("p.jpg", jpeg(kind, size, factors));
             // The address space is sufficient for the program and for `--memory`, but not for the
             // decoded picture.
             let script = "ulimit -v 500000; export RAYON_NUM_THREADS=2; \
                 timeout 60 $DURER render texture.txt --dialect durer --size 8x8 --samples 1 -q --restart -o o.png \
                 --threads 2 --memory 16M";
-            let output = place.shell(script);
+            let output = folder.shell(script);
             assert!(
                 matches!(output.code, Some(0 | 2)),
                 "{size:?} {factors:?} {kind:x}: {:?} {}",
@@ -216,11 +216,11 @@ fn photographs_take_the_memory_that_their_heads_announce() {
 
 #[test]
 fn large_pictures_under_limits_of_the_system_are_errors() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     for options in ["--size 268435456x1", "--size 1x268435456", "--size 268435456x1 --memory 64G"] {
         let line = format!("render scene.txt {options} --samples 1 -q --restart -o o.pfm --threads 2");
         let script = format!("ulimit -v 900000; export RAYON_NUM_THREADS=2; timeout 20 $DURER {line}");
-        let output = place.shell(&script);
+        let output = folder.shell(&script);
         // A tall picture is rendered in bands, which takes longer.
         assert!(matches!(output.code, Some(2 | 124)), "{options}: {:?} {}", output.code, output.err);
         assert!(output.code == Some(124) || output.err.contains("memory"), "{options}: {}", output.err);
@@ -233,7 +233,7 @@ fn large_pictures_under_limits_of_the_system_are_errors() {
             let script = format!(
                 "ulimit -v 900000; export RAYON_NUM_THREADS=2; timeout 20 $DURER {command} {size} -q --restart --samples 1 --threads 2"
             );
-            let output = place.shell(&script);
+            let output = folder.shell(&script);
             assert!(matches!(output.code, Some(2 | 124)), "{command} {size}: {:?} {}", output.code, output.err);
         }
     }
@@ -241,7 +241,7 @@ fn large_pictures_under_limits_of_the_system_are_errors() {
         ["course -input scene.txt -size 16384 16384 -output o.tga", "photo place scene.txt --backplate o.png -o p.png"]
     {
         let script = format!("ulimit -v 500000; export RAYON_NUM_THREADS=2; timeout 20 $DURER {line}");
-        let output = place.shell(&script);
+        let output = folder.shell(&script);
         assert!(matches!(output.code, Some(0..=2 | 124)), "{line}: {:?} {}", output.code, output.err);
     }
 }

@@ -12,9 +12,9 @@ const SOON: Duration = Duration::from_secs(8);
 
 #[test]
 fn rendering_stops_soon_and_leaves_no_empty_files() {
-    let place = TestFolder::new();
-    place.put("old.png", "an old picture");
-    let before = place.names();
+    let folder = TestFolder::new();
+    folder.write("old.png", "an old picture");
+    let before = folder.names();
     for options in [
         "endless.txt --bounces 256",
         "endless.txt --bounces 256 --dialect f04",
@@ -23,26 +23,26 @@ fn rendering_stops_soon_and_leaves_no_empty_files() {
         "endless.txt --bounces 256 --show cost",
         "endless.txt --bounces 256 --show samples --size 9x9",
     ] {
-        let (output, latency) = place.interrupted(&format!("render {options} -o old.png"), Duration::from_millis(400));
+        let (output, latency) = folder.interrupted(&format!("render {options} -o old.png"), Duration::from_millis(400));
         assert_eq!((output.code, output.out.as_str()), (Some(130), ""), "{options}: {}", output.err);
         // The work is saved if at least a few blocks of pixels are done.
-        let part = place.path("old.png.part");
+        let part = folder.path("old.png.part");
         let text = output.err.lines().last().unwrap_or_default();
         assert!(text == "interrupted; nothing was written" || text.contains("old.png.part (--resume"), "{text}");
         assert_eq!(text.contains("old.png.part"), part.exists(), "{options}: {text}");
         let _ = std::fs::remove_file(part);
         assert!(latency < SOON, "{options}: {latency:?}");
-        assert_eq!(place.names(), before, "{options}");
-        assert_eq!(place.bytes("old.png"), b"an old picture");
+        assert_eq!(folder.names(), before, "{options}");
+        assert_eq!(folder.bytes("old.png"), b"an old picture");
     }
     let grid = "course -input scene.txt -output old.png -grid 200 200 200 -visualize_grid -size 15000 15000";
-    let (output, latency) = place.interrupted(grid, Duration::from_millis(400));
+    let (output, latency) = folder.interrupted(grid, Duration::from_millis(400));
     assert!(output.code == Some(130) && latency < SOON, "{latency:?} {}", output.err);
 }
 
 #[test]
 fn finished_work_is_saved_on_interrupt() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     for options in [
         "scene.txt --samples 1048576",
         "scene.txt --sampler uniform --samples 100 --size 1000x1000",
@@ -51,20 +51,20 @@ fn finished_work_is_saved_on_interrupt() {
         // The time to save is proportional to the work done.
         "scene.txt --size 3000x3000 --samples 64",
     ] {
-        place.put("old.png", "an old picture");
-        let _ = std::fs::remove_file(place.path("old.png.part"));
-        let (output, latency) = place.interrupted(&format!("render {options} -o old.png"), Duration::from_millis(400));
+        folder.write("old.png", "an old picture");
+        let _ = std::fs::remove_file(folder.path("old.png.part"));
+        let (output, latency) = folder.interrupted(&format!("render {options} -o old.png"), Duration::from_millis(400));
         assert_eq!((output.code, output.out.as_str()), (Some(130), ""), "{options}: {}", output.err);
         assert!(latency < SOON, "{options}: {latency:?}");
         let text = output.err.lines().last().unwrap_or_default();
-        assert_eq!(text.contains("old.png.part (--resume"), place.path("old.png.part").exists(), "{options}: {text}");
+        assert_eq!(text.contains("old.png.part (--resume"), folder.path("old.png.part").exists(), "{options}: {text}");
         // An incomplete picture does not replace an old one.
         if text.ends_with("and old.png") {
-            assert!(place.image8("old.png").width > 0);
+            assert!(folder.image8("old.png").width > 0);
         } else {
-            assert_eq!(place.bytes("old.png"), b"an old picture", "{options}: {text}");
+            assert_eq!(folder.bytes("old.png"), b"an old picture", "{options}: {text}");
         }
-        assert!(place.names().iter().all(|name| !name.ends_with(".tmp")));
+        assert!(folder.names().iter().all(|name| !name.ends_with(".tmp")));
         if options.ends_with("1048576") {
             assert!(text.ends_with("and old.png"), "{text}");
         }
@@ -73,60 +73,60 @@ fn finished_work_is_saved_on_interrupt() {
 
 #[test]
 fn reading_stops_on_interrupt() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     // Two million triangles take seconds to read and sort, in any build.
     let mut mesh = String::new();
     for i in 0..400_000 {
         mesh += &format!("v {i} 0 1\nv {i} 1 {i}\nf {} {} 1\n", 2 * i + 1, 2 * i + 2);
     }
-    place.put("large.obj", mesh);
-    place.put(
+    folder.write("large.obj", mesh);
+    folder.write(
         "large.txt",
         common::SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file large.obj }"),
     );
     for command in ["render large.txt -o p.png", "info large.txt", "course -input large.txt -output p.tga"] {
         // Late enough that the program has started even on a busy machine.
-        let (output, latency) = place.interrupted(command, Duration::from_millis(250));
+        let (output, latency) = folder.interrupted(command, Duration::from_millis(250));
         assert!(
             output.code == Some(130) && output.out.is_empty() && latency < SOON,
             "{command}: {:?} {latency:?}",
             output.code
         );
     }
-    assert!(!place.path("p.png").exists());
+    assert!(!folder.path("p.png").exists());
 }
 
 #[test]
 fn interrupt_leaves_a_complete_file_or_none() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     for after in (0..120).step_by(8) {
-        let _ = std::fs::remove_file(place.path("p.png"));
-        let (output, _) = place.interrupted(
+        let _ = std::fs::remove_file(folder.path("p.png"));
+        let (output, _) = folder.interrupted(
             "render scene.txt --size 300x300 --samples 1 --restart -o p.png",
             Duration::from_millis(after),
         );
         match output.code {
-            Some(0) => assert_eq!(place.image8("p.png").width, 300),
+            Some(0) => assert_eq!(folder.image8("p.png").width, 300),
             // The signal may have arrived after the work was done.
-            Some(130) => assert!(!place.path("p.png").exists() || place.image8("p.png").width == 300),
+            Some(130) => assert!(!folder.path("p.png").exists() || folder.image8("p.png").width == 300),
             // Before the handler is installed, the system ends the program. After the program has
             // ended, the signal has no effect.
             other => assert!(other.is_none(), "{other:?} after {after} ms"),
         }
-        assert!(place.names().iter().all(|name| !name.ends_with(".tmp")));
+        assert!(folder.names().iter().all(|name| !name.ends_with(".tmp")));
     }
 }
 
 #[test]
 fn progress_bar_appears_on_terminals_only() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let on_terminal = |options: &str| {
         let line =
             format!("{} render scene.txt --size 1000x1000 --samples 100 --restart -o p.png {options}", common::durer());
         let mut script = Command::new("script");
         script
             .args(["-qec", &format!("timeout -s INT 2 {line}"), "/dev/null"])
-            .current_dir(place.path(""))
+            .current_dir(folder.path(""))
             .stdin(Stdio::null());
         script.env("TERM", "xterm").output().ok()
     };
@@ -134,16 +134,16 @@ fn progress_bar_appears_on_terminals_only() {
     let quiet = on_terminal("--quiet").unwrap();
     assert!(String::from_utf8_lossy(&shown.stdout).contains("rays/s"), "{shown:?}");
     assert!(!String::from_utf8_lossy(&quiet.stdout).contains("rays/s"), "{quiet:?}");
-    let (output, _) = place
+    let (output, _) = folder
         .interrupted("render scene.txt --size 1000x1000 --samples 100 --restart -o p.png", Duration::from_millis(1500));
     assert!(!output.err.contains("rays/s"), "{}", output.err);
 }
 
 #[test]
 fn watch_renders_saved_changes_until_ctrl_c() {
-    let place = TestFolder::new();
-    let scene = std::fs::read_to_string(place.path("scene.txt")).unwrap();
-    let mut child = place
+    let folder = TestFolder::new();
+    let scene = std::fs::read_to_string(folder.path("scene.txt")).unwrap();
+    let mut child = folder
         .command("render scene.txt -o a.png --watch --size 16x16 --samples 2")
         .stderr(Stdio::piped())
         .spawn()
@@ -155,13 +155,13 @@ fn watch_renders_saved_changes_until_ctrl_c() {
             std::thread::sleep(Duration::from_millis(20));
         }
     };
-    let picture = || std::fs::read(place.path("a.png")).unwrap_or_default();
+    let picture = || std::fs::read(folder.path("a.png")).unwrap_or_default();
     wait(&|| !picture().is_empty());
     let mut before = picture();
     // After an error, the program waits until the file is fixed.
     for text in [scene.replace("0.8 0.3 0.2", "0.1 0.3 0.9"), scene.replace("radius 1", "radius x"), scene.clone()] {
         std::thread::sleep(Duration::from_millis(400));
-        place.put("scene.txt", &text);
+        folder.write("scene.txt", &text);
         match text.contains("radius x") {
             true => std::thread::sleep(Duration::from_millis(400)),
             false => wait(&|| !picture().is_empty() && picture() != before),
@@ -172,7 +172,7 @@ fn watch_renders_saved_changes_until_ctrl_c() {
     Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     let status = child.wait().unwrap();
     assert_eq!(status.code(), Some(0));
-    assert!(!place.path("a.png.part").exists());
+    assert!(!folder.path("a.png.part").exists());
 }
 
 /// Returns a grid of triangles as an OBJ file.
@@ -215,21 +215,21 @@ fn problem(cameras: usize, points: usize) -> String {
 
 #[test]
 fn every_command_ends_soon_after_a_signal() {
-    let place = TestFolder::new();
-    place.put("mesh.obj", mesh(700));
+    let folder = TestFolder::new();
+    folder.write("mesh.obj", mesh(700));
     let large = common::SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file mesh.obj }");
-    place.put("mesh.txt", &large);
-    place.put("a.ppm", noise(4000, 1));
-    place.put("b.ppm", noise(4000, 2));
-    place.put("problem.txt", problem(60, 2000));
-    std::fs::create_dir(place.path("photos")).unwrap();
+    folder.write("mesh.txt", &large);
+    folder.write("a.ppm", noise(4000, 1));
+    folder.write("b.ppm", noise(4000, 2));
+    folder.write("problem.txt", problem(60, 2000));
+    std::fs::create_dir(folder.path("photos")).unwrap();
     for i in 0..6 {
         let picture = durer::image::read(&noise(1200, i), "a.ppm").unwrap();
         let layer = durer::image::Layer::color("", picture);
         let mut file = Vec::new();
         let format = durer::image::format_for("a.png").unwrap();
         format.write(&[layer], &durer::image::WriteOptions::default(), &mut file).unwrap();
-        place.put(&format!("photos/{i}.png"), file);
+        folder.write(&format!("photos/{i}.png"), file);
     }
     for line in [
         "render endless.txt --bounces 256 -o o.png --restart",
@@ -250,7 +250,7 @@ fn every_command_ends_soon_after_a_signal() {
         "photo solve problem.txt -o solved.txt",
     ] {
         for (signal, code) in [("INT", 130), ("TERM", 143)] {
-            let (output, latency) = place.signalled(line, Duration::from_millis(400), &[signal]);
+            let (output, latency) = folder.send_signals(line, Duration::from_millis(400), &[signal]);
             assert_eq!(output.code, Some(code), "{line}: {}", output.err);
             // An idle machine takes half a second at most.
             assert!(latency < Duration::from_secs(3), "{line}: {latency:?}");
@@ -258,24 +258,24 @@ fn every_command_ends_soon_after_a_signal() {
         }
     }
     for line in ["live scene.txt", "render scene.txt --size 8x8 --samples 1 --watch -o w.png"] {
-        let (output, latency) = place.signalled(line, Duration::from_millis(600), &["TERM"]);
+        let (output, latency) = folder.send_signals(line, Duration::from_millis(600), &["TERM"]);
         assert!(output.code == Some(0) && latency < Duration::from_secs(3), "{line}: {:?} {latency:?}", output.code);
     }
 }
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_verification_leaves_no_process_behind() {
-    let place = TestFolder::new();
+fn verification_leaves_no_process_behind() {
+    let folder = TestFolder::new();
     let alive = || {
         let found =
-            place.shell("pgrep -f \"verify $PWD/scene.txt\" | grep -vw $$ | xargs -r ps -o stat= -p | grep -cv Z");
+            folder.shell("pgrep -f \"verify $PWD/scene.txt\" | grep -vw $$ | xargs -r ps -o stat= -p | grep -cv Z");
         found.out.trim().parse::<u32>().unwrap_or(0)
     };
-    let line = format!("verify {} --trials 3 --size 300x300 --samples 64", place.path("scene.txt").display());
+    let line = format!("verify {} --trials 3 --size 300x300 --samples 64", folder.path("scene.txt").display());
     // Stop it while the program renders, and while a child process renders at another SIMD level.
     for after in [300, 2000, 6000] {
-        let _ = place.signalled(&line, Duration::from_millis(after), &["TERM"]);
+        let _ = folder.send_signals(&line, Duration::from_millis(after), &["TERM"]);
         std::thread::sleep(Duration::from_millis(200));
         assert_eq!(alive(), 0, "after {after} ms");
     }

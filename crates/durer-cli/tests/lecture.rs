@@ -32,8 +32,8 @@ fn defined(file: &str, symbol: &str) {
 
 #[test]
 fn places_in_the_source_exist() {
-    for place in durer::lesson::TOPICS.iter().flat_map(|topic| topic.places) {
-        defined(place.file, place.symbol);
+    for folder in durer::lesson::TOPICS.iter().flat_map(|topic| topic.places) {
+        defined(folder.file, folder.symbol);
     }
     let guide = guide();
     let rows: Vec<&str> = guide.lines().filter(|line| line.starts_with("- [")).collect();
@@ -62,12 +62,12 @@ fn links_are_valid_and_every_picture_is_shown() {
 
 #[test]
 fn commands_reproduce_the_pictures() {
-    let (guide, place) = (guide(), TestFolder::new());
+    let (guide, folder) = (guide(), TestFolder::new());
     let commands: Vec<&str> = guide.lines().filter_map(|line| line.strip_prefix("    cargo durer ")).collect();
     assert_eq!(commands.len(), between(&guide, "](lecture/", ")").count());
     let check = |(number, command): (usize, &&str)| {
         let picture = between(command, "-o ", " ").next().unwrap();
-        let made = place.path(&format!("{number}.png"));
+        let made = folder.path(&format!("{number}.png"));
         let arguments = command.split(' ').map(|word| if word == picture { made.as_os_str() } else { word.as_ref() });
         let run = Command::new(common::durer()).current_dir(root()).args(arguments).output().unwrap();
         assert!(run.status.success(), "{command}\n{}", String::from_utf8_lossy(&run.stderr));

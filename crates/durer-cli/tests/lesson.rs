@@ -17,10 +17,10 @@ fn names(folder: &Path) -> Vec<String> {
 
 #[test]
 fn lesson_folder_has_page_text_and_pictures() {
-    let place = TestFolder::new();
-    let output = place.expect_exit(0, &format!("lesson scene.txt -o out {SMALL}"));
+    let folder = TestFolder::new();
+    let output = folder.expect_exit(0, &format!("lesson scene.txt -o out {SMALL}"));
     assert!(output.out.starts_with("wrote out/index.html, lesson.md and "), "{}", output.out);
-    let (text, files) = (String::from_utf8(place.bytes("out/lesson.md")).unwrap(), names(&place.path("out")));
+    let (text, files) = (String::from_utf8(folder.bytes("out/lesson.md")).unwrap(), names(&folder.path("out")));
     // The folder contains exactly the files that the text links to.
     let shown = |name: &str| text.contains(&format!("]({name})")) || name == "lesson.md";
     assert!(files.iter().all(|name| shown(name)), "{files:?}");
@@ -31,44 +31,44 @@ fn lesson_folder_has_page_text_and_pictures() {
     assert!(text.contains("> scene.txt cannot show this: no glass is visible in it"), "{text}");
     assert!(text.contains("`crates/durer-render/src/integrator/whitted/secondary.rs`: `fn refract`"));
     // The last picture is the same as that of `render`.
-    place.expect_exit(0, &format!("render scene.txt -o p.png -q {SMALL}"));
+    folder.expect_exit(0, &format!("render scene.txt -o p.png -q {SMALL}"));
     let last = files.iter().rfind(|name| name.ends_with("-supersampling.png")).unwrap();
-    assert_eq!(place.bytes(&format!("out/{last}")), place.bytes("p.png"));
+    assert_eq!(folder.bytes(&format!("out/{last}")), folder.bytes("p.png"));
     // A second run writes identical files.
-    place.expect_exit(0, &format!("lesson scene.txt -o again --quiet {SMALL}"));
-    assert_eq!(names(&place.path("again")), files);
-    assert!(files.iter().all(|name| place.bytes(&format!("out/{name}")) == place.bytes(&format!("again/{name}"))));
+    folder.expect_exit(0, &format!("lesson scene.txt -o again --quiet {SMALL}"));
+    assert_eq!(names(&folder.path("again")), files);
+    assert!(files.iter().all(|name| folder.bytes(&format!("out/{name}")) == folder.bytes(&format!("again/{name}"))));
 }
 
 #[test]
 fn only_files_of_an_earlier_lesson_are_replaced() {
-    let place = TestFolder::new();
-    std::fs::create_dir(place.path("out")).unwrap();
-    place.put("out/notes.txt", "mine");
-    place.expect_exit(0, &format!("lesson scene.txt -o out -q {SMALL}"));
-    let first = names(&place.path("out"));
+    let folder = TestFolder::new();
+    std::fs::create_dir(folder.path("out")).unwrap();
+    folder.write("out/notes.txt", "mine");
+    folder.expect_exit(0, &format!("lesson scene.txt -o out -q {SMALL}"));
+    let first = names(&folder.path("out"));
     // Another scene has other steps: stale files are removed, and other files are kept.
-    place.put("dull.txt", common::SCENE.replace("reflectiveColor 0.5 0.5 0.5", ""));
-    place.expect_exit(0, &format!("lesson dull.txt -o out -q {SMALL}"));
-    place.expect_exit(0, &format!("lesson dull.txt -o fresh -q {SMALL}"));
-    let mut fresh = names(&place.path("fresh"));
+    folder.write("dull.txt", common::SCENE.replace("reflectiveColor 0.5 0.5 0.5", ""));
+    folder.expect_exit(0, &format!("lesson dull.txt -o out -q {SMALL}"));
+    folder.expect_exit(0, &format!("lesson dull.txt -o fresh -q {SMALL}"));
+    let mut fresh = names(&folder.path("fresh"));
     fresh.push("notes.txt".into());
     fresh.sort();
     assert_ne!(first, fresh);
-    assert_eq!(names(&place.path("out")), fresh);
-    assert_eq!(place.bytes("out/notes.txt"), b"mine");
+    assert_eq!(names(&folder.path("out")), fresh);
+    assert_eq!(folder.bytes("out/notes.txt"), b"mine");
     // If another file has the name of a lesson's file, nothing is written.
-    std::fs::create_dir(place.path("site")).unwrap();
-    place.put("site/index.html", "my own page");
-    let output = place.expect_exit(2, &format!("lesson scene.txt -o site -q {SMALL}"));
+    std::fs::create_dir(folder.path("site")).unwrap();
+    folder.write("site/index.html", "my own page");
+    let output = folder.expect_exit(2, &format!("lesson scene.txt -o site -q {SMALL}"));
     assert!(output.err.contains("`site/index.html` does not belong to an earlier lesson"), "{}", output.err);
-    assert_eq!(names(&place.path("site")), ["index.html"]);
+    assert_eq!(names(&folder.path("site")), ["index.html"]);
 }
 
 #[test]
 fn invalid_arguments_leave_no_files() {
-    let place = TestFolder::new();
-    place.put("broken.txt", "PerspectiveCamera {");
+    let folder = TestFolder::new();
+    folder.write("broken.txt", "PerspectiveCamera {");
     for (arguments, words) in [
         ("scene.txt -o scene.txt", "is a file"),
         ("scene.txt -o no/such/folder", "folder `no/such` does not exist"),
@@ -78,17 +78,17 @@ fn invalid_arguments_leave_no_files() {
         ("missing.txt -o out", "missing.txt"),
         ("broken.txt -o out", "broken.txt"),
     ] {
-        place.refused(2, &format!("lesson {arguments}"), &[words]);
+        folder.expect_failure(2, &format!("lesson {arguments}"), &[words]);
     }
     #[cfg(target_os = "linux")]
     {
-        std::fs::create_dir(place.path("out")).unwrap();
-        std::os::unix::fs::symlink("/dev/full", place.path("out/x.png")).unwrap();
-        place.put("out/lesson.md", "<!-- Written by durer lesson, which also replaces or removes the files that are linked here. -->\n![x](index.html)");
-        std::os::unix::fs::symlink("/dev/full", place.path("out/index.html")).unwrap();
-        let output = place.expect_exit(1, &format!("lesson scene.txt -o out {SMALL}"));
+        std::fs::create_dir(folder.path("out")).unwrap();
+        std::os::unix::fs::symlink("/dev/full", folder.path("out/x.png")).unwrap();
+        folder.write("out/lesson.md", "<!-- Written by durer lesson, which also replaces or removes the files that are linked here. -->\n![x](index.html)");
+        std::os::unix::fs::symlink("/dev/full", folder.path("out/index.html")).unwrap();
+        let output = folder.expect_exit(1, &format!("lesson scene.txt -o out {SMALL}"));
         assert!(output.err.contains("No space left"), "{}", output.err);
-        assert_eq!(names(&place.path("out")), ["index.html", "lesson.md", "x.png"]);
+        assert_eq!(names(&folder.path("out")), ["index.html", "lesson.md", "x.png"]);
     }
 }
 
@@ -119,15 +119,15 @@ setTimeout(() => {
 
 #[test]
 fn page_works_in_a_browser_without_network() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     // If this name were not escaped, it would end the script, or link to a file that would be
     // removed.
     let scene = "<b>](a).txt";
-    place.put(scene, common::SCENE);
-    place.expect_exit(0, &format!("lesson {scene} -o out -q {SMALL}"));
-    let text = String::from_utf8(place.bytes("out/lesson.md")).unwrap();
+    folder.write(scene, common::SCENE);
+    folder.expect_exit(0, &format!("lesson {scene} -o out -q {SMALL}"));
+    let text = String::from_utf8(folder.bytes("out/lesson.md")).unwrap();
     assert!(text.contains("# &lt;b>&#93;(a).txt") && !text.contains("](a)"), "{text}");
-    let steps = names(&place.path("out")).iter().filter(|name| name.ends_with("-change.png")).count() + 4;
+    let steps = names(&folder.path("out")).iter().filter(|name| name.ends_with("-change.png")).count() + 4;
     let steps = format!("steps {steps} links {steps}");
     let wanted = [
         steps.as_str(),
@@ -140,5 +140,5 @@ fn page_works_in_a_browser_without_network() {
         "at #step-5",
         "pictures true true",
     ];
-    sees(&place, "out/index.html", CLICKS, &wanted);
+    sees(&folder, "out/index.html", CLICKS, &wanted);
 }

@@ -18,19 +18,19 @@ Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere {
 const LIGHT: &str = "IESNA:LM-63-1995\nTILT=NONE\n1 -1 1 4 1 1 2 0 0 0\n1 1 60\n0 30 60 90\n0\n1000 866.025 500 0\n";
 
 fn lit() -> TestFolder {
-    let place = TestFolder::new();
-    place.put("lit.txt", LIT);
-    place.put("lamp.ies", LIGHT);
-    place
+    let folder = TestFolder::new();
+    folder.write("lit.txt", LIT);
+    folder.write("lamp.ies", LIGHT);
+    folder
 }
 
 #[test]
 fn photometric_light_has_its_specified_illuminance() {
-    let place = lit();
-    place.put("open.txt", LIT.replace("emissionLuminance 20", ""));
+    let folder = lit();
+    folder.write("open.txt", LIT.replace("emissionLuminance 20", ""));
     // Point beside the ball: E = I cos / d^2 with I = 1000 cos.
     let output =
-        place.expect_exit(0, "measure open.txt --at 0,0,0 --grid 0,0,0:-1,0,0:0,0,1:1x1 --samples 64 --bounces 0");
+        folder.expect_exit(0, "measure open.txt --at 0,0,0 --grid 0,0,0:-1,0,0:0,0,1:1x1 --samples 64 --bounces 0");
     let rows: Vec<Vec<f64>> =
         output.out.lines().skip(1).map(|row| row.split(',').map(|word| word.parse().unwrap()).collect()).collect();
     assert!(output.out.starts_with("x,y,z,nx,ny,nz,illuminance,illuminance_error,"));
@@ -40,21 +40,21 @@ fn photometric_light_has_its_specified_illuminance() {
     let candela = 1000.0 - (1000.0 - 866.025) * 19.4712 / 30.0;
     let expected = candela * (4.0_f64 / 4.5).sqrt() / 4.5;
     assert!((rows[1][6] / expected - 1.0).abs() < 1e-4 && rows[1][4] == 1.0, "{rows:?}");
-    assert!(place.expect_exit(2, "measure open.txt").err.contains("--at X,Y,Z or --grid"));
-    assert!(place.expect_exit(2, "measure open.txt --at 0,0").err.contains("three numbers"));
-    assert!(place.expect_exit(2, "measure open.txt --at 0,0,0 --normal 0,0,0").err.contains("--normal"));
+    assert!(folder.expect_exit(2, "measure open.txt").err.contains("--at X,Y,Z or --grid"));
+    assert!(folder.expect_exit(2, "measure open.txt --at 0,0").err.contains("three numbers"));
+    assert!(folder.expect_exit(2, "measure open.txt --at 0,0,0 --normal 0,0,0").err.contains("--normal"));
 }
 
 #[test]
 fn photons_measure_light_through_glass() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let scene = "PerspectiveCamera { center 0 2 6 direction 0 -0.3 -1 up 0 1 0 angle 40 } Background { color 0 0 0 }
 Lights { PointLight { position 0 2 0 color 31.830989 31.830989 31.830989 attenuation 0 0 1 } }
 Materials { PrincipledMaterial { baseColor 0 0 0 specularWeight 0 } PrincipledMaterial { transmissionWeight 1 specularRoughness 0 } }
 Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Box { min -1 1 -1 max 1 1.002 1 } }";
-    place.put("pane.txt", scene);
+    folder.write("pane.txt", scene);
     let lux = |options: &str| {
-        let output = place.expect_exit(0, &format!("measure pane.txt --at 0,0,0 {options}"));
+        let output = folder.expect_exit(0, &format!("measure pane.txt --at 0,0,0 {options}"));
         let row: Vec<f64> = output.out.lines().nth(1).unwrap().split(',').map(|word| word.parse().unwrap()).collect();
         (row[6], row[7])
     };
@@ -65,43 +65,43 @@ Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Box { mi
     assert!((mean - expected).abs() < 3.0 * error + 0.02 * expected, "{mean} ± {error}, not {expected}");
     // Path tracing cannot reach a point light behind glass.
     assert_eq!(lux("--samples 32").0, 0.0);
-    assert!(place.expect_exit(2, "measure pane.txt --at 0,0,0 --integrator ao").err.contains("path or photons"));
+    assert!(folder.expect_exit(2, "measure pane.txt --at 0,0,0 --integrator ao").err.contains("path or photons"));
 }
 
 #[test]
 fn paths_are_deterministic_and_explanations_sum_up() {
-    let place = lit();
+    let folder = lit();
     let hash = |options: &str| {
         let output =
-            place.expect_exit(0, &format!("render lit.txt -o p.pfm --size 32x24 --samples 8 --hash -q {options}"));
+            folder.expect_exit(0, &format!("render lit.txt -o p.pfm --size 32x24 --samples 8 --hash -q {options}"));
         output.out.lines().last().unwrap().to_string()
     };
     let one = hash("--threads 1");
     assert_eq!((hash("--threads 3 --tile 8"), hash("--accel grid")), (one.clone(), one.clone()));
     assert_ne!(hash("--bounces 0"), one);
     assert_ne!(hash("--integrator whitted"), one);
-    let picture = place.image("p.pfm");
+    let picture = folder.image("p.pfm");
     assert!(picture.pixels.iter().all(|pixel| pixel.is_finite()));
-    let why = place.expect_exit(0, "explain lit.txt --pixel 16,20 --size 32x24 --samples 8 -q").out;
+    let why = folder.expect_exit(0, "explain lit.txt --pixel 16,20 --size 32x24 --samples 8 -q").out;
     assert!(why.contains("direct light of PhotometricLight") && why.contains("chosen by Diffuse"), "{why}");
 }
 
 #[test]
 fn exposure_and_tone_change_8_bit_pictures_only() {
-    let place = lit();
+    let folder = lit();
     let bright = |options: &str| {
-        place.expect_exit(0, &format!("render lit.txt -o p.png --size 16x12 --samples 4 -q {options}"));
-        place.image("p.png").pixels.iter().map(|pixel| pixel.x).sum::<f32>()
+        folder.expect_exit(0, &format!("render lit.txt -o p.png --size 16x12 --samples 4 -q {options}"));
+        folder.image("p.png").pixels.iter().map(|pixel| pixel.x).sum::<f32>()
     };
     let (plain, darker) = (bright(""), bright("--exposure -7"));
     assert!(darker < 0.5 * plain, "{darker} {plain}");
     assert!(bright("--tone reinhard") < plain);
-    place.expect_exit(0, "render lit.txt -o a.pfm --size 16x12 --samples 4 -q --exposure -3");
-    place.expect_exit(0, "render lit.txt -o b.pfm --size 16x12 --samples 4 -q");
-    assert_eq!(place.image("a.pfm"), place.image("b.pfm"));
-    assert!(place.expect_exit(2, "render lit.txt -o p.png --exposure 1e9").err.contains("--exposure"));
+    folder.expect_exit(0, "render lit.txt -o a.pfm --size 16x12 --samples 4 -q --exposure -3");
+    folder.expect_exit(0, "render lit.txt -o b.pfm --size 16x12 --samples 4 -q");
+    assert_eq!(folder.image("a.pfm"), folder.image("b.pfm"));
+    assert!(folder.expect_exit(2, "render lit.txt -o p.png --exposure 1e9").err.contains("--exposure"));
     assert!(
-        place
+        folder
             .expect_exit(2, "render lit.txt -o p.png --clamp 1 --integrator ao")
             .err
             .contains("--clamp does not apply")
@@ -110,47 +110,47 @@ fn exposure_and_tone_change_8_bit_pictures_only() {
 
 #[test]
 fn invalid_photometric_files_names_and_dark_scenes_are_reported() {
-    let place = lit();
-    place.put("lamp.ies", LIGHT.replace("0 30 60 90", "0 30 20 90"));
-    let output = place.expect_exit(2, "render lit.txt -o p.png").err;
+    let folder = lit();
+    folder.write("lamp.ies", LIGHT.replace("0 30 60 90", "0 30 20 90"));
+    let output = folder.expect_exit(2, "render lit.txt -o p.png").err;
     assert!(output.contains("lamp.ies:5:6") && output.contains("must ascend"), "{output}");
-    assert!(!place.path("p.png").exists());
-    place.put("lamp.ies", LIGHT);
-    place.put("name.txt", LIT.replace("preset gold", "preset golt"));
-    let output = place.expect_exit(2, "render name.txt -o p.png").err;
+    assert!(!folder.path("p.png").exists());
+    folder.write("lamp.ies", LIGHT);
+    folder.write("name.txt", LIT.replace("preset gold", "preset golt"));
+    let output = folder.expect_exit(2, "render name.txt -o p.png").err;
     assert!(output.contains("did you mean `gold`"), "{output}");
     let dark = LIT.replace("PhotometricLight { position 0 2 0 file lamp.ies }", "").replace("emissionLuminance 20", "");
-    place.put("dark.txt", &dark);
-    assert!(place.expect_exit(1, "check dark.txt").out.contains("no-emitter"));
+    folder.write("dark.txt", &dark);
+    assert!(folder.expect_exit(1, "check dark.txt").out.contains("no-emitter"));
     // The message uses the terms of the file's format.
     let scene =
         "<scene version='3.0.0'><sensor type='perspective'/><emitter type='projector'/><shape type='sphere'/></scene>";
-    place.put("dark.xml", scene);
-    let output = place.expect_exit(1, "check dark.xml").out;
+    folder.write("dark.xml", scene);
+    let output = folder.expect_exit(1, "check dark.xml").out;
     let foreign = ["emissionLuminance", "Background"].iter().any(|word| output.contains(word));
     assert!(output.contains("no-emitter") && output.contains("<emitter type=\"area\"/>") && !foreign, "{output}");
     let turned =
         "MaterialIndex 2 Rectangle { corner -1 3 -1 edge0 0 0 2 edge1 2 0 0 } MaterialIndex 1 Sphere { center 0";
-    place.put(
+    folder.write(
         "turned.txt",
         dark.replace("baseColor 0 0 0", "baseColor 0 0 0 emissionLuminance 9")
             .replace("MaterialIndex 1 Sphere { center 1", turned),
     );
-    let output = place.expect_exit(1, "check turned.txt").out;
+    let output = folder.expect_exit(1, "check turned.txt").out;
     assert!(output.contains("lamp-turned") && output.contains("swap `edge0` and `edge1`"), "{output}");
-    place.put("milk.txt", LIT.replace("preset gold", "preset gold transmissionScatter 1 1 1"));
-    let output = place.expect_exit(1, "check milk.txt").out;
+    folder.write("milk.txt", LIT.replace("preset gold", "preset gold transmissionScatter 1 1 1"));
+    let output = folder.expect_exit(1, "check milk.txt").out;
     assert!(output.contains("no-depth") && output.contains("transmissionDepth 1"), "{output}");
-    place.put(
+    folder.write(
         "bulb.txt",
         "PerspectiveCamera { center 0 1 8 direction 0 0 -1 up 0 1 0 angle 30 } Background { color 0.5 0.5 0.5 }\n\
          Lights { PointLight { position 0 1 0 color 5 5 5 falloff 1 } }\n\
          Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } PrincipledMaterial { preset glass } }\n\
          Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.6 } }",
     );
-    let output = place.expect_exit(1, "check bulb.txt").out;
+    let output = folder.expect_exit(1, "check bulb.txt").out;
     assert!(output.contains("lamp-in-glass") && output.contains("--integrator photons"), "{output}");
-    assert!(!place.expect_exit(0, "check bulb.txt --integrator photons").out.contains("lamp-in-glass"));
+    assert!(!folder.expect_exit(0, "check bulb.txt --integrator photons").out.contains("lamp-in-glass"));
 }
 
 /// A ball of glass between a light and a floor.
@@ -169,22 +169,22 @@ Group {
 
 #[test]
 fn photons_spectra_and_fog_are_deterministic() {
-    let place = TestFolder::new();
-    place.put("scene.txt", CAUSTIC);
-    place.put("fog.txt", format!("Fog {{ extinction 0.2 color 0.9 0.8 0.7 min -3 0 -3 max 3 3 3 }}\n{CAUSTIC}"));
+    let folder = TestFolder::new();
+    folder.write("scene.txt", CAUSTIC);
+    folder.write("fog.txt", format!("Fog {{ extinction 0.2 color 0.9 0.8 0.7 min -3 0 -3 max 3 3 3 }}\n{CAUSTIC}"));
     for (scene, options) in [
         ("scene.txt", "--integrator photons --photons 500"),
         ("scene.txt", "--integrator photons --photons 500 --color spectral"),
         ("scene.txt", "--color spectral"),
         ("fog.txt", "--integrator path"),
     ] {
-        let output = place.expect_exit(0, &format!("verify {scene} {options} --size 20x16 --samples 5 --trials 4"));
+        let output = folder.expect_exit(0, &format!("verify {scene} {options} --size 20x16 --samples 5 --trials 4"));
         assert!(output.out.contains("same") || output.out.contains("one hash"), "{} {}", output.out, output.err);
     }
     // Photons carry light that paths cannot find.
     let mean = |options: &str| {
-        place.expect_exit(0, &format!("render scene.txt {options} --size 24x18 --samples 16 -o p.pfm -q --restart"));
-        let bytes = std::fs::read(place.path("p.pfm")).unwrap();
+        folder.expect_exit(0, &format!("render scene.txt {options} --size 24x18 --samples 16 -o p.pfm -q --restart"));
+        let bytes = std::fs::read(folder.path("p.pfm")).unwrap();
         let floats = bytes[bytes.len() - 24 * 18 * 12..].chunks_exact(4);
         floats.map(|four| f32::from_le_bytes(four.try_into().unwrap())).sum::<f32>() / (24.0 * 18.0 * 3.0)
     };
@@ -194,39 +194,39 @@ fn photons_spectra_and_fog_are_deterministic() {
 
 #[test]
 fn invalid_light_options_are_refused_and_denoising_keeps_the_hash() {
-    let place = TestFolder::new();
-    place.put("scene.txt", CAUSTIC);
+    let folder = TestFolder::new();
+    folder.write("scene.txt", CAUSTIC);
     for (options, word) in [
         ("--integrator path --photons 9", "--photons does not apply to --integrator path"),
         ("--integrator whitted --color spectral", "--color does not apply"),
         ("--photon-radius 0", "--photon-radius must be more than 0"),
     ] {
-        let output = place.expect_exit(2, &format!("render scene.txt {options} -o p.png")).err;
+        let output = folder.expect_exit(2, &format!("render scene.txt {options} -o p.png")).err;
         assert!(output.contains(word), "{output}");
     }
     let explain = "explain scene.txt --pixel 3,3 --size 8x8 --samples 2 --color spectral";
-    let output = place.expect_exit(0, explain).out;
+    let output = folder.expect_exit(0, explain).out;
     assert!(output.contains(" nm; converted to RGB") && output.contains("red: ("), "{output}");
     let output: serde_json::Value =
-        serde_json::from_str(&place.expect_exit(0, &format!("{explain} --json")).out).unwrap();
+        serde_json::from_str(&folder.expect_exit(0, &format!("{explain} --json")).out).unwrap();
     let light = &output["pixel"]["samples"][0]["light"];
     let (value, observer) = (light["value"].as_array().unwrap(), light["waves"]["observer"].as_array().unwrap());
     assert_eq!((value.len(), observer.len(), light["waves"]["nm"].as_array().unwrap().len()), (4, 3, 4), "{light}");
     let of = |options: &str| {
         let output =
-            place.expect_exit(0, &format!("render scene.txt --size 24x18 --samples 16 --hash --restart -q {options}"));
-        (output.out, std::fs::read(place.path("p.png")).unwrap())
+            folder.expect_exit(0, &format!("render scene.txt --size 24x18 --samples 16 --hash --restart -q {options}"));
+        (output.out, std::fs::read(folder.path("p.png")).unwrap())
     };
     let (noisy, clean) = (of("-o p.png"), of("-o p.png --denoise"));
     assert_eq!(noisy.0, clean.0);
     assert_ne!(noisy.1, clean.1);
-    place.expect_exit(0, "render scene.txt --size 24x18 --samples 4 -o p.exr --denoise -q");
-    assert!(String::from_utf8_lossy(&std::fs::read(place.path("p.exr")).unwrap()).contains("denoised"));
+    folder.expect_exit(0, "render scene.txt --size 24x18 --samples 4 -o p.exr --denoise -q");
+    assert!(String::from_utf8_lossy(&std::fs::read(folder.path("p.exr")).unwrap()).contains("denoised"));
 }
 
 #[test]
 fn spectra_are_files_or_named_illuminants() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let scene = |base: &str, emitter: &str, sky: &str| {
         format!(
             "PerspectiveCamera {{ center 0 1 6 direction 0 0 -1 up 0 1 0 angle 40 }} Background {{ color 0 0 0 {sky} }}
@@ -235,9 +235,9 @@ Materials {{ PrincipledMaterial {{ {base} specularWeight 0 }}
 Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc {{ center 0 2 0 normal 0 -1 0 radius 1 }} }}"
         )
     };
-    let write = |base, emitter, sky| place.put("s.txt", scene(base, emitter, sky));
-    place.put("paints.csv", "nm,grey,red\n400,0.5,0.1\n580,0.5,0.1\n600,0.5,0.8\n");
-    place.put("bulb.csv", "400 0\n700 3\n");
+    let write = |base, emitter, sky| folder.write("s.txt", scene(base, emitter, sky));
+    folder.write("paints.csv", "nm,grey,red\n400,0.5,0.1\n580,0.5,0.1\n600,0.5,0.8\n");
+    folder.write("bulb.csv", "400 0\n700 3\n");
     // The illuminance does not depend on the hue: E = pi L r^2 / (r^2 + d^2).
     for emitter in
         ["", "emissionSpectrum A", "emissionSpectrum F11", "emissionSpectrum 2700K", "emissionSpectrum bulb.csv"]
@@ -245,7 +245,7 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc 
         write("baseSpectrum paints.csv:red", emitter, "");
         for color in ["rgb", "spectral"] {
             let measure = format!("measure s.txt --at 0,0,0 --samples 4096 --bounces 0 --color {color}");
-            let row = place.expect_exit(0, &measure).out.lines().nth(1).unwrap().to_string();
+            let row = folder.expect_exit(0, &measure).out.lines().nth(1).unwrap().to_string();
             let lux: f64 = row.split(',').nth(6).unwrap().parse().unwrap();
             assert!((lux / (20.0 * std::f64::consts::PI) - 1.0).abs() < 0.01, "{emitter} {color}: {row}");
         }
@@ -253,7 +253,7 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc 
     // A small area light and point lights with the same power and spectrum give a paint the same
     // colour.
     let shown = |lights: &str, objects: &str| -> Vec<f64> {
-        place.put(
+        folder.write(
             "t.txt",
             format!(
                 "PerspectiveCamera {{ center 0 1 6 direction 0 -1 -6 up 0 1 0 angle 0.1 }} Background {{ color 0 0 0 }}
@@ -263,7 +263,7 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {obje
             ),
         );
         let explain = "explain t.txt --pixel 0,0 --size 1x1 --samples 512 --bounces 0 --color spectral --json";
-        let output: serde_json::Value = serde_json::from_str(&place.expect_exit(0, explain).out).unwrap();
+        let output: serde_json::Value = serde_json::from_str(&folder.expect_exit(0, explain).out).unwrap();
         output["pixel"]["color"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
     };
     let wanted = shown("", "Disc { center 0 2 0 normal 0 -1 0 radius 0.02 }");
@@ -295,28 +295,28 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {obje
         ("", "", "latitude 60 longitude 25 date 2026 2.5 3 time 12 0 0", "must be whole numbers"),
     ] {
         write(base, emitter, sky);
-        place.refused(2, render, &[words]);
+        folder.expect_failure(2, render, &[words]);
     }
-    place.put("paints.csv", "nm,grey\n400,0.5\n390,0.5\n");
+    folder.write("paints.csv", "nm,grey\n400,0.5\n390,0.5\n");
     write("baseSpectrum paints.csv", "", "");
-    place.refused(2, render, &["paints.csv:3:1", "ascend"]);
+    folder.expect_failure(2, render, &["paints.csv:3:1", "ascend"]);
     write("", "", "cieSky 16 zenithLuminance 1");
-    place.expect_exit(0, render);
+    folder.expect_exit(0, render);
 }
 
 #[test]
 fn sun_position_follows_from_angles_or_place_and_time() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let lux = |sky: &str| -> Vec<f64> {
         let scene = format!(
             "PerspectiveCamera {{ center 0 1 6 direction 0 -1 -6 up 0 1 0 angle 30 }} Background {{ {sky} }}
 Materials {{ PrincipledMaterial {{ baseColor 0.5 0.5 0.5 }} }}
 Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         );
-        place.put("s.txt", scene);
+        folder.write("s.txt", scene);
         let at = |normal: &str| -> f64 {
             let measure = format!("measure s.txt --at 0,0,0 --normal {normal} --samples 1024");
-            let row = place.expect_exit(0, &measure).out.lines().nth(1).unwrap().to_string();
+            let row = folder.expect_exit(0, &measure).out.lines().nth(1).unwrap().to_string();
             row.split(',').nth(6).unwrap().parse().unwrap()
         };
         ["0,1,0", "1,0,0", "-1,0,0", "0,0,1", "0,0,-1"].map(at).to_vec()
@@ -338,14 +338,14 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
     assert_eq!(lux("latitude 39.742476 longitude -105.1786 date 2003 10 17 time 7 0 0")[0], 0.0);
     assert_eq!(lux("cieSky 12 sunAltitude -20 sunAzimuth 0")[0], 0.0);
     lux("latitude 39.742476 longitude -105.1786 date 2003 10 17 time 7 0 0");
-    let output = place.expect_exit(1, "check s.txt --exposure -13").out;
+    let output = folder.expect_exit(1, "check s.txt --exposure -13").out;
     assert!(output.contains("degrees below the horizon") && output.contains("s.txt:1:"), "{output}");
 }
 
 #[test]
 fn lights_in_candela_lumen_and_lux_have_that_strength() {
-    let place = TestFolder::new();
-    place.put("lamp.ies", "TILT=NONE\n1 -1 2 3 1 1 2 0 0 0\n0.5 1 60\n0 90 180\n0\n100 100 100\n");
+    let folder = TestFolder::new();
+    folder.write("lamp.ies", "TILT=NONE\n1 -1 2 3 1 1 2 0 0 0\n0.5 1 60\n0 90 180\n0\n100 100 100\n");
     let pi = std::f64::consts::PI;
     let lux = |light: &str| -> f64 {
         let scene = format!(
@@ -353,8 +353,9 @@ fn lights_in_candela_lumen_and_lux_have_that_strength() {
 Materials {{ PrincipledMaterial {{ baseColor 0.5 0.5 0.5 }} }}
 Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         );
-        place.put("s.txt", scene);
-        let row = place.expect_exit(0, "measure s.txt --at 0,0,0 --samples 16").out.lines().nth(1).unwrap().to_string();
+        folder.write("s.txt", scene);
+        let row =
+            folder.expect_exit(0, "measure s.txt --at 0,0,0 --samples 16").out.lines().nth(1).unwrap().to_string();
         row.split(',').nth(6).unwrap().parse().unwrap()
     };
     for (light, expected) in [
@@ -388,27 +389,27 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         ("PointLight { position 0 2 0 color 1 1 1 candela 8 attenuation 1 0 0 }", "remove `attenuation` and"),
         ("DirectionalLight { direction 0 -1 0 color 1 1 1 lux -1 }", "must not be less than 0"),
     ] {
-        let scene = std::fs::read_to_string(place.path("s.txt")).unwrap();
+        let scene = std::fs::read_to_string(folder.path("s.txt")).unwrap();
         let (before, rest) = scene.split_once("Lights {").unwrap();
         let after = rest.split_once("\nMaterials").unwrap().1;
-        place.put("t.txt", format!("{before}Lights {{ {light} }}\nMaterials{after}"));
-        place.refused(2, "render t.txt -o p.png --size 8x8 -q", &[words, "t.txt:1:"]);
+        folder.write("t.txt", format!("{before}Lights {{ {light} }}\nMaterials{after}"));
+        folder.expect_failure(2, "render t.txt -o p.png --size 8x8 -q", &[words, "t.txt:1:"]);
     }
 }
 
 #[test]
 fn camera_settings_give_the_exposure() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let scene =
         "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 } Background { color 3840 3840 3840 }
 Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } } Group { MaterialIndex 0 Sphere { center 0 0 9 radius 1 } }";
-    place.put("s.txt", scene);
+    folder.write("s.txt", scene);
     let pixel = |options: &str| -> u8 {
-        place.expect_exit(
+        folder.expect_exit(
             0,
             &format!("render s.txt -o p.ppm --size 1x1 --samples 1 --transfer linear --quiet --restart {options}"),
         );
-        *std::fs::read(place.path("p.ppm")).unwrap().last().unwrap()
+        *std::fs::read(folder.path("p.ppm")).unwrap().last().unwrap()
     };
     // White is 1.2 · 100 / S · N² / t, which is 9600 cd/m² for ISO 100, 1/125 s and f/8.
     assert_eq!(pixel("--shutter 1/125 --f-number 8"), (0.4f64 * 255.0).round() as u8);
@@ -422,22 +423,22 @@ Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } } Group { MaterialIndex
         ("--shutter 1/0 --f-number 8", "expected a time in seconds"),
         ("--shutter 1/125 --f-number 0", "--f-number"),
     ] {
-        place.refused(2, &format!("render s.txt -o q.png --size 1x1 {options}"), &[words]);
+        folder.expect_failure(2, &format!("render s.txt -o q.png --size 1x1 {options}"), &[words]);
     }
     // `check` uses the same exposure.
-    place.put("lit.txt", scene.replace("0 0 9", "0 0 0"));
-    assert!(place.expect_exit(1, "check lit.txt").out.contains("too-bright"));
-    place.expect_exit(0, "check lit.txt --shutter 1/125 --f-number 8");
+    folder.write("lit.txt", scene.replace("0 0 9", "0 0 0"));
+    assert!(folder.expect_exit(1, "check lit.txt").out.contains("too-bright"));
+    folder.expect_exit(0, "check lit.txt --shutter 1/125 --f-number 8");
 }
 
 #[test]
 fn radiance_scenes_are_measured_in_lux_from_above() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let sky = "void glow g 0 0 4 2 1 .5 0\ng source s 0 0 4 0 0 1 180\n";
-    place.put("sky.rad", sky);
-    place.put("dark.rad", "void plastic w 0 0 5 .5 .5 .5 0 0\nw sphere s 0 0 4 0 0 -9 1\n");
+    folder.write("sky.rad", sky);
+    folder.write("dark.rad", "void plastic w 0 0 5 .5 .5 .5 0 0\nw sphere s 0 0 4 0 0 -9 1\n");
     let rows = |measure: &str| -> Vec<Vec<f64>> {
-        let output = place.expect_exit(0, measure);
+        let output = folder.expect_exit(0, measure);
         output.out.lines().skip(1).map(|row| row.split(',').map(|word| word.parse().unwrap()).collect()).collect()
     };
     // Half of the sphere emits: pi L, with rtrace's weights and 179 lm/W.
@@ -454,24 +455,24 @@ fn radiance_scenes_are_measured_in_lux_from_above() {
     // Photons are only stored on surfaces.
     let mirror = "void light l 0 0 3 100 100 100\nl sphere s 0 0 4 0 0 2 .05\nvoid mirror m 0 0 3 .9 .9 .9
 m polygon p 0 0 12 2 -9 -9 2 9 -9 2 9 9 2 -9 9\nvoid plastic w 0 0 5 .5 .5 .5 0 0\nw polygon f 0 0 12 -9 -9 0 9 -9 0 9 9 0 -9 9 0\n";
-    place.put("mirror.rad", mirror);
-    place.refused(2, "measure mirror.rad --at 0,0,.8 --integrator photons --samples 2", &["is not on one"]);
+    folder.write("mirror.rad", mirror);
+    folder.expect_failure(2, "measure mirror.rad --at 0,0,.8 --integrator photons --samples 2", &["is not on one"]);
     rows("measure mirror.rad --at 0,0,0 --integrator photons --samples 2");
-    place.refused(2, "measure sky.rad --at 0,0,0 --samples 1", &["--samples"]);
+    folder.expect_failure(2, "measure sky.rad --at 0,0,0 --samples 1", &["--samples"]);
 }
 
 #[test]
 fn sky_fields_without_effect_are_reported() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let output = |sky: &str| {
         let scene = format!(
             "PerspectiveCamera {{ center 0 1 6 direction 0 -1 -6 up 0 1 0 angle 30 }}\n{sky}
 Materials {{ PrincipledMaterial {{ baseColor 0.5 0.5 0.5 }} }}
 Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         );
-        place.put("s.txt", scene);
-        place.put("black.ppm", "P3 2 1 255 0 0 0 0 0 0\n");
-        place.expect_exit(0, "measure s.txt --at 0,0,0 --samples 4").err
+        folder.write("s.txt", scene);
+        folder.write("black.ppm", "P3 2 1 255 0 0 0 0 0 0\n");
+        folder.expect_exit(0, "measure s.txt --at 0,0,0 --samples 4").err
     };
     let sun = "sunAltitude 30 sunAzimuth 0";
     for (sky, words) in [

@@ -11,59 +11,59 @@ const SMALL: &str = "--size 24x16 --samples 2";
 
 #[test]
 fn model_is_rendered_with_every_view_and_studio() {
-    let place = TestFolder::new();
-    place.put("a.stl", STL);
-    let hash = |more: &str| place.expect_exit(0, &format!("render a.stl -o a.png {SMALL} --hash -q {more}")).out;
+    let folder = TestFolder::new();
+    folder.write("a.stl", STL);
+    let hash = |more: &str| folder.expect_exit(0, &format!("render a.stl -o a.png {SMALL} --hash -q {more}")).out;
     let usual = hash("");
     assert_eq!(hash("--up z --view three-quarter --studio soft"), usual);
     for other in ["--up y", "--view front", "--view side", "--view top", "--view iso", "--studio sun", "--studio none"]
     {
         assert_ne!(hash(other), usual, "{other}");
     }
-    place.refused(2, "render a.stl -o a.png --view behind", &["behind", "three-quarter"]);
-    place.refused(2, "render a.stl -o a.png --at soon", &["--at", "seconds"]);
-    assert!(place.expect_exit(0, "info a.stl").out.contains("2 in meshes"));
+    folder.expect_failure(2, "render a.stl -o a.png --view behind", &["behind", "three-quarter"]);
+    folder.expect_failure(2, "render a.stl -o a.png --at soon", &["--at", "seconds"]);
+    assert!(folder.expect_exit(0, "info a.stl").out.contains("2 in meshes"));
 }
 
 #[test]
 fn model_is_converted_to_meshes_and_scenes() {
-    let place = TestFolder::new();
-    place.put("a.stl", STL);
+    let folder = TestFolder::new();
+    folder.write("a.stl", STL);
     for name in ["b.ply", "b.obj", "b.stl", "b.glb", "b.gltf"] {
-        place.expect_exit(0, &format!("convert a.stl -o {name}"));
-        assert!(place.expect_exit(0, &format!("info {name}")).out.contains("2 in meshes"), "{name}");
+        folder.expect_exit(0, &format!("convert a.stl -o {name}"));
+        assert!(folder.expect_exit(0, &format!("info {name}")).out.contains("2 in meshes"), "{name}");
     }
-    let hash = |name: &str| place.expect_exit(0, &format!("render {name} -o a.png {SMALL} --hash -q")).out;
+    let hash = |name: &str| folder.expect_exit(0, &format!("render {name} -o a.png {SMALL} --hash -q")).out;
     // A model without a camera is framed for a square picture.
     let picture = |name: &str| {
-        place.expect_exit(0, &format!("render {name} -o a.ppm --size 24x24 --samples 2 -q --restart"));
-        std::fs::read(place.path("a.ppm")).unwrap()
+        folder.expect_exit(0, &format!("render {name} -o a.ppm --size 24x24 --samples 2 -q --restart"));
+        std::fs::read(folder.path("a.ppm")).unwrap()
     };
     for name in ["words.txt", "json.json"] {
-        let output = place.expect_exit(0, &format!("convert a.stl -o {name}")).out;
+        let output = folder.expect_exit(0, &format!("convert a.stl -o {name}")).out;
         assert!(output.contains(name) && output.contains("a.stl.ply"), "{output}");
         assert_eq!(picture(name), picture("a.stl"), "{name}");
         // Converted files are ordinary scenes.
-        place.expect_exit(0, &format!("convert {name} -o again-{name}"));
+        folder.expect_exit(0, &format!("convert {name} -o again-{name}"));
         assert_eq!(hash(&format!("again-{name}")), hash(name), "{name}");
     }
-    place.refused(2, "convert a.stl -o b --to durer", &["the output needs an extension"]);
+    folder.expect_failure(2, "convert a.stl -o b --to durer", &["the output needs an extension"]);
 }
 
 #[test]
 fn crop_of_a_file_is_rendered() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let film = |more: &str| {
         format!(
             "Film \"rgb\" \"integer xresolution\" 30 \"integer yresolution\" 20 {more} Camera \"perspective\" WorldBegin\n\
              LightSource \"infinite\" Translate 0 0 4 Shape \"sphere\""
         )
     };
-    place.put("whole.pbrt", film(""));
-    place.put("part.pbrt", film("\"integer pixelbounds\" [5 20 3 15]"));
+    folder.write("whole.pbrt", film(""));
+    folder.write("part.pbrt", film("\"integer pixelbounds\" [5 20 3 15]"));
     let picture = |options: &str| {
-        place.expect_exit(0, &format!("render {options} -o a.pfm --samples 4 -q --restart"));
-        place.image("a.pfm")
+        folder.expect_exit(0, &format!("render {options} -o a.pfm --samples 4 -q --restart"));
+        folder.image("a.pfm")
     };
     let part = picture("part.pbrt");
     assert_eq!((part.width, part.height), (15, 12));
@@ -75,37 +75,37 @@ fn crop_of_a_file_is_rendered() {
 
 #[test]
 fn model_errors_have_line_and_column() {
-    let place = TestFolder::new();
-    place.put("a.stl", STL.replace("1 1 0.5", "1 1 x"));
-    place.refused(2, "render a.stl -o a.png", &["a.stl:12:12", "expected a number, found `x`"]);
-    place.put("a.gltf", "{ \"asset\": { \"version\": \"2.0\" },\n  \"nodes\": [{ \"mesh\": 3 }] }");
-    place.refused(2, "render a.gltf -o a.png", &["UNRESOLVED_REFERENCE", "/nodes/0/mesh", "a.gltf:2:23"]);
-    assert!(!place.path("a.png").exists());
+    let folder = TestFolder::new();
+    folder.write("a.stl", STL.replace("1 1 0.5", "1 1 x"));
+    folder.expect_failure(2, "render a.stl -o a.png", &["a.stl:12:12", "expected a number, found `x`"]);
+    folder.write("a.gltf", "{ \"asset\": { \"version\": \"2.0\" },\n  \"nodes\": [{ \"mesh\": 3 }] }");
+    folder.expect_failure(2, "render a.gltf -o a.png", &["UNRESOLVED_REFERENCE", "/nodes/0/mesh", "a.gltf:2:23"]);
+    assert!(!folder.path("a.png").exists());
 }
 
 #[test]
 fn model_objects_are_reported_once_by_name() {
-    let place = TestFolder::new();
-    place.put("empty.gltf", r#"{"asset":{"version":"2.0"},"scenes":[{"name":"S"}]}"#);
-    let output = place.expect_exit(0, &format!("render empty.gltf -o a.png {SMALL}"));
+    let folder = TestFolder::new();
+    folder.write("empty.gltf", r#"{"asset":{"version":"2.0"},"scenes":[{"name":"S"}]}"#);
+    let output = folder.expect_exit(0, &format!("render empty.gltf -o a.png {SMALL}"));
     assert!(output.err.contains("empty.gltf:1:38") && !output.err.contains("Group"), "{}", output.err);
     assert_eq!(output.err.matches("no-objects").count(), 1, "{}", output.err);
-    place.put("empty.obj", "# nothing\n");
-    let found = place.run("check empty.obj");
+    folder.write("empty.obj", "# nothing\n");
+    let found = folder.run("check empty.obj");
     assert!(found.out.contains("the scene has no surfaces") && !found.out.contains("Group"), "{}", found.out);
     let room = "PerspectiveCamera { center 0 0 0 direction 0 0 -1 up 0 1 0 angle 40 }\nLights { DirectionalLight { direction \
                 0 -1 0 color 1 1 1 } }\nMaterials { PhongMaterial { diffuseColor 1 1 1 } }\nGroup { MaterialIndex 0 Box { min \
                 -1 -1 -1 max 1 1 1 } }\n";
-    place.put("room.txt", room);
-    place.expect_exit(0, "convert room.txt -o room.gltf");
-    let text = String::from_utf8(place.bytes("room.gltf")).unwrap();
-    place.put("named.gltf", text.replacen("\"mesh\": 0", "\"name\": \"Room\", \"mesh\": 0", 1));
-    assert!(place.run("check room.gltf").out.contains("the camera is inside the mesh at "));
-    assert!(place.run("check named.gltf").out.contains("the camera is inside the mesh `Room` at "));
-    place.put("a.obj", "ply\nformat ascii 1.0\n");
-    place.refused(2, "render a.obj -o a.png", &["a.obj:1:1", "`a.obj` is PLY", "`a.ply`"]);
-    place.put("a.txt", "Lights { } Group { TriangleMesh { obj_file a.obj } }\nPerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }");
-    place.refused(2, "render a.txt -o a.png", &["a.obj:1:1", "`a.obj` is PLY", "named here"]);
+    folder.write("room.txt", room);
+    folder.expect_exit(0, "convert room.txt -o room.gltf");
+    let text = String::from_utf8(folder.bytes("room.gltf")).unwrap();
+    folder.write("named.gltf", text.replacen("\"mesh\": 0", "\"name\": \"Room\", \"mesh\": 0", 1));
+    assert!(folder.run("check room.gltf").out.contains("the camera is inside the mesh at "));
+    assert!(folder.run("check named.gltf").out.contains("the camera is inside the mesh `Room` at "));
+    folder.write("a.obj", "ply\nformat ascii 1.0\n");
+    folder.expect_failure(2, "render a.obj -o a.png", &["a.obj:1:1", "`a.obj` is PLY", "`a.ply`"]);
+    folder.write("a.txt", "Lights { } Group { TriangleMesh { obj_file a.obj } }\nPerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }");
+    folder.expect_failure(2, "render a.txt -o a.png", &["a.obj:1:1", "`a.obj` is PLY", "named here"]);
 }
 
 const RAD: &str = "void plastic grey 0 0 5 .5 .5 .5 0 0\nvoid light glow 0 0 3 9 9 9\ngrey polygon floor 0 0 12 -4 -4 0 4 -4 0 4 4 0 -4 4 0\n\
@@ -113,22 +113,22 @@ const RAD: &str = "void plastic grey 0 0 5 .5 .5 .5 0 0\nvoid light glow 0 0 3 9
 
 #[test]
 fn radiance_views_are_cameras() {
-    let place = TestFolder::new();
-    place.put("a.rad", RAD);
-    place.put(
+    let folder = TestFolder::new();
+    folder.write("a.rad", RAD);
+    folder.write(
         "a.rif",
         "scene = a.rad\nRES = 24\nview = one -vp 0 -9 3 -vd 0 9 -2 -vh 40 -vv 30\nview = two -vp 3 -9 3 -vd 0 9 -2\n",
     );
-    place.put("a.vf", "VIEW= -vp 0 -9 3 -vd 0 9 -2 -vh 40 -vv 30\n");
-    let hash = |what: &str| place.expect_exit(0, &format!("render {what} -o a.png --samples 2 --hash -q")).out;
+    folder.write("a.vf", "VIEW= -vp 0 -9 3 -vd 0 9 -2 -vh 40 -vv 30\n");
+    let hash = |what: &str| folder.expect_exit(0, &format!("render {what} -o a.png --samples 2 --hash -q")).out;
     let usual = hash("a.rif");
     assert_eq!(hash("a.rif --camera one"), usual);
     assert_eq!(hash("a.rad --view-file a.vf --size 24x17"), hash("a.rif --size 24x17"));
     assert_ne!(hash("a.rif --camera two"), usual);
-    place.refused(2, "render a.rif -o a.png --camera three", &["unknown view `three`"]);
-    place.refused(2, "render a.rad -o a.png --view-file none.vf", &["none.vf"]);
-    place.put("b.rad", "void plastic grey 0 0 5 .5 .5 x 0 0\n!genrev a b 1 2 3\n");
-    place.refused(2, "render b.rad -o a.png", &["b.rad:1:31", "expected a number, found `x`"]);
+    folder.expect_failure(2, "render a.rif -o a.png --camera three", &["unknown view `three`"]);
+    folder.expect_failure(2, "render a.rad -o a.png --view-file none.vf", &["none.vf"]);
+    folder.write("b.rad", "void plastic grey 0 0 5 .5 .5 x 0 0\n!genrev a b 1 2 3\n");
+    folder.expect_failure(2, "render b.rad -o a.png", &["b.rad:1:31", "expected a number, found `x`"]);
 }
 
 const XML: &str = "<scene version='3.0.0'><sensor type='perspective' id='one'><float name='fov' value='40'/><transform name='to_world'>\
@@ -139,17 +139,17 @@ const XML: &str = "<scene version='3.0.0'><sensor type='perspective' id='one'><f
 
 #[test]
 fn mitsuba_sensors_are_cameras_and_scenes_convert_to_gltf() {
-    let place = TestFolder::new();
-    place.put("a.xml", XML);
-    let hash = |what: &str| place.expect_exit(0, &format!("render {what} -o a.png --samples 2 --hash -q")).out;
+    let folder = TestFolder::new();
+    folder.write("a.xml", XML);
+    let hash = |what: &str| folder.expect_exit(0, &format!("render {what} -o a.png --samples 2 --hash -q")).out;
     let usual = hash("a.xml");
     assert_eq!(hash("a.xml --camera one"), usual);
     assert_ne!(hash("a.xml --camera two --size 24x16"), usual);
-    place.refused(2, "render a.xml -o a.png --camera three", &["unknown sensor `three`"]);
-    place.expect_exit(0, "convert a.xml -o a.glb");
-    assert!(place.expect_exit(0, "info a.glb").out.contains("in meshes"));
-    place.put("b.xml", XML.replace("'40'", "'wide'"));
-    place.refused(2, "render b.xml -o b.png", &["b.xml:1:85", "expected a number, found `wide`"]);
+    folder.expect_failure(2, "render a.xml -o a.png --camera three", &["unknown sensor `three`"]);
+    folder.expect_exit(0, "convert a.xml -o a.glb");
+    assert!(folder.expect_exit(0, "info a.glb").out.contains("in meshes"));
+    folder.write("b.xml", XML.replace("'40'", "'wide'"));
+    folder.expect_failure(2, "render b.xml -o b.png", &["b.xml:1:85", "expected a number, found `wide`"]);
 }
 
 const COURSE: &str = "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }
@@ -157,9 +157,9 @@ const COURSE: &str = "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0
 
 #[test]
 fn frames_are_times_cameras_and_files() {
-    let place = TestFolder::new();
-    place.put("a.stl", STL);
-    let hash = |words: &str| place.expect_exit(0, &format!("render {words} {SMALL} --hash -q")).out;
+    let folder = TestFolder::new();
+    folder.write("a.stl", STL);
+    let hash = |words: &str| folder.expect_exit(0, &format!("render {words} {SMALL} --hash -q")).out;
     // A frame of a turntable is the same if rendered alone, or with `--turned`.
     let all = hash("a.stl -o a.png --turntable 3");
     let alone: String = (0..3).map(|i| hash(&format!("a.stl -o a.png --turntable 3 --frames {i}"))).collect();
@@ -169,12 +169,12 @@ fn frames_are_times_cameras_and_files() {
     for (i, diffuse) in [(8, "1 0 0"), (9, "0 1 0"), (10, "0 0 1")] {
         let material = format!("Materials {{ PhongMaterial {{ diffuseColor {diffuse} }} }}");
         let text = format!("{COURSE} {material} Group {{ MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}");
-        place.put(&format!("walk.{i:02}.txt"), text);
+        folder.write(&format!("walk.{i:02}.txt"), text);
     }
     let frames = hash("walk.%02d.txt -o w.%d.png --frames 8-10");
     let singly: String = (8..11).map(|i| hash(&format!("walk.{i:02}.txt -o a.png"))).collect();
-    assert!(frames == singly && place.path("w.10.png").exists() && !place.path("w.11.png").exists());
-    place.put("a.xml", XML);
+    assert!(frames == singly && folder.path("w.10.png").exists() && !folder.path("w.11.png").exists());
+    folder.write("a.xml", XML);
     assert_eq!(
         hash("a.xml -o a.png --camera %d --frames 0-1"),
         hash("a.xml -o a.png --camera 0") + &hash("a.xml -o a.png --camera 1")
@@ -183,71 +183,71 @@ fn frames_are_times_cameras_and_files() {
     for shard in [1, 2] {
         hash(&format!("walk.%02d.txt --frames 8-9 --shard {shard}/2 -o %d.{shard}.part"));
     }
-    assert_eq!(place.expect_exit(0, "merge 9.1.part 9.2.part -o b.png --hash -q").out, hash("walk.09.txt -o a.png"));
-    place.refused(2, "render walk.08.txt --frames 1-3", &["all frames would be equal"]);
-    place.refused(2, "render walk.%02d.txt --frames 3-1", &["expected frames from 0 to 9999999"]);
-    place.refused(2, "render walk.%02d.txt --frames 8-9 --watch", &["apply to one picture"]);
-    place.refused(2, "render a.stl --turntable 4 --turned 3", &["remove --camera, --view-file and --turned"]);
+    assert_eq!(folder.expect_exit(0, "merge 9.1.part 9.2.part -o b.png --hash -q").out, hash("walk.09.txt -o a.png"));
+    folder.expect_failure(2, "render walk.08.txt --frames 1-3", &["all frames would be equal"]);
+    folder.expect_failure(2, "render walk.%02d.txt --frames 3-1", &["expected frames from 0 to 9999999"]);
+    folder.expect_failure(2, "render walk.%02d.txt --frames 8-9 --watch", &["apply to one picture"]);
+    folder.expect_failure(2, "render a.stl --turntable 4 --turned 3", &["remove --camera, --view-file and --turned"]);
     // A scene with a camera cannot be turned, and the error says so.
-    place.refused(2, "render walk.08.txt --turntable 4", &["`durer convert` to a glTF file"]);
-    place.refused(2, "render a.stl --fps 4", &["--frames"]);
-    assert!(place.expect_exit(2, "render walk.%02d.txt --frames 10-11 -q").err.contains("walk.11.txt"));
+    folder.expect_failure(2, "render walk.08.txt --turntable 4", &["`durer convert` to a glTF file"]);
+    folder.expect_failure(2, "render a.stl --fps 4", &["--frames"]);
+    assert!(folder.expect_exit(2, "render walk.%02d.txt --frames 10-11 -q").err.contains("walk.11.txt"));
 }
 
 #[test]
 fn turntable_rotates_and_fit_moves_the_camera() {
-    let place = TestFolder::new();
-    place.put("a.stl", STL);
-    place.expect_exit(0, &format!("render a.stl -o a.png {SMALL} --turntable 4"));
-    let frame = |i: u32| std::fs::read(place.path(&format!("a.000{i}.png"))).unwrap();
+    let folder = TestFolder::new();
+    folder.write("a.stl", STL);
+    folder.expect_exit(0, &format!("render a.stl -o a.png {SMALL} --turntable 4"));
+    let frame = |i: u32| std::fs::read(folder.path(&format!("a.000{i}.png"))).unwrap();
     assert!(frame(0) != frame(1) && frame(1) != frame(2) && frame(2) != frame(3));
-    assert!(!place.path("a.0004.png").exists() && !place.path("a.png").exists());
-    place.refused(2, "render a.stl -o a.png --turntable 0", &["--turntable"]);
-    place.refused(2, "render a.stl -o a.png --turntable 4 --preview b.png", &["apply to one picture"]);
+    assert!(!folder.path("a.0004.png").exists() && !folder.path("a.png").exists());
+    folder.expect_failure(2, "render a.stl -o a.png --turntable 0", &["--turntable"]);
+    folder.expect_failure(2, "render a.stl -o a.png --turntable 4 --preview b.png", &["apply to one picture"]);
     // With --fit, a camera that pointed past the model shows the model.
-    place.put("a.rad", RAD);
-    place.put("a.vf", "VIEW= -vp 0 -900 900 -vd 0 -1 -.1 -vh 40 -vv 30\n");
+    folder.write("a.rad", RAD);
+    folder.write("a.vf", "VIEW= -vp 0 -900 900 -vd 0 -1 -.1 -vh 40 -vv 30\n");
     let hash = |more: &str| {
-        place.expect_exit(0, &format!("render a.rad -o a.png {SMALL} --hash -q --view-file a.vf {more}")).out
+        folder.expect_exit(0, &format!("render a.rad -o a.png {SMALL} --hash -q --view-file a.vf {more}")).out
     };
     assert_ne!(hash("--fit"), hash(""));
 }
 
 #[test]
 fn environment_lights_a_model() {
-    let place = TestFolder::new();
-    place.put("a.stl", STL);
+    let folder = TestFolder::new();
+    folder.write("a.stl", STL);
     let view = "EquirectangularCamera { center 0 0 0 direction 0 0 -1 up 0 1 0 } Background { color 2 3 4 }";
-    place.put("sky.txt", format!("{view} Lights {{ }} Materials {{ PhongMaterial {{ diffuseColor 0 0 0 }} }} Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset -1 }} }}"));
-    place.expect_exit(0, "render sky.txt -o sky.hdr --size 64x32 --samples 1 -q");
-    let hash = |more: &str| place.expect_exit(0, &format!("render a.stl -o a.png {SMALL} --hash -q {more}")).out;
+    folder.write("sky.txt", format!("{view} Lights {{ }} Materials {{ PhongMaterial {{ diffuseColor 0 0 0 }} }} Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset -1 }} }}"));
+    folder.expect_exit(0, "render sky.txt -o sky.hdr --size 64x32 --samples 1 -q");
+    let hash = |more: &str| folder.expect_exit(0, &format!("render a.stl -o a.png {SMALL} --hash -q {more}")).out;
     assert_ne!(hash("--environment sky.hdr"), hash(""));
     // The up axis determines the orientation of the environment.
     assert_ne!(hash("--environment sky.hdr --up y"), hash("--environment sky.hdr --up z"));
     // A black environment is valid, but a note reports it.
-    place.put("black.pfm", b"PF\n1 1\n-1\n\0\0\0\0\0\0\0\0\0\0\0\0".as_slice());
+    folder.write("black.pfm", b"PF\n1 1\n-1\n\0\0\0\0\0\0\0\0\0\0\0\0".as_slice());
     let dark =
-        place.expect_exit(0, &format!("render a.stl -o dark.pfm {SMALL} --environment black.pfm --integrator path"));
+        folder.expect_exit(0, &format!("render a.stl -o dark.pfm {SMALL} --environment black.pfm --integrator path"));
     assert!(dark.err.contains("is black: it emits no light"), "{}", dark.err);
-    assert!(place.bytes("dark.pfm").iter().rev().take(48).all(|&byte| byte == 0));
-    place.refused(2, "render a.stl -o a.png --environment none.hdr", &["none.hdr"]);
-    place.refused(2, "render a.stl -o a.png --environment scene.txt", &["scene.txt"]);
+    assert!(folder.bytes("dark.pfm").iter().rev().take(48).all(|&byte| byte == 0));
+    folder.expect_failure(2, "render a.stl -o a.png --environment none.hdr", &["none.hdr"]);
+    folder.expect_failure(2, "render a.stl -o a.png --environment scene.txt", &["scene.txt"]);
 }
 
 #[test]
 fn json_scene_works_with_every_command() {
-    let place = TestFolder::new();
-    place.expect_exit(0, "convert scene.txt -o a.json");
-    let hash = |name: &str| place.expect_exit(0, &format!("render {name} -o a.png {SMALL} --hash -q")).out;
+    let folder = TestFolder::new();
+    folder.expect_exit(0, "convert scene.txt -o a.json");
+    let hash = |name: &str| folder.expect_exit(0, &format!("render {name} -o a.png {SMALL} --hash -q")).out;
     assert_eq!(hash("a.json"), hash("scene.txt"));
-    let output = |name: &str| place.run(&format!("check {name}")).out.replace(name, "");
+    let output = |name: &str| folder.run(&format!("check {name}")).out.replace(name, "");
     assert_eq!(output("a.json").lines().count(), output("scene.txt").lines().count());
-    assert!(place.expect_exit(0, "info a.json").out.contains("Sphere"));
-    place.expect_exit(0, "explain a.json --pixel 256,256");
+    assert!(folder.expect_exit(0, "info a.json").out.contains("Sphere"));
+    folder.expect_exit(0, "explain a.json --pixel 256,256");
     let text = "{\"type\": \"Scene\",\n \"camera\": {\"type\": \"PerspectiveCamra\"}}";
-    place.put("b.json", text);
-    place.refused(2, "render b.json -o b.png", &["b.json:2:21", "did you mean `PerspectiveCamera`?"]);
+    folder.write("b.json", text);
+    folder.expect_failure(2, "render b.json -o b.png", &["b.json:2:21", "did you mean `PerspectiveCamera`?"]);
     // Files without an extension are recognised by their first bytes.
-    place.put("b", text);
-    place.refused(2, "render b -o b.png", &["b:2:21"]);
+    folder.write("b", text);
+    folder.expect_failure(2, "render b -o b.png", &["b:2:21"]);
 }

@@ -11,47 +11,47 @@ use std::process::Command;
 /// Creates a COLMAP folder for two photographs of 32 x 32 pixels.
 fn colmap(place: &TestFolder, folder: &str, names: [&str; 2]) {
     std::fs::create_dir_all(place.path(folder)).unwrap();
-    place.put(&format!("{folder}/cameras.txt"), "1 PINHOLE 32 32 30 30 16 16\n");
+    place.write(&format!("{folder}/cameras.txt"), "1 PINHOLE 32 32 30 30 16 16\n");
     let [a, b] = names;
     let images = format!("1 1 0 0 0 0 0 5 1 {a}\n16 16 1\n2 1 0 0 0 .1 0 5 1 {b}\n16 16 1\n");
-    place.put(&format!("{folder}/images.txt"), images);
-    place.put(&format!("{folder}/points3D.txt"), "1 0 0 0 255 0 0 0.1 1 0 2 0\n");
+    place.write(&format!("{folder}/images.txt"), images);
+    place.write(&format!("{folder}/points3D.txt"), "1 0 0 0 255 0 0 0.1 1 0 2 0\n");
 }
 
-fn picture(place: &TestFolder, path: &str) {
-    place.expect_exit(0, &format!("render scene.txt --size 32x32 --samples 1 -q --restart -o {path}"));
+fn picture(folder: &TestFolder, path: &str) {
+    folder.expect_exit(0, &format!("render scene.txt --size 32x32 --samples 1 -q --restart -o {path}"));
 }
 
-fn fifo(place: &TestFolder, name: &str) {
-    assert!(Command::new("mkfifo").arg(place.path(name)).status().unwrap().success());
+fn fifo(folder: &TestFolder, name: &str) {
+    assert!(Command::new("mkfifo").arg(folder.path(name)).status().unwrap().success());
 }
 
 /// Runs a command that must end within ten seconds.
-fn ends(place: &TestFolder, line: &str) -> ProgramOutput {
-    let output = place.shell(&format!("timeout 10 $DURER {line}"));
+fn ends(folder: &TestFolder, line: &str) -> ProgramOutput {
+    let output = folder.shell(&format!("timeout 10 $DURER {line}"));
     assert_ne!(output.code, Some(124), "{line} does not end");
     output
 }
 
 #[track_caller]
-fn refused(place: &TestFolder, line: &str, words: &str) {
-    let output = ends(place, line);
+fn refused(folder: &TestFolder, line: &str, words: &str) {
+    let output = ends(folder, line);
     assert_eq!(output.code, Some(2), "{line}: {}", output.err);
     assert!(output.err.contains(words), "{line}: {}", output.err);
 }
 
 #[test]
-fn a_tour_embeds_only_pictures_of_its_folder() {
-    let place = TestFolder::new();
-    std::fs::create_dir_all(place.path("photos/more")).unwrap();
+fn tour_embeds_only_pictures_of_its_folder() {
+    let folder = TestFolder::new();
+    std::fs::create_dir_all(folder.path("photos/more")).unwrap();
     for path in ["secret.png", "photos/a.png", "photos/more/b.png"] {
-        picture(&place, path);
+        picture(&folder, path);
     }
-    symlink("../secret.png", place.path("photos/link.png")).unwrap();
-    symlink("/dev/zero", place.path("photos/zero.png")).unwrap();
-    symlink("more/b.png", place.path("photos/inner.png")).unwrap();
-    fifo(&place, "photos/pipe.png");
-    let absolute = place.path("secret.png").display().to_string();
+    symlink("../secret.png", folder.path("photos/link.png")).unwrap();
+    symlink("/dev/zero", folder.path("photos/zero.png")).unwrap();
+    symlink("more/b.png", folder.path("photos/inner.png")).unwrap();
+    fifo(&folder, "photos/pipe.png");
+    let absolute = folder.path("secret.png").display().to_string();
     for (name, words) in [
         ("../secret.png", "outside the folder `photos`"),
         ("more/../../secret.png", "outside the folder `photos`"),
@@ -64,61 +64,61 @@ fn a_tour_embeds_only_pictures_of_its_folder() {
         ("more", "is not a regular file"),
         ("none.png", "No such file"),
     ] {
-        colmap(&place, "solved", ["a.png", name]);
-        refused(&place, "photo tour solved --pictures photos -o t.html -q", words);
-        assert!(!place.path("t.html").exists(), "{name}");
+        colmap(&folder, "solved", ["a.png", name]);
+        refused(&folder, "photo tour solved --pictures photos -o t.html -q", words);
+        assert!(!folder.path("t.html").exists(), "{name}");
     }
-    colmap(&place, "solved", ["a.png", "more/b.png"]);
-    place.expect_exit(0, "photo tour solved --pictures photos -o t.html -q");
-    colmap(&place, "solved", ["a.png", "inner.png"]);
-    place.expect_exit(0, "photo tour solved --pictures photos -o t.html -q");
+    colmap(&folder, "solved", ["a.png", "more/b.png"]);
+    folder.expect_exit(0, "photo tour solved --pictures photos -o t.html -q");
+    colmap(&folder, "solved", ["a.png", "inner.png"]);
+    folder.expect_exit(0, "photo tour solved --pictures photos -o t.html -q");
 }
 
 #[test]
-fn folders_of_photographs_and_cameras_lead_nowhere_else() {
-    let place = TestFolder::new();
-    std::fs::create_dir(place.path("photos")).unwrap();
+fn photo_folder_does_not_lead_outside() {
+    let folder = TestFolder::new();
+    std::fs::create_dir(folder.path("photos")).unwrap();
     for path in ["secret.png", "photos/a.png", "photos/b.png"] {
-        picture(&place, path);
+        picture(&folder, path);
     }
     // Tables of points in a folder, and a file of tracks next to a reconstruction.
-    colmap(&place, "solved", ["a.png", "b.png"]);
-    std::fs::rename(place.path("solved/points3D.txt"), place.path("points")).unwrap();
+    colmap(&folder, "solved", ["a.png", "b.png"]);
+    std::fs::rename(folder.path("solved/points3D.txt"), folder.path("points")).unwrap();
     for (target, words) in [("../points", "outside the folder `solved`"), ("/dev/zero", "outside the folder `solved`")]
     {
-        symlink(target, place.path("solved/points3D.txt")).unwrap();
-        refused(&place, "photo convert solved", words);
-        std::fs::remove_file(place.path("solved/points3D.txt")).unwrap();
+        symlink(target, folder.path("solved/points3D.txt")).unwrap();
+        refused(&folder, "photo convert solved", words);
+        std::fs::remove_file(folder.path("solved/points3D.txt")).unwrap();
     }
-    fifo(&place, "solved/points3D.txt");
-    refused(&place, "photo convert solved", "is not a regular file");
-    std::fs::create_dir(place.path("sfm")).unwrap();
-    place.put("sfm/reconstruction.json", "[]");
-    symlink("../points", place.path("sfm/tracks.csv")).unwrap();
-    refused(&place, "photo convert sfm/reconstruction.json", "outside the folder `sfm`");
+    fifo(&folder, "solved/points3D.txt");
+    refused(&folder, "photo convert solved", "is not a regular file");
+    std::fs::create_dir(folder.path("sfm")).unwrap();
+    folder.write("sfm/reconstruction.json", "[]");
+    symlink("../points", folder.path("sfm/tracks.csv")).unwrap();
+    refused(&folder, "photo convert sfm/reconstruction.json", "outside the folder `sfm`");
     // A Bundler file does not contain the sizes of the photographs, so the photographs are read.
     let bundle = "# Bundle file v0.3\n2 0\n30 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 0\n30 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0\n";
-    place.put("two.out", bundle);
-    place.expect_exit(0, "photo convert two.out --pictures photos -o two.gltf -q");
-    std::fs::remove_file(place.path("photos/b.png")).unwrap();
-    symlink("../secret.png", place.path("photos/b.png")).unwrap();
+    folder.write("two.out", bundle);
+    folder.expect_exit(0, "photo convert two.out --pictures photos -o two.gltf -q");
+    std::fs::remove_file(folder.path("photos/b.png")).unwrap();
+    symlink("../secret.png", folder.path("photos/b.png")).unwrap();
     for line in [
         "photo convert two.out --pictures photos",
         "photo match photos -o m.json",
         "photo explain two.out --camera 0 --pictures photos",
     ] {
-        refused(&place, line, "outside the folder `photos`");
+        refused(&folder, line, "outside the folder `photos`");
     }
 }
 
 #[test]
 fn pipes_and_devices_that_are_named_are_refused() {
-    let place = TestFolder::new();
-    fifo(&place, "pipe.txt");
-    fifo(&place, "pipe.png");
-    fifo(&place, "pipe.json");
-    picture(&place, "a.png");
-    place.put("points", "0 0 0 1 1\n");
+    let folder = TestFolder::new();
+    fifo(&folder, "pipe.txt");
+    fifo(&folder, "pipe.png");
+    fifo(&folder, "pipe.json");
+    picture(&folder, "a.png");
+    folder.write("points", "0 0 0 1 1\n");
     for line in [
         "photo convert pipe.txt",
         "photo solve pipe.json -o o.out",
@@ -132,51 +132,51 @@ fn pipes_and_devices_that_are_named_are_refused() {
         "merge pipe.txt -o o.png",
         "convert pipe.txt -o o.gltf",
     ] {
-        refused(&place, line, "is not a regular file");
+        refused(&folder, line, "is not a regular file");
     }
-    refused(&place, "live pipe.txt", "not a file");
+    refused(&folder, "live pipe.txt", "not a file");
     // A folder of pictures can contain files of any kind.
-    std::fs::create_dir(place.path("one")).unwrap();
-    std::fs::create_dir(place.path("two")).unwrap();
-    picture(&place, "one/a.png");
-    fifo(&place, "two/a.png");
-    assert_ne!(ends(&place, "compare one two").code, Some(0));
+    std::fs::create_dir(folder.path("one")).unwrap();
+    std::fs::create_dir(folder.path("two")).unwrap();
+    picture(&folder, "one/a.png");
+    fifo(&folder, "two/a.png");
+    assert_ne!(ends(&folder, "compare one two").code, Some(0));
 }
 
 #[test]
-fn a_lesson_waits_for_no_pipe_and_reads_no_device() {
+fn lesson_ignores_pipes_and_devices() {
     for target in ["pipe.txt", "/dev/zero"] {
-        let place = TestFolder::new();
-        std::fs::create_dir(place.path("lesson")).unwrap();
-        fifo(&place, "pipe.txt");
-        symlink(place.path(target), place.path("lesson/lesson.md")).unwrap();
-        let output = ends(&place, "lesson scene.txt -o lesson --size 16x12 --samples 1 -q");
+        let folder = TestFolder::new();
+        std::fs::create_dir(folder.path("lesson")).unwrap();
+        fifo(&folder, "pipe.txt");
+        symlink(folder.path(target), folder.path("lesson/lesson.md")).unwrap();
+        let output = ends(&folder, "lesson scene.txt -o lesson --size 16x12 --samples 1 -q");
         assert_ne!(output.code, Some(0), "{target}");
     }
 }
 
 #[test]
 fn pipes_with_names_of_temporary_files_delay_no_save() {
-    let place = TestFolder::new();
-    let output = place.shell("$DURER render scene.txt --size 8x8 --samples 1 -q -o o.png; ls -a");
+    let folder = TestFolder::new();
+    let output = folder.shell("$DURER render scene.txt --size 8x8 --samples 1 -q -o o.png; ls -a");
     assert_eq!(output.code, Some(0), "{}", output.err);
     // Killed renders leave temporary files with such names.
     for name in [".durer-ready-1.tmp", ".durer-1.tmp", ".durer-x.tmp"] {
-        fifo(&place, name);
+        fifo(&folder, name);
     }
-    assert_eq!(ends(&place, "render scene.txt --size 8x8 --samples 1 -q --restart -o o.png").code, Some(0));
+    assert_eq!(ends(&folder, "render scene.txt --size 8x8 --samples 1 -q --restart -o o.png").code, Some(0));
 }
 
 #[test]
-fn a_scene_that_is_watched_reads_nothing_else() {
-    let place = TestFolder::new();
-    picture(&place, "secret.png");
-    std::fs::create_dir(place.path("below")).unwrap();
+fn watched_scene_reads_no_other_files() {
+    let folder = TestFolder::new();
+    picture(&folder, "secret.png");
+    std::fs::create_dir(folder.path("below")).unwrap();
     let field = "HeightField { picture ../secret.png min -1 0 -1  max 1 1 1 }";
-    place.put("below/scene.txt", SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", field));
-    let output = place.shell(
+    folder.write("below/scene.txt", SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", field));
+    let output = folder.shell(
         "timeout -s INT 3 $DURER render below/scene.txt --dialect durer --watch --size 8x8 --samples 1 -o below/o.png",
     );
     assert!(output.err.contains("is outside the scene's folder"), "{}", output.err);
-    assert!(!place.path("below/o.png").exists());
+    assert!(!folder.path("below/o.png").exists());
 }

@@ -20,45 +20,45 @@ Group {
 ";
 
 fn place() -> TestFolder {
-    let place = TestFolder::new();
-    place.put("glass.txt", GLASS);
-    place
+    let folder = TestFolder::new();
+    folder.write("glass.txt", GLASS);
+    folder
 }
 
 #[test]
 fn error_bounds_do_not_change_the_hash() {
-    let place = place();
+    let folder = place();
     let render = "render glass.txt --integrator photons --photons 500 --size 16x12 --samples 8 --hash -q --restart";
-    let plain = place.expect_exit(0, &format!("{render} -o p.png")).out;
-    let shown = place.expect_exit(0, &format!("{render} --show color,error -o p.exr")).out;
+    let plain = folder.expect_exit(0, &format!("{render} -o p.png")).out;
+    let shown = folder.expect_exit(0, &format!("{render} --show color,error -o p.exr")).out;
     assert_eq!(plain, shown);
-    assert!(String::from_utf8_lossy(&place.bytes("p.exr")).contains("error.R"));
-    place.expect_exit(0, &format!("{render} --show error -o e.pfm"));
-    let errors = place.image("e.pfm");
+    assert!(String::from_utf8_lossy(&folder.bytes("p.exr")).contains("error.R"));
+    folder.expect_exit(0, &format!("{render} --show error -o e.pfm"));
+    let errors = folder.image("e.pfm");
     assert!(errors.pixels.iter().all(|error| error.x.is_finite() && error.x >= 0.0));
     // The bound is equal to the one that `durer explain` prints for the pixel.
     let explain = "explain glass.txt --integrator photons --photons 500 --size 16x12 --samples 8 --pixel 8,8";
     let output: serde_json::Value =
-        serde_json::from_str(&place.expect_exit(0, &format!("{explain} --json")).out).unwrap();
+        serde_json::from_str(&folder.expect_exit(0, &format!("{explain} --json")).out).unwrap();
     let bound = output["pixel"]["error"]["bound"].as_f64().unwrap();
     assert_eq!(errors.get(8, 8).unwrap().x, bound as f32);
-    let text = place.expect_exit(0, explain).out;
+    let text = folder.expect_exit(0, explain).out;
     assert!(text.contains("with 90 % confidence: "), "{text}");
-    place.refused(2, "render glass.txt --integrator whitted --show error -o p.png", &["--show error"]);
-    place.refused(2, "render glass.txt --show error --shard 1/2 -o p.part", &["--show error"]);
+    folder.expect_failure(2, "render glass.txt --integrator whitted --show error -o p.png", &["--show error"]);
+    folder.expect_failure(2, "render glass.txt --show error --shard 1/2 -o p.part", &["--show error"]);
     let noise =
         "render glass.txt --integrator photons --photons 500 --size 16x12 --noise-threshold 0.05 --show error -o n.pfm";
-    place.refused(2, noise, &["--samples"]);
+    folder.expect_failure(2, noise, &["--samples"]);
 }
 
 #[test]
 fn light_sampling_strategies_differ_in_noise_only() {
-    let place = place();
+    let folder = place();
     let render = |way: &str| {
         let options = format!("--size 16x12 --samples 64 --seed {} --direct {way} -q", way.len());
-        place.expect_exit(0, &format!("render glass.txt {options} --show luminance,variance -o {way}.pfm"));
+        folder.expect_exit(0, &format!("render glass.txt {options} --show luminance,variance -o {way}.pfm"));
         let mean = |name: &str| {
-            let pixels = place.image(name).pixels;
+            let pixels = folder.image(name).pixels;
             pixels.iter().map(|pixel| f64::from(pixel.x)).sum::<f64>() / pixels.len() as f64
         };
         // Mean and variance over all pixels.
@@ -69,21 +69,21 @@ fn light_sampling_strategies_differ_in_noise_only() {
         let error = (both.1 + half.1).sqrt();
         assert!((both.0 - half.0).abs() < 3.5 * error && both.0 != half.0, "{both:?} {half:?}");
     }
-    place.refused(2, "render glass.txt --integrator ao --direct bsdf -o p.png", &["--direct does not apply"]);
-    place.refused(2, "render glass.txt --direct middle -o p.png", &["both"]);
+    folder.expect_failure(2, "render glass.txt --integrator ao --direct bsdf -o p.png", &["--direct does not apply"]);
+    folder.expect_failure(2, "render glass.txt --direct middle -o p.png", &["both"]);
 }
 
 #[test]
 fn denoiser_is_chosen_or_install_hint_is_printed() {
-    let place = place();
+    let folder = place();
     // Create a file with the name of the library that is not a library.
     for name in ["libOpenImageDenoise.so.2", "libOpenImageDenoise.2.dylib", "OpenImageDenoise.dll"] {
-        place.put(name, "no library");
+        folder.write(name, "no library");
     }
     let run = |options: &str| {
         let mut command =
-            place.command(&format!("render glass.txt --size 16x12 --samples 4 --hash --restart {options}"));
-        let done = command.env("OIDN_DIR", place.path("")).output().unwrap();
+            folder.command(&format!("render glass.txt --size 16x12 --samples 4 --hash --restart {options}"));
+        let done = command.env("OIDN_DIR", folder.path("")).output().unwrap();
         (done.status.code(), String::from_utf8(done.stdout).unwrap(), String::from_utf8(done.stderr).unwrap())
     };
     let (code, _, output) = run("--denoise=oidn -o p.png");
@@ -92,7 +92,7 @@ fn denoiser_is_chosen_or_install_hint_is_printed() {
     assert!(output.contains("the built-in denoiser") && output.contains("pip install pyoidn"), "{output}");
     let (code, own, output) = run("--denoise=own -o own.png");
     assert!(code == Some(0) && !output.contains("pyoidn"), "{output}");
-    assert_eq!(place.bytes("auto.png"), place.bytes("own.png"));
+    assert_eq!(folder.bytes("auto.png"), folder.bytes("own.png"));
     let hash = |out: &str| out.lines().last().unwrap().to_string();
     assert_eq!(hash(&auto), hash(&own));
     assert_eq!(run("--denoise=else -o p.png").0, Some(2));

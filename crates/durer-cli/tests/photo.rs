@@ -54,54 +54,54 @@ fn cameras() -> Vec<Pose> {
 fn differences(all: &Reconstruction, truth: &[Pose]) -> (f64, f64) {
     let found: Vec<Pose> = all.views.iter().map(|view| view.pose.unwrap()).collect();
     let there = align_cameras(&found, truth).unwrap();
-    let (mut place, mut angle) = (0.0_f64, 0.0_f64);
+    let (mut folder, mut angle) = (0.0_f64, 0.0_f64);
     for (found, truth) in found.iter().zip(truth) {
-        place = place.max((there.apply(&found.center()) - truth.center()).norm());
+        folder = folder.max((there.apply(&found.center()) - truth.center()).norm());
         let turned = found.rotation * there.rotation.transpose() * truth.rotation.transpose();
         angle = angle.max(axis_angle_of(&turned).norm().to_degrees());
     }
-    (place, angle)
+    (folder, angle)
 }
 
 #[test]
 fn photographs_of_a_known_scene_give_its_cameras() {
-    let place = TestFolder::new();
-    std::fs::create_dir(place.path("photos")).unwrap();
+    let folder = TestFolder::new();
+    std::fs::create_dir(folder.path("photos")).unwrap();
     let lens = Lens::new(SIZE, FOCAL);
     for (i, pose) in cameras().iter().enumerate() {
-        place.put("shot.txt", projective_camera(&lens, pose) + SCENE);
+        folder.write("shot.txt", projective_camera(&lens, pose) + SCENE);
         let [width, height] = SIZE;
-        place.expect_exit(0, &format!("render shot.txt -o photos/{i:02}.png --size {width}x{height} --samples 4 -q"));
+        folder.expect_exit(0, &format!("render shot.txt -o photos/{i:02}.png --size {width}x{height} --samples 4 -q"));
     }
-    place.expect_exit(0, "photo match photos -o matches.json --features 1200 --field 60 -q");
-    let solved = place.expect_exit(0, "photo solve matches.json -o solved -o points.ply -o scene.gltf -o bundle.out");
+    folder.expect_exit(0, "photo match photos -o matches.json --features 1200 --field 60 -q");
+    let solved = folder.expect_exit(0, "photo solve matches.json -o solved -o points.ply -o scene.gltf -o bundle.out");
     println!("{}", solved.out);
-    place.expect_exit(0, "photo explain solved --camera 03.png");
-    place.expect_exit(0, "photo explain bundle.out --point 3");
+    folder.expect_exit(0, "photo explain solved --camera 03.png");
+    folder.expect_exit(0, "photo explain bundle.out --point 3");
     for (file, there) in [("points.ply", "0 of 0"), ("scene.gltf", "20 of 20")] {
         let points = solved.out.split("; ").nth(1).and_then(|rest| rest.split('\n').next()).unwrap();
         assert_eq!(
-            place.expect_exit(0, &format!("photo convert {file}")).out,
+            folder.expect_exit(0, &format!("photo convert {file}")).out,
             format!("{there} photographs registered; {points}\n")
         );
     }
     assert!(
-        place
+        folder
             .expect_exit(0, "photo explain scene.gltf --camera 03.png")
             .out
             .contains("the file has no observations of it")
     );
     assert!(
-        place.expect_exit(0, "photo explain points.ply --point 3").out.contains("the file has no observations of it")
+        folder.expect_exit(0, "photo explain points.ply --point 3").out.contains("the file has no observations of it")
     );
-    place.refused(2, "photo convert matches.json", &["these are matches without cameras"]);
-    place.refused(2, "photo solve scene.gltf -o no.out", &["there is nothing to adjust"]);
-    place.refused(
+    folder.expect_failure(2, "photo convert matches.json", &["these are matches without cameras"]);
+    folder.expect_failure(2, "photo solve scene.gltf -o no.out", &["there is nothing to adjust"]);
+    folder.expect_failure(
         2,
         "photo tour points.ply --pictures photos -o no.html",
         &["no photograph of `points.ply` has a camera position"],
     );
-    place.expect_exit(0, "photo tour solved --pictures photos -o tour.html --side 64 -q");
+    folder.expect_exit(0, "photo tour solved --pictures photos -o tour.html --side 64 -q");
     let walked = [
         "20 photographs, ",
         "button first: choose a photograph first, at -1",
@@ -115,9 +115,13 @@ fn photographs_of_a_known_scene_give_its_cameras() {
         "one plane true",
         "turned true",
     ];
-    browser::sees(&place, "tour.html", include_str!("common/walk.js"), &walked);
-    place.refused(2, "photo explain solved --camera 77.png", &["no photograph `77.png`; known photographs: 00.png"]);
-    let all = read(&place.path("solved")).unwrap();
+    browser::sees(&folder, "tour.html", include_str!("common/walk.js"), &walked);
+    folder.expect_failure(
+        2,
+        "photo explain solved --camera 77.png",
+        &["no photograph `77.png`; known photographs: 00.png"],
+    );
+    let all = read(&folder.path("solved")).unwrap();
     assert_eq!(all.registered_count(), 20);
     let (far, angle) = differences(&all, &cameras());
     let focal = (all.lenses[0].focal / FOCAL - 1.0).abs();
@@ -129,18 +133,18 @@ fn photographs_of_a_known_scene_give_its_cameras() {
 
 #[test]
 fn results_are_independent_of_threads() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     for threads in [1, 2, 5] {
-        place.expect_exit(
+        folder.expect_exit(
             0,
             &format!("photo match {PHOTOGRAPHS} -o {threads}.json --features 800 --threads {threads} -q"),
         );
-        place.expect_exit(0, &format!("photo solve {threads}.json -o {threads}.out --threads {threads} -q"));
+        folder.expect_exit(0, &format!("photo solve {threads}.json -o {threads}.out --threads {threads} -q"));
     }
-    assert_eq!(place.bytes("1.json"), place.bytes("2.json"));
-    assert_eq!(place.bytes("1.json"), place.bytes("5.json"));
-    assert_eq!(place.bytes("1.out"), place.bytes("2.out"));
-    assert_eq!(place.bytes("1.out"), place.bytes("5.out"));
+    assert_eq!(folder.bytes("1.json"), folder.bytes("2.json"));
+    assert_eq!(folder.bytes("1.json"), folder.bytes("5.json"));
+    assert_eq!(folder.bytes("1.out"), folder.bytes("2.out"));
+    assert_eq!(folder.bytes("1.out"), folder.bytes("5.out"));
 }
 
 /// Returns a JPEG whose EXIF data contain a focal length in millimetres and a sensor resolution in
@@ -160,8 +164,8 @@ fn with_exif(jpeg: &[u8], millimetres: [u32; 2], pixels: [u32; 2]) -> Vec<u8> {
 
 #[test]
 fn implausible_exif_is_reported_and_wrong_exif_is_corrected() {
-    let place = TestFolder::new();
-    std::fs::create_dir(place.path("photos")).unwrap();
+    let folder = TestFolder::new();
+    std::fs::create_dir(folder.path("photos")).unwrap();
     let photographs = (0..6).map(|i| (i, std::fs::read(Path::new(PHOTOGRAPHS).join(format!("{i}.jpg"))).unwrap()));
     for (i, jpeg) in photographs {
         // 330 pixels is the true focal length, and 660 pixels is possible. One value is too long
@@ -171,15 +175,15 @@ fn implausible_exif_is_reported_and_wrong_exif_is_corrected() {
             1 => ([5, 0], [1000, 1]),
             _ => ([254, 10], [660, 1]),
         };
-        place.put(&format!("photos/{i}.jpg"), with_exif(&jpeg, millimetres, pixels));
+        folder.write(&format!("photos/{i}.jpg"), with_exif(&jpeg, millimetres, pixels));
     }
-    let matched = place.expect_exit(0, "photo match photos -o m.json --features 1500 --field 60");
+    let matched = folder.expect_exit(0, "photo match photos -o m.json --features 1500 --field 60");
     assert!(matched.err.contains("warning: 0.jpg: EXIF's focal length, 196850394 pixels from 5 mm"), "{}", matched.err);
     assert!(!matched.err.contains("1.jpg") && matched.out.contains("1.jpg: 320x240, 1500 features, focal length 277"));
     assert!(matched.out.contains("2.jpg: 320x240, 1500 features, focal length 660 (EXIF: 25.4 mm"), "{}", matched.out);
-    let solved = place.expect_exit(0, "photo solve m.json -o m.out");
+    let solved = folder.expect_exit(0, "photo solve m.json -o m.out");
     assert!(solved.err.contains("EXIF says 660: EXIF is wrong"), "{}", solved.err);
-    for lens in read(&place.path("m.out")).unwrap().lenses {
+    for lens in read(&folder.path("m.out")).unwrap().lenses {
         assert!((lens.focal - 330.0).abs() < 5.0, "{lens:?}");
     }
 }
@@ -195,36 +199,36 @@ fn noise(seed: u64) -> Vec<u8> {
 
 #[test]
 fn unsuitable_photographs_are_refused() {
-    let place = TestFolder::new();
-    let refused = |words: &[&str]| place.refused(2, "photo match photos -o m.json", words);
+    let folder = TestFolder::new();
+    let refused = |words: &[&str]| folder.expect_failure(2, "photo match photos -o m.json", words);
     refused(&["cannot read the folder `photos`"]);
-    std::fs::create_dir(place.path("photos")).unwrap();
+    std::fs::create_dir(folder.path("photos")).unwrap();
     refused(&["no photographs (.jpg, .jpeg, .png) in `photos`"]);
-    place.put("photos/a.png", noise(1));
+    folder.write("photos/a.png", noise(1));
     refused(&["at least two photographs are needed"]);
-    place.put("photos/b.png", noise(1));
+    folder.write("photos/b.png", noise(1));
     refused(&["are the same picture"]);
-    place.put("photos/b.png", noise(2));
+    folder.write("photos/b.png", noise(2));
     refused(&["no two photographs show the same objects"]);
-    place.put("photos/b.png", &noise(2)[..900]);
+    folder.write("photos/b.png", &noise(2)[..900]);
     refused(&["b.png: cannot be read as a picture"]);
-    place.put("photos/b.png", noise(2));
-    place.put("photos/b.jpg", "no picture");
+    folder.write("photos/b.png", noise(2));
+    folder.write("photos/b.jpg", "no picture");
     refused(&["b.jpg: this is neither a JPEG nor a PNG"]);
     // A decoder would fill in missing parts with grey.
     let jpeg = std::fs::read(Path::new(PHOTOGRAPHS).join("0.jpg")).unwrap();
-    place.put("photos/b.jpg", &jpeg[..jpeg.len() / 2]);
+    folder.write("photos/b.jpg", &jpeg[..jpeg.len() / 2]);
     refused(&["b.jpg: cannot be read as a picture: the JPEG is truncated"]);
-    std::fs::remove_file(place.path("photos/b.jpg")).unwrap();
+    std::fs::remove_file(folder.path("photos/b.jpg")).unwrap();
     // A folder does not count as a photograph.
-    std::fs::create_dir(place.path("photos/folder.jpg")).unwrap();
+    std::fs::create_dir(folder.path("photos/folder.jpg")).unwrap();
     refused(&["no two photographs show the same objects"]);
-    assert!(!place.path("m.json").exists());
-    false_matches_are_refused(&place);
+    assert!(!folder.path("m.json").exists());
+    false_matches_are_refused(&folder);
 }
 
 /// Matches of eight photographs with twenty thousand random correspondences must be rejected.
-fn false_matches_are_refused(place: &TestFolder) {
+fn false_matches_are_refused(folder: &TestFolder) {
     let mut random = durer_photo::random::Random::new(7);
     let picture = |i: usize| {
         format!(
@@ -245,18 +249,18 @@ fn false_matches_are_refused(place: &TestFolder) {
     let list = |rows: Vec<String>| rows.join(",\n");
     let (pictures, links) = (list((0..8).map(picture).collect()), list(pairs.iter().map(link).collect()));
     let (format, tracks) = (durer_photo::matching::FORMAT, list(tracks));
-    place.put(
+    folder.write(
         "false.json",
         format!(r#"{{"format": "{format}", "pictures": [{pictures}], "links": [{links}], "tracks": [{tracks}]}}"#),
     );
-    place.refused(2, "photo solve false.json -o solved", &["share enough points that agree on one geometry"]);
-    assert!(!place.path("solved").exists());
+    folder.expect_failure(2, "photo solve false.json -o solved", &["share enough points that agree on one geometry"]);
+    assert!(!folder.path("solved").exists());
 }
 
 #[test]
 fn broken_files_are_refused_with_their_place() {
-    let place = TestFolder::new();
-    place.put("p.png", noise(1));
+    let folder = TestFolder::new();
+    folder.write("p.png", noise(1));
     let flat =
         "# X Y Z u v\n0 0 0 10 10\n1 0 0 50 10\n0 1 0 10 50\n1 1 0 50 52\n2 0 0 90 11\n0 2 0 12 90\n2 2 0 95 96\n";
     for (file, content, command, words) in [
@@ -303,34 +307,34 @@ fn broken_files_are_refused_with_their_place() {
         ("p.lines", "x 1 2 3 4\nq 1 2 3 4\n", "photo camera p.png --lines p.lines -o c.txt", &["p.lines:2:1"]),
         ("p.fspy", "fspy\u{9}\0\0\0", "photo camera p.fspy -o c.txt", &["version is 9"]),
     ] {
-        place.put(file, content);
-        place.refused(2, command, words);
+        folder.write(file, content);
+        folder.expect_failure(2, command, words);
     }
     // If pixels are counted from the bottom, no camera fits, although a camera can see some of the
     // points.
     let ours = |name: &str| std::fs::read(Path::new(PHOTOGRAPHS).join(name)).unwrap();
-    place.put("2.jpg", ours("2.jpg"));
+    folder.write("2.jpg", ours("2.jpg"));
     let points = String::from_utf8(ours("2.points")).unwrap();
     let turned = |row: &str| {
         let (row, v) = row.rsplit_once(' ').unwrap();
         format!("{row} {}\n", 240.0 - v.parse::<f64>().unwrap())
     };
     let rows = points.lines().filter(|row| !row.starts_with('#'));
-    place.put("turned.points", rows.map(turned).collect::<String>());
-    place.refused(
+    folder.write("turned.points", rows.map(turned).collect::<String>());
+    folder.expect_failure(
         2,
         "photo camera 2.jpg --points turned.points -o c.txt",
         &["fewer than two thirds", "v from the top"],
     );
-    std::fs::create_dir(place.path("twice")).unwrap();
-    place.put("twice/cameras.txt", "1 SIMPLE_PINHOLE 9 9 5 4 4\n1 SIMPLE_PINHOLE 9 9 5 4 4\n");
-    place.put("twice/images.txt", "");
-    place.put("twice/points3D.txt", "");
-    place.refused(2, "photo convert twice -o c.ply", &["twice/cameras.txt:2:", "the id 1 occurs twice"]);
-    place.put("twice/cameras.txt", "1 SIMPLE_PINHOLE 9 9 5 4 4 7\n");
-    place.refused(2, "photo convert twice -o c.ply", &["twice/cameras.txt:1:28: the row should end here"]);
-    place.refused(2, "photo camera p.png", &["--points FILE or --lines FILE"]);
-    place.refused(2, "photo solve b.txt -o b.txt", &["is an input of this run"]);
+    std::fs::create_dir(folder.path("twice")).unwrap();
+    folder.write("twice/cameras.txt", "1 SIMPLE_PINHOLE 9 9 5 4 4\n1 SIMPLE_PINHOLE 9 9 5 4 4\n");
+    folder.write("twice/images.txt", "");
+    folder.write("twice/points3D.txt", "");
+    folder.expect_failure(2, "photo convert twice -o c.ply", &["twice/cameras.txt:2:", "the id 1 occurs twice"]);
+    folder.write("twice/cameras.txt", "1 SIMPLE_PINHOLE 9 9 5 4 4 7\n");
+    folder.expect_failure(2, "photo convert twice -o c.ply", &["twice/cameras.txt:1:28: the row should end here"]);
+    folder.expect_failure(2, "photo camera p.png", &["--points FILE or --lines FILE"]);
+    folder.expect_failure(2, "photo solve b.txt -o b.txt", &["is an input of this run"]);
 }
 
 /// Returns a square PNG without content.
@@ -342,13 +346,13 @@ fn square() -> Vec<u8> {
 
 #[test]
 fn objects_are_placed_in_a_photograph_with_shadows() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let ours = |name: &str| Path::new(PHOTOGRAPHS).join(name);
     for name in ["placed.txt", "2.jpg"] {
-        place.put(name, std::fs::read(ours(name)).unwrap());
+        folder.write(name, std::fs::read(ours(name)).unwrap());
     }
-    place.expect_exit(0, "photo place placed.txt --backplate 2.jpg -o placed.png --samples 4 -q");
-    let placed = read8(&std::fs::read(place.path("placed.png")).unwrap(), "placed.png").unwrap();
+    folder.expect_exit(0, "photo place placed.txt --backplate 2.jpg -o placed.png --samples 4 -q");
+    let placed = read8(&std::fs::read(folder.path("placed.png")).unwrap(), "placed.png").unwrap();
     let plate = image::open(ours("2.jpg")).unwrap().into_rgb8();
     assert_eq!((placed.width, placed.height), plate.dimensions());
     let sum = |left: u32, top: u32, width: u32, height: u32| {
@@ -374,9 +378,9 @@ fn objects_are_placed_in_a_photograph_with_shadows() {
         ("placed.txt --backplate square.png", "the scene's camera does not fit `square.png`"),
         ("placed.txt --backplate placed.txt", "neither a JPEG nor a PNG"),
     ] {
-        place.put("square.png", square());
-        place.refused(2, &format!("photo place {options} -o no.png"), &[words]);
-        assert!(!place.path("no.png").exists());
+        folder.write("square.png", square());
+        folder.expect_failure(2, &format!("photo place {options} -o no.png"), &[words]);
+        assert!(!folder.path("no.png").exists());
     }
 }
 
@@ -387,11 +391,11 @@ fn object_is_placed_in_an_external_photograph() {
     if !picture.is_file() {
         return println!("skipped: {} not found", picture.display());
     }
-    let place = TestFolder::new();
-    place.put("plate.jpg", std::fs::read(&picture).unwrap());
+    let folder = TestFolder::new();
+    folder.write("plate.jpg", std::fs::read(&picture).unwrap());
     let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/chair.txt");
-    place.expect_exit(0, &format!("photo place {scene} --backplate plate.jpg -o placed.png --samples 4 -q"));
-    let placed = read8(&place.bytes("placed.png"), "placed.png").unwrap();
+    folder.expect_exit(0, &format!("photo place {scene} --backplate plate.jpg -o placed.png --samples 4 -q"));
+    let placed = read8(&folder.bytes("placed.png"), "placed.png").unwrap();
     let plate = image::open(picture).unwrap().into_rgb8();
     let luma = |left: u32, top: u32, width: u32, height: u32| {
         let pixels = (top..top + height).flat_map(|y| (left..left + width).map(move |x| (x, y)));

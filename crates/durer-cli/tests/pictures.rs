@@ -19,20 +19,20 @@ const SAMPLINGS: [&str; 9] = [
 
 #[test]
 fn crop_equals_that_part_of_the_whole_picture() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     for sampling in SAMPLINGS {
         for dialect in ["f04", "f12a4", "durer"] {
             let render =
                 format!("render scene.txt --dialect {dialect} --size 37x29 --show color,depth,normals {sampling}");
-            place.put(
+            folder.write(
                 "scene.txt",
                 if dialect == "f12a4" { SCENE.replace("reflectiveColor 0.5 0.5 0.5", "") } else { SCENE.into() },
             );
-            place.expect_exit(0, &format!("{render} -o whole.pfm"));
-            place.expect_exit(0, &format!("{render} -o part.pfm --crop 11,7,19x21"));
+            folder.expect_exit(0, &format!("{render} -o whole.pfm"));
+            folder.expect_exit(0, &format!("{render} -o part.pfm --crop 11,7,19x21"));
             for show in ["color", "depth", "normals"] {
                 let (whole, part) =
-                    (place.image(&format!("whole.{show}.pfm")), place.image(&format!("part.{show}.pfm")));
+                    (folder.image(&format!("whole.{show}.pfm")), folder.image(&format!("part.{show}.pfm")));
                 assert_eq!((whole.width, whole.height, part.width, part.height), (37, 29, 19, 21));
                 let bits = |pixel: Option<durer::math::Vec3>| pixel.unwrap().to_array().map(f32::to_bits);
                 for (x, y) in (0..21).flat_map(|y| (0..19).map(move |x| (x, y))) {
@@ -49,42 +49,42 @@ fn crop_equals_that_part_of_the_whole_picture() {
 
 #[test]
 fn threads_and_accelerators_change_no_bit() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     for sampling in SAMPLINGS {
         let render = format!("render scene.txt --size 40x30 {sampling} -o");
-        place.expect_exit(0, &format!("{render} first.pfm --threads 1"));
+        folder.expect_exit(0, &format!("{render} first.pfm --threads 1"));
         for other in ["--threads 2", "--threads 7", "--accel none", "--accel grid", "--grid 3x4x5"] {
-            place.expect_exit(0, &format!("{render} other.pfm {other}"));
-            assert!(place.bytes("first.pfm") == place.bytes("other.pfm"), "{sampling} {other}");
+            folder.expect_exit(0, &format!("{render} other.pfm {other}"));
+            assert!(folder.bytes("first.pfm") == folder.bytes("other.pfm"), "{sampling} {other}");
         }
     }
 }
 
 #[test]
 fn seed_changes_random_pictures_only() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     for sampling in SAMPLINGS {
         let render = format!("render scene.txt --size 30x30 {} -o", sampling.replace("--seed 7", ""));
-        place.expect_exit(0, &format!("{render} 0.pfm"));
-        place.expect_exit(0, &format!("{render} 1.pfm --seed 18446744073709551615"));
+        folder.expect_exit(0, &format!("{render} 0.pfm"));
+        folder.expect_exit(0, &format!("{render} 1.pfm --seed 18446744073709551615"));
         let fixed = matches!(sampling, "--samples 1" | "--blur") || sampling.contains("uniform");
-        assert_eq!(place.bytes("0.pfm") == place.bytes("1.pfm"), fixed, "{sampling}");
+        assert_eq!(folder.bytes("0.pfm") == folder.bytes("1.pfm"), fixed, "{sampling}");
     }
 }
 
 #[test]
 fn every_format_is_written_and_read_back() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let mut eight_bit = Vec::new();
     for format in durer::image::FORMATS {
         for extension in format.extensions {
             let name = format!("picture.{extension}");
-            let output = place.expect_exit(0, &format!("render scene.txt --size 13x7 -o {name}"));
+            let output = folder.expect_exit(0, &format!("render scene.txt --size 13x7 -o {name}"));
             assert_eq!(output.out, format!("wrote {name}\n"));
             if format.depth == durer::image::Depth::EightBit {
-                eight_bit.push(place.image8(&name));
+                eight_bit.push(folder.image8(&name));
             } else {
-                let image = place.image(&name);
+                let image = folder.image(&name);
                 assert_eq!((image.width, image.height), (13, 7), "{name}");
             }
         }
@@ -94,10 +94,10 @@ fn every_format_is_written_and_read_back() {
 
 #[test]
 fn several_pictures_are_separate_files_or_layers() {
-    let place = TestFolder::new();
-    let before = place.names();
+    let folder = TestFolder::new();
+    let before = folder.names();
     let all = "color,depth,normals,position,uv,barycentric,object,material,cost,samples,filter";
-    let output = place.expect_exit(0, &format!("render scene.txt --size 9x8 --zoom 5 --show {all} -o a.b.png"));
+    let output = folder.expect_exit(0, &format!("render scene.txt --size 9x8 --zoom 5 --show {all} -o a.b.png"));
     for name in all.split(',') {
         assert!(output.out.contains(&format!("wrote a.b.{name}.png\n")), "{}", output.out);
         let size = match name {
@@ -105,53 +105,53 @@ fn several_pictures_are_separate_files_or_layers() {
             "filter" => (46, 41),
             _ => (9, 8),
         };
-        let image = place.image8(&format!("a.b.{name}.png"));
+        let image = folder.image8(&format!("a.b.{name}.png"));
         assert_eq!((image.width, image.height), size, "{name}");
     }
-    assert_eq!(place.names().len(), before.len() + 11);
+    assert_eq!(folder.names().len(), before.len() + 11);
     // An EXR file holds all pictures except diagrams, which have other sizes.
-    let output = place.expect_exit(0, "render scene.txt --size 9x8 --show color,depth,normals -o layers.exr");
+    let output = folder.expect_exit(0, "render scene.txt --size 9x8 --show color,depth,normals -o layers.exr");
     assert_eq!(output.out, "wrote layers.exr\n");
-    let text = String::from_utf8_lossy(&place.bytes("layers.exr")).into_owned();
+    let text = String::from_utf8_lossy(&folder.bytes("layers.exr")).into_owned();
     assert!(["depth.R", "normals.G"].iter().all(|layer| text.contains(layer)));
-    let output = place.expect_exit(0, "render scene.txt --size 9x8 --show depth,samples -o dots.exr");
+    let output = folder.expect_exit(0, "render scene.txt --size 9x8 --show depth,samples -o dots.exr");
     assert_eq!(output.out, "wrote dots.depth.exr\nwrote dots.samples.exr\n");
-    let output = place.expect_exit(0, "render scene.txt --size 9x9 --show samples -o dots.png");
+    let output = folder.expect_exit(0, "render scene.txt --size 9x9 --show samples -o dots.png");
     assert_eq!(output.out, "wrote dots.png\n");
 }
 
 #[test]
 fn names_and_defaults() {
-    let place = TestFolder::new();
-    place.put("my.best.scene.txt", SCENE);
-    let output = place.expect_exit(0, "render my.best.scene.txt --quiet");
+    let folder = TestFolder::new();
+    folder.write("my.best.scene.txt", SCENE);
+    let output = folder.expect_exit(0, "render my.best.scene.txt --quiet");
     assert_eq!((output.out.as_str(), output.err.as_str()), ("", ""));
-    assert_eq!((place.image8("my.best.scene.png").width, place.image8("my.best.scene.png").height), (512, 512));
-    let output = place.expect_exit(0, "render scene.txt --size 3x3 -o p.png");
+    assert_eq!((folder.image8("my.best.scene.png").width, folder.image8("my.best.scene.png").height), (512, 512));
+    let output = folder.expect_exit(0, "render scene.txt --size 3x3 -o p.png");
     assert_eq!(output.err, "", "an explicit option needs no note");
-    let output = place.expect_exit(0, "render scene.txt --dialect f04 -o p.png");
-    assert_eq!((output.err.as_str(), place.image8("p.png").width), ("", 100));
+    let output = folder.expect_exit(0, "render scene.txt --dialect f04 -o p.png");
+    assert_eq!((output.err.as_str(), folder.image8("p.png").width), ("", 100));
 }
 
 #[test]
 fn eight_bits_by_transfer() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     for transfer in ["srgb", "linear", "course"] {
-        place.expect_exit(
+        folder.expect_exit(
             0,
             &format!("render scene.txt --size 2x2 --samples 1 --crop 0,0,1x1 --transfer {transfer} -o {transfer}.png"),
         );
     }
     // Colour of the sky, 0.2 0.1 0.5.
-    assert_eq!(place.image8("srgb.png").pixels, [[124, 89, 188]]);
-    assert_eq!(place.image8("linear.png").pixels, [[51, 26, 128]]);
-    assert_eq!(place.image8("course.png").pixels, [[51, 25, 127]]);
+    assert_eq!(folder.image8("srgb.png").pixels, [[124, 89, 188]]);
+    assert_eq!(folder.image8("linear.png").pixels, [[51, 26, 128]]);
+    assert_eq!(folder.image8("course.png").pixels, [[51, 25, 127]]);
 }
 
 #[test]
 fn extreme_values_work() {
-    let place = TestFolder::new();
-    place.put("mirrors.txt", common::ENDLESS.replace("transparentColor 1 1 1 indexOfRefraction 1.5", ""));
+    let folder = TestFolder::new();
+    folder.write("mirrors.txt", common::ENDLESS.replace("transparentColor 1 1 1 indexOfRefraction 1.5", ""));
     for options in [
         "mirrors.txt --bounces 256",
         "mirrors.txt --bounces 256 --dialect f04 --threads 2 --show color,samples --zoom 1 --sampler uniform",
@@ -167,19 +167,19 @@ fn extreme_values_work() {
         "scene.txt --depth-range 9 -5 --show depth --size 2x2",
     ] {
         let size = if options.contains("--size") { "" } else { "--size 20x20" };
-        place.expect_exit(0, &format!("render {options} {size} -o p.png"));
+        folder.expect_exit(0, &format!("render {options} {size} -o p.png"));
     }
 }
 
 #[test]
 fn existing_link_is_kept() {
-    let place = TestFolder::new();
-    place.put("real.png", "old");
+    let folder = TestFolder::new();
+    folder.write("real.png", "old");
     #[cfg(unix)]
     {
-        std::os::unix::fs::symlink("real.png", place.path("link.png")).unwrap();
-        place.expect_exit(0, "render scene.txt --size 3x3 -o link.png");
-        assert!(place.path("link.png").is_symlink());
-        assert_eq!(place.image8("real.png").width, 3);
+        std::os::unix::fs::symlink("real.png", folder.path("link.png")).unwrap();
+        folder.expect_exit(0, "render scene.txt --size 3x3 -o link.png");
+        assert!(folder.path("link.png").is_symlink());
+        assert_eq!(folder.image8("real.png").width, 3);
     }
 }

@@ -7,12 +7,12 @@ use std::process::{Command, Stdio};
 
 #[test]
 fn invalid_scene_gives_all_errors_with_their_places() {
-    let place = TestFolder::new();
-    place.put(
+    let folder = TestFolder::new();
+    folder.write(
         "bad.txt",
         SCENE.replace("angle 40", "angle x").replace("Sphere", "Spheer").replace("center 0 0.5", "centre 0"),
     );
-    place.refused(
+    folder.expect_failure(
         2,
         "render bad.txt -o p.png",
         &[
@@ -24,38 +24,38 @@ fn invalid_scene_gives_all_errors_with_their_places() {
             "note[dialect]: read as f04",
         ],
     );
-    let quiet = place.expect_exit(2, "render bad.txt -o p.png --quiet");
+    let quiet = folder.expect_exit(2, "render bad.txt -o p.png --quiet");
     assert!(quiet.err.contains("Spheer") && !quiet.err.contains("note"), "{}", quiet.err);
-    place.refused(2, "info bad.txt", &["Spheer"]);
-    place.refused(2, "convert bad.txt -o c.txt", &["Spheer"]);
-    place.refused(2, "course -input bad.txt -output p.tga", &["Spheer"]);
+    folder.expect_failure(2, "info bad.txt", &["Spheer"]);
+    folder.expect_failure(2, "convert bad.txt -o c.txt", &["Spheer"]);
+    folder.expect_failure(2, "course -input bad.txt -output p.tga", &["Spheer"]);
 }
 
 #[test]
 fn at_most_twenty_errors_are_shown() {
-    let place = TestFolder::new();
-    place.put("bad.txt", SCENE.replace("numObjects 2", &format!("numObjects 2 {}", "Spheer { } ".repeat(1000))));
-    let output = place.expect_exit(2, "render bad.txt");
+    let folder = TestFolder::new();
+    folder.write("bad.txt", SCENE.replace("numObjects 2", &format!("numObjects 2 {}", "Spheer { } ".repeat(1000))));
+    let output = folder.expect_exit(2, "render bad.txt");
     assert!(output.err.matches("\nerror").count() < 20, "{}", output.err);
     assert!(output.err.len() < 20_000, "{} bytes", output.err.len());
 }
 
 #[test]
 fn missing_files_are_reported_at_their_line() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let scene = SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "\nTriangleMesh { obj_file cube.obj }");
-    place.put("mesh.txt", &scene);
-    place.put("cubes.obj", "");
-    place.refused(2, "render mesh.txt -o p.png", &["mesh.txt:9:", "cube.obj", "cubes.obj"]);
-    place.put("texture.txt", SCENE.replace("diffuseColor 0.8", "texture wood.bmp diffuseColor 0.8"));
-    place.refused(2, "render texture.txt -o p.png --dialect durer", &["texture.txt:5:", "wood.bmp"]);
-    place.put("outside.txt", scene.replace("cube.obj", "../cube.obj"));
-    place.expect_exit(2, "render outside.txt -o p.png");
+    folder.write("mesh.txt", &scene);
+    folder.write("cubes.obj", "");
+    folder.expect_failure(2, "render mesh.txt -o p.png", &["mesh.txt:9:", "cube.obj", "cubes.obj"]);
+    folder.write("texture.txt", SCENE.replace("diffuseColor 0.8", "texture wood.bmp diffuseColor 0.8"));
+    folder.expect_failure(2, "render texture.txt -o p.png --dialect durer", &["texture.txt:5:", "wood.bmp"]);
+    folder.write("outside.txt", scene.replace("cube.obj", "../cube.obj"));
+    folder.expect_exit(2, "render outside.txt -o p.png");
 }
 
 #[test]
 fn files_other_than_scenes_are_refused_at_once() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     for (name, content) in [
         ("empty.txt", Vec::new()),
         ("binary.txt", (0..200_000u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect()),
@@ -64,29 +64,29 @@ fn files_other_than_scenes_are_refused_at_once() {
         ("braces.txt", "{".repeat(1_000_000).into_bytes()),
         ("long.txt", vec![b'a'; 1_000_000]),
     ] {
-        place.put(name, content);
-        place.refused(2, &format!("render {name} -o p.png"), &["error"]);
-        let err = place.run(&format!("render {name} -o p.png")).err;
+        folder.write(name, content);
+        folder.expect_failure(2, &format!("render {name} -o p.png"), &["error"]);
+        let err = folder.run(&format!("render {name} -o p.png")).err;
         assert!(err.len() < 40_000, "{name}: {} bytes of errors", err.len());
         assert!(!err.chars().any(|c| c.is_control() && c != '\n'), "{name}: {err:?}");
     }
-    place.refused(2, "render missing.txt -o p.png", &["missing.txt"]);
-    place.refused(2, "render . -o p.png", &["not a regular file"]);
-    place.refused(2, "render scene.txt/below -o p.png", &["scene.txt/below"]);
+    folder.expect_failure(2, "render missing.txt -o p.png", &["missing.txt"]);
+    folder.expect_failure(2, "render . -o p.png", &["not a regular file"]);
+    folder.expect_failure(2, "render scene.txt/below -o p.png", &["scene.txt/below"]);
 }
 
 #[cfg(unix)]
 #[test]
 fn pipes_and_devices_are_refused() {
-    let place = TestFolder::new();
-    assert!(Command::new("mkfifo").arg(place.path("pipe.txt")).status().unwrap().success());
-    place.refused(2, "render pipe.txt -o p.png", &["not a regular file"]);
-    place.refused(2, "render /dev/zero -o p.png", &["not a regular file"]);
+    let folder = TestFolder::new();
+    assert!(Command::new("mkfifo").arg(folder.path("pipe.txt")).status().unwrap().success());
+    folder.expect_failure(2, "render pipe.txt -o p.png", &["not a regular file"]);
+    folder.expect_failure(2, "render /dev/zero -o p.png", &["not a regular file"]);
 }
 
 #[test]
 fn bad_options_of_render() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     for (options, words) in [
         ("--size 0x5", "width and height must be at least 1"),
         ("--size 5", "640x480"),
@@ -138,40 +138,44 @@ fn bad_options_of_render() {
         ("-o picture", ".png"),
         ("--sise 3x3", "--size"),
     ] {
-        place.refused(2, &format!("render scene.txt {options}"), &[words]);
+        folder.expect_failure(2, &format!("render scene.txt {options}"), &[words]);
     }
-    place.refused(2, "rendr scene.txt", &["render"]);
-    place.refused(2, "", &["Usage"]);
+    folder.expect_failure(2, "rendr scene.txt", &["render"]);
+    folder.expect_failure(2, "", &["Usage"]);
 }
 
 #[test]
 fn write_errors_have_exit_code_1_and_keep_old_files() {
-    let place = TestFolder::new();
-    std::fs::create_dir(place.path("folder.png")).unwrap();
-    place.refused(1, "render scene.txt -o missing/p.png", &["the folder `missing` does not exist"]);
-    place.refused(1, "render scene.txt -o folder.png", &["it is a folder"]);
-    place.refused(1, "render scene.txt -o scene.txt/p.png", &["does not exist"]);
-    place.refused(1, "render scene.txt --show color,depth -o missing/p.png", &["does not exist"]);
-    place.refused(1, "convert scene.txt -o missing/c.txt", &["does not exist"]);
-    place.refused(1, "course -input scene.txt -output missing/p.tga", &["does not exist"]);
-    place.put("old.png", "an old picture");
+    let folder = TestFolder::new();
+    std::fs::create_dir(folder.path("folder.png")).unwrap();
+    folder.expect_failure(1, "render scene.txt -o missing/p.png", &["the folder `missing` does not exist"]);
+    folder.expect_failure(1, "render scene.txt -o folder.png", &["it is a folder"]);
+    folder.expect_failure(1, "render scene.txt -o scene.txt/p.png", &["does not exist"]);
+    folder.expect_failure(1, "render scene.txt --show color,depth -o missing/p.png", &["does not exist"]);
+    folder.expect_failure(1, "convert scene.txt -o missing/c.txt", &["does not exist"]);
+    folder.expect_failure(1, "course -input scene.txt -output missing/p.tga", &["does not exist"]);
+    folder.write("old.png", "an old picture");
     for arguments in ["missing.txt -o old.png", "scene.txt --size 4294967295x70000 -o old.png"] {
-        place.expect_exit(2, &format!("render {arguments}"));
-        assert_eq!(place.bytes("old.png"), b"an old picture");
+        folder.expect_exit(2, &format!("render {arguments}"));
+        assert_eq!(folder.bytes("old.png"), b"an old picture");
     }
     // If one of two files cannot be written, neither is.
-    place.refused(1, "course -input scene.txt -size 4 4 -output p.tga -normals missing/n.tga", &["does not exist"]);
+    folder.expect_failure(
+        1,
+        "course -input scene.txt -size 4 4 -output p.tga -normals missing/n.tga",
+        &["does not exist"],
+    );
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn full_disk_is_an_error() {
-    let place = TestFolder::new();
-    std::os::unix::fs::symlink("/dev/full", place.path("full.png")).unwrap();
-    place.refused(1, "render scene.txt --size 8x8 -o full.png", &["No space left"]);
-    place.refused(1, "course -input scene.txt -size 8 8 -output p.tga -normals full.png", &["No space left"]);
+    let folder = TestFolder::new();
+    std::os::unix::fs::symlink("/dev/full", folder.path("full.png")).unwrap();
+    folder.expect_failure(1, "render scene.txt --size 8x8 -o full.png", &["No space left"]);
+    folder.expect_failure(1, "course -input scene.txt -size 8 8 -output p.tga -normals full.png", &["No space left"]);
     let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-    let output = place.command("man").stdout(full).stderr(Stdio::null()).status().unwrap();
+    let output = folder.command("man").stdout(full).stderr(Stdio::null()).status().unwrap();
     assert_eq!(output.code(), Some(1));
 }
 
@@ -179,32 +183,32 @@ fn full_disk_is_an_error() {
 #[test]
 fn closed_pipes_and_odd_names_do_not_panic() {
     use std::os::unix::ffi::OsStrExt;
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     for arguments in
         ["dialects", "man", "completions bash", "info scene.txt --json", "course --help", "render missing.txt"]
     {
         let script =
             format!("{} {arguments} 2>&1 | true; {} {arguments} 2>&1 | head -1", common::durer(), common::durer());
-        let output = Command::new("bash").args(["-c", &script]).current_dir(place.path("")).output().unwrap();
+        let output = Command::new("bash").args(["-c", &script]).current_dir(folder.path("")).output().unwrap();
         assert!(!String::from_utf8_lossy(&output.stdout).contains("panicked"), "{arguments}");
     }
     // Standard error is a closed pipe, and there is a message to print.
-    let mut child = place.command("render missing.txt").stderr(Stdio::piped()).spawn().unwrap();
+    let mut child = folder.command("render missing.txt").stderr(Stdio::piped()).spawn().unwrap();
     drop(child.stderr.take());
     assert_eq!(child.wait().unwrap().code(), Some(2));
     let odd = std::ffi::OsStr::from_bytes(b"\xff\xfe.txt");
     for command in ["render", "course", "info"] {
-        assert_eq!(place.command(command).arg(odd).output().unwrap().status.code(), Some(2), "{command}");
+        assert_eq!(folder.command(command).arg(odd).output().unwrap().status.code(), Some(2), "{command}");
     }
-    std::os::unix::fs::symlink(common::durer(), place.path("a4soln")).unwrap();
-    let output = Command::new(place.path("a4soln")).arg(odd).output().unwrap();
+    std::os::unix::fs::symlink(common::durer(), folder.path("a4soln")).unwrap();
+    let output = Command::new(folder.path("a4soln")).arg(odd).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
 }
 
 /// Options of other programs get a hint at the equivalent option of Dürer.
 #[test]
 fn options_of_other_programs_are_pointed_to_ours() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     for (options, words, course) in [
         ("--width 640", "`--size 640x480`", false),
         ("--height=480", "`--size 640x480`", false),
@@ -213,12 +217,12 @@ fn options_of_other_programs_are_pointed_to_ours() {
         ("--verbose", "`--stats`", false),
         ("-size 200 200", "`--size 640x480`", true),
     ] {
-        let output = place.expect_exit(2, &format!("render scene.txt -o x.png {options}"));
+        let output = folder.expect_exit(2, &format!("render scene.txt -o x.png {options}"));
         assert!(output.err.contains("unexpected argument") && output.err.contains(words), "{}", output.err);
         assert_eq!(output.err.contains("`durer course`"), course, "{}", output.err);
         assert!(!output.err.contains("similar argument") && !output.err.contains("as a value"), "{}", output.err);
     }
-    let output = place.expect_exit(2, "check scene.txt --verbose");
+    let output = folder.expect_exit(2, "check scene.txt --verbose");
     assert!(output.err.contains("use `--json` for the full output"), "{}", output.err);
     assert!(!output.err.contains("--stats"), "{}", output.err);
 }

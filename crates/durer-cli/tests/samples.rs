@@ -14,8 +14,8 @@ const SMALL: &str = "--size 16x16 --samples 2 --quiet --hash";
 
 /// Returns the hash of a small render.
 #[track_caller]
-fn hash(place: &TestFolder, scene: impl AsRef<Path>, more: &str) -> String {
-    place.expect_exit(0, &format!("render {} -o x.png {SMALL} {more}", scene.as_ref().display())).out
+fn hash(folder: &TestFolder, scene: impl AsRef<Path>, more: &str) -> String {
+    folder.expect_exit(0, &format!("render {} -o x.png {SMALL} {more}", scene.as_ref().display())).out
 }
 
 /// Collects the files with these extensions in a folder and below, sorted. Skips paths with spaces,
@@ -101,14 +101,14 @@ const WRITTEN: [&str; 12] = [
 
 #[test]
 fn converted_gltf_renders_the_same_picture() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     for name in WRITTEN {
         let Some(path) = khronos(name) else { continue };
-        let output = place.expect_exit(0, &format!("convert {} -o a.glb", path.display())).err;
-        place.expect_exit(0, "convert a.glb -o b.gltf");
-        let (first, again) = (hash(&place, "a.glb", ""), hash(&place, "b.gltf", ""));
+        let output = folder.expect_exit(0, &format!("convert {} -o a.glb", path.display())).err;
+        folder.expect_exit(0, "convert a.glb -o b.gltf");
+        let (first, again) = (hash(&folder, "a.glb", ""), hash(&folder, "b.gltf", ""));
         assert_eq!(first, again, "{name}");
-        let usual = hash(&place, &path, "");
+        let usual = hash(&folder, &path, "");
         assert_eq!(first, usual, "{name}");
         // The conversion loses nothing, and so reports no loss.
         assert!(!output.contains("NO_COUNTERPART"), "{name}: {output}");
@@ -195,21 +195,21 @@ fn around(picture: &Image8, (x, y): (usize, usize)) -> impl Iterator<Item = [f64
     rows.flat_map(move |y| (x - REACH..=x + REACH).map(move |x| picture.pixels[y * SIDE + x].map(f64::from)))
 }
 
-fn mean(picture: &Image8, place: (usize, usize)) -> [f64; 3] {
-    let (sum, count) = around(picture, place)
+fn mean(picture: &Image8, folder: (usize, usize)) -> [f64; 3] {
+    let (sum, count) = around(picture, folder)
         .fold(([0.0; 3], 0.0), |(sum, count), pixel| (std::array::from_fn(|i| sum[i] + pixel[i]), count + 1.0));
     sum.map(|sum| sum / count)
 }
 
 #[test]
 fn test_cards_show_ticks_and_no_crosses() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let all = CARDS.iter().map(|card| (card, "--studio none --samples 4"));
     for ((name, marks), options) in all.chain(BEHIND.iter().map(|card| (card, "--samples 16"))) {
         let Some(path) = khronos(name) else { continue };
         let options = format!("--view front {options} --size {SIDE}x{SIDE} -q");
-        place.expect_exit(0, &format!("render {} -o card.png {options}", path.display()));
-        let picture = place.image8("card.png");
+        folder.expect_exit(0, &format!("render {} -o card.png {options}", path.display()));
+        let picture = folder.image8("card.png");
         for &(x, y, mark) in *marks {
             let here = mean(&picture, (x, y));
             let near = |other: [f64; 3]| here.iter().zip(other).all(|(a, b)| (a - b).abs() < 16.0);

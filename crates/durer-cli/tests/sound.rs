@@ -41,8 +41,8 @@ fn scenes(folder: &Path) -> Vec<PathBuf> {
 
 /// Returns the findings for some scenes: scene, severity and code.
 fn found(scenes: &[PathBuf], options: &str) -> Vec<(String, String, String)> {
-    let place = TestFolder::new();
-    let mut command = place.command(&format!("check --json {options}"));
+    let folder = TestFolder::new();
+    let mut command = folder.command(&format!("check --json {options}"));
     let output = command.args(scenes).output().unwrap();
     let err = String::from_utf8_lossy(&output.stderr);
     assert!(!err.contains("panicked"), "{err}");

@@ -36,9 +36,9 @@ fn scene(year: &str, changes: &[(&str, &str)]) -> String {
     text
 }
 
-fn found(place: &TestFolder, year: &str, options: &str, changes: &[(&str, &str)]) -> (Vec<String>, String) {
-    place.put("broken.txt", scene(year, changes));
-    let output = place.run(&format!("check broken.txt --json --dialect {year} {options}"));
+fn found(folder: &TestFolder, year: &str, options: &str, changes: &[(&str, &str)]) -> (Vec<String>, String) {
+    folder.write("broken.txt", scene(year, changes));
+    let output = folder.run(&format!("check broken.txt --json --dialect {year} {options}"));
     let json: Value =
         serde_json::from_str(&output.out).unwrap_or_else(|error| panic!("{error}: {}{}", output.out, output.err));
     let findings = json["scenes"][0]["findings"].as_array().unwrap();
@@ -124,16 +124,16 @@ const ANGLE: &str = "PerspectiveCamera { center 0 2 9 direction 0 -0.15 -1 up 0 
 
 #[test]
 fn cause_is_reported_first() {
-    let place = TestFolder::new();
-    place.put("quad.obj", "v -2 0 0\nv 0 0 0\nv 0 2 0\nv -2 2 0\nf 1 2 3 4\n");
+    let folder = TestFolder::new();
+    folder.write("quad.obj", "v -2 0 0\nv 0 0 0\nv 0 2 0\nv -2 2 0\nf 1 2 3 4\n");
     for year in ["f04", "f12a4", "f12a5", "f16"] {
         let bounces = if year == "f04" { "--bounces 3" } else { "" };
-        let (codes, text) = found(&place, year, bounces, &[]);
+        let (codes, text) = found(&folder, year, bounces, &[]);
         assert!(!text.contains("\"severity\": \"warning\""), "{year}: {codes:?}");
     }
     let mut wrong = Vec::new();
     for (year, options, changes, wanted) in CASES {
-        let (codes, _) = found(&place, year, options, changes);
+        let (codes, _) = found(&folder, year, options, changes);
         if codes.first().map(String::as_str) != Some(wanted) {
             wrong.push(format!("{year} {options} {changes:?}: {wanted} is wanted, {codes:?}"));
         }
@@ -145,18 +145,18 @@ fn cause_is_reported_first() {
 /// reported as hidden.
 #[test]
 fn consequences_are_not_reported() {
-    let place = TestFolder::new();
-    let (codes, _) = found(&place, "f04", "--bounces 3", &[("color 0.9 0.9 0.9", "color 230 230 230")]);
+    let folder = TestFolder::new();
+    let (codes, _) = found(&folder, "f04", "--bounces 3", &[("color 0.9 0.9 0.9", "color 230 230 230")]);
     assert!(!codes.iter().any(|code| code == "too-bright"), "{codes:?}");
     let behind = [("center -1.2 1 0 radius 1", "center 1.2 1 -1.5 radius 0.3")];
-    let (codes, _) = found(&place, "f04", "--bounces 3", &behind);
+    let (codes, _) = found(&folder, "f04", "--bounces 3", &behind);
     assert!(!codes.iter().any(|code| code == "unseen" || code == "hidden-behind"), "{codes:?}");
 }
 
 /// A possible intention gets at most a note, and no fix.
 #[test]
 fn possible_intentions_are_left_unchanged() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     // A crescent moon, and a scene with only ambient light of 1, as in the first assignment.
     let moon = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 20 }
 Lights { numLights 1 DirectionalLight { direction -1 -0.1 0.35 color 1 1 0.9 } }
@@ -169,35 +169,35 @@ Materials { numMaterials 1 Material { diffuseColor 0.8 0.2 0.2 } }
 Group { numObjects 1 MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }
 ";
     for text in [moon, flat] {
-        place.put("meant.txt", text);
-        let output = place.expect_exit(0, "check meant.txt --dialect f04");
+        folder.write("meant.txt", text);
+        let output = folder.expect_exit(0, "check meant.txt --dialect f04");
         assert!(!output.out.contains("warning["), "{}", output.out);
-        place.expect_exit(0, "check meant.txt --dialect f04 --fix");
-        assert_eq!(place.bytes("meant.txt"), text.as_bytes());
+        folder.expect_exit(0, "check meant.txt --dialect f04 --fix");
+        assert_eq!(folder.bytes("meant.txt"), text.as_bytes());
     }
 }
 
 /// A colour of 5 is not taken for 5 of 255, and messages use the keywords of the year.
 #[test]
 fn help_suggests_the_intended_value() {
-    let place = TestFolder::new();
-    place.put("five.txt", scene("f04", &[("diffuseColor 0.6 0.6 0.6", "diffuseColor 5 5 5")]));
-    let before = place.bytes("five.txt");
-    place.run("check five.txt --dialect f04 --fix");
-    assert_eq!(place.bytes("five.txt"), before);
-    let (_, text) = found(&place, "f16", "", &[("falloff 0.03", "falloff 0")]);
+    let folder = TestFolder::new();
+    folder.write("five.txt", scene("f04", &[("diffuseColor 0.6 0.6 0.6", "diffuseColor 5 5 5")]));
+    let before = folder.bytes("five.txt");
+    folder.run("check five.txt --dialect f04 --fix");
+    assert_eq!(folder.bytes("five.txt"), before);
+    let (_, text) = found(&folder, "f16", "", &[("falloff 0.03", "falloff 0")]);
     assert!(!text.contains("attenuation"), "{text}");
     // A directional light has no position, so the help must not suggest to move it.
     let behind =
         ("PointLight { position 3 5 4 color 0.9 0.9 0.9", "DirectionalLight { direction 0.1 1 -0.1 color 0.9 0.9 0.9");
-    let (_, text) = found(&place, "f12a4", "", &[behind]);
+    let (_, text) = found(&folder, "f12a4", "", &[behind]);
     assert!(text.contains("light-behind") && !text.contains("move it"), "{text}");
     // If mirrors reflect more light than they receive, do not blame the lights.
     let mirrors = [
         ("color 0.2 0.3 0.4 ambientLight 0.1 0.1 0.1", "color 0.9 0.9 0.9 ambientLight 0.4 0.4 0.4"),
         ("diffuseColor 0.6 0.6 0.6", "diffuseColor 0.6 0.6 0.6 reflectiveColor 1 1 1"),
     ];
-    let (codes, text) = found(&place, "f04", "--bounces 3", &mirrors);
+    let (codes, text) = found(&folder, "f04", "--bounces 3", &mirrors);
     assert!(
         codes[0] == "too-bright"
             && text.contains("material 1 reflects and transmits 1.6 times the light that it receives"),
@@ -210,22 +210,22 @@ Materials { Material { diffuse 1 0 0 } }
 Scene { Node { Component<Object> { type sphere radius 1 } }
   Node { Transform { translate 0 3 4 } Component<Light> { type point color 1 1 1 attenuation 0.05 } } }
 ";
-    place.put("nodes.txt", nodes);
-    let output = place.run("check nodes.txt --dialect f23").out;
+    folder.write("nodes.txt", nodes);
+    let output = folder.run("check nodes.txt --dialect f23").out;
     assert!(output.contains("`Component<Material> { index 0 }`") && !output.contains("MaterialIndex"), "{output}");
     // Each message that mentions `--fix` says what it would change.
-    place.put("bytes.txt", scene("f04", &[("diffuseColor 0.7 0.3 0.2", "diffuseColor 204 51 51")]));
-    let output = place.run("check bytes.txt --dialect f04 --bounces 3").out;
+    folder.write("bytes.txt", scene("f04", &[("diffuseColor 0.7 0.3 0.2", "diffuseColor 204 51 51")]));
+    let output = folder.run("check bytes.txt --dialect f04 --bounces 3").out;
     assert!(output.contains("(`--fix` writes `0.8 0.2 0.2`)"), "{output}");
 }
 
 #[test]
 fn reader_suggests_the_intended_word() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let says = |dialect: &str, text: &str, wanted: &str| {
-        place.put("words.txt", text);
+        folder.write("words.txt", text);
         let dialect = if dialect.is_empty() { String::new() } else { format!("--dialect {dialect}") };
-        let output = place.run(&format!("render words.txt -q -o words.png {dialect}"));
+        let output = folder.run(&format!("render words.txt -q -o words.png {dialect}"));
         assert!(output.code == Some(2) && output.err.contains(wanted), "{wanted}: {}", output.err);
         assert!(output.err.lines().count() < 60, "{}", output.err);
     };
@@ -249,24 +249,24 @@ Scene { Node { Component<Material> { index 0 } Component<Object> { type sphere r
 ";
     // A single foreign keyword does not change a file's dialect. The message names the keyword and
     // its equivalent.
-    place.put("nodes.txt", nodes);
-    let errors = place.run("check nodes.txt").out;
+    folder.write("nodes.txt", nodes);
+    let errors = folder.run("check nodes.txt").out;
     assert!(errors.contains("`angle` is not a word of f23") && errors.contains("in f23 it is `fov`"), "{errors}");
     let wide: Vec<u8> = SCENE.bytes().flat_map(|b| [b, 0]).collect();
-    place.put("wide.txt", [&[0xff, 0xfe][..], &wide].concat());
-    let output = place.expect_exit(2, "render wide.txt -q -o words.png");
+    folder.write("wide.txt", [&[0xff, 0xfe][..], &wide].concat());
+    let output = folder.expect_exit(2, "render wide.txt -q -o words.png");
     assert!(output.err.contains("UTF-16") && output.err.lines().count() < 8, "{}", output.err);
-    place.put("binary.txt", (0..4000_u32).map(|i| (i * 7919 % 251) as u8).collect::<Vec<u8>>());
-    let output = place.expect_exit(2, "render binary.txt -q -o words.png");
+    folder.write("binary.txt", (0..4000_u32).map(|i| (i * 7919 % 251) as u8).collect::<Vec<u8>>());
+    let output = folder.expect_exit(2, "render binary.txt -q -o words.png");
     assert!(output.err.contains("binary") && output.err.lines().count() < 8, "{}", output.err);
     // The message about a zero direction of a light must not be that for the camera.
     let still = ("PointLight { position 3 5 4", "DirectionalLight { direction 0 0 0");
     says("", &scene("f12a4", &[still]), "for a light, it is the direction in which the light shines");
     // A scene that the year's own program would reject gets a note.
-    place.put("brace.txt", scene("f04", &[("Group {", "Group{")]));
-    let output = place.run("check brace.txt --dialect f04 --bounces 3");
+    folder.write("brace.txt", scene("f04", &[("Group {", "Group{")]));
+    let output = folder.run("check brace.txt --dialect f04 --bounces 3");
     assert!(output.out.contains("would refuse this file"), "{}{}", output.out, output.err);
-    place.put("count.txt", scene("f04", &[("numObjects 3", "")]));
-    let output = place.run("check count.txt --dialect f04 --bounces 3");
+    folder.write("count.txt", scene("f04", &[("numObjects 3", "")]));
+    let output = folder.run("check count.txt --dialect f04 --bounces 3");
     assert!(output.out.contains("would refuse this file: `Group` has no `numObjects`"), "{}{}", output.out, output.err);
 }

@@ -37,7 +37,7 @@ fn zeros(count: u64) -> Vec<u8> {
     packer.finish().unwrap()
 }
 
-fn with_pictures(place: &TestFolder, name: &str) -> [String; 3] {
+fn with_pictures(folder: &TestFolder, name: &str) -> [String; 3] {
     let texture = "PhongMaterial { texture PICTURE diffuseColor 0.8 0.3 0.2 }";
     let field = "HeightField { picture PICTURE min -1 0 -1  max 1 1 1 }";
     let sky = "Background { cubeMap sky color 0.2 0.1 0.5";
@@ -46,14 +46,14 @@ fn with_pictures(place: &TestFolder, name: &str) -> [String; 3] {
         ("field.txt", SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", field)),
         ("sky.txt", SCENE.replace("Background { color 0.2 0.1 0.5", sky)),
     ];
-    let _ = std::fs::create_dir(place.path("sky"));
+    let _ = std::fs::create_dir(folder.path("sky"));
     for face in ["left", "right", "up", "down", "front", "back"] {
-        let face = place.path(&format!("sky/{face}.png"));
+        let face = folder.path(&format!("sky/{face}.png"));
         let _ = std::fs::remove_file(&face);
-        std::fs::hard_link(place.path(name), face).unwrap();
+        std::fs::hard_link(folder.path(name), face).unwrap();
     }
     scenes.map(|(file, text)| {
-        place.put(file, text.replace("PICTURE", name));
+        folder.write(file, text.replace("PICTURE", name));
         format!("render {file} --dialect durer --size 8x8 --samples 1 --quiet --restart -o {file}.png")
     })
 }
@@ -64,26 +64,26 @@ const LIMITED: &str = "ulimit -v 700000; export RAYON_NUM_THREADS=2; $DURER ";
 #[cfg(target_os = "linux")]
 #[test]
 fn compression_bombs_in_profiles_are_not_inflated() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let mut profile = b"x\0\0".to_vec();
     profile.extend(zeros(1 << 29));
-    place.put("bomb.png", png(4, &chunk(b"iCCP", &profile)));
-    for line in with_pictures(&place, "bomb.png") {
-        let output = place.shell(&format!("{LIMITED}{line} --threads 2"));
+    folder.write("bomb.png", png(4, &chunk(b"iCCP", &profile)));
+    for line in with_pictures(&folder, "bomb.png") {
+        let output = folder.shell(&format!("{LIMITED}{line} --threads 2"));
         assert_eq!(output.code, Some(0), "{line}: {}", output.err);
     }
-    let output = place.shell(&format!("{LIMITED}compare bomb.png bomb.png"));
+    let output = folder.shell(&format!("{LIMITED}compare bomb.png bomb.png"));
     assert_eq!((output.code, output.out.lines().next()), (Some(0), Some("identical")), "{}", output.err);
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn large_pictures_are_refused_by_their_headers() {
-    let place = TestFolder::new();
-    place.put("large.png", png(6000, b""));
-    let [texture, field, sky] = with_pictures(&place, "large.png");
+    let folder = TestFolder::new();
+    folder.write("large.png", png(6000, b""));
+    let [texture, field, sky] = with_pictures(&folder, "large.png");
     for (line, words) in [(texture, "need about 275"), (field, "a height field cannot have"), (sky, "need about 275")] {
-        let output = place.shell(&format!("{LIMITED}{line} --threads 2 --memory 64M"));
+        let output = folder.shell(&format!("{LIMITED}{line} --threads 2 --memory 64M"));
         assert_eq!(output.code, Some(2), "{line}: {}", output.err);
         assert!(output.err.contains(words), "{}", output.err);
     }
@@ -92,58 +92,58 @@ fn large_pictures_are_refused_by_their_headers() {
     let lit = r#"LightSource "infinite" "string filename" "large.png" Shape "sphere""#;
     let rough = r#"Texture "t" "float" "imagemap" "string filename" "large.png"
         Material "coateddiffuse" "texture roughness" "t" Shape "sphere""#;
-    place.put("lit.pbrt", format!("{pbrt}{lit}"));
-    place.put("rough.pbrt", format!("{pbrt}{rough}"));
-    place.put(
+    folder.write("lit.pbrt", format!("{pbrt}{lit}"));
+    folder.write("rough.pbrt", format!("{pbrt}{rough}"));
+    folder.write(
         "lit.xml",
         r#"<scene version="3.0.0"><sensor type="perspective"/><shape type="sphere"/>
         <emitter type="envmap"><string name="filename" value="large.png"/></emitter></scene>"#,
     );
-    place.put(
+    folder.write(
         "bright.rad",
         "void colorpict p\n7 red green blue large.png . u v\n0\n0\np plastic m\n0\n0\n5 .5 .5 .5 0 0\n\
         m sphere s\n0\n0\n4 0 0 0 1\n",
     );
-    place.put("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    folder.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     for scene in ["lit.pbrt", "rough.pbrt", "lit.xml", "bright.rad", "m.obj --environment large.png --up z"] {
         let line = format!("render {scene} --size 8x8 --samples 1 --quiet --restart -o o.png");
-        let output = place.shell(&format!("{LIMITED}{line} --threads 2 --memory 64M"));
+        let output = folder.shell(&format!("{LIMITED}{line} --threads 2 --memory 64M"));
         assert_eq!(output.code, Some(2), "{line}: {}", output.err);
         assert!(output.err.contains("need about") && output.err.contains("see `--memory`"), "{line}: {}", output.err);
     }
     // The decoded picture is copied once, so two copies exist for a moment.
-    place.put("large.png", png(5000, b""));
-    let [texture, ..] = with_pictures(&place, "large.png");
-    let output = place.shell(&format!("{LIMITED}{texture} --threads 2 --memory 120M"));
+    folder.write("large.png", png(5000, b""));
+    let [texture, ..] = with_pictures(&folder, "large.png");
+    let output = folder.shell(&format!("{LIMITED}{texture} --threads 2 --memory 120M"));
     assert!(output.code == Some(2) && output.err.contains("need about 191 MiB"), "{}", output.err);
     // The six faces together exceed the limit, although each one alone would fit.
-    place.put("large.png", png(2000, b""));
-    let [texture, _, sky] = with_pictures(&place, "large.png");
-    assert_eq!(place.shell(&format!("{LIMITED}{texture} --threads 2 --memory 32M")).code, Some(0));
-    let output = place.shell(&format!("{LIMITED}{sky} --threads 2 --memory 32M"));
+    folder.write("large.png", png(2000, b""));
+    let [texture, _, sky] = with_pictures(&folder, "large.png");
+    assert_eq!(folder.shell(&format!("{LIMITED}{texture} --threads 2 --memory 32M")).code, Some(0));
+    let output = folder.shell(&format!("{LIMITED}{sky} --threads 2 --memory 32M"));
     assert!(output.code == Some(2) && output.err.contains(" left"), "{}", output.err);
-    place.put("small.png", png(8, b""));
-    let output = place.shell(&format!("{LIMITED}compare large.png large.png --memory 300M"));
+    folder.write("small.png", png(8, b""));
+    let output = folder.shell(&format!("{LIMITED}compare large.png large.png --memory 300M"));
     assert!(output.code == Some(2) && output.err.contains("the limit is 300 MiB"), "{}", output.err);
-    let output = place.shell(&format!("{LIMITED}compare large.png small.png"));
+    let output = folder.shell(&format!("{LIMITED}compare large.png small.png"));
     assert!(output.code == Some(2) && output.err.contains("different sizes"), "{}", output.err);
 }
 
 #[test]
 fn no_input_is_overwritten() {
-    let place = TestFolder::new();
-    place.put("p.png", png(8, b""));
-    place.put("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let folder = TestFolder::new();
+    folder.write("p.png", png(8, b""));
+    folder.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     let mesh = SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file m.obj }");
     let texture = SCENE.replace("Material { diffuse", "PhongMaterial { texture p.png diffuse");
-    place.put("mesh.txt", mesh);
-    place.put("texture.txt", texture);
-    symlink("p.png", place.path("link.png")).unwrap();
-    std::fs::hard_link(place.path("p.png"), place.path("hard.png")).unwrap();
-    symlink(".", place.path("here")).unwrap();
-    std::fs::create_dir(place.path("folder")).unwrap();
-    symlink("m.obj", place.path("mesh.png")).unwrap();
-    symlink("scene.txt", place.path("scene.png")).unwrap();
+    folder.write("mesh.txt", mesh);
+    folder.write("texture.txt", texture);
+    symlink("p.png", folder.path("link.png")).unwrap();
+    std::fs::hard_link(folder.path("p.png"), folder.path("hard.png")).unwrap();
+    symlink(".", folder.path("here")).unwrap();
+    std::fs::create_dir(folder.path("folder")).unwrap();
+    symlink("m.obj", folder.path("mesh.png")).unwrap();
+    symlink("scene.txt", folder.path("scene.png")).unwrap();
     let size = "--size 8x8 --samples 1";
     for line in [
         format!("render scene.txt {size} -o scene.png"),
@@ -166,27 +166,27 @@ fn no_input_is_overwritten() {
         "course -input scene.txt -size 8 8 -output scene.png".into(),
         "course -input mesh.txt -size 8 8 -normals mesh.png".into(),
     ] {
-        let before = ["scene.txt", "p.png", "m.obj"].map(|name| place.bytes(name));
-        let names = place.names();
-        let result = place.expect_exit(2, &line);
+        let before = ["scene.txt", "p.png", "m.obj"].map(|name| folder.bytes(name));
+        let names = folder.names();
+        let result = folder.expect_exit(2, &line);
         assert!(result.err.contains("it is an input of this run"), "{line}: {}", result.err);
-        assert!(before == ["scene.txt", "p.png", "m.obj"].map(|name| place.bytes(name)), "{line}");
-        assert_eq!(place.names(), names, "{line}");
+        assert!(before == ["scene.txt", "p.png", "m.obj"].map(|name| folder.bytes(name)), "{line}");
+        assert_eq!(folder.names(), names, "{line}");
     }
     let two = "choose another name for one of them";
-    place.refused(2, &format!("render scene.txt {size} -o o.png --preview here/o.png"), &[two]);
-    place.refused(2, &format!("render scene.txt {size} -o o.png --checkpoint ./o.png"), &[two]);
-    place.refused(2, "course -input scene.txt -output o.tga -normals ./o.tga", &[two]);
+    folder.expect_failure(2, &format!("render scene.txt {size} -o o.png --preview here/o.png"), &[two]);
+    folder.expect_failure(2, &format!("render scene.txt {size} -o o.png --checkpoint ./o.png"), &[two]);
+    folder.expect_failure(2, "course -input scene.txt -output o.tga -normals ./o.tga", &[two]);
     // A part file that is named like a picture.
-    place.expect_exit(0, &format!("render scene.txt {size} --shard 1/1 -o part.png --quiet"));
-    place.refused(2, "merge part.png -o here/part.png", &["it is an input of this run"]);
+    folder.expect_exit(0, &format!("render scene.txt {size} --shard 1/1 -o part.png --quiet"));
+    folder.expect_failure(2, "merge part.png -o here/part.png", &["it is an input of this run"]);
     // Saved work never overwrites other files.
     for option in ["--checkpoint scene.txt", "--checkpoint here/m.obj", "--shard 1/1"] {
         let output = if option.starts_with("--sh") { "endless.txt" } else { "o.png" };
-        place.refused(2, &format!("render mesh.txt {size} {option} -o {output}"), &["not a part file"]);
+        folder.expect_failure(2, &format!("render mesh.txt {size} {option} -o {output}"), &["not a part file"]);
     }
     // Other outputs never overwrite saved work.
-    let part = place.bytes("part.png");
+    let part = folder.bytes("part.png");
     for line in [
         format!("render scene.txt {size} -o part.png"),
         format!("explain scene.txt {size} --pixel 3,3 --html here/part.png"),
@@ -194,79 +194,79 @@ fn no_input_is_overwritten() {
         "compare p.png p.png --report part.png".into(),
         "check scene.txt --fix -o part.png".into(),
     ] {
-        place.refused(2, &line, &["holds saved work"]);
-        assert_eq!(place.bytes("part.png"), part, "{line}");
+        folder.expect_failure(2, &line, &["holds saved work"]);
+        assert_eq!(folder.bytes("part.png"), part, "{line}");
     }
-    place.put("o.png.part", "somebody's download");
-    place.refused(2, &format!("render scene.txt {size} -o o.png"), &["`o.png.part` is not a part file"]);
-    assert_eq!(place.bytes("o.png.part"), b"somebody's download");
+    folder.write("o.png.part", "somebody's download");
+    folder.expect_failure(2, &format!("render scene.txt {size} -o o.png"), &["`o.png.part` is not a part file"]);
+    assert_eq!(folder.bytes("o.png.part"), b"somebody's download");
 }
 
 #[test]
 fn lesson_replaces_no_file_of_its_scene() {
-    let place = TestFolder::new();
-    place.expect_exit(0, "lesson scene.txt -o lesson --size 16x12 --samples 1 --quiet");
-    let own: Vec<_> = std::fs::read_dir(place.path("lesson")).unwrap().map(|e| e.unwrap().file_name()).collect();
+    let folder = TestFolder::new();
+    folder.expect_exit(0, "lesson scene.txt -o lesson --size 16x12 --samples 1 --quiet");
+    let own: Vec<_> = std::fs::read_dir(folder.path("lesson")).unwrap().map(|e| e.unwrap().file_name()).collect();
     let picture = own.iter().map(|name| name.to_str().unwrap()).find(|name| name.ends_with(".png")).unwrap();
     let field = format!("HeightField {{ picture {picture} min -1 0 -1  max 1 1 1 }}");
-    place.put("lesson/mine.txt", SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", &field));
-    let before = place.bytes(&format!("lesson/{picture}"));
+    folder.write("lesson/mine.txt", SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", &field));
+    let before = folder.bytes(&format!("lesson/{picture}"));
     let output =
-        place.expect_exit(2, "lesson lesson/mine.txt --dialect durer -o lesson --size 16x12 --samples 1 --quiet");
+        folder.expect_exit(2, "lesson lesson/mine.txt --dialect durer -o lesson --size 16x12 --samples 1 --quiet");
     assert!(output.err.contains("it is an input of this run"), "{}", output.err);
-    assert!(place.bytes(&format!("lesson/{picture}")) == before);
+    assert!(folder.bytes(&format!("lesson/{picture}")) == before);
 }
 
 #[test]
 fn special_files_are_written_through_or_refused_at_once() {
-    let place = TestFolder::new();
-    symlink("nowhere", place.path("dangling.png")).unwrap();
-    symlink("loop.png", place.path("loop.png")).unwrap();
-    assert!(std::process::Command::new("mkfifo").arg(place.path("pipe.png")).status().unwrap().success());
-    symlink("/dev/null", place.path("null.png")).unwrap();
+    let folder = TestFolder::new();
+    symlink("nowhere", folder.path("dangling.png")).unwrap();
+    symlink("loop.png", folder.path("loop.png")).unwrap();
+    assert!(std::process::Command::new("mkfifo").arg(folder.path("pipe.png")).status().unwrap().success());
+    symlink("/dev/null", folder.path("null.png")).unwrap();
     let work = "render scene.txt --size 8x8 --samples 1 --quiet";
-    place.refused(1, &format!("{work} -o dangling.png"), &["broken symbolic link"]);
-    place.refused(1, &format!("{work} -o loop.png"), &["broken symbolic link"]);
-    place.refused(1, &format!("{work} -o pipe.png"), &["a pipe without a reader"]);
-    place.refused(1, &format!("{work} -o o.png --preview pipe.png"), &["a pipe without a reader"]);
-    place.refused(2, &format!("{work} -o o.png --checkpoint null.png"), &["is not a regular file"]);
-    place.expect_exit(0, &format!("{work} -o null.png --no-checkpoint"));
-    let reader = place.path("pipe.png");
+    folder.expect_failure(1, &format!("{work} -o dangling.png"), &["broken symbolic link"]);
+    folder.expect_failure(1, &format!("{work} -o loop.png"), &["broken symbolic link"]);
+    folder.expect_failure(1, &format!("{work} -o pipe.png"), &["a pipe without a reader"]);
+    folder.expect_failure(1, &format!("{work} -o o.png --preview pipe.png"), &["a pipe without a reader"]);
+    folder.expect_failure(2, &format!("{work} -o o.png --checkpoint null.png"), &["is not a regular file"]);
+    folder.expect_exit(0, &format!("{work} -o null.png --no-checkpoint"));
+    let reader = folder.path("pipe.png");
     let reader = std::thread::spawn(move || std::fs::read(reader).unwrap());
     // The reader may not be ready at once.
-    let output = (0..100).map(|_| place.run(&format!("{work} -o pipe.png"))).find(|output| output.code == Some(0));
+    let output = (0..100).map(|_| folder.run(&format!("{work} -o pipe.png"))).find(|output| output.code == Some(0));
     assert!(output.is_some() && reader.join().unwrap().starts_with(b"\x89PNG"));
 }
 
 #[test]
 fn unfinished_work_is_kept_unless_restarted() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let work = "render scene.txt --size 300x200 --samples 100000 --quiet";
     for (place_of_part, options) in [("o.png.part", "-o o.png"), ("s.part", "--shard 1/2 -o s.part")] {
         let (output, _) =
-            place.interrupted(&format!("{work} {options} --checkpoint-every 50ms"), Duration::from_millis(700));
+            folder.interrupted(&format!("{work} {options} --checkpoint-every 50ms"), Duration::from_millis(700));
         assert_eq!(output.code, Some(130), "{}", output.err);
-        let saved = place.bytes(place_of_part);
+        let saved = folder.bytes(place_of_part);
         for other in ["", "--seed 3", "--bounces 1"] {
             let line = format!("{work} {options} {other}");
-            place.refused(2, &line, &["unfinished work", place_of_part, "--resume", "--restart"]);
+            folder.expect_failure(2, &line, &["unfinished work", place_of_part, "--resume", "--restart"]);
         }
-        place.refused(2, &format!("{work} {options} --resume --seed 3"), &["a different job", "--restart"]);
-        place.refused(2, &format!("{work} {options} --resume --restart"), &["cannot be used with"]);
-        assert!(place.bytes(place_of_part) == saved);
-        place.expect_exit(0, &format!("render scene.txt --size 48x32 --quiet {options} --restart"));
+        folder.expect_failure(2, &format!("{work} {options} --resume --seed 3"), &["a different job", "--restart"]);
+        folder.expect_failure(2, &format!("{work} {options} --resume --restart"), &["cannot be used with"]);
+        assert!(folder.bytes(place_of_part) == saved);
+        folder.expect_exit(0, &format!("render scene.txt --size 48x32 --quiet {options} --restart"));
         // A finished shard is replaced like any picture.
-        place.expect_exit(0, &format!("render scene.txt --size 48x32 --seed 1 --quiet {options}"));
-        assert!(!place.path("o.png.part").exists());
+        folder.expect_exit(0, &format!("render scene.txt --size 48x32 --seed 1 --quiet {options}"));
+        assert!(!folder.path("o.png.part").exists());
     }
-    let saved = place.bytes("s.part");
-    place.put("s.part", &saved[..saved.len() / 2]);
-    place.refused(2, &format!("{work} --shard 1/2 -o s.part"), &["truncated or damaged", "--restart"]);
+    let saved = folder.bytes("s.part");
+    folder.write("s.part", &saved[..saved.len() / 2]);
+    folder.expect_failure(2, &format!("{work} --shard 1/2 -o s.part"), &["truncated or damaged", "--restart"]);
 }
 
 #[test]
 fn terminating_signals_save_the_work() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let work = "render scene.txt --size 300x200 --samples 100000 --quiet --restart -o o.png";
     for (signals, code) in [
         (&["INT"][..], 130),
@@ -277,13 +277,13 @@ fn terminating_signals_save_the_work() {
         (&["TERM", "TERM"], 143),
         (&["HUP", "TERM"], 129),
     ] {
-        let (output, latency) = place.signalled(work, Duration::from_millis(500), signals);
+        let (output, latency) = folder.send_signals(work, Duration::from_millis(500), signals);
         assert_eq!(output.code, Some(code), "{signals:?}: {}", output.err);
         assert!(output.err.contains("o.png.part (--resume"), "{signals:?}: {}", output.err);
         assert!(latency < Duration::from_secs(5), "{latency:?}");
     }
     // A program that was started with nohup survives the end of its terminal.
-    let output = place.shell(
+    let output = folder.shell(
         "trap '' HUP; $DURER render scene.txt --size 200x150 --samples 400 --quiet --restart -o n.png & \
          sleep 0.3; kill -HUP $!; wait $!",
     );
@@ -293,14 +293,14 @@ fn terminating_signals_save_the_work() {
 #[cfg(target_os = "linux")]
 #[test]
 fn system_limits_are_named_errors() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     let work = "$DURER render scene.txt --size 64x64 --samples 1 --quiet";
-    let output = place.shell(&format!("(ulimit -f 1; {work} -o o.pfm 2>&1) | cat; exit ${{PIPESTATUS[0]}}"));
+    let output = folder.shell(&format!("(ulimit -f 1; {work} -o o.pfm 2>&1) | cat; exit ${{PIPESTATUS[0]}}"));
     assert_eq!(output.code, Some(1), "{}", output.out);
     assert!(output.out.contains("cannot write `o.pfm`: File too large"), "{}", output.out);
-    let output = place.shell(&format!("RAYON_NUM_THREADS=100000 {work} -o o.png"));
+    let output = folder.shell(&format!("RAYON_NUM_THREADS=100000 {work} -o o.png"));
     assert_eq!(output.code, Some(0), "{}", output.err);
-    let output = place.shell(&format!("{work} -o o.png --memory 1"));
+    let output = folder.shell(&format!("{work} -o o.png --memory 1"));
     assert!(output.code == Some(2) && output.err.contains("the limit is 1 byte;"), "{}", output.err);
     for (line, code) in [
         ("$DURER info scene.txt >&-", 1),
@@ -310,7 +310,7 @@ fn system_limits_are_named_errors() {
         ("$DURER info scene.txt >/dev/null", 0),
         ("$DURER info scene.txt 1<>/dev/null", 0),
     ] {
-        let output = place.shell(line);
+        let output = folder.shell(line);
         assert_eq!(output.code, Some(code), "{line}: {}", output.err);
         assert_eq!(output.err.contains("it is closed"), code == 1, "{line}: {}", output.err);
     }
@@ -319,16 +319,16 @@ fn system_limits_are_named_errors() {
 #[cfg(target_os = "linux")]
 #[test]
 fn calling_thread_does_all_work_without_threads() {
-    let place = TestFolder::new();
+    let folder = TestFolder::new();
     // The superuser is not limited by permissions, so the test runs as the user nobody, in a folder
     // that this user cannot write to.
     let nobody = "setpriv --reuid=65534 --regid=65534 --clear-groups";
-    let usable = place.shell(&format!("chmod 777 . && cp {} own && {nobody} ./own dialects", common::durer()));
+    let usable = folder.shell(&format!("chmod 777 . && cp {} own && {nobody} ./own dialects", common::durer()));
     if usable.code != Some(0) {
         return println!("skipped: cannot switch to another user: {}", usable.err);
     }
     let run = |limit: u32, arguments: &str| {
-        let output = place.shell(&format!("{nobody} bash -c 'ulimit -u {limit}; exec ./own {arguments}'"));
+        let output = folder.shell(&format!("{nobody} bash -c 'ulimit -u {limit}; exec ./own {arguments}'"));
         assert_eq!(output.code, Some(0), "{limit} {arguments}: {}", output.err);
         assert!(!output.err.contains("panicked"), "{}", output.err);
         output.out
@@ -336,7 +336,7 @@ fn calling_thread_does_all_work_without_threads() {
     let work = "render scene.txt --size 48x40 --samples 4 --bounces 256 --show color,depth --quiet --hash";
     let hashes = [1, 2, 3, 4, 1000].map(|limit| run(limit, &format!("{work} -o {limit}.exr")));
     assert!(hashes.iter().all(|hash| *hash == hashes[0] && hash.len() > 60), "{hashes:?}");
-    assert!(place.bytes("1.exr") == place.bytes("1000.exr"));
+    assert!(folder.bytes("1.exr") == folder.bytes("1000.exr"));
     let _ = run(1, "compare 1.exr 2.exr --report r.html");
     let _ = run(1, "explain scene.txt --size 48x40 --pixel 20,20 --bounces 256");
     let _ = run(1, "info scene.txt");

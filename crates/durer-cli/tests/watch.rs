@@ -16,19 +16,19 @@ fn scene(color: &str) -> String {
     mesh.replace("0.8 0.3 0.2", color)
 }
 
-fn watching(place: &TestFolder) -> Child {
-    place.put("scene.txt", scene("0.5 0.5 0.5"));
-    place.put("mesh.obj", MESH);
-    let errors = std::fs::File::create(place.path("errors")).unwrap();
+fn watching(folder: &TestFolder) -> Child {
+    folder.write("scene.txt", scene("0.5 0.5 0.5"));
+    folder.write("mesh.obj", MESH);
+    let errors = std::fs::File::create(folder.path("errors")).unwrap();
     let line = "render scene.txt -o a.png --watch --size 16x16 --samples 2 --dialect durer";
-    place.command(line).stdout(Stdio::null()).stderr(errors).spawn().unwrap()
+    folder.command(line).stdout(Stdio::null()).stderr(errors).spawn().unwrap()
 }
 
 /// Waits until the picture is equal to a render of the current files.
-fn shows_what_is_there(place: &TestFolder, child: &mut Child, after: &str) {
-    place.expect_exit(0, "render scene.txt -o b.png --size 16x16 --samples 2 --dialect durer --quiet --restart");
+fn shows_what_is_there(folder: &TestFolder, child: &mut Child, after: &str) {
+    folder.expect_exit(0, "render scene.txt -o b.png --size 16x16 --samples 2 --dialect durer --quiet --restart");
     let start = Instant::now();
-    let read = |name: &str| std::fs::read(place.path(name)).unwrap_or_default();
+    let read = |name: &str| std::fs::read(folder.path(name)).unwrap_or_default();
     while read("a.png") != read("b.png") {
         assert_eq!(
             child.try_wait().unwrap(),
@@ -42,13 +42,13 @@ fn shows_what_is_there(place: &TestFolder, child: &mut Child, after: &str) {
 }
 
 #[test]
-fn what_happens_to_the_files_ends_no_watch() {
-    let place = TestFolder::new();
-    let mut child = watching(&place);
-    shows_what_is_there(&place, &mut child, "the start");
+fn watch_survives_file_changes() {
+    let folder = TestFolder::new();
+    let mut child = watching(&folder);
+    shows_what_is_there(&folder, &mut child, "the start");
     let pause = || std::thread::sleep(Duration::from_millis(120));
     let remove = |name: &str| {
-        let path = place.path(name);
+        let path = folder.path(name);
         let _ = std::fs::remove_file(&path).or_else(|_| std::fs::remove_dir(&path));
     };
     for name in ["scene.txt", "mesh.obj"] {
@@ -57,44 +57,44 @@ fn what_happens_to_the_files_ends_no_watch() {
         type Fire<'a> = (&'a str, Box<dyn Fn() + 'a>);
         let fires: [Fire; 9] = [
             ("a removal", Box::new(|| remove(name))),
-            ("an empty file", Box::new(|| place.put(name, ""))),
-            ("half a file", Box::new(|| place.put(name, &whole[..whole.len() / 2]))),
-            ("zeros", Box::new(|| place.put(name, vec![0; 1 << 20]))),
+            ("an empty file", Box::new(|| folder.write(name, ""))),
+            ("half a file", Box::new(|| folder.write(name, &whole[..whole.len() / 2]))),
+            ("zeros", Box::new(|| folder.write(name, vec![0; 1 << 20]))),
             (
                 "a folder",
                 Box::new(|| {
                     remove(name);
-                    std::fs::create_dir(place.path(name)).unwrap();
+                    std::fs::create_dir(folder.path(name)).unwrap();
                 }),
             ),
             (
                 "a pipe",
                 Box::new(|| {
                     remove(name);
-                    assert!(Command::new("mkfifo").arg(place.path(name)).status().unwrap().success());
+                    assert!(Command::new("mkfifo").arg(folder.path(name)).status().unwrap().success());
                 }),
             ),
             (
                 "a device",
                 Box::new(|| {
                     remove(name);
-                    symlink("/dev/zero", place.path(name)).unwrap();
+                    symlink("/dev/zero", folder.path(name)).unwrap();
                 }),
             ),
             (
                 "a circle of links",
                 Box::new(|| {
                     remove(name);
-                    symlink(name, place.path(name)).unwrap();
+                    symlink(name, folder.path(name)).unwrap();
                 }),
             ),
             (
                 "a file without rights",
                 Box::new(|| {
                     remove(name);
-                    place.put(name, &whole);
+                    folder.write(name, &whole);
                     let none = <std::fs::Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o000);
-                    std::fs::set_permissions(place.path(name), none).unwrap();
+                    std::fs::set_permissions(folder.path(name), none).unwrap();
                 }),
             ),
         ];
@@ -103,48 +103,48 @@ fn what_happens_to_the_files_ends_no_watch() {
             pause();
             remove(name);
             // Replace the file by renaming, as editors do.
-            place.put("new", &whole);
-            std::fs::rename(place.path("new"), place.path(name)).unwrap();
-            shows_what_is_there(&place, &mut child, &format!("{what} in place of {name}"));
+            folder.write("new", &whole);
+            std::fs::rename(folder.path("new"), folder.path(name)).unwrap();
+            shows_what_is_there(&folder, &mut child, &format!("{what} in place of {name}"));
         }
     }
     // Modification times go back to the past and forward to the future.
     for date in ["1970-01-01", "2001-01-01", "2099-01-01", "1960-01-01"] {
-        place.put("scene.txt", scene(if date < "2001" { "0.1 0.9 0.2" } else { "0.1 0.2 0.9" }));
-        let _ = Command::new("touch").args(["-d", date]).arg(place.path("scene.txt")).status();
-        shows_what_is_there(&place, &mut child, date);
+        folder.write("scene.txt", scene(if date < "2001" { "0.1 0.9 0.2" } else { "0.1 0.2 0.9" }));
+        let _ = Command::new("touch").args(["-d", date]).arg(folder.path("scene.txt")).status();
+        shows_what_is_there(&folder, &mut child, date);
     }
-    ended(&place, child);
+    ended(&folder, child);
 }
 
 #[test]
-fn a_thousand_saves_a_second_end_in_the_last_picture() {
-    let place = TestFolder::new();
-    let mut child = watching(&place);
-    shows_what_is_there(&place, &mut child, "the start");
+fn rapid_saves_end_in_last_picture() {
+    let folder = TestFolder::new();
+    let mut child = watching(&folder);
+    shows_what_is_there(&folder, &mut child, "the start");
     for number in 0..2000 {
         let text = scene(&format!("0.{:03} 0.5 0.5", number % 1000));
         match number % 3 {
-            0 => place.put("scene.txt", &text[..text.len() / 2]),
-            1 => place.put("scene.txt", &text),
+            0 => folder.write("scene.txt", &text[..text.len() / 2]),
+            1 => folder.write("scene.txt", &text),
             _ => {
-                place.put("new", &text);
-                std::fs::rename(place.path("new"), place.path("scene.txt")).unwrap();
+                folder.write("new", &text);
+                std::fs::rename(folder.path("new"), folder.path("scene.txt")).unwrap();
             }
         }
         std::thread::sleep(Duration::from_millis(1));
     }
-    place.put("scene.txt", scene("0.25 0.5 0.75"));
-    shows_what_is_there(&place, &mut child, "2000 saves");
-    ended(&place, child);
+    folder.write("scene.txt", scene("0.25 0.5 0.75"));
+    shows_what_is_there(&folder, &mut child, "2000 saves");
+    ended(&folder, child);
 }
 
-fn ended(place: &TestFolder, mut child: Child) {
+fn ended(folder: &TestFolder, mut child: Child) {
     Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(0));
-    let output = String::from_utf8_lossy(&place.bytes("errors")).into_owned();
+    let output = String::from_utf8_lossy(&folder.bytes("errors")).into_owned();
     assert!(!output.contains("panicked"), "{output}");
     let left: Vec<String> =
-        place.names().into_iter().filter(|name| name.ends_with(".tmp") || name.ends_with(".part")).collect();
+        folder.names().into_iter().filter(|name| name.ends_with(".tmp") || name.ends_with(".part")).collect();
     assert!(left.is_empty(), "{left:?}");
 }

@@ -1,7 +1,7 @@
 //! Exports a scene's in-memory assets as separate files: meshes as PLY, light profiles as IES,
 //! density grids as Mitsuba volumes, pictures unchanged.
 
-use super::ply::write_whole;
+use super::ply::write_all_attributes;
 use super::{extension, photometry, vol};
 use durer_image as image;
 use durer_scene::describe::{DescribedKind, FileName, Value};
@@ -15,35 +15,35 @@ pub type AssetFile = (String, Vec<u8>);
 
 /// Makes a name valid in a scene file: keeps letters, digits and `-_.`, and replaces other
 /// characters by `_`.
-pub fn plain(name: &str) -> String {
+pub fn sanitize_name(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect()
 }
 
 /// Returns a copy of the scene with all meshes and pictures moved to files in `folder`, and these
 /// files. Files that the scene names are copied too; unreadable ones keep their names.
 pub fn export_assets(scene: &Scene, folder: &str, source: &dyn AssetSource) -> (Scene, Vec<AssetFile>) {
-    let (files, taken, known, textures) = Default::default();
-    let mut put = AssetExport { scene, folder, source, files, taken, known, textures };
-    let mut made = scene.clone();
-    if let Some(root) = &mut made.root {
+    let (files, used_names, new_names, textures) = Default::default();
+    let mut put = AssetExport { scene, folder, source, files, used_names, new_names, textures };
+    let mut new_name = scene.clone();
+    if let Some(root) = &mut new_name.root {
         put.group(root);
     }
-    for material in &mut made.materials {
+    for material in &mut new_name.materials {
         match &mut material.value {
             Material::Principled(layers) => put.fields(&mut **layers),
             Material::Solid(solid, _) => put.fields(solid),
             _ => {}
         }
     }
-    put.fields(&mut made.background);
-    for light in made.lights.iter_mut().flatten() {
+    put.fields(&mut new_name.background);
+    for light in new_name.lights.iter_mut().flatten() {
         put.fields(&mut light.value);
     }
-    if let Some(name) = made.fog.as_mut().and_then(|fog| fog.value.density.as_mut()) {
-        name.path = put.named(&name.path);
+    if let Some(name) = new_name.fog.as_mut().and_then(|fog| fog.value.density.as_mut()) {
+        name.path = put.rename_asset(&name.path);
     }
-    made.assets = Assets { pictures: put.textures.into_values().collect(), ..Assets::default() };
-    (made, put.files)
+    new_name.assets = Assets { pictures: put.textures.into_values().collect(), ..Assets::default() };
+    (new_name, put.files)
 }
 
 /// State of an asset export: the files written so far, and the new names of assets.
@@ -53,9 +53,9 @@ struct AssetExport<'a> {
     source: &'a dyn AssetSource,
     files: Vec<AssetFile>,
     /// Names of files and textures in use, in lower case because some file systems ignore case.
-    taken: BTreeSet<String>,
+    used_names: BTreeSet<String>,
     /// New names by kind and old name.
-    known: BTreeMap<(&'static str, String), String>,
+    new_names: BTreeMap<(&'static str, String), String>,
     /// Named textures by their old names.
     textures: BTreeMap<String, (String, TextureImage)>,
 }
@@ -65,12 +65,12 @@ impl AssetExport<'_> {
     fn name(&mut self, of: &str, extension: &str) -> String {
         let ending = if extension.is_empty() { String::new() } else { format!(".{extension}") };
         let last = of.rsplit(['/', '\\']).next().unwrap_or_default();
-        let stem: String = plain(last.strip_suffix(&ending).unwrap_or(last)).chars().take(60).collect();
+        let stem: String = sanitize_name(last.strip_suffix(&ending).unwrap_or(last)).chars().take(60).collect();
         let stem = if stem.trim_matches('.').is_empty() { "unnamed" } else { stem.trim_start_matches('.') };
         let numbered = (0..).map(|i| if i == 0 { format!("{stem}{ending}") } else { format!("{stem}-{i}{ending}") });
-        let free = |name: &String| !self.taken.contains(&name.to_lowercase());
+        let free = |name: &String| !self.used_names.contains(&name.to_lowercase());
         let name = numbered.into_iter().find(free).unwrap_or_default();
-        self.taken.insert(name.to_lowercase());
+        self.used_names.insert(name.to_lowercase());
         name
     }
 
@@ -98,25 +98,25 @@ impl AssetExport<'_> {
 
     fn mesh(&mut self, name: &str) -> String {
         let scene = self.scene;
-        self.once("mesh", name, |put| match scene.assets.meshes.get(name) {
-            Some(data) => put.file(name, "ply", write_whole(data)),
-            None => put.copied(name),
+        self.rename("mesh", name, |put| match scene.assets.meshes.get(name) {
+            Some(data) => put.file(name, "ply", write_all_attributes(data)),
+            None => put.copy_file(name),
         })
     }
 
     /// Returns the new name of an asset; calls `put` on its first use.
-    fn once(&mut self, kind: &'static str, name: &str, put: impl FnOnce(&mut Self) -> String) -> String {
+    fn rename(&mut self, kind: &'static str, name: &str, put: impl FnOnce(&mut Self) -> String) -> String {
         let key = (kind, name.to_string());
-        if let Some(known) = self.known.get(&key) {
-            return known.clone();
+        if let Some(cached) = self.new_names.get(&key) {
+            return cached.clone();
         }
-        let made = put(self);
-        self.known.insert(key, made.clone());
-        made
+        let new_name = put(self);
+        self.new_names.insert(key, new_name.clone());
+        new_name
     }
 
     /// Copies a file that the scene names.
-    fn copied(&mut self, name: &str) -> String {
+    fn copy_file(&mut self, name: &str) -> String {
         match self.source.read(name) {
             Ok(bytes) => self.file(name, &extension(name), bytes.to_vec()),
             Err(_) => name.to_string(),
@@ -127,34 +127,34 @@ impl AssetExport<'_> {
     fn fields<T: DescribedKind>(&mut self, item: &mut T) {
         for i in 0..item.fields().len() {
             let Some(Value::Path(file)) = DescribedKind::get(item, i) else { continue };
-            let path = self.named(&file.path);
+            let path = self.rename_asset(&file.path);
             DescribedKind::set(item, i, Value::Path(FileName { path, ..file }));
         }
     }
 
     /// Returns the new name of a light profile, density grid or picture: the name of its file, or
     /// of a texture if it has a mapping.
-    fn named(&mut self, name: &str) -> String {
-        if let Some((known, _)) = self.textures.get(name) {
-            return known.clone();
+    fn rename_asset(&mut self, name: &str) -> String {
+        if let Some((cached, _)) = self.textures.get(name) {
+            return cached.clone();
         }
         let scene = self.scene;
         if let Some(profile) = scene.assets.profiles.get(name) {
-            return self.once("lamp", name, |put| put.file(name, "ies", photometry::write(profile)));
+            return self.rename("lamp", name, |put| put.file(name, "ies", photometry::write(profile)));
         }
         if let Some((bounds, grid)) = scene.assets.densities.get(name) {
-            return self.once("densities", name, |put| put.file(name, "vol", vol::write(bounds, grid)));
+            return self.rename("densities", name, |put| put.file(name, "vol", vol::write(bounds, grid)));
         }
         let Some(TextureImage { bytes, mapping }) = scene.assets.pictures.get(name) else {
             // In `light.csv:red` and `picture.png:g`, the last part is a column or a channel of the
             // file.
             let parted = name.rsplit_once(':').filter(|_| !self.source.contains(name));
             let (path, what) = parted.map_or((name, String::new()), |(path, what)| (path, format!(":{what}")));
-            return self.once("picture", path, |put| put.copied(path)) + &what;
+            return self.rename("picture", path, |put| put.copy_file(path)) + &what;
         };
         let path = bytes.path();
-        let file = self.once("picture", path, |put| match bytes {
-            PictureBytes::File(_) => put.copied(path),
+        let file = self.rename("picture", path, |put| match bytes {
+            PictureBytes::File(_) => put.copy_file(path),
             PictureBytes::Memory(_, bytes) => {
                 let own = extension(path);
                 put.file(path, image::extension_of(bytes, path).unwrap_or(&own), bytes.to_vec())

@@ -39,10 +39,11 @@ fn parse(text: &str, column: Option<&str>) -> Result<Vec<[f32; 2]>, ParseError> 
             if !rows.is_empty() || number.is_some() {
                 return Err((place, format!("`{first}` is not a wavelength in nanometres")));
             }
-            let found = column.map_or(Some(1), |name| words.iter().position(|word| *word == name).filter(|&i| i > 0));
+            let column_index =
+                column.map_or(Some(1), |name| words.iter().position(|word| *word == name).filter(|&i| i > 0));
             let columns = words[1..].join(", ");
             let missing = || format!("no column `{}`: the columns are {columns}", column.unwrap_or_default());
-            number = Some(found.ok_or_else(|| (place, missing()))?);
+            number = Some(column_index.ok_or_else(|| (place, missing()))?);
             continue;
         };
         if let (Some(name), None) = (column, number) {

@@ -20,16 +20,16 @@ const STEPS: usize = 16;
 
 /// Incident and outgoing direction above a surface, reduced to the cosines that Disney's lobes
 /// need.
-struct Pair {
+struct DirectionPair {
     /// Cosines of the angles to the normal.
     cosines: [f32; 2],
     /// Cosine of half the angle between the two directions.
     half: f32,
 }
 
-impl Pair {
+impl DirectionPair {
     /// Returns the value of the diffuse base, relative to a Lambertian surface.
-    fn matte(&self, roughness: f32) -> f32 {
+    fn diffuse(&self, roughness: f32) -> f32 {
         let [out, into] = self.cosines.map(schlick);
         let retro = 2.0 * roughness * self.half * self.half;
         (1.0 - 0.5 * out) * (1.0 - 0.5 * into) + retro * (out + into + out * into * (retro - 1.0))
@@ -47,7 +47,7 @@ fn schlick(cosine: f32) -> f32 {
 }
 
 /// Returns the cosine-weighted mean of `value` over all pairs of directions.
-fn means(value: impl Fn(&Pair) -> f32) -> f32 {
+fn means(value: impl Fn(&DirectionPair) -> f32) -> f32 {
     let step = |i: usize| (i as f32 + 0.5) / STEPS as f32;
     let mut sum = 0.0;
     for (i, j, k) in (0..STEPS.pow(3)).map(|n| (n % STEPS, n / STEPS % STEPS, n / (STEPS * STEPS))) {
@@ -55,56 +55,56 @@ fn means(value: impl Fn(&Pair) -> f32) -> f32 {
         let [s, t] = cosines.map(|cosine| (1.0 - cosine * cosine).sqrt());
         let between = a * b + s * t * fp::sin_cos_turn(0.5 * step(k)).1;
         // Weight each direction by its cosine, whose mean is 1/2.
-        sum += 4.0 * a * b * value(&Pair { cosines, half: (0.5 + 0.5 * between).max(0.0).sqrt() });
+        sum += 4.0 * a * b * value(&DirectionPair { cosines, half: (0.5 + 0.5 * between).max(0.0).sqrt() });
     }
     sum / STEPS.pow(3) as f32
 }
 
 /// Returns the reflectance of a white diffuse base of Disney's material.
-pub(super) fn matte_mean(roughness: f32) -> f32 {
-    means(|pair| pair.matte(roughness))
+pub(super) fn diffuse_albedo(roughness: f32) -> f32 {
+    means(|pair| pair.diffuse(roughness))
 }
 
 /// Returns the weight of Dürer's fuzz that has the same reflectance as sheen of strength 1.
-pub(super) fn sheen_of_fuzz() -> f32 {
+pub(super) fn fuzz_weight_of_sheen() -> f32 {
     let at = |i: usize| {
         let cosine = (i as f32 + 0.5) / STEPS as f32;
         2.0 * cosine * albedo::fuzz(cosine, FUZZ_ROUGHNESS)
     };
-    means(Pair::sheen) / ((0..STEPS).map(at).sum::<f32>() / STEPS as f32)
+    means(DirectionPair::sheen) / ((0..STEPS).map(at).sum::<f32>() / STEPS as f32)
 }
 
 /// Returns the fraction of light that crosses Dürer's boundary to a diffuse base and back out;
-/// always more than 0. The arguments are those of [`kept`].
-pub(super) fn passing([reflected, all]: [f32; 2]) -> f32 {
-    (1.0 - kept([reflected, all])).max(1e-3)
+/// always more than 0. The arguments are those of [`boundary_reflectance`].
+pub(super) fn boundary_transmittance([reflected, all]: [f32; 2]) -> f32 {
+    (1.0 - boundary_reflectance([reflected, all])).max(1e-3)
 }
 
 /// Returns the reflectance of Dürer's boundary from [`single_means`]: the single-scattering
 /// reflectance, divided by the total single-scattering reflectance and transmittance, which is
 /// below 1 for rough boundaries.
-pub(super) fn kept([reflected, all]: [f32; 2]) -> f32 {
+pub(super) fn boundary_reflectance([reflected, all]: [f32; 2]) -> f32 {
     // Unphysical indices of refraction can make `all` 0.
     reflected / all.max(1e-6)
 }
 
 /// Converts the base colour of Disney's material to Dürer's, for a base below a dielectric
 /// boundary.
-pub(super) struct Matte {
-    given: f32,
-    passing: f32,
+pub(super) struct DiffuseConverter {
+    diffuse_albedo: f32,
+    transmittance: f32,
 }
 
-impl Matte {
+impl DiffuseConverter {
     /// Creates a converter for a boundary with an index of refraction and a roughness.
-    pub fn new(ior: f32, roughness: f32) -> Matte {
+    pub fn new(ior: f32, roughness: f32) -> DiffuseConverter {
         let means = single_means(ior, roughness);
-        Matte { given: matte_mean(roughness), passing: passing(means) }
+        DiffuseConverter { diffuse_albedo: diffuse_albedo(roughness), transmittance: boundary_transmittance(means) }
     }
 
     /// Returns the base colour in Dürer for a base colour in Disney's material.
     pub fn base(&self, color: Color) -> Color {
-        self.given * color / self.passing
+        self.diffuse_albedo * color / self.transmittance
     }
 }
 
@@ -116,12 +116,12 @@ mod tests {
     fn matte_base_and_sheen_match_reference_means() {
         // The cosine-weighted mean of (1 - cos)^5 is 1/21, and the directions are independent.
         let expected = (1.0_f32 - 0.5 / 21.0) * (1.0 - 0.5 / 21.0);
-        assert!((matte_mean(0.0) - expected).abs() < 1e-3, "{}", matte_mean(0.0));
+        assert!((diffuse_albedo(0.0) - expected).abs() < 1e-3, "{}", diffuse_albedo(0.0));
         // Mitsuba 3.9.1 measures 0.7456 for a base of 0.7 at roughness 1, with 200,000 pairs of
         // directions.
-        assert!((matte_mean(1.0) - 0.7456 / 0.7).abs() < 5e-3, "{}", matte_mean(1.0));
+        assert!((diffuse_albedo(1.0) - 0.7456 / 0.7).abs() < 5e-3, "{}", diffuse_albedo(1.0));
         // Mitsuba measures 0.01154 for white sheen alone.
-        assert!((means(Pair::sheen) - 0.01154).abs() < 5e-4, "{}", means(Pair::sheen));
-        assert!((0.0..1.0).contains(&sheen_of_fuzz()), "{}", sheen_of_fuzz());
+        assert!((means(DirectionPair::sheen) - 0.01154).abs() < 5e-4, "{}", means(DirectionPair::sheen));
+        assert!((0.0..1.0).contains(&fuzz_weight_of_sheen()), "{}", fuzz_weight_of_sheen());
     }
 }

@@ -1,23 +1,23 @@
 //! Reads the files named by a scene, for all scene formats.
 
-use super::model::Input;
+use super::model::ReadInput;
 use super::read_mesh;
 use super::shared_report::SharedReport;
-use crate::packed::read_unpacked;
+use crate::gzip::read_decompressed;
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::shape::MeshData;
 use std::sync::Arc;
 
 /// Reads a file named by the scene and registers it for spans. `what` says what the file is for,
 /// and is used in the error if reading fails.
-pub(super) fn named_bytes(
-    input: &Input,
+pub(super) fn read_named(
+    input: &ReadInput,
     report: &SharedReport,
     what: &str,
     name: &str,
     at: Span,
 ) -> Option<(Arc<[u8]>, u32)> {
-    match read_unpacked(input.source, name) {
+    match read_decompressed(input.source, name) {
         Ok(bytes) => {
             let file = input.files.borrow_mut().add(name, bytes.clone());
             Some((bytes, file))
@@ -32,8 +32,8 @@ pub(super) fn named_bytes(
 }
 
 /// Reads a mesh file of any format, compressed or not, without changing the mesh.
-pub(super) fn mesh_file(input: &Input, report: &SharedReport, name: &str, at: Span) -> Option<MeshData> {
-    let (bytes, file) = named_bytes(input, report, "the mesh", name, at)?;
+pub(super) fn mesh_file(input: &ReadInput, report: &SharedReport, name: &str, at: Span) -> Option<MeshData> {
+    let (bytes, file) = read_named(input, report, "the mesh", name, at)?;
     let plain = name.strip_suffix(".gz").unwrap_or(name);
     let mut own = Diagnostics::default();
     let data = read_mesh(&bytes, file, plain, &mut own);
@@ -46,7 +46,7 @@ pub(super) fn mesh_file(input: &Input, report: &SharedReport, name: &str, at: Sp
 }
 
 /// Decodes percent-encoding; `None` if an escape is malformed or the result is not UTF-8.
-pub(super) fn unescaped(uri: &str) -> Option<String> {
+pub(super) fn percent_decoded(uri: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.bytes();
     while let Some(byte) = rest.next() {

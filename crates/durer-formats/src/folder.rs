@@ -2,7 +2,7 @@
 //!
 //! Files can be read only below a few allowed folders, and only up to a total number of bytes.
 
-use crate::files::unescaped;
+use crate::files::percent_decoded;
 use durer_diag::did_you_mean;
 use durer_scene::source::{AssetSource, Digest, ReadRecord, SourceError, Stamp};
 use std::collections::BTreeMap;
@@ -69,7 +69,7 @@ impl FolderSource {
 
     /// Adds a folder to the search path, in first place if `first`. This does not allow reading
     /// files in it.
-    pub fn look_in(mut self, folder: impl Into<PathBuf>, first: bool) -> Self {
+    pub fn search_in(mut self, folder: impl Into<PathBuf>, first: bool) -> Self {
         let at = if first { 0 } else { self.search.len() };
         self.search.insert(at, folder.into());
         self
@@ -89,11 +89,11 @@ impl FolderSource {
     pub fn assets(mut self, folder: impl Into<PathBuf>) -> Self {
         let folder = folder.into();
         self.assets.push(folder.clone());
-        self.look_in(folder.clone(), false).allow(folder)
+        self.search_in(folder.clone(), false).allow(folder)
     }
 
     /// Adds a file in memory, which replaces any file of this name on disk.
-    pub fn give(mut self, name: impl Into<String>, bytes: Arc<[u8]>) -> Self {
+    pub fn add_in_memory(mut self, name: impl Into<String>, bytes: Arc<[u8]>) -> Self {
         self.in_memory.insert(name.into(), bytes);
         self
     }
@@ -120,7 +120,7 @@ impl FolderSource {
     }
 
     /// Returns the path of a file by its name, if it exists and may be read.
-    pub fn place(&self, name: &str) -> Option<PathBuf> {
+    pub fn find_path(&self, name: &str) -> Option<PathBuf> {
         self.find(name).ok().filter(|path| path.is_file())
     }
 
@@ -152,7 +152,7 @@ impl FolderSource {
 
     /// Returns a file name similar to one of the candidates, in the same folder. Folders that are
     /// not allowed are not listed.
-    fn near(&self, candidates: &[PathBuf]) -> Option<String> {
+    fn similar_name(&self, candidates: &[PathBuf]) -> Option<String> {
         candidates.iter().find_map(|path| {
             let folder = path.parent()?.canonicalize().ok().filter(|folder| self.allows(folder))?;
             let names: Vec<String> = fs::read_dir(folder)
@@ -198,7 +198,7 @@ impl FolderSource {
             return Err(too_large(metadata.len()));
         }
         // The limit also holds for a file that grows while it is read.
-        let bytes = all_of(fs::File::open(path).map_err(io)?, metadata.len() as usize, left).map_err(io)?;
+        let bytes = read_all(fs::File::open(path).map_err(io)?, metadata.len() as usize, left).map_err(io)?;
         if bytes.len() as u64 > left {
             return Err(too_large(bytes.len() as u64));
         }
@@ -221,19 +221,19 @@ fn similar_path(folder: &Path, path: &Path) -> Option<PathBuf> {
             Component::RootDir | Component::Prefix(_) => return None,
         }
     }
-    let found = names.into_iter().try_fold(folder.to_path_buf(), |folder, name| same_name(&folder, name))?;
-    found.is_file().then_some(found)
+    let candidate = names.into_iter().try_fold(folder.to_path_buf(), |folder, name| same_name(&folder, name))?;
+    candidate.is_file().then_some(candidate)
 }
 
 /// Decodes percent escapes; returns the name unchanged if they are malformed.
-fn plain(name: &str) -> String {
-    unescaped(name).unwrap_or_else(|| name.to_string())
+fn unescaped_or_same(name: &str) -> String {
+    percent_decoded(name).unwrap_or_else(|| name.to_string())
 }
 
 /// Finds an entry of `folder` by name: as written, with percent escapes decoded, or with different
 /// letter case.
 fn same_name(folder: &Path, name: &str) -> Option<PathBuf> {
-    let plain = plain(name);
+    let plain = unescaped_or_same(name);
     let exact = [name, &plain].into_iter().map(|name| folder.join(name)).find(|path| path.exists());
     exact.or_else(|| {
         let lower = plain.to_lowercase();
@@ -252,7 +252,7 @@ impl AssetSource for FolderSource {
         match self.find(name) {
             Ok(path) => self.read_path(&path, name).inspect(|bytes| self.record.add(name, bytes)),
             Err(SourceError::Missing { name, tried, .. }) => {
-                Err(SourceError::Missing { similar: self.near(&tried), name, tried })
+                Err(SourceError::Missing { similar: self.similar_name(&tried), name, tried })
             }
             Err(error) => Err(error),
         }
@@ -309,7 +309,7 @@ pub fn stamp_of(path: &Path) -> Option<Stamp> {
 
 /// Reads a file of about `size` bytes; if it has grown, reads at most `most + 1` bytes. If the size
 /// is exact, the bytes are read directly into the result, without a copy.
-fn all_of(mut file: fs::File, size: usize, most: u64) -> std::io::Result<Arc<[u8]>> {
+fn read_all(mut file: fs::File, size: usize, most: u64) -> std::io::Result<Arc<[u8]>> {
     let mut bytes: Arc<[u8]> = std::iter::repeat_n(0, size).collect();
     let mut room = Arc::get_mut(&mut bytes).unwrap_or_default();
     loop {

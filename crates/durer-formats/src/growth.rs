@@ -8,12 +8,12 @@ use std::cell::Cell;
 /// Maximum number of objects in a scene, counting those of each instance.
 pub(crate) const MAX_OBJECTS: usize = 1 << 20;
 /// Memory in bytes that every file may use, and additional memory per byte of the file.
-const FREE: u64 = 256 << 20;
+const FREE_BYTES: u64 = 256 << 20;
 const TIMES: u64 = 64;
 
 /// Counters of the objects and of the memory that a reader creates from one file, with their
 /// limits.
-pub(crate) struct Growth {
+pub(crate) struct ResourceLimits {
     objects: Cell<usize>,
     /// Remaining bytes.
     left: Cell<u64>,
@@ -25,37 +25,37 @@ pub(crate) struct Growth {
 
 /// Error: a reader exceeded its limit of objects or memory.
 #[derive(Debug)]
-pub(crate) struct TooMuch {
+pub(crate) struct LimitExceeded {
     pub message: String,
     /// True for the first error. Later ones need not be reported.
     pub is_first: bool,
 }
 
-impl Growth {
+impl ResourceLimits {
     /// Creates counters with a fixed memory limit in bytes.
-    pub fn within(memory: u64) -> Self {
+    pub fn with_memory(memory: u64) -> Self {
         let [left, limit] = [Cell::new(memory), Cell::new(memory)];
-        Growth { objects: Cell::new(0), left, limit, memory, is_over: Cell::new(false) }
+        ResourceLimits { objects: Cell::new(0), left, limit, memory, is_over: Cell::new(false) }
     }
 
     /// Creates counters for a file of `length` bytes. The memory limit is in proportion to the
     /// length, and at most `memory`.
     pub fn of_file(length: usize, memory: u64) -> Self {
-        let growth = Growth::within(memory.min(FREE));
-        let growth = Growth { memory, ..growth };
-        growth.feed(length);
-        growth
+        let limits = ResourceLimits::with_memory(memory.min(FREE_BYTES));
+        let limits = ResourceLimits { memory, ..limits };
+        limits.add_input(length);
+        limits
     }
 
     /// Raises the limit in proportion to another `length` bytes.
-    pub fn feed(&self, length: usize) {
+    pub fn add_input(&self, length: usize) {
         let more = TIMES.saturating_mul(length as u64).min(self.memory - self.limit.get());
         self.left.set(self.left.get() + more);
         self.limit.set(self.limit.get() + more);
     }
 
     /// Counts objects; returns an error if they are too many.
-    pub fn objects(&self, more: usize) -> Result<(), TooMuch> {
+    pub fn objects(&self, more: usize) -> Result<(), LimitExceeded> {
         self.objects.set(self.objects.get().saturating_add(more));
         match self.objects.get() <= MAX_OBJECTS {
             true => Ok(()),
@@ -76,31 +76,31 @@ impl Growth {
     }
 
     /// Counts `count` items of `size` bytes each; returns an error if they exceed the limit.
-    pub fn bytes(&self, count: usize, size: usize) -> Result<(), TooMuch> {
+    pub fn bytes(&self, count: usize, size: usize) -> Result<(), LimitExceeded> {
         let left = self.left.get().checked_sub((count as u64).saturating_mul(size as u64));
         self.left.set(left.unwrap_or(0));
         let limit = format_bytes_down(self.limit.get());
         left.map(|_| ()).ok_or_else(|| self.over(format!("reading this file needs more memory than {limit}")))
     }
 
-    fn over(&self, message: String) -> TooMuch {
-        TooMuch { message, is_first: !self.is_over.replace(true) }
+    fn over(&self, message: String) -> LimitExceeded {
+        LimitExceeded { message, is_first: !self.is_over.replace(true) }
     }
 
     /// Counts objects; reports an error and returns false if they are too many.
-    pub fn has_objects(&self, more: usize, messages: &SharedReport, at: Span) -> bool {
+    pub fn count_objects_or_report(&self, more: usize, messages: &SharedReport, at: Span) -> bool {
         report(self.objects(more), messages, at)
     }
 
     /// Counts bytes; reports an error and returns false if they are too many.
-    pub fn has_bytes(&self, count: usize, size: usize, messages: &SharedReport, at: Span) -> bool {
+    pub fn count_bytes_or_report(&self, count: usize, size: usize, messages: &SharedReport, at: Span) -> bool {
         report(self.bytes(count, size), messages, at)
     }
 }
 
-fn report(result: Result<(), TooMuch>, messages: &SharedReport, at: Span) -> bool {
-    if let Err(TooMuch { message, is_first: true }) = &result {
-        messages.bad(at, message);
+fn report(result: Result<(), LimitExceeded>, messages: &SharedReport, at: Span) -> bool {
+    if let Err(LimitExceeded { message, is_first: true }) = &result {
+        messages.error(at, message);
     }
     result.is_ok()
 }
@@ -110,22 +110,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_grows_is_limited_by_the_file_and_by_memory() {
-        let growth = Growth::within(1000);
-        assert!(growth.bytes(10, 100).is_ok());
-        let error = growth.bytes(1, 1).unwrap_err();
+    fn objects_and_memory_are_limited() {
+        let limits = ResourceLimits::with_memory(1000);
+        assert!(limits.bytes(10, 100).is_ok());
+        let error = limits.bytes(1, 1).unwrap_err();
         assert!(error.is_first && error.message.ends_with("than 1000 bytes"), "{error:?}");
-        assert!(!growth.bytes(usize::MAX, usize::MAX).unwrap_err().is_first);
-        let growth = Growth::of_file(10, u64::MAX);
-        assert!(growth.bytes(1, (FREE + 10 * TIMES) as usize).is_ok() && growth.bytes(1, 1).is_err());
-        growth.feed(1);
+        assert!(!limits.bytes(usize::MAX, usize::MAX).unwrap_err().is_first);
+        let limits = ResourceLimits::of_file(10, u64::MAX);
+        assert!(limits.bytes(1, (FREE_BYTES + 10 * TIMES) as usize).is_ok() && limits.bytes(1, 1).is_err());
+        limits.add_input(1);
         // The failed request used up the rest.
-        assert!(growth.bytes(1, TIMES as usize).is_ok() && growth.bytes(1, 1).is_err());
-        assert!(Growth::of_file(usize::MAX, 5).bytes(6, 1).is_err());
-        let growth = Growth::within(0);
+        assert!(limits.bytes(1, TIMES as usize).is_ok() && limits.bytes(1, 1).is_err());
+        assert!(ResourceLimits::of_file(usize::MAX, 5).bytes(6, 1).is_err());
+        let limits = ResourceLimits::with_memory(0);
         assert!(
-            growth.objects(MAX_OBJECTS).is_ok() && growth.objects(1).is_err() && growth.objects(usize::MAX).is_err()
+            limits.objects(MAX_OBJECTS).is_ok() && limits.objects(1).is_err() && limits.objects(usize::MAX).is_err()
         );
-        assert_eq!(growth.object_count(), usize::MAX);
+        assert_eq!(limits.object_count(), usize::MAX);
     }
 }

@@ -9,17 +9,19 @@
 #![cfg_attr(not(feature = "all"), allow(dead_code))]
 
 pub mod asset_export;
-mod bodies;
 pub mod course;
 pub mod curve;
 mod decoder;
 mod disney;
+mod emitters_only;
 mod files;
 #[cfg(feature = "fs")]
 pub mod folder;
+mod glass_bodies;
 #[cfg(feature = "gltf")]
 mod gltf;
 mod growth;
+pub mod gzip;
 pub mod json;
 mod medium;
 #[cfg(feature = "mitsuba")]
@@ -27,7 +29,6 @@ mod mitsuba;
 mod model;
 mod number;
 pub mod obj;
-pub mod packed;
 mod panorama;
 #[cfg(feature = "pbrt")]
 mod pbrt;
@@ -47,7 +48,6 @@ mod sticks;
 mod stl;
 #[cfg(feature = "threemf")]
 mod threemf;
-mod unscattered;
 pub mod vol;
 #[cfg(any(feature = "mitsuba", feature = "threemf"))]
 mod xml;
@@ -61,7 +61,7 @@ use durer_scene::scene::Axis;
 use durer_scene::shape::mesh::MeshData;
 pub use model::SceneFormat;
 pub use scene::{SCENE_FORMATS, scene_format_for};
-use signature::mistaken;
+use signature::wrong_format_error;
 use std::borrow::Cow;
 
 /// File format that stores one mesh: its name, extensions, reader and writer.
@@ -77,7 +77,7 @@ pub struct MeshFormat {
     pub read: fn(&[u8], u32, &mut Diagnostics) -> Option<MeshData>,
     /// Returns the file as legacy programs with these quirks read it: parts that they ignore are
     /// cut off or overwritten, and byte offsets stay valid.
-    pub known: fn(&[u8], QuirkSet) -> Cow<'_, [u8]>,
+    pub apply_quirks: fn(&[u8], QuirkSet) -> Cow<'_, [u8]>,
     /// Writes a mesh.
     pub write: fn(&MeshData) -> Vec<u8>,
     /// Up axis of most models of this format.
@@ -88,7 +88,7 @@ pub struct MeshFormat {
 pub const MESH_FORMATS: &[MeshFormat] = &[ply::FORMAT, obj::FORMAT, stl::FORMAT];
 
 /// Returns the bytes unchanged, for formats that no legacy program reads.
-fn as_it_is(bytes: &[u8], _: QuirkSet) -> Cow<'_, [u8]> {
+fn without_quirks(bytes: &[u8], _: QuirkSet) -> Cow<'_, [u8]> {
     Cow::Borrowed(bytes)
 }
 
@@ -124,12 +124,12 @@ pub fn read_mesh_as(
         return None;
     }
     let format = find_format(bytes, name);
-    if let Some(error) = mistaken(bytes, file, name, format.map_or(&[], |format| format.extensions)) {
+    if let Some(error) = wrong_format_error(bytes, file, name, format.map_or(&[], |format| format.extensions)) {
         diagnostics.push(error);
         return None;
     }
     match format {
-        Some(format) => (format.read)(&(format.known)(bytes, quirks), file, diagnostics),
+        Some(format) => (format.read)(&(format.apply_quirks)(bytes, quirks), file, diagnostics),
         None => {
             diagnostics.push(unknown_format(name));
             None
@@ -139,9 +139,9 @@ pub fn read_mesh_as(
 
 /// Returns an error if a file of this size is too large for 32-bit spans.
 fn too_large(size: u64, name: &str) -> Option<Diagnostic> {
-    const MOST: u64 = u32::MAX as u64 - 1;
-    let message = || format!("`{name}` is too large for a mesh file: {size} bytes, at most {MOST}");
-    (size > MOST).then(|| Diagnostic::error(message()).help("cut the mesh into several files"))
+    const MAX_SIZE: u64 = u32::MAX as u64 - 1;
+    let message = || format!("`{name}` is too large for a mesh file: {size} bytes, at most {MAX_SIZE}");
+    (size > MAX_SIZE).then(|| Diagnostic::error(message()).help("cut the mesh into several files"))
 }
 
 /// Returns the extension of a file name in lower case, without the dot; empty if there is none.

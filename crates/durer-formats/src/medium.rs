@@ -30,7 +30,7 @@ pub(super) struct Density {
     /// Name of an asset or a file.
     pub name: FileName,
     /// Transform from the unit cube to world space; `None` if the bounds in the file apply.
-    pub placed: Option<DAffine3>,
+    pub to_world: Option<DAffine3>,
 }
 
 impl Medium {
@@ -49,11 +49,12 @@ impl Medium {
         m.transmission_color = self.extinction().map(|sigma| fp::exp(-sigma * depth));
         m.transmission_scatter = depth * self.scattering;
         m.transmission_scatter_anisotropy = self.anisotropy;
-        if let Some(Density { name, placed }) = &self.density {
+        if let Some(Density { name, to_world }) = &self.density {
             m.transmission_density = Some(name.clone());
-            let DAffine3 { matrix3: edges, translation } = placed.unwrap_or_default();
+            let DAffine3 { matrix3: edges, translation } = to_world.unwrap_or_default();
             let rows = [translation, edges.x_axis, edges.y_axis, edges.z_axis];
-            m.transmission_density_box = placed.iter().flat_map(|_| rows.map(|row| row.as_vec3().to_array())).collect();
+            m.transmission_density_box =
+                to_world.iter().flat_map(|_| rows.map(|row| row.as_vec3().to_array())).collect();
         }
     }
 
@@ -66,11 +67,14 @@ impl Medium {
             return None;
         }
         if self.density.is_some() {
-            report.once(at, "a medium around the camera must be homogeneous: this one is left out");
+            report.unsupported_once(at, "a medium around the camera must be homogeneous: this one is left out");
             return None;
         }
         if extinction.min_element() < 0.99 * most {
-            report.once(at, "a medium around the camera has one extinction for all colours: the largest is used");
+            report.unsupported_once(
+                at,
+                "a medium around the camera has one extinction for all colours: the largest is used",
+            );
         }
         let (color, anisotropy) = (self.scattering / most, self.anisotropy);
         Some(Spanned { value: Fog { extinction: most, color, anisotropy, ..Fog::default() }, span: at })

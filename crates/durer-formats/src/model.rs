@@ -17,25 +17,25 @@ pub struct SceneFormat {
     /// Returns true if a file that begins with these bytes has this format, whatever its name.
     pub recognise: fn(&[u8]) -> bool,
     /// Reads a file. Returns `None` after pushing errors to the diagnostics.
-    pub read: fn(&Input, &mut Diagnostics) -> Option<Scene>,
+    pub read: fn(&ReadInput, &mut Diagnostics) -> Option<Scene>,
     /// Writes a scene; warns about content that the format cannot represent. `None` if the format
     /// is read-only.
     pub write: Option<WriteScene>,
     /// Up axis of most models of this format.
     pub up: Axis,
     /// True if a file with a camera is a complete scene, so that no light is added to it.
-    pub whole: bool,
+    pub is_complete_scene: bool,
     /// Help text for a scene without light: what to add to a file of this format. `None` if the
     /// words of the scene language apply.
     pub light_hint: Option<&'static str>,
 }
 
 /// Function that encodes a scene as a file.
-pub type WriteScene = fn(&Scene, &Output, &mut Diagnostics) -> Vec<u8>;
+pub type WriteScene = fn(&Scene, &WriteContext, &mut Diagnostics) -> Vec<u8>;
 
 /// Input of a scene writer besides the scene itself: the file's name, the asset source and some
 /// settings.
-pub struct Output<'a> {
+pub struct WriteContext<'a> {
     /// Name of the file with its extension.
     pub name: &'a str,
     /// Source of the files named by the scene.
@@ -47,7 +47,7 @@ pub struct Output<'a> {
 }
 
 /// Input of a scene reader: the bytes of a file, and the context needed to read it as a scene.
-pub struct Input<'a> {
+pub struct ReadInput<'a> {
     /// Bytes of the file.
     pub bytes: &'a Arc<[u8]>,
     /// Index of the file in `files`, for spans.

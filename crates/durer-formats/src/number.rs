@@ -1,6 +1,6 @@
 //! Parsing of numbers in text files.
 
-use super::report::{Report, shown};
+use super::report::{Report, quoted};
 use std::ops::Range;
 
 /// Reason why a word in a text file is not a valid number.
@@ -16,7 +16,7 @@ pub(super) enum NumberError {
 
 /// Parses a finite `f32`, correctly rounded.
 pub(super) fn parse_f32(word: &[u8]) -> Result<f32, NumberError> {
-    if let Some(value) = quickly(word) {
+    if let Some(value) = parse_fast(word) {
         return Ok(value);
     }
     let parsed = std::str::from_utf8(word).ok().and_then(|text| text.parse::<f32>().ok());
@@ -40,7 +40,7 @@ const TENS: [f64; 23] = [
 /// Source: Clinger, *How to read floating point numbers accurately*, 1990: multiplying or dividing
 /// an integer below 2^53 by an exact power of ten rounds once. Rounding that result to single
 /// precision errs only if it lies halfway between two `f32` values.
-fn quickly(word: &[u8]) -> Option<f32> {
+fn parse_fast(word: &[u8]) -> Option<f32> {
     let (negative, mut rest) = match word {
         [b'-', rest @ ..] => (true, rest),
         [b'+', rest @ ..] => (false, rest),
@@ -121,17 +121,17 @@ pub(super) fn parse_integer(word: &[u8]) -> Option<i64> {
 pub(super) fn report_number(report: &mut Report, error: NumberError, at: Range<usize>, word: &[u8]) {
     match error {
         NumberError::NotFinite => {
-            report.error(at, format!("expected a finite number, found {}", shown(word))).help =
+            report.error(at, format!("expected a finite number, found {}", quoted(word))).help =
                 Some("numbers must lie within the range of 32-bit floating point, about ±3.4e38".into());
         }
         NumberError::NotWhole => {
-            report.error(at, format!("expected a whole number, found {}", shown(word)));
+            report.error(at, format!("expected a whole number, found {}", quoted(word)));
         }
         NumberError::Malformed => {
             let point: Vec<u8> = word.iter().map(|&byte| if byte == b',' { b'.' } else { byte }).collect();
             let help = (point != word && parse_f32(&point).is_ok())
-                .then(|| format!("decimals are written with a point: {}", shown(&point)));
-            report.error(at, format!("expected a number, found {}", shown(word))).help = help;
+                .then(|| format!("decimals are written with a point: {}", quoted(&point)));
+            report.error(at, format!("expected a number, found {}", quoted(word))).help = help;
         }
     }
 }
@@ -171,20 +171,20 @@ mod tests {
                 1 => word.insert(0, '-'),
                 _ => {}
             }
-            let found = quickly(word.as_bytes());
-            quick += usize::from(found.is_some());
-            if let Some(found) = found {
-                assert_eq!(found.to_bits(), word.parse::<f32>().unwrap().to_bits(), "{word}");
+            let number = parse_fast(word.as_bytes());
+            quick += usize::from(number.is_some());
+            if let Some(number) = number {
+                assert_eq!(number.to_bits(), word.parse::<f32>().unwrap().to_bits(), "{word}");
             }
         }
         assert!(quick > 120_000, "{quick}");
         // The first number is halfway between two `f32` values, the second is above that: only the
         // first needs the slow path.
-        assert_eq!(quickly(b"16777217"), None);
-        assert_eq!(quickly(b"16777217.5"), Some(16777218.0));
-        assert_eq!(quickly(b"-0.0").map(f32::to_bits), Some((-0.0f32).to_bits()));
+        assert_eq!(parse_fast(b"16777217"), None);
+        assert_eq!(parse_fast(b"16777217.5"), Some(16777218.0));
+        assert_eq!(parse_fast(b"-0.0").map(f32::to_bits), Some((-0.0f32).to_bits()));
         for word in [&b""[..], b".", b"-", b"1e", b"1e+", b"1..2", b"1e5.0", b"inf", b"0x1"] {
-            assert_eq!(quickly(word), None);
+            assert_eq!(parse_fast(word), None);
         }
     }
 

@@ -16,7 +16,7 @@ mod write;
 
 use super::MeshFormat;
 use super::number::{NumberError, parse_f32, report_number};
-use super::report::{Report, counted, shown};
+use super::report::{Report, count_text, quoted};
 use durer_diag::{Diagnostics, did_you_mean};
 use durer_scene::math::{Vec2, Vec3};
 use durer_scene::scene::Axis;
@@ -89,7 +89,7 @@ pub(super) const FORMAT: MeshFormat = MeshFormat {
     extensions: &["obj"],
     recognise,
     read,
-    known: quirks::known,
+    apply_quirks: quirks::apply_quirks,
     write,
     up: Axis::Y,
 };
@@ -102,23 +102,23 @@ fn recognise(bytes: &[u8]) -> bool {
 
 /// Reads a file; see [`read_mesh`](super::read_mesh).
 fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
-    read_with(bytes, file, &mut Switches::default(), diagnostics)
+    read_with(bytes, file, &mut StateChanges::default(), diagnostics)
 }
 
 /// State change between faces: index of the first triangle that it applies to, and the new state.
-type Switch<T> = (usize, T);
+type StateChange<T> = (usize, T);
 
 /// Changes of the material and of the smoothing group between the faces of a Wavefront file.
 #[derive(Default)]
-struct Switches {
+struct StateChanges {
     /// Byte range of the material's name.
-    materials: Vec<Switch<Range<usize>>>,
+    materials: Vec<StateChange<Range<usize>>>,
     /// Number of the smoothing group; 0 for none.
-    groups: Vec<Switch<u32>>,
+    groups: Vec<StateChange<u32>>,
 }
 
 /// Reads a mesh and the state changes between its faces.
-fn read_with(bytes: &[u8], file: u32, switches: &mut Switches, diagnostics: &mut Diagnostics) -> Option<MeshData> {
+fn read_with(bytes: &[u8], file: u32, switches: &mut StateChanges, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     let mut report = Report::new(file, diagnostics);
     let mut mesh = MeshData::default();
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
@@ -184,9 +184,9 @@ fn read_vertices(bytes: &[u8], parts: &[Range<usize>], mesh: &mut MeshData, repo
     }
     if let Some((first, count)) = unknown {
         let word = &bytes[first.clone()];
-        let suggestion = did_you_mean(&shown(word).replace('`', ""), STATEMENTS.iter().map(|&(name, _)| name));
-        let statements = counted(count, "statement", "statements");
-        let message = format!("{statements} not understood and left out; the first is {}", shown(word));
+        let suggestion = did_you_mean(&quoted(word).replace('`', ""), STATEMENTS.iter().map(|&(name, _)| name));
+        let statements = count_text(count, "statement", "statements");
+        let message = format!("{statements} not understood and left out; the first is {}", quoted(word));
         report.warning(first, message).help = suggestion.map(|name| format!("did you mean `{name}`?"));
     }
     before
@@ -269,8 +269,8 @@ fn numbers<const N: usize>(
         }
     }
     if count < needed && !report.is_full() {
-        let name = shown(&bytes[keyword.clone()]);
-        let message = format!("{name} needs {}, found {count}", counted(needed, "number", "numbers"));
+        let name = quoted(&bytes[keyword.clone()]);
+        let message = format!("{name} needs {}, found {count}", count_text(needed, "number", "numbers"));
         report.error(keyword.start..end, message);
     }
     (values, count)

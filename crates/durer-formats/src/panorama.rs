@@ -12,11 +12,11 @@ use rayon::prelude::*;
 use std::f32::consts::{PI, TAU};
 
 /// Number of samples along each side of a texel.
-const PLACES: u32 = 3;
+const SAMPLES_PER_SIDE: u32 = 3;
 
 /// Memory in bytes per texel while the picture is computed: its colour, and the encoded file, whose
 /// buffer can grow to twice its size.
-const MAKING: u64 = 4 * size_of::<Color>() as u64;
+const BYTES_PER_TEXEL: u64 = 4 * size_of::<Color>() as u64;
 
 /// Renders the light from each direction in world space into a picture, and makes it the scene's
 /// environment map.
@@ -24,7 +24,7 @@ const MAKING: u64 = 4 * size_of::<Color>() as u64;
 /// # Errors
 ///
 /// [`ImageError::Memory`] if this needs more than `allowed` bytes of memory.
-pub(super) fn surround(
+pub(super) fn set_environment(
     scene: &mut Scene,
     (name, span): (&str, Span),
     rows: u32,
@@ -32,7 +32,7 @@ pub(super) fn surround(
     light: impl Fn(DVec3) -> Color + Sync,
 ) -> Result<(), ImageError> {
     let (width, height) = (2 * u64::from(rows), u64::from(rows));
-    let needed = width * height * MAKING;
+    let needed = width * height * BYTES_PER_TEXEL;
     if needed > allowed {
         return Err(ImageError::MemoryLimit { width, height, needed, allowed });
     }
@@ -47,12 +47,12 @@ pub(super) fn surround(
 }
 
 /// Returns how many bytes of `memory` remain besides these pictures.
-pub(super) fn beside<'a>(pictures: impl IntoIterator<Item = &'a Image>, memory: u64) -> u64 {
+pub(super) fn remaining_memory<'a>(pictures: impl IntoIterator<Item = &'a Image>, memory: u64) -> u64 {
     pictures.into_iter().fold(memory, |left, picture| left.saturating_sub(size_of_val(&picture.pixels[..]) as u64))
 }
 
 /// Returns the nearest texel of an equirectangular picture in a direction, with y up.
-pub(super) fn looked_up(picture: &Image, dir: DVec3) -> Color {
+pub(super) fn nearest(picture: &Image, dir: DVec3) -> Color {
     let dir = dir.as_vec3();
     let (u, v) = (fp::atan2(dir.x, -dir.z) / TAU + 0.5, fp::atan2((dir.x * dir.x + dir.z * dir.z).sqrt(), dir.y) / PI);
     let texel = |share: f32, count: u32| ((share * count as f32) as u32).min(count.saturating_sub(1));
@@ -63,7 +63,7 @@ pub(super) fn looked_up(picture: &Image, dir: DVec3) -> Color {
 /// the poles. Interpolates bilinearly between rows, and between the centres of columns.
 ///
 /// Source: measured with Mitsuba 3.9, whose `envmap` has this layout.
-pub(super) fn between_poles(picture: &Image, dir: DVec3) -> Color {
+pub(super) fn bilinear_between_poles(picture: &Image, dir: DVec3) -> Color {
     let dir = dir.as_vec3();
     let (u, v) = (fp::atan2(dir.x, -dir.z) / TAU + 0.5, fp::atan2((dir.x * dir.x + dir.z * dir.z).sqrt(), dir.y) / PI);
     let (width, last) = (i64::from(picture.width), picture.height.saturating_sub(1));
@@ -78,7 +78,7 @@ pub(super) fn between_poles(picture: &Image, dir: DVec3) -> Color {
 
 /// Looks up a picture with bilinear interpolation. `place` is a fraction of the picture's width and
 /// height, from the upper left corner. The picture repeats beyond its borders.
-pub(super) fn between(image: &Image, place: Vec2) -> Color {
+pub(super) fn bilinear(image: &Image, place: Vec2) -> Color {
     let (width, height) = (image.width as i64, image.height as i64);
     let (x, y) = (place.x * width as f32 - 0.5, place.y * height as f32 - 0.5);
     let (low_x, low_y) = (x.floor(), y.floor());
@@ -98,14 +98,14 @@ fn pixels(light: impl Fn(DVec3) -> Color + Sync, rows: u32) -> Vec<Color> {
     let texel = |i: u32| {
         let (x, y) = (i % columns, i / columns);
         let mut sum = Color::ZERO;
-        for place in 0..PLACES * PLACES {
-            let offset = |k: u32| (k as f32 + 0.5) / PLACES as f32;
-            let (u, v) = (x as f32 + offset(place % PLACES), y as f32 + offset(place / PLACES));
+        for place in 0..SAMPLES_PER_SIDE * SAMPLES_PER_SIDE {
+            let offset = |k: u32| (k as f32 + 0.5) / SAMPLES_PER_SIDE as f32;
+            let (u, v) = (x as f32 + offset(place % SAMPLES_PER_SIDE), y as f32 + offset(place / SAMPLES_PER_SIDE));
             let angle = TAU * (u / columns as f32 - 0.5);
             let (sin, cos) = (fp::sin(PI * v / rows as f32), fp::cos(PI * v / rows as f32));
             sum += light(Vec3::new(sin * fp::sin(angle), cos, -sin * fp::cos(angle)).as_dvec3());
         }
-        sum / (PLACES * PLACES) as f32
+        sum / (SAMPLES_PER_SIDE * SAMPLES_PER_SIDE) as f32
     };
     (0..columns * rows).into_par_iter().map(texel).collect()
 }
@@ -119,7 +119,7 @@ mod tests {
         let light = |dir: DVec3| dir.as_vec3() + 1.5;
         let picture = Image::from_pixels(256, 128, pixels(light, 128)).unwrap();
         for dir in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z, DVec3::Y, DVec3::new(0.48, -0.6, 0.64)] {
-            let found = looked_up(&picture, dir);
+            let found = nearest(&picture, dir);
             assert!((found - light(dir)).length() < 0.05, "{dir}: {found}");
         }
     }

@@ -1,6 +1,6 @@
 //! Reads and converts the pictures used by materials, for readers of scenes.
 
-use super::model::Input;
+use super::model::ReadInput;
 use super::shared_report::SharedReport;
 use durer_diag::{Diagnostic, Span};
 use durer_image::{self as image, Depth, Encoded, Image, ImageError, Layer, Transfer, WriteOptions};
@@ -12,12 +12,12 @@ use std::sync::Arc;
 
 /// Memory in bytes per pixel for converting a picture, in addition to the picture itself: the new
 /// picture and its 8-bit data, raw and encoded.
-pub(super) const CHANGING: usize = 2 * size_of::<Color>();
+pub(super) const CONVERSION_BYTES_PER_PIXEL: usize = 2 * size_of::<Color>();
 
 /// Reader of the pictures that a scene names; also converts pictures, and reports errors.
 #[derive(Clone, Copy)]
 pub(super) struct Pictures<'a> {
-    pub input: &'a Input<'a>,
+    pub input: &'a ReadInput<'a>,
     pub report: &'a SharedReport,
 }
 
@@ -36,12 +36,12 @@ impl Pictures<'_> {
     /// Reads a file as a picture. `decode` is the transfer function of its 8-bit values.
     pub fn decoded(&self, name: &str, at: Span, decode: fn(u8) -> f32) -> Option<Image> {
         let bytes = self.bytes(name, at)?;
-        self.read(name, &bytes, decode).map_err(|error| self.complain(name, at, &error)).ok()
+        self.read(name, &bytes, decode).map_err(|error| self.report_error(name, at, &error)).ok()
     }
 
     /// Decodes a picture, and reserves the memory for converting it.
     fn read(&self, name: &str, bytes: &[u8], decode: fn(u8) -> f32) -> Result<Image, ImageError> {
-        Encoded::open(bytes, name)?.read_for(CHANGING, self.input.memory, decode)
+        Encoded::open(bytes, name)?.read_for(CONVERSION_BYTES_PER_PIXEL, self.input.memory, decode)
     }
 
     /// Returns a file as an 8-bit picture; floating-point formats are converted to PNG.
@@ -54,7 +54,7 @@ impl Pictures<'_> {
                 Some(PictureBytes::Memory(format!("{name}#8.png"), eight))
             }
             Err(error) => {
-                self.complain(name, at, &error);
+                self.report_error(name, at, &error);
                 None
             }
         }
@@ -78,7 +78,7 @@ impl Pictures<'_> {
 
     /// Converts a picture from another transfer function to sRGB if `is_color`, otherwise to linear
     /// values. `decode` maps an 8-bit value, scaled to between 0 and 1, to a linear value.
-    pub fn recoded(
+    pub fn reencoded(
         &self,
         picture: &TextureImage,
         at: Span,
@@ -127,7 +127,7 @@ impl Pictures<'_> {
 
     /// Joins two pictures with the same mapping, or one with itself, texel by texel. Returns the
     /// colour picture and the factor on its values; `None` if the mappings differ.
-    pub fn remade(
+    pub fn joined(
         &self,
         [one, other]: [&TextureImage; 2],
         at: Span,
@@ -159,13 +159,13 @@ impl Pictures<'_> {
         Some((TextureImage { bytes: PictureBytes::Memory(path, bytes), mapping: one.mapping }, most))
     }
 
-    fn complain(&self, name: &str, at: Span, error: &ImageError) {
-        self.report.push(unusable(name, error).at(at));
+    fn report_error(&self, name: &str, at: Span, error: &ImageError) {
+        self.report.push(picture_error(name, error).at(at));
     }
 }
 
 /// Returns the error for a picture that cannot be decoded.
-pub(super) fn unusable(name: &str, error: &ImageError) -> Diagnostic {
+pub(super) fn picture_error(name: &str, error: &ImageError) -> Diagnostic {
     let diagnostic = Diagnostic::error(format!("the picture `{name}` cannot be used: {error}")).code("bad-file");
     match error {
         ImageError::MemoryLimit { .. } => diagnostic.help("see `--memory`"),
@@ -185,13 +185,13 @@ pub(super) fn asset(scene: &mut Scene, picture: TextureImage, span: Span) -> Fil
 /// Returns a picture of four texels: `one` at the upper left and lower right, `other` at the other
 /// two. Also returns the factor on its values.
 pub(super) fn checkerboard(one: Color, other: Color) -> Option<(PictureBytes, f32)> {
-    let (bytes, most) = four([one, other, other, one])?;
+    let (bytes, most) = from_four_texels([one, other, other, one])?;
     let PictureBytes::Memory(_, bytes) = bytes else { return None };
     Some((PictureBytes::Memory(format!("checkerboard-{other}-{one}.png"), bytes), most))
 }
 
 /// Returns a picture of four texels, upper row first, and the factor on its values.
-pub(super) fn four(colors: [Color; 4]) -> Option<(PictureBytes, f32)> {
+pub(super) fn from_four_texels(colors: [Color; 4]) -> Option<(PictureBytes, f32)> {
     let most = colors.iter().fold(1.0, |most: f32, color| most.max(color.max_element()));
     let pixels = colors.map(|color| color / most);
     let bytes = as_png(Image::from_pixels(2, 2, pixels.to_vec()).ok()?, Transfer::Srgb)?;

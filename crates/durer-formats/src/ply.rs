@@ -9,19 +9,19 @@ mod values;
 mod write;
 
 use super::report::Report;
-use super::{MeshFormat, as_it_is};
-use body::Body;
+use super::{MeshFormat, without_quirks};
+use body::RowReader;
 use durer_diag::Diagnostics;
 use durer_scene::scene::Axis;
 use durer_scene::shape::mesh::MeshData;
 use header::{Encoding, read_header};
 use values::{AsciiValues, BinaryValues};
 use write::write;
-pub(super) use write::write_whole;
+pub(super) use write::write_all_attributes;
 
 /// Mesh format entry for PLY.
 pub(super) const FORMAT: MeshFormat =
-    MeshFormat { name: "PLY", extensions: &["ply"], recognise, read, known: as_it_is, write, up: Axis::Y };
+    MeshFormat { name: "PLY", extensions: &["ply"], recognise, read, apply_quirks: without_quirks, write, up: Axis::Y };
 
 /// Returns true if a file begins like a PLY file.
 fn recognise(bytes: &[u8]) -> bool {
@@ -42,9 +42,11 @@ fn read_reporting(bytes: &[u8], report: &mut Report) -> Option<MeshData> {
     let header = read_header(bytes, report)?;
     let (start, elements) = (header.body, header.elements);
     let mesh = match header.encoding {
-        Encoding::Ascii => Body::new(bytes, AsciiValues::new(bytes, start), report).read(&elements),
-        Encoding::LittleEndian => Body::new(bytes, BinaryValues::<false>::new(bytes, start), report).read(&elements),
-        Encoding::BigEndian => Body::new(bytes, BinaryValues::<true>::new(bytes, start), report).read(&elements),
+        Encoding::Ascii => RowReader::new(bytes, AsciiValues::new(bytes, start), report).read(&elements),
+        Encoding::LittleEndian => {
+            RowReader::new(bytes, BinaryValues::<false>::new(bytes, start), report).read(&elements)
+        }
+        Encoding::BigEndian => RowReader::new(bytes, BinaryValues::<true>::new(bytes, start), report).read(&elements),
     };
     Some(MeshData { flat: header.flat, ..mesh? })
 }

@@ -14,7 +14,7 @@ pub(super) struct TooComplex;
 
 /// Triangulator for the polygons of one file, with a limit on the total work. Reuses its buffers.
 #[derive(Default)]
-pub(super) struct Cutter {
+pub(super) struct Triangulator {
     /// Remaining point-in-triangle tests.
     budget: u64,
     /// Projected corners in counter-clockwise order.
@@ -30,16 +30,16 @@ pub(super) struct Cutter {
     waiting: Vec<bool>,
 }
 
-impl Cutter {
+impl Triangulator {
     /// Creates a triangulator for a file of this many bytes. The work limit grows with the file
     /// size, and is low enough for any file to finish in reasonable time.
     pub fn new(file_bytes: usize) -> Self {
-        Cutter { budget: (1 << 28) + 256 * file_bytes as u64, ..Cutter::default() }
+        Triangulator { budget: (1 << 28) + 256 * file_bytes as u64, ..Triangulator::default() }
     }
 
     /// Triangulates a polygon with `count` corners; calls `emit` with the three corner indices of
     /// each triangle.
-    pub fn cut(
+    pub fn triangulate(
         &mut self,
         count: usize,
         corner: impl Fn(usize) -> Vec3,
@@ -150,8 +150,8 @@ impl Cutter {
     fn next_ear(&mut self, left: u32) -> Result<Option<u32>, TooComplex> {
         let Some(tip) = self.candidates.pop_front() else {
             // Self-intersecting outlines can run out of ears: cut off the least harmful corner.
-            self.spend(self.points.len() as u64)?;
-            return Ok(Some(self.least_harm(left)));
+            self.spend_budget(self.points.len() as u64)?;
+            return Ok(Some(self.least_harmful(left)));
         };
         self.waiting[tip as usize] = false;
         let gone = self.next[tip as usize] == u32::MAX;
@@ -166,7 +166,7 @@ impl Cutter {
         }
         let mut i = 0;
         while i < self.blockers.len() {
-            self.spend(1)?;
+            self.spend_budget(1)?;
             let blocker = self.blockers[i] as usize;
             if !self.blocks[blocker] {
                 self.blockers.swap_remove(i);
@@ -185,7 +185,7 @@ impl Cutter {
     }
 
     /// Returns a corner with zero area, otherwise a convex one, otherwise any corner.
-    fn least_harm(&self, left: u32) -> u32 {
+    fn least_harmful(&self, left: u32) -> u32 {
         let first = self.any_left();
         let ring = || std::iter::successors(Some(first), |&i| Some(self.next[i as usize])).take(left as usize);
         let area_at = |i: u32| {
@@ -209,7 +209,7 @@ impl Cutter {
         area(a, b, c) > 0.0
     }
 
-    fn spend(&mut self, work: u64) -> Result<(), TooComplex> {
+    fn spend_budget(&mut self, work: u64) -> Result<(), TooComplex> {
         self.budget = self.budget.checked_sub(work).ok_or(TooComplex)?;
         Ok(())
     }

@@ -10,7 +10,7 @@ fn cut(outline: &[[f32; 2]]) -> (Vec<[usize; 3]>, Vec<f64>) {
         Vec3::new(x, y, 0.25 * x + 0.5 * y)
     };
     let mut triangles = Vec::new();
-    Cutter::new(0).cut(outline.len(), corner, |t| triangles.push(t)).unwrap();
+    Triangulator::new(0).triangulate(outline.len(), corner, |t| triangles.push(t)).unwrap();
     let point = |i: usize| outline[i].map(f64::from);
     let areas = triangles.iter().map(|&[a, b, c]| area(point(a), point(b), point(c))).collect();
     (triangles, areas)
@@ -105,6 +105,6 @@ fn random_outlines_are_cut_completely_and_work_is_bounded() {
         assert!((areas.iter().sum::<f64>() - shoelace(&outline)).abs() < 1e-6);
     }
     let points: Vec<Vec3> = (0..300).map(|_| Vec3::new(random(), random(), 0.0)).collect();
-    let mut cutter = Cutter { budget: 1000, ..Cutter::default() };
-    assert_eq!(cutter.cut(points.len(), |i| points[i], |_| {}), Err(TooComplex));
+    let mut triangulator = Triangulator { budget: 1000, ..Triangulator::default() };
+    assert_eq!(triangulator.triangulate(points.len(), |i| points[i], |_| {}), Err(TooComplex));
 }

@@ -22,14 +22,14 @@ pub(super) struct Axes {
 impl Axes {
     /// Returns axes about z, from x towards -y: in profiles, horizontal angles grow from front
     /// towards front × down. A mirroring transform reverses this, so the side is flipped.
-    pub fn about_z(map: &DAffine3) -> Axes {
-        let side = if map.matrix3.determinant() < 0.0 { Vec3::Y } else { Vec3::NEG_Y };
+    pub fn about_z(transform: &DAffine3) -> Axes {
+        let side = if transform.matrix3.determinant() < 0.0 { Vec3::Y } else { Vec3::NEG_Y };
         Axes { down: Vec3::Z, front: Vec3::X, side }
     }
 
     /// Returns axes about y, from x towards z. See [`Axes::about_z`].
-    pub fn about_y(map: &DAffine3) -> Axes {
-        let side = if map.matrix3.determinant() < 0.0 { Vec3::NEG_Z } else { Vec3::Z };
+    pub fn about_y(transform: &DAffine3) -> Axes {
+        let side = if transform.matrix3.determinant() < 0.0 { Vec3::NEG_Z } else { Vec3::Z };
         Axes { down: Vec3::Y, front: Vec3::X, side }
     }
 
@@ -48,12 +48,12 @@ pub(super) fn steps(last: f32, count: u32) -> Vec<f32> {
 }
 
 /// Measured light profiles, each with its colour, that together form one coloured point light.
-pub(super) struct ProfileLights(Vec<(Vec3, PhotometricProfile)>);
+pub(super) struct ProfileLight(Vec<(Vec3, PhotometricProfile)>);
 
-impl ProfileLights {
+impl ProfileLight {
     /// Samples the intensity `light`, a function of the direction in the light's own space, at
     /// vertical and horizontal angles in degrees.
-    pub fn new([vertical, horizontal]: [Vec<f32>; 2], axes: &Axes, light: impl Fn(Vec3) -> Color) -> ProfileLights {
+    pub fn new([vertical, horizontal]: [Vec<f32>; 2], axes: &Axes, light: impl Fn(Vec3) -> Color) -> ProfileLight {
         let mut values = Vec::with_capacity(vertical.len() * horizontal.len());
         for &across in &horizontal {
             values.extend(vertical.iter().map(|&down| light(axes.direction(down, across)).max(Color::ZERO)));
@@ -65,7 +65,7 @@ impl ProfileLights {
             candela: values.iter().map(part).collect(),
         };
         let grey = values.iter().all(|value| value.x == value.y && value.y == value.z);
-        ProfileLights(match grey {
+        ProfileLight(match grey {
             true => vec![(Vec3::ONE, emitter(&|value| value.x))],
             false => vec![
                 (Vec3::X, emitter(&|value| value.x)),
@@ -82,13 +82,13 @@ impl ProfileLights {
     }
 
     /// Adds the lights to the scene of a file; `color` is the intensity where a profile is 1.
-    pub fn add(self, scene: &mut Scene, file: &str, (map, axes): (DAffine3, Axes), color: Color, at: Span) {
-        let axis = |local: Vec3| map.transform_vector3(local.as_dvec3()).normalize_or(DVec3::Y).as_vec3();
+    pub fn add(self, scene: &mut Scene, file: &str, (transform, axes): (DAffine3, Axes), color: Color, at: Span) {
+        let axis = |local: Vec3| transform.transform_vector3(local.as_dvec3()).normalize_or(DVec3::Y).as_vec3();
         for (hue, profile) in self.0 {
             let path = format!("{file}#lamp-{}.ies", scene.assets.profiles.len());
             scene.assets.profiles.insert(path.clone(), Arc::new(profile));
             let value = PhotometricLight {
-                position: map.translation.as_vec3(),
+                position: transform.translation.as_vec3(),
                 file: FileName { path, span: at },
                 direction: axis(axes.down),
                 front: axis(axes.front),

@@ -8,34 +8,39 @@ use std::ops::Range;
 /// Readers may process a file in several passes; sorting hides this from the user.
 pub(super) struct Report {
     file: u32,
-    found: Vec<Diagnostic>,
+    diagnostics: Vec<Diagnostic>,
     errors: usize,
     /// Maximum number of errors to collect.
-    room: usize,
+    max_errors: usize,
 }
 
 impl Report {
     /// Creates an empty report for a file. Its error limit is the number of errors that
     /// `diagnostics` can still take.
     pub fn new(file: u32, diagnostics: &Diagnostics) -> Self {
-        let room = ERROR_LIMIT.saturating_sub(diagnostics.error_count());
-        Report { file, found: Vec::new(), errors: 0, room }
+        let max_errors = ERROR_LIMIT.saturating_sub(diagnostics.error_count());
+        Report { file, diagnostics: Vec::new(), errors: 0, max_errors }
     }
 
     /// Creates an empty report for a part of the file, to be joined to this report later.
     pub fn part(&self) -> Report {
-        Report { file: self.file, found: Vec::new(), errors: 0, room: self.room.saturating_sub(self.errors) }
+        Report {
+            file: self.file,
+            diagnostics: Vec::new(),
+            errors: 0,
+            max_errors: self.max_errors.saturating_sub(self.errors),
+        }
     }
 
     /// Appends the report of the next part, up to the error limit, as if both parts had been read
     /// as one.
     pub fn join(&mut self, part: Report) {
-        for diagnostic in part.found {
+        for diagnostic in part.diagnostics {
             if self.is_full() {
                 return;
             }
             self.errors += usize::from(diagnostic.severity == Severity::Error);
-            self.found.push(diagnostic);
+            self.diagnostics.push(diagnostic);
         }
     }
 
@@ -60,9 +65,9 @@ impl Report {
         if diagnostic.severity == Severity::Error {
             self.errors += 1;
         }
-        let index = self.found.len();
-        self.found.push(diagnostic.at(self.span(at)));
-        &mut self.found[index]
+        let index = self.diagnostics.len();
+        self.diagnostics.push(diagnostic.at(self.span(at)));
+        &mut self.diagnostics[index]
     }
 
     /// Returns the span of a byte range. [`read_mesh`](crate::read_mesh) has checked that offsets
@@ -78,38 +83,38 @@ impl Report {
 
     /// Returns true if no more errors are collected, so that reading on is useless.
     pub fn is_full(&self) -> bool {
-        self.errors >= self.room
+        self.errors >= self.max_errors
     }
 
     /// Number of diagnostics of all severities.
     pub fn count(&self) -> usize {
-        self.found.len()
+        self.diagnostics.len()
     }
 
     /// Forwards all diagnostics, sorted by position; returns `result` if there was no error.
     pub fn finish<T>(mut self, diagnostics: &mut Diagnostics, result: T) -> Option<T> {
-        self.found.sort_by_key(|diagnostic| diagnostic.span.map_or(u32::MAX, |span| span.start));
-        let failed = self.found.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
+        self.diagnostics.sort_by_key(|diagnostic| diagnostic.span.map_or(u32::MAX, |span| span.start));
+        let failed = self.diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
         // A full report means that reading stopped early.
-        let complete = !failed && self.room > 0;
-        self.found.into_iter().for_each(|diagnostic| diagnostics.push(diagnostic));
+        let complete = !failed && self.max_errors > 0;
+        self.diagnostics.into_iter().for_each(|diagnostic| diagnostics.push(diagnostic));
         complete.then_some(result)
     }
 }
 
 /// Quotes a piece of a file for a message: in backquotes, escaped, at most 40 characters.
-pub(super) fn shown(bytes: &[u8]) -> String {
-    const LONGEST: usize = 40;
-    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * LONGEST)]);
-    let mut shown: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
-    if text.chars().count() > LONGEST || bytes.len() > 4 * LONGEST {
+pub(super) fn quoted(bytes: &[u8]) -> String {
+    const MAX_CHARS: usize = 40;
+    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * MAX_CHARS)]);
+    let mut shown: String = text.chars().take(MAX_CHARS).flat_map(char::escape_debug).collect();
+    if text.chars().count() > MAX_CHARS || bytes.len() > 4 * MAX_CHARS {
         shown.push('…');
     }
     format!("`{shown}`")
 }
 
 /// Formats a count with its noun: `1 vertex`, `no vertices`, `8 vertices`.
-pub(super) fn counted(count: usize, one: &str, many: &str) -> String {
+pub(super) fn count_text(count: usize, one: &str, many: &str) -> String {
     match count {
         0 => format!("no {many}"),
         1 => format!("1 {one}"),
@@ -134,9 +139,9 @@ mod tests {
 
     #[test]
     fn shown_text_is_short_and_printable() {
-        assert_eq!(shown(b"abc"), "`abc`");
-        assert_eq!(shown(b"a\x00\n"), "`a\\0\\n`");
-        assert!(shown(&[b'x'; 1000]).chars().count() < 50);
-        assert!(shown(&[0xff; 1000]).chars().count() < 50);
+        assert_eq!(quoted(b"abc"), "`abc`");
+        assert_eq!(quoted(b"a\x00\n"), "`a\\0\\n`");
+        assert!(quoted(&[b'x'; 1000]).chars().count() < 50);
+        assert!(quoted(&[0xff; 1000]).chars().count() < 50);
     }
 }

@@ -2,9 +2,9 @@
 //! a scene with one mesh.
 
 use super::model::SceneFormat;
-pub use super::model::{Input, Output, WriteScene};
-use super::pictures::unusable;
-use super::signature::mistaken;
+pub use super::model::{ReadInput, WriteContext, WriteScene};
+use super::pictures::picture_error;
+use super::signature::wrong_format_error;
 use super::{MeshFormat, extension, obj, panorama, ply, read_mesh, sticks, stl};
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_image::{self as image, Encoded, ImageError};
@@ -32,15 +32,24 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
     super::threemf::FORMAT,
     #[cfg(feature = "radiance")]
     super::radiance::FORMAT,
-    alone(&ply::FORMAT),
+    single_mesh_format(&ply::FORMAT),
     obj::scene::FORMAT,
-    alone(&stl::FORMAT),
+    single_mesh_format(&stl::FORMAT),
 ];
 
 /// Returns the scene format for files that contain a single mesh.
-const fn alone(format: &MeshFormat) -> SceneFormat {
+const fn single_mesh_format(format: &MeshFormat) -> SceneFormat {
     let MeshFormat { name, extensions, recognise, up, .. } = *format;
-    SceneFormat { name, extensions, recognise, read: one_mesh, write: None, up, whole: false, light_hint: None }
+    SceneFormat {
+        name,
+        extensions,
+        recognise,
+        read: one_mesh,
+        write: None,
+        up,
+        is_complete_scene: false,
+        light_hint: None,
+    }
 }
 
 /// Maximum height in pixels of an environment map that is resampled for another up axis.
@@ -61,63 +70,69 @@ pub fn find_scene_format(bytes: &[u8], name: &str) -> Option<&'static SceneForma
 /// Returns an error if a file is to be read as one format (`None`: the scene language) but its
 /// first bytes are of another.
 pub fn other_format(bytes: &[u8], file: u32, name: &str, format: Option<&SceneFormat>) -> Option<Diagnostic> {
-    mistaken(bytes, file, name, format.map_or(&[], |format| format.extensions))
+    wrong_format_error(bytes, file, name, format.map_or(&[], |format| format.extensions))
 }
 
 /// Reads a model as a scene, and adds a camera, lights and a material if they are missing.
-pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+pub fn read_model(format: &SceneFormat, input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let mut scene = (format.read)(input, diagnostics)?;
     scene.up = Some(input.scene_defaults.up.unwrap_or(format.up));
     if let Some(path) = &input.scene_defaults.view_file {
-        let (name, bytes) = named(input, path, diagnostics)?;
-        look(&mut scene, input, &name, &bytes, diagnostics)?;
+        let (name, bytes) = read_option_file(input, path, diagnostics)?;
+        set_view(&mut scene, input, &name, &bytes, diagnostics)?;
     }
     if let Some(path) = &input.scene_defaults.environment {
-        let (name, bytes) = named(input, path, diagnostics)?;
+        let (name, bytes) = read_option_file(input, path, diagnostics)?;
         let up = input.scene_defaults.up.unwrap_or(format.up);
-        let surrounded = surround(&mut scene, &name, bytes, up, input.memory);
-        surrounded.map_err(|error| diagnostics.push(unusable(&name, &error))).ok()?;
+        let surrounded = set_environment(&mut scene, &name, bytes, up, input.memory);
+        surrounded.map_err(|error| diagnostics.push(picture_error(&name, &error))).ok()?;
     }
     if !input.scene_defaults.convert_only {
-        input.scene_defaults.complete(&mut scene, format.up, format.whole);
+        input.scene_defaults.complete(&mut scene, format.up, format.is_complete_scene);
     }
     Some(scene)
 }
 
 /// Sets a scene's camera to the last view in a Radiance file. Returns `None` after errors.
 #[cfg(feature = "radiance")]
-fn look(scene: &mut Scene, input: &Input, name: &str, bytes: &Arc<[u8]>, diagnostics: &mut Diagnostics) -> Option<()> {
-    let found = super::radiance::look(scene, input, (name, bytes));
-    let is_sound = !found.has_errors();
-    diagnostics.extend(found);
+fn set_view(
+    scene: &mut Scene,
+    input: &ReadInput,
+    name: &str,
+    bytes: &Arc<[u8]>,
+    diagnostics: &mut Diagnostics,
+) -> Option<()> {
+    let report = super::radiance::set_view(scene, input, (name, bytes));
+    let is_sound = !report.has_errors();
+    diagnostics.extend(report);
     is_sound.then_some(())
 }
 
 /// Reports that this build cannot read Radiance's view files.
 #[cfg(not(feature = "radiance"))]
-fn look(_: &mut Scene, _: &Input, name: &str, _: &Arc<[u8]>, diagnostics: &mut Diagnostics) -> Option<()> {
+fn set_view(_: &mut Scene, _: &ReadInput, name: &str, _: &Arc<[u8]>, diagnostics: &mut Diagnostics) -> Option<()> {
     diagnostics.push(Diagnostic::error(format!("`{name}`: this build cannot read views of Radiance")));
     None
 }
 
 /// Reads a file named by an option, at any path. Returns its name and bytes.
-fn named(input: &Input, path: &Path, diagnostics: &mut Diagnostics) -> Option<(String, Arc<[u8]>)> {
+fn read_option_file(input: &ReadInput, path: &Path, diagnostics: &mut Diagnostics) -> Option<(String, Arc<[u8]>)> {
     let read = input.source.read_user_file(path);
     let refuse = |error: SourceError| diagnostics.push(Diagnostic::error(error.to_string()).code("missing-file"));
     Some((path.display().to_string(), read.map_err(refuse).ok()?))
 }
 
 /// Reads a mesh file as a scene of one mesh without a material.
-fn one_mesh(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+fn one_mesh(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let span = Span { file: input.file, start: 0, end: 0 };
     let data = read_mesh(input.bytes, input.file, input.name, diagnostics)?;
     input.files.borrow_mut().truncate(input.file, 0, diagnostics);
     let data = if data.triangles.is_empty() && !data.positions.is_empty() {
         // A file with vertices but no faces is a point cloud.
         let points: Vec<u32> = (0..data.positions.len() as u32).collect();
-        let note = Diagnostic::note(sticks::explained(0, points.len())).code("points-and-lines");
+        let note = Diagnostic::note(sticks::message(0, points.len())).code("points-and-lines");
         diagnostics.push(note.at(span));
-        sticks::thickened(&data, &[], &points)
+        sticks::sticks_and_balls(&data, &[], &points)
     } else {
         data
     };
@@ -129,7 +144,7 @@ fn one_mesh(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
 
 /// Replaces the background and the directional lights by an environment map, whose upper edge
 /// points along `up`.
-fn surround(scene: &mut Scene, name: &str, bytes: Arc<[u8]>, up: Axis, memory: u64) -> Result<(), ImageError> {
+fn set_environment(scene: &mut Scene, name: &str, bytes: Arc<[u8]>, up: Axis, memory: u64) -> Result<(), ImageError> {
     scene.background = Background { color: Vec3::ZERO, ..Background::default() };
     let near = |light: &Spanned<Light>| light.value.position().is_some();
     scene.lights.get_or_insert_default().retain(near);
@@ -138,9 +153,9 @@ fn surround(scene: &mut Scene, name: &str, bytes: Arc<[u8]>, up: Axis, memory: u
     let turned = |dir: DVec3| DVec3::new(dir.dot(sides.right), dir.dot(sides.up), dir.dot(sides.front));
     // If a picture cannot be decoded, compiling the scene reports it.
     if let Some(picture) = (up != Axis::Y).then(decoded).and_then(Result::ok) {
-        let light = |dir: DVec3| panorama::looked_up(&picture, turned(dir));
-        let memory = panorama::beside([&picture], memory);
-        return panorama::surround(scene, (name, Span::default()), picture.height.min(MAX_ROWS), memory, light);
+        let light = |dir: DVec3| panorama::nearest(&picture, turned(dir));
+        let memory = panorama::remaining_memory([&picture], memory);
+        return panorama::set_environment(scene, (name, Span::default()), picture.height.min(MAX_ROWS), memory, light);
     }
     let picture = TextureImage { bytes: PictureBytes::Memory(name.to_string(), bytes), mapping: Mapping::default() };
     scene.assets.pictures.insert(name.to_string(), picture);

@@ -7,8 +7,8 @@ use std::collections::BTreeSet;
 /// Collector for the diagnostics of a scene file that all parts of its reader share by reference.
 #[derive(Default)]
 pub(crate) struct SharedReport {
-    found: RefCell<Diagnostics>,
-    once: RefCell<BTreeSet<String>>,
+    diagnostics: RefCell<Diagnostics>,
+    reported: RefCell<BTreeSet<String>>,
 }
 
 /// Code of warnings about content that cannot be rendered as its format specifies.
@@ -17,56 +17,56 @@ pub(crate) const NO_COUNTERPART: &str = "NO_COUNTERPART";
 impl SharedReport {
     /// Adds a diagnostic.
     pub fn push(&self, diagnostic: Diagnostic) {
-        self.found.borrow_mut().push(diagnostic);
+        self.diagnostics.borrow_mut().push(diagnostic);
     }
 
     /// Adds the diagnostics of another file's reader.
     pub fn extend(&self, others: Diagnostics) {
-        self.found.borrow_mut().extend(others);
+        self.diagnostics.borrow_mut().extend(others);
     }
 
     /// Reports an error about an invalid value.
-    pub fn bad(&self, at: Span, message: impl Into<String>) {
+    pub fn error(&self, at: Span, message: impl Into<String>) {
         self.push(Diagnostic::error(message).code("bad-value").at(at));
     }
 
     /// Reports an error about an invalid value, with a suggestion.
-    pub fn bad_with(&self, at: Span, message: impl Into<String>, help: Option<String>) {
+    pub fn error_with_help(&self, at: Span, message: impl Into<String>, help: Option<String>) {
         self.push(Diagnostic { help, ..Diagnostic::error(message).code("bad-value").at(at) });
     }
 
     /// Warns that something cannot be rendered as the format specifies; the message names the
     /// substitute.
-    pub fn other(&self, at: Span, message: impl Into<String>) {
+    pub fn unsupported(&self, at: Span, message: impl Into<String>) {
         self.push(Diagnostic::warning(message).code(NO_COUNTERPART).at(at));
     }
 
     /// Warns as [`SharedReport::other`] does, but only once per message.
-    pub fn once(&self, at: Span, message: impl Into<String>) {
+    pub fn unsupported_once(&self, at: Span, message: impl Into<String>) {
         self.warn_once(NO_COUNTERPART, at, message);
     }
 
     /// Warns with a code, but only once per message.
     pub fn warn_once(&self, code: &'static str, at: Span, message: impl Into<String>) {
         let message = message.into();
-        if self.once.borrow_mut().insert(message.clone()) {
+        if self.reported.borrow_mut().insert(message.clone()) {
             self.push(Diagnostic::warning(message).code(code).at(at));
         }
     }
 
     /// Returns true if no more errors can be added.
     pub fn is_full(&self) -> bool {
-        self.found.borrow().is_full()
+        self.diagnostics.borrow().is_full()
     }
 
     /// Returns true if at least one error was reported.
     pub fn has_errors(&self) -> bool {
-        self.found.borrow().has_errors()
+        self.diagnostics.borrow().has_errors()
     }
 
     /// Returns all diagnostics.
     pub fn finish(self) -> Diagnostics {
-        self.found.into_inner()
+        self.diagnostics.into_inner()
     }
 }
 

@@ -45,7 +45,7 @@ const LUMINAIRE: &str = "a measured luminaire (IES)";
 
 /// Returns an error if a file's signature shows that it has another format than the one with these
 /// extensions.
-pub(super) fn mistaken(bytes: &[u8], file: u32, name: &str, extensions: &[&str]) -> Option<Diagnostic> {
+pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions: &[&str]) -> Option<Diagnostic> {
     let (start, what, own) = SIGNATURES.iter().find(|(start, ..)| bytes.starts_with(start))?;
     if own.is_some_and(|own| extensions.contains(&own)) {
         return None;
@@ -71,12 +71,13 @@ pub(super) fn mistaken(bytes: &[u8], file: u32, name: &str, extensions: &[&str])
 
 #[cfg(test)]
 mod tests {
-    use super::mistaken;
+    use super::wrong_format_error;
 
     #[test]
     fn file_with_wrong_extension_is_an_error() {
         let messages = |bytes: &[u8], name: &str, extensions: &[&str]| {
-            mistaken(bytes, 0, name, extensions).map(|error| format!("{} ({})", error.message, error.help.unwrap()))
+            wrong_format_error(bytes, 0, name, extensions)
+                .map(|error| format!("{} ({})", error.message, error.help.unwrap()))
         };
         assert_eq!(
             messages(b"glTF\x02\0\0\0", "a/b.c.obj", &["obj"]).unwrap(),

@@ -1,6 +1,6 @@
 //! Visible geometry for lines and points, which have no surface: thin sticks and small balls.
 
-use super::report::counted;
+use super::report::count_text;
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::ObjectKind;
 use durer_scene::shape::{Cone, Cylinder, MeshData, Sphere};
@@ -24,8 +24,8 @@ pub(super) fn ball(center: Vec3, radius: f32) -> ObjectKind {
 const SIDES: u32 = 6;
 /// Radii of points, and of lines without a radius, as fractions of the diagonal of the bounding
 /// box.
-const LINE: f32 = 0.006;
-const POINT: f32 = 0.015;
+const LINE_RADIUS: f32 = 0.006;
+const POINT_RADIUS: f32 = 0.015;
 /// Maximum number of lines, and of points, that become geometry. If there are more, every n-th is
 /// shown.
 const MAX: usize = 1 << 21;
@@ -36,11 +36,11 @@ fn step(count: usize) -> usize {
 }
 
 /// Message that lines and points are shown as sticks and balls.
-pub(super) fn explained(lines: usize, points: usize) -> String {
+pub(super) fn message(lines: usize, points: usize) -> String {
     let all =
         [(lines, "line", "lines"), (points, "point", "points")].map(|(count, one, many)| match (count, step(count)) {
             (0, _) => String::new(),
-            (_, 1) => counted(count, one, many),
+            (_, 1) => count_text(count, one, many),
             (_, step) => format!("{count} {many}, of which one in {step} is shown,"),
         });
     let all = all.into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" and ");
@@ -49,7 +49,7 @@ pub(super) fn explained(lines: usize, points: usize) -> String {
 
 /// Builds a triangle mesh of thin sticks for lines between vertices and small balls for single
 /// vertices. Vertices keep their colours and texture coordinates.
-pub(super) fn thickened(data: &MeshData, lines: &[[u32; 2]], points: &[u32]) -> MeshData {
+pub(super) fn sticks_and_balls(data: &MeshData, lines: &[[u32; 2]], points: &[u32]) -> MeshData {
     let used = || lines.iter().flatten().chain(points).map(|&i| data.positions[i as usize]);
     let low = used().reduce(Vec3::min).unwrap_or_default();
     let size = (used().reduce(Vec3::max).unwrap_or_default() - low).length();
@@ -57,40 +57,40 @@ pub(super) fn thickened(data: &MeshData, lines: &[[u32; 2]], points: &[u32]) -> 
     // Limit the radius so that the balls of a dense point cloud just touch their neighbours on a
     // surface.
     let shown_points = points.len().div_ceil(step(points.len()));
-    let ball = POINT.min(0.6 / (shown_points as f32).sqrt());
-    let mut made = MeshData::default();
+    let ball = POINT_RADIUS.min(0.6 / (shown_points as f32).sqrt());
+    let mut mesh = MeshData::default();
     for &[a, b] in lines.iter().step_by(step(lines.len())) {
         let ends = [a, b].map(|i| data.positions[i as usize]);
         let Some(along) = (ends[1] - ends[0]).try_normalize() else { continue };
         let (x, y) = along.any_orthonormal_pair();
-        let first = made.positions.len() as u32;
+        let first = mesh.positions.len() as u32;
         for (vertex, end) in [a, b].into_iter().zip(ends) {
             for k in 0..SIDES {
                 let (sin, cos) = fp::sin_cos_degrees(360.0 * f64::from(k) / f64::from(SIDES));
                 let normal = cos as f32 * x + sin as f32 * y;
-                push_vertex(&mut made, data, vertex, end + LINE * size * normal, normal);
+                push_vertex(&mut mesh, data, vertex, end + LINE_RADIUS * size * normal, normal);
             }
         }
         for k in 0..SIDES {
             let (this, next) = (first + k, first + (k + 1) % SIDES);
-            made.triangles.extend([[this, next, next + SIDES], [this, next + SIDES, this + SIDES]]);
+            mesh.triangles.extend([[this, next, next + SIDES], [this, next + SIDES, this + SIDES]]);
         }
     }
     for &vertex in points.iter().step_by(step(points.len())) {
         // An octahedron with the normals of a sphere.
-        let first = made.positions.len() as u32;
+        let first = mesh.positions.len() as u32;
         for normal in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z] {
-            push_vertex(&mut made, data, vertex, data.positions[vertex as usize] + ball * size * normal, normal);
+            push_vertex(&mut mesh, data, vertex, data.positions[vertex as usize] + ball * size * normal, normal);
         }
         for (x, y, z) in [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)] {
-            made.triangles.push([x, y, z].map(|k| first + k));
+            mesh.triangles.push([x, y, z].map(|k| first + k));
         }
     }
-    made.triangle_normals = made.triangles.clone();
-    if !made.uvs.is_empty() {
-        made.triangle_uvs = made.triangles.clone();
+    mesh.triangle_normals = mesh.triangles.clone();
+    if !mesh.uvs.is_empty() {
+        mesh.triangle_uvs = mesh.triangles.clone();
     }
-    made
+    mesh
 }
 
 /// Appends a vertex to `mesh`, with the colour and texture coordinates of vertex `vertex` of
@@ -112,14 +112,14 @@ mod tests {
         let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
         let colors = vec![[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]];
         let data = MeshData { positions, colors, ..MeshData::default() };
-        let made = thickened(&data, &[[0, 1]], &[2]);
-        assert_eq!((made.triangles.len(), made.colors.len()), (2 * SIDES as usize + 8, made.positions.len()));
-        for triangle in &made.triangles {
-            let [a, b, c] = triangle.map(|i| made.positions[i as usize]);
-            let outwards: Vec3 = triangle.iter().map(|&i| made.normals[i as usize]).sum();
+        let mesh = sticks_and_balls(&data, &[[0, 1]], &[2]);
+        assert_eq!((mesh.triangles.len(), mesh.colors.len()), (2 * SIDES as usize + 8, mesh.positions.len()));
+        for triangle in &mesh.triangles {
+            let [a, b, c] = triangle.map(|i| mesh.positions[i as usize]);
+            let outwards: Vec3 = triangle.iter().map(|&i| mesh.normals[i as usize]).sum();
             assert!((b - a).cross(c - a).dot(outwards) > 0.0, "{triangle:?}");
         }
-        assert_eq!(made.colors[made.positions.len() - 1], data.colors[2]);
-        assert!(thickened(&data, &[[1, 1]], &[]).triangles.is_empty());
+        assert_eq!(mesh.colors[mesh.positions.len() - 1], data.colors[2]);
+        assert!(sticks_and_balls(&data, &[[1, 1]], &[]).triangles.is_empty());
     }
 }

@@ -8,8 +8,8 @@
 mod text;
 mod write;
 
-use super::report::{Report, counted};
-use super::{MeshFormat, as_it_is};
+use super::report::{Report, count_text};
+use super::{MeshFormat, without_quirks};
 use durer_diag::Diagnostics;
 use durer_scene::math::Vec3;
 use durer_scene::scene::Axis;
@@ -24,7 +24,7 @@ const FACET: usize = 50;
 
 /// Mesh format entry for STL.
 pub(super) const FORMAT: MeshFormat =
-    MeshFormat { name: "STL", extensions: &["stl"], recognise, read, known: as_it_is, write, up: Axis::Z };
+    MeshFormat { name: "STL", extensions: &["stl"], recognise, read, apply_quirks: without_quirks, write, up: Axis::Z };
 
 /// Returns true if a file begins like an STL file, or has the size that follows from a binary
 /// header.
@@ -75,7 +75,7 @@ fn read_binary(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
     let (facets, rest) = bytes[HEAD..].as_chunks::<FACET>();
     let facets = match (facets.len() as u64).cmp(&u64::from(count)) {
         std::cmp::Ordering::Less => {
-            let there = counted(facets.len(), "facet", "facets");
+            let there = count_text(facets.len(), "facet", "facets");
             report.error(80..84, format!("the header promises {count} facets, but the file ends after {there}"));
             return;
         }

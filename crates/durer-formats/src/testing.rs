@@ -1,7 +1,7 @@
 //! Shared helpers for tests of readers: read texts as scenes and format the diagnostics.
 
 use crate::folder::FolderSource;
-use crate::scene::{Input, find_scene_format, read_model};
+use crate::scene::{ReadInput, find_scene_format, read_model};
 use durer::{LoadOptions, load_text};
 use durer_diag::{Diagnostic, Diagnostics, Files, Severity};
 use durer_scene::scene::{Scene, SceneDefaults};
@@ -29,8 +29,15 @@ pub(super) fn read_with_low_limits(name: &str, text: &str) -> (Option<Scene>, Ve
     let file = files.add(name, bytes.clone());
     let (files, source, scene_defaults) = (RefCell::new(files), FolderSource::new("."), SceneDefaults::default());
     let memory = u64::MAX;
-    let input =
-        Input { bytes: &bytes, file, files: &files, name, source: &source, scene_defaults: &scene_defaults, memory };
+    let input = ReadInput {
+        bytes: &bytes,
+        file,
+        files: &files,
+        name,
+        source: &source,
+        scene_defaults: &scene_defaults,
+        memory,
+    };
     let scene = read_model(find_scene_format(&bytes, name).unwrap(), &input, &mut diagnostics);
     (scene, lines(&diagnostics, &files.borrow()))
 }

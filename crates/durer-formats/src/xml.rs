@@ -11,7 +11,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Maximum depth of nested elements.
-const DEEPEST: usize = 128;
+const MAX_DEPTH: usize = 128;
 
 /// Pull parser of one XML text.
 pub(super) struct Xml<'a> {
@@ -25,7 +25,7 @@ pub(super) struct Xml<'a> {
     /// True if the last element was self-closing.
     empty: bool,
     /// True after the first element.
-    begun: bool,
+    has_root_element: bool,
 }
 
 /// Start tag of an XML element, with its attributes.
@@ -46,7 +46,7 @@ pub(super) struct Attribute<'a> {
 }
 
 /// Event returned by the XML parser: an element begins, an element ends, or the text ends.
-pub(super) enum Piece<'a> {
+pub(super) enum Event<'a> {
     Open(Tag<'a>),
     /// The innermost open element ends.
     Close,
@@ -62,7 +62,7 @@ impl<'a> Tag<'a> {
 }
 
 /// Returns true if a file is XML and its root element has one of these names.
-pub(super) fn begins_with(bytes: &[u8], names: &[&str]) -> bool {
+pub(super) fn has_root(bytes: &[u8], names: &[&str]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 12)];
     let text = match std::str::from_utf8(head) {
         Ok(text) => text,
@@ -114,7 +114,7 @@ impl<'a> Xml<'a> {
         let plain = text.strip_prefix('\u{feff}').unwrap_or(text);
         let skipped = text.len() - plain.len();
         let reader = Reader::from_str(plain);
-        Ok(Xml { text: plain, file, skipped, reader, open: Vec::new(), empty: false, begun: false })
+        Ok(Xml { text: plain, file, skipped, reader, open: Vec::new(), empty: false, has_root_element: false })
     }
 
     fn span(&self, start: usize, end: usize) -> Span {
@@ -123,7 +123,7 @@ impl<'a> Xml<'a> {
     }
 
     /// Returns the span of a slice of the text.
-    fn place(&self, piece: &str) -> Span {
+    fn span_of(&self, piece: &str) -> Span {
         let start = piece.as_ptr() as usize - self.text.as_ptr() as usize;
         self.span(start, start + piece.len())
     }
@@ -133,10 +133,10 @@ impl<'a> Xml<'a> {
     }
 
     /// Returns the next parser event.
-    pub fn next(&mut self) -> Result<Piece<'a>, Box<Diagnostic>> {
+    pub fn next(&mut self) -> Result<Event<'a>, Box<Diagnostic>> {
         if std::mem::take(&mut self.empty) {
             self.open.pop();
-            return Ok(Piece::Close);
+            return Ok(Event::Close);
         }
         loop {
             let start = self.reader.buffer_position() as usize;
@@ -146,14 +146,14 @@ impl<'a> Xml<'a> {
             };
             let end = self.reader.buffer_position() as usize;
             match event {
-                events::Event::Start(_) => return self.tag(start + 1, end - 1).map(Piece::Open),
+                events::Event::Start(_) => return self.tag(start + 1, end - 1).map(Event::Open),
                 events::Event::Empty(_) => {
                     self.empty = true;
-                    return self.tag(start + 1, end - 2).map(Piece::Open);
+                    return self.tag(start + 1, end - 2).map(Event::Open);
                 }
                 events::Event::End(_) => {
                     self.open.pop();
-                    return Ok(Piece::Close);
+                    return Ok(Event::Close);
                 }
                 events::Event::DocType(_) => {
                     let what = "document type declarations (`<!DOCTYPE`) are not supported";
@@ -163,8 +163,10 @@ impl<'a> Xml<'a> {
                 events::Event::Eof => {
                     return match self.open.last() {
                         Some(open) => Err(self.wrong(*open, "this element is not closed").code("unclosed").into()),
-                        None if !self.begun => Err(self.wrong(self.span(0, 0), "the file has no elements").into()),
-                        None => Ok(Piece::End),
+                        None if !self.has_root_element => {
+                            Err(self.wrong(self.span(0, 0), "the file has no elements").into())
+                        }
+                        None => Ok(Event::End),
                     };
                 }
                 // Text, comments and processing instructions are skipped.
@@ -177,25 +179,25 @@ impl<'a> Xml<'a> {
     fn tag(&mut self, start: usize, end: usize) -> Result<Tag<'a>, Box<Diagnostic>> {
         let inner = self.text.get(start..end).unwrap_or_default();
         let whole = inner.find(|c: char| c.is_ascii_whitespace()).map_or(inner, |length| &inner[..length]);
-        let at = self.place(whole);
-        if self.begun && self.open.is_empty() {
+        let at = self.span_of(whole);
+        if self.has_root_element && self.open.is_empty() {
             return Err(self.wrong(at, "a file can have only one root element, and this is the second").into());
         }
-        if self.open.len() >= DEEPEST {
-            return Err(self.wrong(at, format!("elements are nested more than {DEEPEST} levels deep")).into());
+        if self.open.len() >= MAX_DEPTH {
+            return Err(self.wrong(at, format!("elements are nested more than {MAX_DEPTH} levels deep")).into());
         }
-        self.begun = true;
+        self.has_root_element = true;
         self.open.push(at);
         let mut attributes: Vec<Attribute> = Vec::new();
-        for found in Attributes::new(inner, whole.len()) {
-            let found = found.map_err(|error| self.wrong_attribute(start, &error))?;
-            let Cow::Borrowed(raw) = found.value else { continue };
-            let place = self.place(raw);
+        for attribute in Attributes::new(inner, whole.len()) {
+            let attribute = attribute.map_err(|error| self.wrong_attribute(start, &error))?;
+            let Cow::Borrowed(raw) = attribute.value else { continue };
+            let place = self.span_of(raw);
             let value = escape::unescape(raw).map_err(|_| {
                 let help = "known entities are `&lt;`, `&gt;`, `&amp;`, `&apos;`, `&quot;` and character numbers";
                 self.wrong(place, "`&` does not begin a known entity").help(help)
             })?;
-            attributes.push(Attribute { name: local(found.key.0), value, at: place });
+            attributes.push(Attribute { name: local(attribute.key.0), value, at: place });
         }
         Ok(Tag { name: local(whole), at, attributes })
     }
@@ -246,12 +248,12 @@ mod tests {
         };
         loop {
             match xml.next() {
-                Ok(Piece::Open(tag)) => {
+                Ok(Event::Open(tag)) => {
                     let more = tag.attributes.iter().map(|a| format!(" {}={}@{}", a.name, a.value, a.at.start));
                     all.push(format!("{}@{}{}", tag.name, tag.at.start, more.collect::<String>()));
                 }
-                Ok(Piece::Close) => all.push("/".into()),
-                Ok(Piece::End) => return (all, None),
+                Ok(Event::Close) => all.push("/".into()),
+                Ok(Event::End) => return (all, None),
                 Err(error) => {
                     let span = error.span.unwrap();
                     assert!(span.start <= span.end && span.end as usize <= text.len(), "{error:?}");
@@ -296,9 +298,9 @@ mod tests {
     #[test]
     fn a_head_is_recognised() {
         let names = ["scene", "bsdf"];
-        assert!(begins_with(b"<?xml version='1.0' encoding='utf-8'?>\n<!-- hi -->\n<scene version='3.0.0'>", &names));
-        assert!(begins_with(b"\xef\xbb\xbf<scene>", &names) && begins_with(b"<m:bsdf/>", &names));
-        assert!(!begins_with(b"<svg/>", &names) && !begins_with(b"scene", &names) && !begins_with(b"", &names));
-        assert!(!begins_with(b"x <scene>", &names));
+        assert!(has_root(b"<?xml version='1.0' encoding='utf-8'?>\n<!-- hi -->\n<scene version='3.0.0'>", &names));
+        assert!(has_root(b"\xef\xbb\xbf<scene>", &names) && has_root(b"<m:bsdf/>", &names));
+        assert!(!has_root(b"<svg/>", &names) && !has_root(b"scene", &names) && !has_root(b"", &names));
+        assert!(!has_root(b"x <scene>", &names));
     }
 }

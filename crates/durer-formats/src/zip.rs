@@ -11,8 +11,8 @@ const MAX_PARTS: usize = 1 << 16;
 /// Limits against decompression bombs: the maximum ratio of all uncompressed bytes to the archive's
 /// size, and a number of bytes that is always allowed. Models as text compress to a tenth, rarely
 /// to a fiftieth.
-const MAX_TIMES: u64 = 200;
-const FREE: u64 = 1 << 24;
+const MAX_RATIO: u64 = 200;
+const FREE_BYTES: u64 = 1 << 24;
 
 /// ZIP archive in memory, whose parts are decompressed on request.
 pub(super) struct Zip<'a> {
@@ -44,7 +44,7 @@ impl<'a> Zip<'a> {
                 return Err(format!("two parts have the name `{name}`"));
             }
         }
-        Ok(Zip { bytes, parts, left: FREE + MAX_TIMES * bytes.len() as u64 })
+        Ok(Zip { bytes, parts, left: FREE_BYTES + MAX_RATIO * bytes.len() as u64 })
     }
 
     /// Returns the names of all parts.
@@ -66,7 +66,7 @@ impl<'a> Zip<'a> {
     ) -> Result<Vec<u8>, String> {
         if size > self.left {
             return Err(format!(
-                "it unpacks to {size} bytes, which exceeds the limit of {MAX_TIMES} times the archive's size"
+                "it unpacks to {size} bytes, which exceeds the limit of {MAX_RATIO} times the archive's size"
             ));
         }
         self.left -= size;

@@ -1,17 +1,17 @@
 //! Handles an HTTP connection: serves one file, or upgrades to a WebSocket.
 
-use crate::head::{self, Head};
+use crate::head::{self, RequestHead};
 use crate::{Shared, page, socket};
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream};
 use std::time::Duration;
 
 /// Time limit for reading the request and for sending the response.
-const PATIENCE: Duration = Duration::from_secs(10);
+const REQUEST_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// Limits in time and bytes for reading from a client after its response was sent.
-const LINGER: Duration = Duration::from_secs(1);
-const MAX_REST: u64 = 1 << 20;
+const DRAIN_TIMEOUT: Duration = Duration::from_secs(1);
+const MAX_DRAINED: u64 = 1 << 20;
 
 /// Content security policy, sent with every response.
 const POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; \
@@ -34,8 +34,8 @@ pub(crate) fn serve(mut stream: TcpStream, shared: &Shared) {
 fn answer(stream: &mut TcpStream, shared: &Shared) -> io::Result<()> {
     stream.set_nonblocking(false)?;
     stream.set_nodelay(true)?;
-    stream.set_read_timeout(Some(PATIENCE))?;
-    stream.set_write_timeout(Some(PATIENCE))?;
+    stream.set_read_timeout(Some(REQUEST_TIMEOUT))?;
+    stream.set_write_timeout(Some(REQUEST_TIMEOUT))?;
     let head = match head::read(stream) {
         Ok(head) => head,
         Err(error) if error.kind() == io::ErrorKind::InvalidData => {
@@ -46,7 +46,7 @@ fn answer(stream: &mut TcpStream, shared: &Shared) -> io::Result<()> {
     if !head.is_local() {
         return send(stream, "403 Forbidden", "text/plain", b"this server only answers pages from localhost\n");
     }
-    let Some(path) = head.path_behind(&shared.token) else {
+    let Some(path) = head.path_after_token(&shared.token) else {
         return send(stream, "404 Not Found", "text/plain", b"not found\n");
     };
     if head.method != "GET" {
@@ -62,7 +62,7 @@ fn answer(stream: &mut TcpStream, shared: &Shared) -> io::Result<()> {
     }
 }
 
-fn upgrade(stream: &mut TcpStream, head: &Head, shared: &Shared) -> io::Result<()> {
+fn upgrade(stream: &mut TcpStream, head: &RequestHead, shared: &Shared) -> io::Result<()> {
     // Browsers always send `Origin` with WebSocket requests, so reject clients without it.
     let (true, Some(key), Some(_)) = (head.upgrade, &head.key, &head.origin) else {
         return send(stream, "426 Upgrade Required", "text/plain", b"this path needs a WebSocket\n");
@@ -89,6 +89,6 @@ fn send(stream: &mut TcpStream, status: &str, kind: &str, body: &[u8]) -> io::Re
     // If bytes were unread at the close, the connection would be reset and the client could lose
     // the response. Read them first.
     stream.shutdown(Shutdown::Write)?;
-    stream.set_read_timeout(Some(LINGER))?;
-    io::copy(&mut stream.take(MAX_REST), &mut io::sink()).map(|_| ())
+    stream.set_read_timeout(Some(DRAIN_TIMEOUT))?;
+    io::copy(&mut stream.take(MAX_DRAINED), &mut io::sink()).map(|_| ())
 }

@@ -8,7 +8,7 @@ const MAX_HEAD: usize = 8 << 10;
 
 /// Request line and relevant headers of an HTTP request to the server. Request bodies are not read.
 #[derive(Debug, Default, PartialEq)]
-pub(crate) struct Head {
+pub(crate) struct RequestHead {
     pub method: String,
     pub path: String,
     pub host: Option<String>,
@@ -20,7 +20,7 @@ pub(crate) struct Head {
 }
 
 /// Reads the head of a request from a connection.
-pub(crate) fn read(stream: &mut TcpStream) -> io::Result<Head> {
+pub(crate) fn read(stream: &mut TcpStream) -> io::Result<RequestHead> {
     let (mut bytes, mut some) = (Vec::new(), [0_u8; 1024]);
     loop {
         let count = stream.read(&mut some)?;
@@ -38,16 +38,16 @@ pub(crate) fn read(stream: &mut TcpStream) -> io::Result<Head> {
 }
 
 /// Parses the head of a request; `None` if it is incomplete.
-pub(crate) fn parse(bytes: &[u8]) -> io::Result<Option<Head>> {
+pub(crate) fn parse(bytes: &[u8]) -> io::Result<Option<RequestHead>> {
     let invalid = |error| io::Error::new(io::ErrorKind::InvalidData, error);
     let mut headers = [httparse::EMPTY_HEADER; 64];
     let mut request = httparse::Request::new(&mut headers);
     let httparse::Status::Complete(length) = request.parse(bytes).map_err(invalid)? else { return Ok(None) };
-    let mut head = Head {
+    let mut head = RequestHead {
         method: request.method.unwrap_or_default().into(),
         path: request.path.unwrap_or_default().into(),
         rest: bytes[length..].to_vec(),
-        ..Head::default()
+        ..RequestHead::default()
     };
     for header in request.headers {
         let value = String::from_utf8_lossy(header.value).into_owned();
@@ -64,7 +64,7 @@ pub(crate) fn parse(bytes: &[u8]) -> io::Result<Option<Head>> {
     Ok(Some(head))
 }
 
-impl Head {
+impl RequestHead {
     /// Returns true if the request comes from a page on this machine. After DNS rebinding, a
     /// foreign name resolves to the loopback interface, but the browser still sends that name. The
     /// port is ignored, because it differs behind `ssh -L`.
@@ -75,7 +75,7 @@ impl Head {
     }
 
     /// Returns the path after the token; `None` if the token is wrong.
-    pub fn path_behind(&self, token: &str) -> Option<&str> {
+    pub fn path_after_token(&self, token: &str) -> Option<&str> {
         let path = self.path.split(['?', '#']).next()?.strip_prefix('/')?;
         let (found, rest) = path.split_once('/')?;
         // Compare all bytes, so that the time does not depend on the token.
@@ -96,7 +96,7 @@ fn is_loopback(host: &str) -> bool {
 mod tests {
     use super::*;
 
-    fn head(lines: &str) -> Head {
+    fn head(lines: &str) -> RequestHead {
         parse(format!("GET /secret/socket HTTP/1.1\r\n{lines}\r\n").as_bytes()).unwrap().unwrap()
     }
 
@@ -120,9 +120,9 @@ mod tests {
     #[test]
     fn path_needs_the_whole_token() {
         let head = head("Host: localhost\r\n");
-        assert_eq!(head.path_behind("secret"), Some("socket"));
+        assert_eq!(head.path_after_token("secret"), Some("socket"));
         for token in ["secre", "secret1", "sfcret", ""] {
-            assert_eq!(head.path_behind(token), None, "{token:?}");
+            assert_eq!(head.path_after_token(token), None, "{token:?}");
         }
     }
 

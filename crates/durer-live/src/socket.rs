@@ -14,18 +14,18 @@ use tungstenite::{Error, Message, WebSocket};
 /// the page.
 const MAX_MESSAGE: usize = 360 << 20;
 /// Time to wait for a message while idle.
-const IDLE: Duration = Duration::from_millis(250);
+const IDLE_WAIT: Duration = Duration::from_millis(250);
 /// Time after which a page that does not read its messages is disconnected.
-const PATIENCE: Duration = Duration::from_secs(20);
+const WRITE_TIMEOUT: Duration = Duration::from_secs(20);
 
 /// Handles messages from the page, and renders between them, until the page disconnects.
 pub(crate) fn serve(stream: TcpStream, rest: Vec<u8>, shared: &Shared) {
     // Ignore errors: a connection can end at any time.
-    let _ = talk(stream, rest, shared);
+    let _ = run_session(stream, rest, shared);
 }
 
-fn talk(stream: TcpStream, rest: Vec<u8>, shared: &Shared) -> Result<(), Error> {
-    stream.set_write_timeout(Some(PATIENCE))?;
+fn run_session(stream: TcpStream, rest: Vec<u8>, shared: &Shared) -> Result<(), Error> {
+    stream.set_write_timeout(Some(WRITE_TIMEOUT))?;
     let config = WebSocketConfig::default().max_message_size(Some(MAX_MESSAGE)).max_frame_size(Some(MAX_MESSAGE));
     let mut socket = WebSocket::from_partially_read(stream, rest, Role::Server, Some(config));
     let start = Instant::now();
@@ -45,7 +45,7 @@ fn talk(stream: TcpStream, rest: Vec<u8>, shared: &Shared) -> Result<(), Error> 
             }
         }
         host.step(&mut |bytes| send(&mut socket, bytes, &mut failed));
-        if looked.elapsed() > IDLE {
+        if looked.elapsed() > IDLE_WAIT {
             looked = Instant::now();
             host.check_disk(&mut |bytes| send(&mut socket, bytes, &mut failed));
         }
@@ -61,7 +61,7 @@ fn next(socket: &mut WebSocket<TcpStream>, at_once: bool) -> Result<Option<Messa
     if at_once {
         socket.get_ref().set_nonblocking(true)?;
     } else {
-        socket.get_ref().set_read_timeout(Some(IDLE))?;
+        socket.get_ref().set_read_timeout(Some(IDLE_WAIT))?;
     }
     let read = socket.read();
     if at_once {

@@ -12,19 +12,19 @@ use tungstenite::client::IntoClientRequest;
 use tungstenite::{Message, WebSocket};
 
 /// A server in a thread that stops when it is dropped.
-struct Running {
+struct TestServer {
     address: String,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl Running {
-    fn new(file: Option<PathBuf>) -> Running {
+impl TestServer {
+    fn new(file: Option<PathBuf>) -> TestServer {
         let server = Server::bind(0, SessionFiles { file, lesson: None }).unwrap();
         let (address, stop) = (server.address().unwrap(), Arc::new(AtomicBool::new(false)));
         let stopped = stop.clone();
         let thread = Some(std::thread::spawn(move || server.run(|| stopped.load(Relaxed)).unwrap()));
-        Running { address, stop, thread }
+        TestServer { address, stop, thread }
     }
 
     fn host(&self) -> &str {
@@ -60,7 +60,7 @@ impl Running {
     }
 }
 
-impl Drop for Running {
+impl Drop for TestServer {
     fn drop(&mut self) {
         self.stop.store(true, Relaxed);
         let _ = self.thread.take().map(JoinHandle::join);
@@ -68,7 +68,7 @@ impl Drop for Running {
 }
 
 /// Waits for the next event of a kind and returns it.
-fn hear(socket: &mut WebSocket<TcpStream>, kind: &str) -> serde_json::Value {
+fn wait_for_event(socket: &mut WebSocket<TcpStream>, kind: &str) -> serde_json::Value {
     loop {
         let Message::Binary(bytes) = socket.read().unwrap() else { continue };
         let length = u32::from_le_bytes(bytes[..4].try_into().unwrap()) as usize;
@@ -86,7 +86,7 @@ fn ask(socket: &mut WebSocket<TcpStream>, request: serde_json::Value) {
 
 #[test]
 fn page_is_served_behind_its_token_only() {
-    let server = Running::new(None);
+    let server = TestServer::new(None);
     let host = format!("Host: {}\r\n", server.host());
     let page = server.get(server.path(), &host);
     assert!(page.starts_with("HTTP/1.1 200 OK") && page.contains("durer-server"), "{page}");
@@ -119,28 +119,28 @@ fn page_opens_edits_and_saves_a_scene_and_gets_conflicts() {
     let text = "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }\n\
                 Materials { PhongMaterial { diffuseColor 1 0 0 } }\nGroup { MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }\n";
     std::fs::write(&file, text).unwrap();
-    let server = Running::new(Some(file.clone()));
+    let server = TestServer::new(Some(file.clone()));
     let mut socket = server.connect(&format!("http://{}", server.host())).unwrap();
     ask(&mut socket, serde_json::json!({ "kind": "open", "name": "", "text": null }));
-    assert_eq!(hear(&mut socket, "opened")["text"], text);
-    assert_eq!(hear(&mut socket, "picture")["head"]["full_width"], 512);
+    assert_eq!(wait_for_event(&mut socket, "opened")["text"], text);
+    assert_eq!(wait_for_event(&mut socket, "picture")["head"]["full_width"], 512);
     let blue = text.replace("1 0 0 } }", "0 0 1 } }");
     ask(&mut socket, serde_json::json!({ "kind": "edit", "text": blue }));
     ask(&mut socket, serde_json::json!({ "kind": "save", "force": false }));
-    hear(&mut socket, "saved");
+    wait_for_event(&mut socket, "saved");
     assert_eq!(std::fs::read_to_string(&file).unwrap(), blue);
     // Change the file as another program would.
     std::fs::write(&file, format!("# mine\n{text}")).unwrap();
-    let changed = hear(&mut socket, "text");
+    let changed = wait_for_event(&mut socket, "text");
     assert_eq!(
         (changed["from_disk"].as_bool(), changed["text"].as_str()),
         (Some(true), Some(&*format!("# mine\n{text}")))
     );
     ask(&mut socket, serde_json::json!({ "kind": "save", "force": false }));
-    hear(&mut socket, "conflict");
+    wait_for_event(&mut socket, "conflict");
     assert_eq!(std::fs::read_to_string(&file).unwrap(), format!("# mine\n{text}"));
     ask(&mut socket, serde_json::json!({ "kind": "save", "force": true }));
-    hear(&mut socket, "saved");
+    wait_for_event(&mut socket, "saved");
     assert_eq!(std::fs::read_to_string(&file).unwrap(), blue);
 }
 
@@ -152,37 +152,37 @@ fn scenes_from_pages_read_files_in_the_folder_only() {
     std::fs::create_dir(&inner).unwrap();
     let file = inner.join("scene.txt");
     std::fs::write(&file, "").unwrap();
-    let server = Running::new(Some(file));
+    let server = TestServer::new(Some(file));
     let mut socket = server.connect(&format!("http://{}", server.host())).unwrap();
     ask(&mut socket, serde_json::json!({ "kind": "open", "name": "", "text": null }));
-    hear(&mut socket, "scene");
+    wait_for_event(&mut socket, "scene");
     for name in ["../secret.obj", folder.path().join("secret.obj").to_str().unwrap()] {
         let text = format!(
             "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }}\nGroup {{ TriangleMesh {{ obj_file {name} }} }}\n"
         );
         ask(&mut socket, serde_json::json!({ "kind": "edit", "text": text }));
-        let scene = hear(&mut socket, "scene");
+        let scene = wait_for_event(&mut socket, "scene");
         assert!(scene["contents"].is_null(), "{name}: {scene}");
         // Another name for the scene file is rejected too.
         let elsewhere = folder.path().join("scene.txt");
         ask(&mut socket, serde_json::json!({ "kind": "open", "name": elsewhere, "text": text.replace("../", "") }));
-        let scene = hear(&mut socket, "scene");
+        let scene = wait_for_event(&mut socket, "scene");
         assert!(scene["contents"].is_null(), "{name}: {scene}");
     }
 }
 
 #[test]
 fn foreign_origins_and_wrong_tokens_are_refused() {
-    let server = Running::new(None);
+    let server = TestServer::new(None);
     assert!(server.connect("http://evil.example").is_err());
     assert!(server.connect("null").is_err());
     let mut socket = server.connect(&format!("http://{}", server.host())).unwrap();
     // An invalid message is answered, and the socket stays open.
     socket.send(Message::text("{")).unwrap();
-    hear(&mut socket, "refused");
+    wait_for_event(&mut socket, "refused");
     socket.send(Message::binary(vec![1, 2, 3])).unwrap();
     ask(&mut socket, serde_json::json!({ "kind": "language" }));
-    assert!(hear(&mut socket, "language")["words"].as_array().unwrap().len() > 30);
+    assert!(wait_for_event(&mut socket, "language")["words"].as_array().unwrap().len() > 30);
 }
 
 /// Opens a small scene and changes its number of balls. Returns its number of objects.
@@ -191,12 +191,12 @@ fn objects(socket: &mut WebSocket<TcpStream>, count: usize) -> Option<u64> {
     let text =
         format!("PerspectiveCamera {{ center 0 0 9 direction 0 0 -1 up 0 1 0 angle 30 }}\nGroup {{ {balls} }}\n");
     ask(socket, serde_json::json!({ "kind": "open", "name": "balls.txt", "text": text }));
-    hear(socket, "scene")["contents"]["object_count"].as_u64()
+    wait_for_event(socket, "scene")["contents"]["object_count"].as_u64()
 }
 
 #[test]
 fn clients_that_mean_harm_lose_their_connection_and_nobody_else_does() {
-    let server = Running::new(None);
+    let server = TestServer::new(None);
     let origin = format!("http://{}", server.host());
     let mut page = server.connect(&origin).unwrap();
     assert_eq!(objects(&mut page, 3), Some(3));
@@ -232,12 +232,12 @@ fn clients_that_mean_harm_lose_their_connection_and_nobody_else_does() {
     }
     // The session of the page is unaffected.
     ask(&mut page, serde_json::json!({ "kind": "cast", "origin": [2, 0, 9], "direction": [0, 0, -1], "t_max": null }));
-    assert_eq!(hear(&mut page, "cast")["cast"]["hit"]["object"], 2);
+    assert_eq!(wait_for_event(&mut page, "cast")["cast"]["hit"]["object"], 2);
 }
 
 #[test]
 fn requests_of_any_size_and_form_are_answered() {
-    let server = Running::new(None);
+    let server = TestServer::new(None);
     let mut page = server.connect(&format!("http://{}", server.host())).unwrap();
     assert_eq!(objects(&mut page, 2), Some(2));
     let deep = "[".repeat(200_000);
@@ -262,7 +262,7 @@ fn requests_of_any_size_and_form_are_answered() {
         r#"{"session":1,"id":1,"request":{"kind":"save","force":true}}"#,
     ] {
         page.send(Message::text(message.to_string())).unwrap();
-        let why = hear(&mut page, "refused");
+        let why = wait_for_event(&mut page, "refused");
         assert!(why["why"].as_str().is_some_and(|why| why.len() < 1000), "{message:.80}: {why}");
     }
     // Every size and crop is answered with a picture, even an invalid one.
@@ -272,13 +272,13 @@ fn requests_of_any_size_and_form_are_answered() {
         r#"{"kind":"size","width":33,"height":7}"#,
     ] {
         ask(&mut page, serde_json::from_str(request).unwrap());
-        hear(&mut page, "picture");
+        wait_for_event(&mut page, "picture");
     }
 }
 
 #[test]
-fn a_client_that_does_not_read_keeps_nobody_waiting() {
-    let server = Running::new(None);
+fn client_that_does_not_read_blocks_no_one() {
+    let server = TestServer::new(None);
     let origin = format!("http://{}", server.host());
     let mut deaf = server.connect(&origin).unwrap();
     assert_eq!(objects(&mut deaf, 5), Some(5));
@@ -289,13 +289,13 @@ fn a_client_that_does_not_read_keeps_nobody_waiting() {
     let mut page = server.connect(&origin).unwrap();
     let start = std::time::Instant::now();
     assert_eq!(objects(&mut page, 4), Some(4));
-    hear(&mut page, "picture");
+    wait_for_event(&mut page, "picture");
     assert!(start.elapsed() < Duration::from_secs(10), "{:?}", start.elapsed());
 }
 
 #[test]
-fn a_thousand_connections_cost_a_session_nothing() {
-    let server = Running::new(None);
+fn session_survives_a_thousand_connections() {
+    let server = TestServer::new(None);
     let host = format!("Host: {}\r\n", server.host());
     let mut page = server.connect(&format!("http://{}", server.host())).unwrap();
     assert_eq!(objects(&mut page, 6), Some(6));
@@ -321,7 +321,7 @@ fn a_thousand_connections_cost_a_session_nothing() {
 
 #[test]
 fn idle_connections_block_others_for_a_short_time_only() {
-    let server = Running::new(None);
+    let server = TestServer::new(None);
     let host = format!("Host: {}\r\n", server.host());
     let idle: Vec<TcpStream> = (0..200).filter_map(|_| TcpStream::connect(server.host()).ok()).collect();
     // The connection is refused, or reset before the response arrives.

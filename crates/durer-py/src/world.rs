@@ -2,7 +2,7 @@
 
 use crate::rays::{self, JOB, Rays};
 use crate::work::{POLL_INTERVAL, each, install, poll, pool};
-use durer::check::{Subject, check};
+use durer::check::{CheckInput, check};
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::aov::Aov;
 use durer::image::Layer;
@@ -119,7 +119,7 @@ impl World {
                 (Some(loaded), Some(world)) => Ok(World { loaded, world, files, read }),
                 _ => {
                     let message = lines(&files, &read, |severity| severity == Severity::Error).join("\n");
-                    let found = report::findings(&durer::check::reported(&read), &files);
+                    let found = report::findings(&durer::check::reader_findings(&read), &files);
                     Err(SceneError::new_err((message, found.to_string())))
                 }
             }
@@ -267,8 +267,8 @@ impl World {
         let job = options(&pairs)?.resolve(&self.loaded).map_err(PyValueError::new_err)?;
         let World { loaded, world, files, read } = self;
         let (scene, dialect) = (&loaded.scene, loaded.dialect);
-        let subject = Subject { scene, world, dialect, files, job: &job, exposure: 1.0, rejected: None };
-        Ok(install(py, None, || report::findings(&check(&subject, read), files).to_string()))
+        let input = CheckInput { scene, world, dialect, files, job: &job, exposure: 1.0, rejected: None };
+        Ok(install(py, None, || report::findings(&check(&input, read), files).to_string()))
     }
 }
 

@@ -2,12 +2,12 @@
 
 use crate::protocol::{Finding, Severity, TextEdit, TextPosition};
 use durer::camera::Camera;
-use durer::check::{Subject, check};
+use durer::check::{CheckInput, check};
 use durer::compile::AssetCache;
 use durer::describe::DescribedKind;
 use durer::diag::{self, Diagnostic, Diagnostics, Files, Span};
 use durer::dialect::Dialect;
-use durer::format::asset_export::{AssetFile, plain};
+use durer::format::asset_export::{AssetFile, sanitize_name};
 use durer::format::course::write;
 use durer::format::scene::find_scene_format;
 use durer::format::{SceneFormat, mesh_format_for};
@@ -105,7 +105,7 @@ impl Document {
     /// files to which the text refers.
     pub fn as_text(&self) -> Result<(String, Vec<AssetFile>), String> {
         let compiled = self.compiled.as_ref().ok_or("the scene has errors")?;
-        let stem = plain(&self.path.file_stem().unwrap_or_default().to_string_lossy());
+        let stem = sanitize_name(&self.path.file_stem().unwrap_or_default().to_string_lossy());
         let (mut scene, files) = compiled.loaded.export_assets(&stem);
         scene.camera = Some(compiled.world.camera().clone());
         Ok((write(&scene, Dialect::Durer), files))
@@ -156,7 +156,7 @@ impl CompiledDocument {
 
     /// Returns the findings of `durer check`.
     pub fn check(&self, job: &Job) -> Vec<Finding> {
-        let subject = Subject {
+        let subject = CheckInput {
             scene: &self.loaded.scene,
             world: &self.world,
             dialect: self.loaded.dialect,

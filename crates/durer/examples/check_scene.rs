@@ -1,6 +1,6 @@
 //! Checks a scene for likely mistakes: here a camera that looks away from everything.
 
-use durer::check::{Subject, check};
+use durer::check::{CheckInput, check};
 use durer::prelude::*;
 
 pub(crate) fn main() -> Result<(), Error> {
@@ -12,7 +12,7 @@ pub(crate) fn main() -> Result<(), Error> {
     let world = scene.build()?.compile()?;
 
     let job = world.job(&RenderJob::for_scene(&world).size((64, 48)))?;
-    let subject = Subject {
+    let input = CheckInput {
         scene: world.scene(),
         world: world.world(),
         dialect: world.dialect(),
@@ -21,7 +21,7 @@ pub(crate) fn main() -> Result<(), Error> {
         exposure: 1.0,
         rejected: None,
     };
-    let findings = check(&subject, world.diagnostics());
+    let findings = check(&input, world.diagnostics());
     for finding in &findings {
         println!("{}: {}", finding.diagnostic.code, finding.diagnostic.message);
     }

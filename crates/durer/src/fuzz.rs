@@ -6,10 +6,10 @@
 
 use crate::LoadOptions;
 use durer_diag::{Diagnostics, Files, Span};
-use durer_formats::course::{ReadOptions, guess, random::Random, read, write};
+use durer_formats::course::{ReadOptions, guess, random::SceneGenerator, read, write};
 use durer_formats::folder::FolderSource;
 use durer_formats::json::{self, Document};
-use durer_formats::scene::{Input, find_scene_format, read_model};
+use durer_formats::scene::{ReadInput, find_scene_format, read_model};
 use durer_formats::{curve, photometry, read_mesh};
 use durer_image::{Encoded, ImageError, decode_linear};
 use durer_render::compile::AccelKind;
@@ -119,7 +119,7 @@ pub fn model(data: &[u8], name: &str) {
     for scene_defaults in
         [SceneDefaults::default(), SceneDefaults { animation_time: Some(0.5), ..SceneDefaults::default() }]
     {
-        let input = Input {
+        let input = ReadInput {
             bytes: &bytes,
             file,
             files: &files,
@@ -202,13 +202,13 @@ pub fn write_files(folder: &Path) -> std::io::Result<()> {
 
 /// Returns the text of a random but valid scene, determined by `bytes`.
 pub fn random_scene(bytes: &[u8]) -> String {
-    write(&Random::tame(bytes).scene(Dialect::Durer), Dialect::Durer)
+    write(&SceneGenerator::renderable(bytes).scene(Dialect::Durer), Dialect::Durer)
 }
 
 /// Builds a random scene from bytes, and checks that its text gives the same scene again, and that
 /// its picture is the same with BVH, grid and brute force.
 pub fn ways(data: &[u8]) {
-    let scene = Random::tame(data).scene(Dialect::Durer);
+    let scene = SceneGenerator::renderable(data).scene(Dialect::Durer);
     let text = random_scene(data);
     let path = folder().join("scene.txt");
     let settings = RenderSettings { bounces: 2, ..Job::default().settings };

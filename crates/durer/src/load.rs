@@ -7,9 +7,9 @@ use durer_formats::Decoder;
 use durer_formats::asset_export::{AssetFile, export_assets};
 use durer_formats::course::{self, Guess, Hint, ReadOptions};
 use durer_formats::folder::FolderSource;
+use durer_formats::gzip::{decompress, is_gzip};
 use durer_formats::json;
-use durer_formats::packed::{is_packed, unpacked};
-use durer_formats::scene::{Input, Output, find_scene_format, other_format, read_model, scene_format_for};
+use durer_formats::scene::{ReadInput, WriteContext, find_scene_format, other_format, read_model, scene_format_for};
 use durer_render::compile::{AccelKind, AssetCache, Resources, compile};
 use durer_render::threads;
 use durer_render::world::World;
@@ -114,15 +114,15 @@ pub fn load_text(
         source = source.assets(assets);
     }
     for (name, bytes) in &options.in_memory {
-        source = source.give(name, bytes.clone());
+        source = source.add_in_memory(name, bytes.clone());
     }
     // Record the scene file without a name, since the digest must not depend on its path.
     source.record().add("", &bytes);
     let mut name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut bytes = bytes;
-    if is_packed(&bytes) {
+    if is_gzip(&bytes) {
         let refuse = |problem| diagnostics.push(Diagnostic::error(problem).code("bad-file"));
-        bytes = unpacked(&bytes, budget(options)).map_err(refuse).ok()?;
+        bytes = decompress(&bytes, budget(options)).map_err(refuse).ok()?;
         name.truncate(name.strip_suffix(".gz").map_or(name.len(), str::len));
     }
     let memory = options.memory.unwrap_or(u64::MAX);
@@ -139,7 +139,8 @@ pub fn load_text(
         let source = source.budget(budget(options));
         let known = RefCell::new(std::mem::take(files));
         let scene_defaults = &options.scene_defaults;
-        let input = Input { bytes: &bytes, file, files: &known, name: &name, source: &source, scene_defaults, memory };
+        let input =
+            ReadInput { bytes: &bytes, file, files: &known, name: &name, source: &source, scene_defaults, memory };
         let scene = read_model(format, &input, diagnostics);
         *files = known.into_inner();
         let scene = scene?;
@@ -173,8 +174,8 @@ pub fn load_text(
     }
     source = match rules.paths {
         PathBase::SceneFile => source,
-        PathBase::Current => source.look_in(".", true),
-        PathBase::Assets(assets) => source.look_in(assets, true),
+        PathBase::Current => source.search_in(".", true),
+        PathBase::Assets(assets) => source.search_in(assets, true),
     };
     if options.course {
         source = source.allow(".");
@@ -185,7 +186,7 @@ pub fn load_text(
         return json.scene(diagnostics).map(|scene| LoadedScene { scene, rules, dialect, guess, source, memory });
     }
     let known = RefCell::new(std::mem::take(files));
-    let scene = course::read_with(&bytes, file, read, &course::below(&source, &known), diagnostics);
+    let scene = course::read_with(&bytes, file, read, &course::open_below(&source, &known), diagnostics);
     *files = known.into_inner();
     if let (Some(_), Some(dialect), false, false) = (&scene, options.dialect, options.strict, options.course) {
         diagnostics.extend(portability(&bytes, file, dialect, diagnostics));
@@ -244,7 +245,7 @@ impl LoadedScene {
         // `picture.png:g` is a channel of a file.
         let names = quoted.iter().flat_map(|text| [Some(*text), text.rsplit_once(':').map(|parted| parted.0)]);
         let mut paths = self.source.paths();
-        paths.extend(names.flatten().filter_map(|name| self.source.place(name)));
+        paths.extend(names.flatten().filter_map(|name| self.source.find_path(name)));
         paths
     }
 
@@ -252,7 +253,7 @@ impl LoadedScene {
     /// written. Adds a warning for everything that the format cannot express.
     pub fn write(&self, name: &str, diagnostics: &mut Diagnostics) -> Option<Vec<u8>> {
         let write = scene_format_for(name)?.write?;
-        let output = Output { name, source: &self.source, normals: self.rules.mesh_normals, memory: self.memory };
+        let output = WriteContext { name, source: &self.source, normals: self.rules.mesh_normals, memory: self.memory };
         Some(write(&self.scene, &output, diagnostics))
     }
 

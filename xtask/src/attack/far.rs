@@ -11,7 +11,7 @@ const SIDE: u32 = 24;
 
 /// Runs the attack.
 pub fn run(attack: &Attack) -> Result<Outcome> {
-    let mut fallen = Vec::new();
+    let mut failures = Vec::new();
     for number in 0..attack.count {
         let random = |place: u32| attack.random(number, place, 1 << 20) as f64 / f64::from(1 << 20);
         // Use distances from 10 to 10^6, and walls that are at least four single-precision steps
@@ -59,8 +59,8 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         let lit = pixels.iter().filter(|pixel| pixel.max_element() > 0.0).count();
         if lit > 0 {
             let steps = (wall / step).round();
-            fallen.push(format!("at {center:?}, a wall of {wall} ({steps} steps): {lit} pixels are lit"));
+            failures.push(format!("at {center:?}, a wall of {wall} ({steps} steps): {lit} pixels are lit"));
         }
     }
-    Ok(Outcome { tried: attack.count, fallen, note: String::new() })
+    Ok(Outcome { tried: attack.count, failures, note: String::new() })
 }

@@ -1,6 +1,6 @@
 //! Attack `growth`: small files that describe huge data, read with a limit of address space.
 
-use super::{Attack, Outcome, broken, inputs, name};
+use super::{Attack, Outcome, failure_reason, inputs, name};
 use anyhow::Result;
 use std::fmt::Write;
 
@@ -66,12 +66,12 @@ fn mitsuba(first: &str, last: &str) -> String {
 
 /// Runs the attack.
 pub fn run(attack: &Attack) -> Result<Outcome> {
-    let (mut fallen, mut tried) = (Vec::new(), 0);
+    let (mut failures, mut tried) = (Vec::new(), 0);
     let mut check = |path: &str, what: String, options: &[&str]| -> Result<()> {
         let arguments = ["render", path, "--samples", "1", "-q", "--restart", "-o", "o.png", "--threads", "2"];
         let output = attack.limited(&[&arguments, options].concat(), SPACE, SECONDS)?;
         tried += 1;
-        fallen.extend(broken(&output).map(|why| format!("{what}: {why}")));
+        failures.extend(failure_reason(&output).map(|why| format!("{what}: {why}")));
         Ok(())
     };
     for path in inputs() {
@@ -92,5 +92,5 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
             &[&["--size", "8x8"], options].concat(),
         )?;
     }
-    Ok(Outcome { tried, fallen, note: String::new() })
+    Ok(Outcome { tried, failures, note: String::new() })
 }

@@ -179,14 +179,14 @@ fn start(attack: &Attack, first: u64, end: u64) -> Result<(Child, Receiver<Strin
 pub fn run(attack: &Attack) -> Result<Outcome> {
     let originals = originals(&attack.only)?;
     anyhow::ensure!(!originals.is_empty(), "there are no files of the kind `{}`", attack.only);
-    let (mut fallen, mut next) = (Vec::new(), 0);
+    let (mut failures, mut next) = (Vec::new(), 0);
     let kept = crate::root()?.join("target/attack");
     let mut keep = |number: u64, why: &str| -> Result<()> {
         let (path, ending) = &originals[number as usize % originals.len()];
         std::fs::create_dir_all(&kept)?;
         let file = kept.join(format!("{}-{number}.{ending}", attack.seed));
         std::fs::write(&file, mutated(std::fs::read(path)?, attack.seed, number))?;
-        fallen.push(format!("{why}: {} of {}", file.display(), name(path)));
+        failures.push(format!("{why}: {} of {}", file.display(), name(path)));
         Ok(())
     };
     while next < attack.count {
@@ -212,5 +212,5 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         keep(at, why.unwrap_or("abort"))?;
         next = at + 1;
     }
-    Ok(Outcome { tried: attack.count, fallen, note: format!("; {} originals", originals.len()) })
+    Ok(Outcome { tried: attack.count, failures, note: format!("; {} originals", originals.len()) })
 }

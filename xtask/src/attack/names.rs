@@ -1,18 +1,18 @@
 //! Attack `names`: file names in inputs that lead out of the input's folder, or to pipes and
 //! devices.
 
-use super::{Attack, Outcome, broken};
+use super::{Attack, Outcome, failure_reason};
 use anyhow::Result;
 use std::os::unix::fs::symlink;
 use std::process::Command;
 
 /// Path prefixes that lead back to the same folder.
-const IDLE: [&str; 6] = ["./", ".//", "sub/../", "./sub/.././", "sub//../", "sub/deep/../../"];
+const INSIDE_PREFIXES: [&str; 6] = ["./", ".//", "sub/../", "./sub/.././", "sub//../", "sub/deep/../../"];
 /// Path prefixes that lead out of the folder.
-const OUT: [&str; 9] =
+const OUTSIDE_PREFIXES: [&str; 9] =
     ["../", "sub/../../", "..//", "../case/../", "sub/deep/../../../", "up/", "sub/up2/", "%2e%2e/", "..\\"];
 /// Devices and pipes that never end.
-const ENDLESS: [&str; 5] = ["/dev/zero", "/dev/stdin", "pipe", "zero", "/proc/self/fd/0"];
+const ENDLESS_FILES: [&str; 5] = ["/dev/zero", "/dev/stdin", "pipe", "zero", "/proc/self/fd/0"];
 
 /// Input files that refer to another file: path, text with the placeholder `NAME`, name of the
 /// secret file, and command.
@@ -98,7 +98,7 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         let arguments = ["render", "case/out/in/ball.txt", "--size", "32x32", "--samples", "1", "-q", "-o", picture];
         attack.limited(&arguments, 4_000_000, 60)?;
     }
-    let mut fallen = Vec::new();
+    let mut failures = Vec::new();
     for number in 0..attack.count {
         let (file, text, secret, command) = INPUTS[attack.random(number, 0, INPUTS.len() as u64)];
         let name = named(attack, number, secret);
@@ -114,22 +114,22 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         // In some formats an unreadable file causes only a warning, and quiet runs print only
         // errors.
         let outcome = output.status.code() == Some(2) || file == "a.obj" && messages.is_empty();
-        if let Some(why) = broken(&output).or_else(|| (!outcome).then(|| "it was read".into())) {
-            fallen.push(format!("{file} names {name:?}: {why}"));
+        if let Some(why) = failure_reason(&output).or_else(|| (!outcome).then(|| "it was read".into())) {
+            failures.push(format!("{file} names {name:?}: {why}"));
         }
     }
-    Ok(Outcome { tried: attack.count, fallen, note: String::new() })
+    Ok(Outcome { tried: attack.count, failures, note: String::new() })
 }
 
 /// Returns a name that leads to a secret file, to a device or to a pipe.
 fn named(attack: &Attack, number: u64, secret: &str) -> String {
     let pick = |place: u32, list: &[&str]| list[attack.random(number, place, list.len() as u64)].to_string();
     if attack.random(number, 1, 5) == 0 {
-        return pick(2, &ENDLESS);
+        return pick(2, &ENDLESS_FILES);
     }
-    let idle: String = (0..attack.random(number, 3, 3)).map(|i| pick(4 + i as u32, &IDLE)).collect();
+    let idle: String = (0..attack.random(number, 3, 3)).map(|i| pick(4 + i as u32, &INSIDE_PREFIXES)).collect();
     match attack.random(number, 8, 4) {
         0 => attack.path("case/out").join(idle).join(secret).display().to_string(),
-        _ => format!("{idle}{}{secret}", pick(9, &OUT)),
+        _ => format!("{idle}{}{secret}", pick(9, &OUTSIDE_PREFIXES)),
     }
 }

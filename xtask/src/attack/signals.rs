@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// Maximum time from a signal to the end of the program.
-const MOST: Duration = Duration::from_millis(500);
+const MAX_DELAY: Duration = Duration::from_millis(500);
 
 /// Commands that take a long time.
 const LONG: [&str; 14] = [
@@ -31,9 +31,9 @@ const LONG: [&str; 14] = [
 pub fn run(attack: &Attack) -> Result<Outcome> {
     attack.put("mesh.obj", mesh(900))?;
     attack.put("mesh.txt", scene("TriangleMesh { obj_file mesh.obj }"))?;
-    attack.put("endless.txt", ENDLESS)?;
+    attack.put("endless.txt", ENDLESS_SCENE)?;
     let whitted = crate::root()?.join("scenes/whitted.txt").display().to_string();
-    let (mut fallen, mut worst) = (Vec::new(), (Duration::ZERO, ""));
+    let (mut failures, mut worst) = (Vec::new(), (Duration::ZERO, ""));
     for number in 0..attack.count {
         let line = LONG[(number % LONG.len() as u64) as usize];
         let words = line.split_whitespace().map(|word| match word {
@@ -55,16 +55,16 @@ pub fn run(attack: &Attack) -> Result<Outcome> {
         let code = child.wait().context("it ran")?.code();
         // Code 0 means that the program ended before the signal. If the signal arrives before the
         // handler is installed, the program ends without a code.
-        if took > MOST || !matches!(code, None | Some(0 | 129 | 130 | 143)) {
-            fallen.push(format!("{line}: {:.2} s after {signal}, exit code {code:?}", took.as_secs_f64()));
+        if took > MAX_DELAY || !matches!(code, None | Some(0 | 129 | 130 | 143)) {
+            failures.push(format!("{line}: {:.2} s after {signal}, exit code {code:?}", took.as_secs_f64()));
         }
     }
     let note = format!("; the slowest took {:.2} s: {}", worst.0.as_secs_f64(), worst.1);
-    Ok(Outcome { tried: attack.count, fallen, note })
+    Ok(Outcome { tried: attack.count, failures, note })
 }
 
 /// Mirrors and glass that split every ray in two. With many bounces, no pixel is ever finished.
-const ENDLESS: &str = "PerspectiveCamera { center 0 0 0 direction 0.3 0.1 -1 up 0 1 0 angle 60 }
+const ENDLESS_SCENE: &str = "PerspectiveCamera { center 0 0 0 direction 0.3 0.1 -1 up 0 1 0 angle 60 }
 Lights { PointLight { position 0 0 0 color 1 1 1 } }
 Materials { Material { reflectiveColor 1 1 1 transparentColor 1 1 1 indexOfRefraction 1.5 } }
 Group { MaterialIndex 0

@@ -57,7 +57,7 @@ fn cases() -> Result<Vec<Case>> {
 }
 
 /// Tests `durer check` on all cases. Returns true if the goals are met.
-pub fn judge(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Result<bool> {
+pub fn test_check(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Result<bool> {
     meshes(folder)?;
     let (mut first, mut second, mut later, mut missed, mut alarms) = (0, 0, 0, 0, 0);
     let cases = cases()?;

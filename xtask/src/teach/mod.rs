@@ -19,19 +19,19 @@ use tracer::{Picture, Tracer};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Outcome {
     /// The mistakes were named, alone or with others that give the same picture.
-    Right,
+    Identified,
     /// No mistake was named.
-    Nothing,
+    NotIdentified,
     /// Only other mistakes were named.
     Wrong,
     /// The picture equals the reference, because the mistake is invisible in this scene.
-    Unseen,
+    Invisible,
 }
 
 /// Runs `cargo xtask teach`.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let only = crate::value(arguments, "--only");
-    let durer = crate::build::durer()?;
+    let durer = crate::build::build_durer()?;
     let keep = crate::value(arguments, "--keep").map(PathBuf::from);
     let folder =
         keep.clone().unwrap_or_else(|| std::env::temp_dir().join(format!("durer-teach-{}", std::process::id())));
@@ -42,7 +42,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         good &= pictures(&durer, &folder, &wanted)?;
     }
     if !arguments.iter().any(|a| a == "--compare") {
-        good &= broken::judge(&durer, &folder, &wanted)?;
+        good &= broken::test_check(&durer, &folder, &wanted)?;
     }
     if keep.is_none() {
         std::fs::remove_dir_all(&folder)?;
@@ -74,15 +74,17 @@ fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resul
         std::fs::write(own.join("own.ppm"), ppm(scene.size, &ours))?;
     }
     let cases: Vec<wrong::Case> = wrong::cases();
-    let cases: Vec<&wrong::Case> =
-        cases.iter().filter(|case| wanted(&format!("{} {}", scenes[case.scene].name, case.made.join(" ")))).collect();
+    let cases: Vec<&wrong::Case> = cases
+        .iter()
+        .filter(|case| wanted(&format!("{} {}", scenes[case.scene].name, case.mistakes.join(" "))))
+        .collect();
     let results: Vec<Result<(String, Outcome)>> = cases
         .iter()
         .map(|case| {
             let scene = &scenes[case.scene];
             let own = folder.join(scene.name);
-            let name = format!("{}.ppm", case.made.join("+"));
-            let picture = Tracer::new(scene, &case.made).picture();
+            let name = format!("{}.ppm", case.mistakes.join("+"));
+            let picture = Tracer::new(scene, &case.mistakes).picture();
             let unseen = ppm(scene.size, &picture) == std::fs::read(own.join("own.ppm"))?;
             std::fs::write(own.join(&name), ppm(scene.size, &picture))?;
             let mut compare = Command::new(durer);
@@ -91,9 +93,10 @@ fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resul
             let started = std::time::Instant::now();
             let text = output(&mut compare)?;
             let seconds = started.elapsed().as_secs_f64();
-            let (outcome, words) = if unseen { (Outcome::Unseen, String::new()) } else { judged(&text, &case.made) };
+            let (outcome, words) =
+                if unseen { (Outcome::Invisible, String::new()) } else { judged(&text, &case.mistakes) };
             let line =
-                format!("{outcome:<8?} {seconds:5.1} s  {:<13} {:<38} {words}", scene.name, case.made.join(" + "));
+                format!("{outcome:<8?} {seconds:5.1} s  {:<13} {:<38} {words}", scene.name, case.mistakes.join(" + "));
             println!("{line}");
             Ok((line, outcome))
         })
@@ -101,7 +104,7 @@ fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resul
     let results: Vec<(String, Outcome)> = results.into_iter().collect::<Result<_>>()?;
     let count = |outcome| results.iter().filter(|r| r.1 == outcome).count();
     let [right, not_told, wrong, unseen] =
-        [Outcome::Right, Outcome::Nothing, Outcome::Wrong, Outcome::Unseen].map(count);
+        [Outcome::Identified, Outcome::NotIdentified, Outcome::Wrong, Outcome::Invisible].map(count);
     let seen = results.len() - unseen;
     println!(
         "\n| | identified | not identified | **misidentified** | invisible in this scene |\n| --- | --- | --- | --- | --- |"
@@ -116,7 +119,7 @@ fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resul
 fn judged(json: &str, made: &[&str]) -> (Outcome, String) {
     let verdict = |name: &str| json.contains(&format!("\"verdict\": \"{name}\""));
     if verdict("identical") || verdict("same") {
-        return (Outcome::Unseen, String::new());
+        return (Outcome::Invisible, String::new());
     }
     let named = match json.split("\"named\": [").nth(1) {
         Some(rest) => rest.split("\"reference_off\"").next().unwrap_or(""),
@@ -130,15 +133,15 @@ fn judged(json: &str, made: &[&str]) -> (Outcome, String) {
         .collect();
     // A mistake that is not in the table cannot be named.
     if made.iter().any(|made| made.starts_with("x-")) && sets.is_empty() {
-        return (Outcome::Right, "not identified".into());
+        return (Outcome::Identified, "not identified".into());
     }
     if sets.is_empty() {
-        return (Outcome::Nothing, String::new());
+        return (Outcome::NotIdentified, String::new());
     }
     let wanted: Vec<&str> = made.iter().map(|made| wrong::description(made)).collect();
     let right = sets.iter().any(|set| set.len() == wanted.len() && wanted.iter().all(|name| set.contains(name)));
     let words = sets.iter().map(|set| set.join(" + ")).collect::<Vec<_>>().join(" = ");
-    (if right { Outcome::Right } else { Outcome::Wrong }, words)
+    (if right { Outcome::Identified } else { Outcome::Wrong }, words)
 }
 
 fn ppm((width, height): (usize, usize), picture: &Picture) -> Vec<u8> {

@@ -1,6 +1,6 @@
 //! Scenes of the judge as plain data, and their text in the course's language.
 
-use super::vector::{Matrix, V};
+use super::vector::{Matrix, Vec3};
 use std::fmt::Write;
 
 /// Dialect of a scene of the judge.
@@ -15,9 +15,9 @@ pub enum Year {
 
 /// One matrix of an object's transform in a scene of the judge.
 #[derive(Clone, Debug)]
-pub enum Op {
-    Translate(V),
-    Scale(V),
+pub enum Transform {
+    Translate(Vec3),
+    Scale(Vec3),
     X(f64),
     Y(f64),
     Z(f64),
@@ -26,39 +26,39 @@ pub enum Op {
 /// Shape of an object in a scene of the judge.
 #[derive(Clone, Debug)]
 pub enum Shape {
-    Sphere(V, f64),
-    Plane(V, f64),
-    Triangle([V; 3]),
+    Sphere(Vec3, f64),
+    Plane(Vec3, f64),
+    Triangle([Vec3; 3]),
     /// File name, vertices and triangles of a mesh. The year determines whether it is shaded
     /// smoothly.
-    Mesh(&'static str, Vec<V>, Vec<[usize; 3]>),
+    Mesh(&'static str, Vec<Vec3>, Vec<[usize; 3]>),
 }
 
 /// An object in a scene of the judge: shape, transform and index of its material.
 #[derive(Clone, Debug)]
 pub struct Object {
     pub shape: Shape,
-    pub ops: Vec<Op>,
+    pub ops: Vec<Transform>,
     pub material: usize,
 }
 
 /// Phong material in a scene of the judge.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Material {
-    pub kd: V,
-    pub ks: V,
+    pub kd: Vec3,
+    pub ks: Vec3,
     pub shininess: f64,
-    pub kr: V,
-    pub kt: V,
+    pub kr: Vec3,
+    pub kt: Vec3,
     pub index: f64,
 }
 
 /// Light in a scene of the judge: directional or a point light.
 #[derive(Clone, Copy, Debug)]
 pub enum Light {
-    Sun(V, V),
+    Directional(Vec3, Vec3),
     /// Position, colour, and attenuation coefficients a0, a1, a2.
-    Bulb(V, V, V),
+    Point(Vec3, Vec3, Vec3),
 }
 
 /// A scene that the judge's tracer renders and that can be written as a scene file.
@@ -69,38 +69,40 @@ pub struct Scene {
     pub size: (usize, usize),
     pub shadows: bool,
     pub bounces: u32,
-    pub eye: V,
-    pub look: V,
-    pub up: V,
+    pub eye: Vec3,
+    pub look: Vec3,
+    pub up: Vec3,
     /// Field of view in degrees, or minus the size of an orthographic picture.
     pub angle: f64,
-    pub background: V,
-    pub ambient: V,
+    pub background: Vec3,
+    pub ambient: Vec3,
     pub lights: Vec<Light>,
-    pub stuff: Vec<Material>,
+    pub materials: Vec<Material>,
     pub objects: Vec<Object>,
 }
 
-impl Op {
+impl Transform {
     /// Returns the matrix of the transform. `degrees` converts angles to radians.
     pub fn matrix(&self, degrees: impl Fn(f64) -> f64) -> Matrix {
         let turn = |angle: f64, a: usize, b: usize| {
             let (s, c) = degrees(angle).sin_cos();
             let mut m = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
             (m[a][a], m[b][b], m[a][b], m[b][a]) = (c, c, -s, s);
-            Matrix { rows: m.map(|r| V(r[0], r[1], r[2])), by: V::ZERO }
+            Matrix { rows: m.map(|r| Vec3(r[0], r[1], r[2])), by: Vec3::ZERO }
         };
         match *self {
-            Op::Translate(by) => Matrix { by, ..Matrix::ONE },
-            Op::Scale(V(x, y, z)) => Matrix { rows: [V(x, 0.0, 0.0), V(0.0, y, 0.0), V(0.0, 0.0, z)], by: V::ZERO },
-            Op::X(angle) => turn(angle, 1, 2),
-            Op::Y(angle) => turn(angle, 2, 0),
-            Op::Z(angle) => turn(angle, 0, 1),
+            Transform::Translate(by) => Matrix { by, ..Matrix::ONE },
+            Transform::Scale(Vec3(x, y, z)) => {
+                Matrix { rows: [Vec3(x, 0.0, 0.0), Vec3(0.0, y, 0.0), Vec3(0.0, 0.0, z)], by: Vec3::ZERO }
+            }
+            Transform::X(angle) => turn(angle, 1, 2),
+            Transform::Y(angle) => turn(angle, 2, 0),
+            Transform::Z(angle) => turn(angle, 0, 1),
         }
     }
 }
 
-fn v(V(x, y, z): V) -> String {
+fn v(Vec3(x, y, z): Vec3) -> String {
     format!("{x} {y} {z}")
 }
 
@@ -115,8 +117,8 @@ impl Scene {
         let _ = writeln!(t, "Lights {{\n  numLights {}", self.lights.len());
         for light in &self.lights {
             let _ = match *light {
-                Light::Sun(d, c) => writeln!(t, "  DirectionalLight {{ direction {} color {} }}", v(d), v(c)),
-                Light::Bulb(p, c, a) => {
+                Light::Directional(d, c) => writeln!(t, "  DirectionalLight {{ direction {} color {} }}", v(d), v(c)),
+                Light::Point(p, c, a) => {
                     let fade = match self.year {
                         Year::F04 | Year::Durer => format!(" attenuation {}", v(a)),
                         Year::F12a4 => String::new(),
@@ -127,8 +129,8 @@ impl Scene {
             };
         }
         let _ = writeln!(t, "}}\nBackground {{ color {} ambientLight {} }}", v(self.background), v(self.ambient));
-        let _ = writeln!(t, "Materials {{\n  numMaterials {}", self.stuff.len());
-        for m in &self.stuff {
+        let _ = writeln!(t, "Materials {{\n  numMaterials {}", self.materials.len());
+        for m in &self.materials {
             let _ = write!(t, "  Material {{ diffuseColor {} specularColor {}", v(m.kd), v(m.ks));
             let _ = match self.year {
                 Year::F04 | Year::Durer => write!(
@@ -158,11 +160,11 @@ impl Scene {
                 .ops
                 .iter()
                 .map(|op| match op {
-                    Op::Translate(by) => format!("Translate {}", v(*by)),
-                    Op::Scale(by) => format!("Scale {}", v(*by)),
-                    Op::X(angle) => format!("XRotate {angle}"),
-                    Op::Y(angle) => format!("YRotate {angle}"),
-                    Op::Z(angle) => format!("ZRotate {angle}"),
+                    Transform::Translate(by) => format!("Translate {}", v(*by)),
+                    Transform::Scale(by) => format!("Scale {}", v(*by)),
+                    Transform::X(angle) => format!("XRotate {angle}"),
+                    Transform::Y(angle) => format!("YRotate {angle}"),
+                    Transform::Z(angle) => format!("ZRotate {angle}"),
                 })
                 .collect();
             let _ = match ops.is_empty() {

@@ -1,7 +1,7 @@
 //! The judge's tracer, which is independent of the library and can make common mistakes by name.
 
-use super::scene::{Light, Material, Object, Op, Scene, Shape, Year};
-use super::vector::{Matrix, V};
+use super::scene::{Light, Material, Object, Scene, Shape, Transform, Year};
+use super::vector::{Matrix, Vec3};
 
 /// A picture with eight bits per channel, starting with the top row.
 pub type Picture = Vec<[u8; 3]>;
@@ -18,8 +18,8 @@ pub struct Tracer<'s> {
 struct Hit {
     t: f64,
     /// Shading normal in world space.
-    n: V,
-    geo: V,
+    n: Vec3,
+    geo: Vec3,
     object: usize,
 }
 
@@ -27,7 +27,7 @@ impl<'s> Tracer<'s> {
     /// Creates a tracer for a scene with some mistakes.
     pub fn new(scene: &'s Scene, mistakes: &'s [&'static str]) -> Self {
         let mut tracer = Tracer { scene, mistakes, places: Vec::new() };
-        tracer.places = scene.objects.iter().map(|object| tracer.place(object)).collect();
+        tracer.places = scene.objects.iter().map(|object| tracer.matrices(object)).collect();
         tracer
     }
 
@@ -35,7 +35,7 @@ impl<'s> Tracer<'s> {
         self.mistakes.contains(&name)
     }
 
-    fn place(&self, object: &Object) -> (Matrix, Matrix) {
+    fn matrices(&self, object: &Object) -> (Matrix, Matrix) {
         let degrees = |angle: f64| match () {
             () if self.is("rotation-radians") => angle,
             () if self.is("rotation-negated") => -angle.to_radians(),
@@ -44,10 +44,12 @@ impl<'s> Tracer<'s> {
         let mut m = Matrix::ONE;
         for op in &object.ops {
             let one = match *op {
-                Op::Translate(by) if self.is("translation-negated") => Op::Translate(-by),
-                Op::Scale(V(x, y, z)) if self.is("scale-inverted") => Op::Scale(V(1.0 / x, 1.0 / y, 1.0 / z)),
-                Op::X(angle) if self.is("rotation-axis") => Op::Y(angle),
-                Op::Y(angle) if self.is("rotation-axis") => Op::X(angle),
+                Transform::Translate(by) if self.is("translation-negated") => Transform::Translate(-by),
+                Transform::Scale(Vec3(x, y, z)) if self.is("scale-inverted") => {
+                    Transform::Scale(Vec3(1.0 / x, 1.0 / y, 1.0 / z))
+                }
+                Transform::X(angle) if self.is("rotation-axis") => Transform::Y(angle),
+                Transform::Y(angle) if self.is("rotation-axis") => Transform::X(angle),
                 ref other => other.clone(),
             };
             let one = one.matrix(degrees);
@@ -61,12 +63,12 @@ impl<'s> Tracer<'s> {
 
     /// Returns all roots of a ray with an object in object space, each with its geometric and
     /// shading normal.
-    fn roots(&self, object: &Object, o: V, d: V) -> Vec<(f64, V, V)> {
-        let triangle = |p: [V; 3]| {
+    fn roots(&self, object: &Object, o: Vec3, d: Vec3) -> Vec<(f64, Vec3, Vec3)> {
+        let triangle = |p: [Vec3; 3]| {
             let n = (p[1] - p[0]).cross(p[2] - p[0]);
             let t = (p[0] - o).dot(n) / d.dot(n);
             let q = o + d * t;
-            let area = |a: V, b: V| (b - a).cross(q - a).dot(n) / n.dot(n);
+            let area = |a: Vec3, b: Vec3| (b - a).cross(q - a).dot(n) / n.dot(n);
             let w = [area(p[1], p[2]), area(p[2], p[0]), area(p[0], p[1])];
             let n = if self.is("triangles-turned") { -n } else { n };
             let tested = |(i, w): (usize, &f64)| *w >= 0.0 || self.is("triangle-test") && i == 1;
@@ -75,7 +77,7 @@ impl<'s> Tracer<'s> {
         match &object.shape {
             Shape::Sphere(c, r) => {
                 let r = if self.is("radius-not-squared") { r.sqrt() } else { *r };
-                let c = if self.is("center-ignored") { V::ZERO } else { *c };
+                let c = if self.is("center-ignored") { Vec3::ZERO } else { *c };
                 let (a, b, k) = (d.dot(d), d.dot(o - c), (o - c).dot(o - c) - r * r);
                 let (root, a) = match self.is("sphere-roots") {
                     true => (b * b - 4.0 * a * k, 2.0 * a),
@@ -109,7 +111,7 @@ impl<'s> Tracer<'s> {
                             let around = faces.iter().filter(|f| f.contains(&corner));
                             around
                                 .map(|f| (corners[f[1]] - corners[f[0]]).cross(corners[f[2]] - corners[f[0]]))
-                                .fold(V::ZERO, |a, b| a + b)
+                                .fold(Vec3::ZERO, |a, b| a + b)
                                 .unit()
                         };
                         let n = at(face[0]) * w[0] + at(face[1]) * w[1] + at(face[2]) * w[2];
@@ -124,7 +126,7 @@ impl<'s> Tracer<'s> {
         }
     }
 
-    fn hit(&self, o: V, d: V, least: f64, most: f64) -> Option<Hit> {
+    fn hit(&self, o: Vec3, d: Vec3, least: f64, most: f64) -> Option<Hit> {
         let mut best: Option<Hit> = None;
         for (number, object) in self.scene.objects.iter().enumerate() {
             let (to_world, back) = &self.places[number];
@@ -135,7 +137,7 @@ impl<'s> Tracer<'s> {
             if self.is("local-direction-unit") {
                 ld = ld.unit();
             }
-            let mut own: Option<(f64, V, V)> = None;
+            let mut own: Option<(f64, Vec3, Vec3)> = None;
             for (t, n, geo) in self.roots(object, lo, ld) {
                 let least = if self.is("hits-behind") { f64::NEG_INFINITY } else { least };
                 let mesh = matches!(object.shape, Shape::Mesh(..));
@@ -153,7 +155,7 @@ impl<'s> Tracer<'s> {
                 }
             }
             let Some((t, n, geo)) = own else { continue };
-            let normal = |n: V| match () {
+            let normal = |n: Vec3| match () {
                 () if self.is("normals-local") => n,
                 () if self.is("normals-moved") => to_world.vector(n).unit(),
                 () if self.is("normals-long") => back.transposed().vector(n),
@@ -173,7 +175,7 @@ impl<'s> Tracer<'s> {
         best
     }
 
-    fn background(&self) -> V {
+    fn background(&self) -> Vec3 {
         self.scene.background
     }
 
@@ -192,7 +194,7 @@ impl<'s> Tracer<'s> {
         }
     }
 
-    fn blocked(&self, p: V, l: V, distance: f64) -> bool {
+    fn blocked(&self, p: Vec3, l: Vec3, distance: f64) -> bool {
         if !self.scene.shadows && !self.is("shadows-added") || self.is("no-shadows") {
             return false;
         }
@@ -203,7 +205,7 @@ impl<'s> Tracer<'s> {
         };
         let p = if self.is("shadows-from-eye") { self.scene.eye } else { p };
         // Student programs use single precision, which is what causes acne.
-        let single = |v: V| v.map(|x| f64::from(x as f32));
+        let single = |v: Vec3| v.map(|x| f64::from(x as f32));
         let p = if self.is("epsilon-0") { single(p) } else { p };
         match self.hit(p, l, self.epsilon(true), most) {
             // The second program of 2012 considers only front faces of the nearest object.
@@ -212,14 +214,14 @@ impl<'s> Tracer<'s> {
         }
     }
 
-    fn shade(&self, o: V, d: V, hit: &Hit, bounces: u32, index: f64) -> V {
+    fn shade(&self, o: Vec3, d: Vec3, hit: &Hit, bounces: u32, index: f64) -> Vec3 {
         let scene = self.scene;
-        let mut stuff: Material = scene.stuff[scene.objects[hit.object].material];
+        let mut material: Material = scene.materials[scene.objects[hit.object].material];
         if self.is("x-kd-squared") {
-            stuff.kd = stuff.kd * stuff.kd;
+            material.kd = material.kd * material.kd;
         }
         if self.is("x-materials-swapped") {
-            stuff = scene.stuff[(scene.objects[hit.object].material + 1) % scene.stuff.len()];
+            material = scene.materials[(scene.objects[hit.object].material + 1) % scene.materials.len()];
         }
         let p = o + d * hit.t;
         let side = if matches!(scene.year, Year::Durer) { hit.geo } else { hit.n };
@@ -229,54 +231,54 @@ impl<'s> Tracer<'s> {
         if back && faced {
             n = -n;
         }
-        let mut color = V::ZERO;
+        let mut color = Vec3::ZERO;
         let ambient = match () {
-            () if self.is("no-ambient") => V::ZERO,
+            () if self.is("no-ambient") => Vec3::ZERO,
             () if self.is("ambient-bare") => scene.ambient,
-            () if self.is("x-ambient-brighter") => scene.ambient * stuff.kd * 1.6,
-            () if self.is("ambient-each-light") => scene.ambient * stuff.kd * scene.lights.len() as f64,
-            () => scene.ambient * stuff.kd,
+            () if self.is("x-ambient-brighter") => scene.ambient * material.kd * 1.6,
+            () if self.is("ambient-each-light") => scene.ambient * material.kd * scene.lights.len() as f64,
+            () => scene.ambient * material.kd,
         };
         if !(scene.year == Year::F04 && back && !faced) {
             color = ambient;
             let mut free = scene.lights.is_empty();
-            let mut greatest = V::ZERO;
+            let mut greatest = Vec3::ZERO;
             for (number, emitter) in scene.lights.iter().enumerate() {
                 if self.is("light-missing") && number == 0 {
                     continue;
                 }
                 let (mut l, distance, mut light) = match *emitter {
-                    Light::Sun(along, c) => {
+                    Light::Directional(along, c) => {
                         let l = if self.is("light-negated") { along } else { -along };
                         (if self.is("light-long") { l } else { l.unit() }, f64::INFINITY, c)
                     }
-                    Light::Bulb(at, c, a) => {
-                        let at = if self.is("x-light-turned") { V(at.0, at.2, at.1) } else { at };
+                    Light::Point(at, c, a) => {
+                        let at = if self.is("x-light-turned") { Vec3(at.0, at.2, at.1) } else { at };
                         let distance = (at - p).length();
                         let p = if self.is("point-light-from-eye") { scene.eye } else { p };
                         (at - p, distance, c * self.fading(a, distance))
                     }
                 };
                 let toward = l.unit();
-                if matches!(emitter, Light::Bulb(..)) && !self.is("point-light-long") {
+                if matches!(emitter, Light::Point(..)) && !self.is("point-light-long") {
                     l = toward;
                 }
                 if self.is("white-lights") {
                     light = match *emitter {
-                        Light::Sun(..) => V::ONE,
-                        Light::Bulb(_, _, a) => V::ONE * self.fading(a, distance),
+                        Light::Directional(..) => Vec3::ONE,
+                        Light::Point(_, _, a) => Vec3::ONE * self.fading(a, distance),
                     };
                 }
                 if self.blocked(p, toward, distance) && !(self.is("x-second-light-unshadowed") && number == 1) {
                     if self.is("shadows-diffuse") {
-                        color = color + stuff.kd * n.dot(l).max(0.0) * light;
+                        color = color + material.kd * n.dot(l).max(0.0) * light;
                     }
                     continue;
                 }
                 free = true;
-                let direct = self.direct(&stuff, n, d, l) * light;
+                let direct = self.direct(&material, n, d, l) * light;
                 if self.is("greatest-light") {
-                    greatest = V(greatest.0.max(direct.0), greatest.1.max(direct.1), greatest.2.max(direct.2));
+                    greatest = Vec3(greatest.0.max(direct.0), greatest.1.max(direct.1), greatest.2.max(direct.2));
                     continue;
                 }
                 color = if self.is("last-light-only") { ambient + direct } else { color + direct };
@@ -293,16 +295,16 @@ impl<'s> Tracer<'s> {
             color = color.map(|c| c.clamp(0.0, 1.0));
         }
         if bounces > 0 {
-            color = color + self.secondary(p, d, hit, back, &stuff, bounces, index);
+            color = color + self.secondary(p, d, hit, back, &material, bounces, index);
         }
         color
     }
 
-    fn fading(&self, a: V, d: f64) -> f64 {
+    fn fading(&self, a: Vec3, d: f64) -> f64 {
         let a = match self.scene.year {
-            Year::F12a4 => V(1.0, 0.0, 0.0),
-            Year::F12a5 => V(1.0, 0.0, a.2),
-            Year::F16 => V(0.0, 0.0, a.2),
+            Year::F12a4 => Vec3(1.0, 0.0, 0.0),
+            Year::F12a5 => Vec3(1.0, 0.0, a.2),
+            Year::F16 => Vec3(0.0, 0.0, a.2),
             Year::F04 | Year::Durer => a,
         };
         let whole = a.0 + a.1 * d + a.2 * d * d;
@@ -317,7 +319,7 @@ impl<'s> Tracer<'s> {
         }
     }
 
-    fn direct(&self, stuff: &Material, n: V, d: V, l: V) -> V {
+    fn direct(&self, material: &Material, n: Vec3, d: Vec3, l: Vec3) -> Vec3 {
         let cosine = n.dot(l);
         let diffuse = match () {
             () if self.is("no-diffuse") => 0.0,
@@ -327,13 +329,13 @@ impl<'s> Tracer<'s> {
             () if self.is("cosine-of-view") => n.dot(-d).max(0.0),
             () => cosine.max(0.0),
         };
-        let kd = if self.is("diffuse-twice") { stuff.kd * stuff.kd } else { stuff.kd };
+        let kd = if self.is("diffuse-twice") { material.kd * material.kd } else { material.kd };
         let mut color = kd * diffuse;
         let none = self.scene.year == Year::F12a5 && !self.is("highlights-added") || self.is("no-highlights");
         if none {
             return color;
         }
-        let exponent = stuff.shininess
+        let exponent = material.shininess
             * match () {
                 () if self.is("exponent-doubled") => 2.0,
                 () if self.is("exponent-halved") => 0.5,
@@ -366,33 +368,42 @@ impl<'s> Tracer<'s> {
             strength *= cosine.max(0.0);
         }
         let ks = match () {
-            () if self.is("highlight-diffuse") => stuff.ks * stuff.kd,
-            () if self.is("highlight-bare") => V::ONE,
-            () => stuff.ks,
+            () if self.is("highlight-diffuse") => material.ks * material.kd,
+            () if self.is("highlight-bare") => Vec3::ONE,
+            () => material.ks,
         };
         color = color + ks * strength;
         color
     }
 
     #[allow(clippy::too_many_arguments, reason = "the judge's tracer is one function a step")]
-    fn secondary(&self, p: V, d: V, hit: &Hit, back: bool, stuff: &Material, bounces: u32, index: f64) -> V {
+    fn secondary(
+        &self,
+        p: Vec3,
+        d: Vec3,
+        hit: &Hit,
+        back: bool,
+        material: &Material,
+        bounces: u32,
+        index: f64,
+    ) -> Vec3 {
         let n = if back { -hit.n } else { hit.n };
-        let glassy = stuff.index > 0.0 && matches!(self.scene.year, Year::F12a5);
+        let glassy = material.index > 0.0 && matches!(self.scene.year, Year::F12a5);
         let (mut kr, mut kt) = match self.scene.year {
-            Year::F04 | Year::Durer => (stuff.kr, stuff.kt),
-            Year::F12a4 => return V::ZERO,
-            Year::F12a5 if glassy => (stuff.ks, stuff.ks),
-            Year::F12a5 | Year::F16 => (stuff.ks, V::ZERO),
+            Year::F04 | Year::Durer => (material.kr, material.kt),
+            Year::F12a4 => return Vec3::ZERO,
+            Year::F12a5 if glassy => (material.ks, material.ks),
+            Year::F12a5 | Year::F16 => (material.ks, Vec3::ZERO),
         };
         let (here, there) = match (back, glassy) {
             (true, true) => (index, 1.0),
-            (true, false) => (stuff.index, 1.0),
-            (false, true) => (index, stuff.index),
-            (false, false) => (1.0, stuff.index),
+            (true, false) => (material.index, 1.0),
+            (false, true) => (index, material.index),
+            (false, false) => (1.0, material.index),
         };
         let eta = match () {
             () if self.is("index-inverted") => there / here,
-            () if self.is("exit-not-swapped") => 1.0 / stuff.index,
+            () if self.is("exit-not-swapped") => 1.0 / material.index,
             () => here / there,
         };
         let mirror = match () {
@@ -420,22 +431,22 @@ impl<'s> Tracer<'s> {
             });
             (kr, kt) = (kr * r, kt * (1.0 - r));
         }
-        let mut color = V::ZERO;
+        let mut color = Vec3::ZERO;
         let times = if self.is("secondary-each-light") { self.scene.lights.len() } else { 1 };
         for _ in 0..times {
-            if kr.most() > 0.0 && !self.is("no-reflection") {
-                let weight = if self.is("mirror-in-full") { V::ONE } else { kr };
+            if kr.max_component() > 0.0 && !self.is("no-reflection") {
+                let weight = if self.is("mirror-in-full") { Vec3::ONE } else { kr };
                 color = color + weight * self.trace(p, mirror, bounces - 1, index, false);
             }
-            if let (Some(t), true) = (through, kt.most() > 0.0 && !self.is("no-refraction")) {
-                let weight = if self.is("glass-in-full") { V::ONE } else { kt };
+            if let (Some(t), true) = (through, kt.max_component() > 0.0 && !self.is("no-refraction")) {
+                let weight = if self.is("glass-in-full") { Vec3::ONE } else { kt };
                 color = color + weight * self.trace(p, t, bounces - 1, there, false);
             }
         }
         color
     }
 
-    fn trace(&self, o: V, d: V, bounces: u32, index: f64, first: bool) -> V {
+    fn trace(&self, o: Vec3, d: Vec3, bounces: u32, index: f64, first: bool) -> Vec3 {
         let least = match first {
             true if self.scene.angle < 0.0 => f64::NEG_INFINITY,
             true => 0.0,
@@ -443,13 +454,13 @@ impl<'s> Tracer<'s> {
         };
         match self.hit(o, d, least, f64::INFINITY) {
             Some(hit) => self.shade(o, d, &hit, bounces, index),
-            None if !first && self.is("secondary-black-sky") => V::ZERO,
+            None if !first && self.is("secondary-black-sky") => Vec3::ZERO,
             None => self.background(),
         }
     }
 
     /// Returns origin and direction of the ray of a pixel. Rows are counted from the top.
-    fn ray(&self, i: usize, j: usize) -> (V, V) {
+    fn ray(&self, i: usize, j: usize) -> (Vec3, Vec3) {
         let scene = self.scene;
         let (w, h) = (scene.size.0 as f64, scene.size.1 as f64);
         let (i, j) = (i as f64, h - 1.0 - j as f64);
@@ -487,7 +498,7 @@ impl<'s> Tracer<'s> {
             () if self.is("x-wider") => (0.58 * scene.angle.to_radians()).tan(),
             () => (0.5 * scene.angle.to_radians()).tan(),
         };
-        let eye = if self.is("x-eye-moved") { scene.eye + V(0.3, 0.2, 0.0) } else { scene.eye };
+        let eye = if self.is("x-eye-moved") { scene.eye + Vec3(0.3, 0.2, 0.0) } else { scene.eye };
         (eye, (w * (1.0 / half) + u * x + v * y).unit())
     }
 
@@ -500,13 +511,13 @@ impl<'s> Tracer<'s> {
             () if self.is("bounce-one") => 1,
             () => self.scene.bounces,
         };
-        let all: Vec<V> = (0..w * h)
+        let all: Vec<Vec3> = (0..w * h)
             .map(|pixel| {
                 let (o, d) = self.ray(pixel % w, pixel / w);
                 self.trace(o, d, bounces, 1.0, true)
             })
             .collect();
-        let most = all.iter().map(|c| c.most()).fold(0.0, f64::max);
+        let most = all.iter().map(|c| c.max_component()).fold(0.0, f64::max);
         let curve = |c: f64| match () {
             () if self.scene.year != Year::Durer => c,
             () if c <= 0.0031308 => 12.92 * c,
@@ -532,7 +543,7 @@ impl<'s> Tracer<'s> {
                 () if self.is("transposed") => (j, i),
                 () => (i, j),
             };
-            let V(r, g, b) = all[j * w + i];
+            let Vec3(r, g, b) = all[j * w + i];
             match () {
                 () if self.is("bgr") => [eight(b), eight(g), eight(r)],
                 () if self.is("channels") => [eight(g), eight(b), eight(r)],

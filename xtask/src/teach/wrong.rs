@@ -1,52 +1,54 @@
 //! Wrong pictures for testing `durer compare`: scenes that the judge's tracer renders with
 //! mistakes.
 
-use super::scene::{Light, Material, Object, Op, Scene, Shape, Year};
-use super::vector::V;
+use super::scene::{Light, Material, Object, Scene, Shape, Transform, Year};
+use super::vector::Vec3;
 
 /// A wrong picture: index of its scene, and the mistakes it is rendered with.
 pub struct Case {
     pub scene: usize,
-    pub made: Vec<&'static str>,
+    pub mistakes: Vec<&'static str>,
 }
 
-const SUN: Light = Light::Sun(V(-1.0, -2.0, -1.5), V(0.7, 0.7, 0.6));
+const SUN: Light = Light::Directional(Vec3(-1.0, -2.0, -1.5), Vec3(0.7, 0.7, 0.6));
 
-fn bulb(at: V, color: V, fade: V) -> Light {
-    Light::Bulb(at, color, fade)
+fn bulb(at: Vec3, color: Vec3, fade: Vec3) -> Light {
+    Light::Point(at, color, fade)
 }
 
-fn matt(kd: V) -> Material {
+fn matt(kd: Vec3) -> Material {
     Material { kd, shininess: 10.0, index: 0.0, ..Material::default() }
 }
 
-fn glossy(kd: V, ks: V, shininess: f64) -> Material {
+fn glossy(kd: Vec3, ks: Vec3, shininess: f64) -> Material {
     Material { ks, shininess, ..matt(kd) }
 }
 
-fn sphere(c: V, r: f64, material: usize) -> Object {
+fn sphere(c: Vec3, r: f64, material: usize) -> Object {
     Object { shape: Shape::Sphere(c, r), ops: Vec::new(), material }
 }
 
 fn floor(offset: f64, material: usize) -> Object {
-    Object { shape: Shape::Plane(V(0.0, 1.0, 0.0), offset), ops: Vec::new(), material }
+    Object { shape: Shape::Plane(Vec3(0.0, 1.0, 0.0), offset), ops: Vec::new(), material }
 }
 
-fn moved(object: Object, ops: Vec<Op>) -> Object {
+fn moved(object: Object, ops: Vec<Transform>) -> Object {
     Object { ops, ..object }
 }
 
 /// Returns an octahedron: eight triangles with vertices on the axes.
 fn octahedron(name: &'static str, r: f64) -> Shape {
-    let corners = vec![V(r, 0., 0.), V(-r, 0., 0.), V(0., r, 0.), V(0., -r, 0.), V(0., 0., r), V(0., 0., -r)];
+    let corners =
+        vec![Vec3(r, 0., 0.), Vec3(-r, 0., 0.), Vec3(0., r, 0.), Vec3(0., -r, 0.), Vec3(0., 0., r), Vec3(0., 0., -r)];
     let faces = vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
     Shape::Mesh(name, corners, faces)
 }
 
 /// Returns a rotated and stretched mesh next to a sphere on a floor.
 fn beside_a_ball(mesh: Shape) -> Vec<Object> {
-    let ops = vec![Op::Translate(V(1.2, 0.5, 0.5)), Op::Y(30.0), Op::Scale(V(1.0, 1.5, 1.0))];
-    vec![sphere(V(-1.4, 0.6, 0.0), 1.0, 0), Object { shape: mesh, ops, material: 1 }, floor(-0.8, 2)]
+    let ops =
+        vec![Transform::Translate(Vec3(1.2, 0.5, 0.5)), Transform::Y(30.0), Transform::Scale(Vec3(1.0, 1.5, 1.0))];
+    vec![sphere(Vec3(-1.4, 0.6, 0.0), 1.0, 0), Object { shape: mesh, ops, material: 1 }, floor(-0.8, 2)]
 }
 
 /// Returns the scenes, which are small and have few objects, as in the course. There are scenes for
@@ -58,27 +60,27 @@ pub fn scenes() -> Vec<Scene> {
         size: (120, 120),
         shadows: true,
         bounces: 0,
-        eye: V(0.0, 1.5, 9.0),
-        look: V(0.0, -0.15, -1.0),
-        up: V(0.0, 1.0, 0.0),
+        eye: Vec3(0.0, 1.5, 9.0),
+        look: Vec3(0.0, -0.15, -1.0),
+        up: Vec3(0.0, 1.0, 0.0),
         angle: 36.0,
-        background: V(0.2, 0.1, 0.6),
-        ambient: V(0.15, 0.15, 0.2),
-        lights: vec![SUN, bulb(V(3.0, 4.0, 3.0), V(1.0, 0.9, 0.5), V(1.0, 0.05, 0.03))],
-        stuff: vec![
-            glossy(V(0.8, 0.3, 0.2), V(0.6, 0.6, 0.6), 16.0),
-            glossy(V(0.2, 0.5, 0.8), V(0.9, 0.9, 0.5), 40.0),
-            matt(V(0.5, 0.6, 0.4)),
+        background: Vec3(0.2, 0.1, 0.6),
+        ambient: Vec3(0.15, 0.15, 0.2),
+        lights: vec![SUN, bulb(Vec3(3.0, 4.0, 3.0), Vec3(1.0, 0.9, 0.5), Vec3(1.0, 0.05, 0.03))],
+        materials: vec![
+            glossy(Vec3(0.8, 0.3, 0.2), Vec3(0.6, 0.6, 0.6), 16.0),
+            glossy(Vec3(0.2, 0.5, 0.8), Vec3(0.9, 0.9, 0.5), 40.0),
+            matt(Vec3(0.5, 0.6, 0.4)),
         ],
-        objects: vec![sphere(V(-1.1, 0.3, 0.0), 1.0, 0), sphere(V(1.2, 0.0, 0.8), 0.8, 1), floor(-0.8, 2)],
+        objects: vec![sphere(Vec3(-1.1, 0.3, 0.0), 1.0, 0), sphere(Vec3(1.2, 0.0, 0.8), 0.8, 1), floor(-0.8, 2)],
     };
     let mirrors = Scene {
         name: "mirrors",
         bounces: 2,
-        stuff: vec![
-            Material { kr: V(0.5, 0.5, 0.6), ..glossy(V(0.4, 0.2, 0.2), V(0.5, 0.5, 0.5), 20.0) },
-            Material { kr: V(0.7, 0.6, 0.5), ..matt(V(0.2, 0.2, 0.2)) },
-            Material { kr: V(0.3, 0.3, 0.3), ..matt(V(0.5, 0.6, 0.4)) },
+        materials: vec![
+            Material { kr: Vec3(0.5, 0.5, 0.6), ..glossy(Vec3(0.4, 0.2, 0.2), Vec3(0.5, 0.5, 0.5), 20.0) },
+            Material { kr: Vec3(0.7, 0.6, 0.5), ..matt(Vec3(0.2, 0.2, 0.2)) },
+            Material { kr: Vec3(0.3, 0.3, 0.3), ..matt(Vec3(0.5, 0.6, 0.4)) },
         ],
         ..old.clone()
     };
@@ -86,21 +88,21 @@ pub fn scenes() -> Vec<Scene> {
         name: "glass",
         bounces: 4,
         shadows: false,
-        stuff: vec![
+        materials: vec![
             Material {
-                kr: V(0.1, 0.1, 0.1),
-                kt: V(0.8, 0.9, 0.8),
+                kr: Vec3(0.1, 0.1, 0.1),
+                kt: Vec3(0.8, 0.9, 0.8),
                 index: 1.5,
-                ..glossy(V(0.05, 0.05, 0.05), V(0.6, 0.6, 0.6), 30.0)
+                ..glossy(Vec3(0.05, 0.05, 0.05), Vec3(0.6, 0.6, 0.6), 30.0)
             },
-            matt(V(0.9, 0.5, 0.1)),
-            matt(V(0.4, 0.5, 0.6)),
-            matt(V(0.2, 0.7, 0.3)),
+            matt(Vec3(0.9, 0.5, 0.1)),
+            matt(Vec3(0.4, 0.5, 0.6)),
+            matt(Vec3(0.2, 0.7, 0.3)),
         ],
         objects: vec![
-            sphere(V(-0.4, 0.4, 1.5), 1.0, 0),
-            sphere(V(1.4, 0.0, -1.0), 0.8, 1),
-            sphere(V(-1.8, 0.2, -2.0), 1.0, 3),
+            sphere(Vec3(-0.4, 0.4, 1.5), 1.0, 0),
+            sphere(Vec3(1.4, 0.0, -1.0), 0.8, 1),
+            sphere(Vec3(-1.8, 0.2, -2.0), 1.0, 3),
             floor(-0.8, 2),
         ],
         ..old.clone()
@@ -108,20 +110,33 @@ pub fn scenes() -> Vec<Scene> {
     let turned = Scene {
         name: "turned",
         shadows: false,
-        eye: V(0.0, 0.5, 10.0),
-        look: V(0.0, 0.0, -2.0),
+        eye: Vec3(0.0, 0.5, 10.0),
+        look: Vec3(0.0, 0.0, -2.0),
         objects: vec![
             moved(
-                sphere(V::ZERO, 1.0, 0),
-                vec![Op::Translate(V(-1.3, 0.6, 0.0)), Op::Z(40.0), Op::Scale(V(1.6, 0.6, 1.0))],
+                sphere(Vec3::ZERO, 1.0, 0),
+                vec![
+                    Transform::Translate(Vec3(-1.3, 0.6, 0.0)),
+                    Transform::Z(40.0),
+                    Transform::Scale(Vec3(1.6, 0.6, 1.0)),
+                ],
             ),
             moved(
-                sphere(V(0.2, 0.0, 0.0), 0.9, 1),
-                vec![Op::Translate(V(1.5, -0.4, 0.0)), Op::Y(25.0), Op::X(-35.0), Op::Scale(V(0.5, 1.7, 0.8))],
+                sphere(Vec3(0.2, 0.0, 0.0), 0.9, 1),
+                vec![
+                    Transform::Translate(Vec3(1.5, -0.4, 0.0)),
+                    Transform::Y(25.0),
+                    Transform::X(-35.0),
+                    Transform::Scale(Vec3(0.5, 1.7, 0.8)),
+                ],
             ),
             Object {
-                shape: Shape::Triangle([V(-1.0, -1.0, 0.0), V(1.0, -1.0, 0.0), V(0.0, 0.8, 0.5)]),
-                ops: vec![Op::Translate(V(0.0, 0.6, -2.0)), Op::Z(20.0), Op::Scale(V(1.8, 1.2, 1.0))],
+                shape: Shape::Triangle([Vec3(-1.0, -1.0, 0.0), Vec3(1.0, -1.0, 0.0), Vec3(0.0, 0.8, 0.5)]),
+                ops: vec![
+                    Transform::Translate(Vec3(0.0, 0.6, -2.0)),
+                    Transform::Z(20.0),
+                    Transform::Scale(Vec3(1.8, 1.2, 1.0)),
+                ],
                 material: 2,
             },
         ],
@@ -130,12 +145,12 @@ pub fn scenes() -> Vec<Scene> {
     let flat = Scene {
         name: "orthographic",
         angle: -6.0,
-        eye: V(0.5, 2.0, 6.0),
-        look: V(-0.3, -0.8, -2.0),
+        eye: Vec3(0.5, 2.0, 6.0),
+        look: Vec3(-0.3, -0.8, -2.0),
         shadows: false,
         lights: vec![
-            Light::Sun(V(-0.5, -1.0, -0.7), V(0.8, 0.8, 0.8)),
-            Light::Sun(V(1.0, -0.3, -0.4), V(0.2, 0.3, 0.4)),
+            Light::Directional(Vec3(-0.5, -1.0, -0.7), Vec3(0.8, 0.8, 0.8)),
+            Light::Directional(Vec3(1.0, -0.3, -0.4), Vec3(0.2, 0.3, 0.4)),
         ],
         ..old.clone()
     };
@@ -144,8 +159,8 @@ pub fn scenes() -> Vec<Scene> {
         year: Year::F12a4,
         shadows: false,
         lights: vec![
-            bulb(V(3.0, 4.0, 5.0), V(0.7, 0.6, 0.6), V(1.0, 0.0, 0.0)),
-            Light::Sun(V(1.0, -0.5, -0.8), V(0.3, 0.4, 0.3)),
+            bulb(Vec3(3.0, 4.0, 5.0), Vec3(0.7, 0.6, 0.6), Vec3(1.0, 0.0, 0.0)),
+            Light::Directional(Vec3(1.0, -0.5, -0.8), Vec3(0.3, 0.4, 0.3)),
         ],
         objects: beside_a_ball(octahedron("octahedron.obj", 1.0)),
         ..old.clone()
@@ -155,26 +170,27 @@ pub fn scenes() -> Vec<Scene> {
         year: Year::F16,
         bounces: 2,
         lights: vec![
-            bulb(V(2.0, 4.0, 3.0), V(1.0, 1.0, 0.9), V(0.0, 0.0, 0.06)),
-            bulb(V(-4.0, 3.0, 4.0), V(0.4, 0.5, 0.7), V(0.0, 0.0, 0.04)),
+            bulb(Vec3(2.0, 4.0, 3.0), Vec3(1.0, 1.0, 0.9), Vec3(0.0, 0.0, 0.06)),
+            bulb(Vec3(-4.0, 3.0, 4.0), Vec3(0.4, 0.5, 0.7), Vec3(0.0, 0.0, 0.04)),
         ],
-        up: V(0.2, 1.0, 0.0),
+        up: Vec3(0.2, 1.0, 0.0),
         ..old.clone()
     };
     let fresnel = Scene {
         name: "fresnel",
         year: Year::F12a5,
         bounces: 4,
-        lights: vec![bulb(V(3.0, 5.0, 4.0), V(1.5, 1.4, 1.2), V(1.0, 0.0, 0.02))],
-        stuff: vec![
-            Material { ks: V(0.9, 0.9, 0.9), index: 1.5, ..matt(V(0.05, 0.05, 0.1)) },
-            Material { ks: V(0.4, 0.4, 0.4), ..matt(V(0.6, 0.3, 0.2)) },
-            matt(V(0.5, 0.6, 0.4)),
+        lights: vec![bulb(Vec3(3.0, 5.0, 4.0), Vec3(1.5, 1.4, 1.2), Vec3(1.0, 0.0, 0.02))],
+        materials: vec![
+            Material { ks: Vec3(0.9, 0.9, 0.9), index: 1.5, ..matt(Vec3(0.05, 0.05, 0.1)) },
+            Material { ks: Vec3(0.4, 0.4, 0.4), ..matt(Vec3(0.6, 0.3, 0.2)) },
+            matt(Vec3(0.5, 0.6, 0.4)),
         ],
         ..old.clone()
     };
     let ours = Scene { name: "ours", year: Year::Durer, bounces: 3, ..mirrors.clone() };
-    let wide = Scene { name: "wide", size: (160, 100), look: V(0.3, -0.2, -1.3), up: V(0.3, 1.0, 0.1), ..old.clone() };
+    let wide =
+        Scene { name: "wide", size: (160, 100), look: Vec3(0.3, -0.2, -1.3), up: Vec3(0.3, 1.0, 0.1), ..old.clone() };
     let facets =
         Scene { name: "facets", shadows: false, objects: beside_a_ball(octahedron("facets.obj", 1.0)), ..old.clone() };
     let cubes = Scene { name: "cubes", year: Year::F12a5, bounces: 1, ..facets.clone() };
@@ -182,7 +198,7 @@ pub fn scenes() -> Vec<Scene> {
 }
 
 /// Mistakes that are made alone, for each scene.
-const ALONE: [&[&str]; 12] = [
+const SINGLE: [&[&str]; 12] = [
     &[
         "no-ambient",
         "ambient-each-light",
@@ -369,7 +385,7 @@ const ALONE: [&[&str]; 12] = [
 ];
 
 /// Further mistakes that are made alone, by index of the scene.
-const MORE: [(usize, &[&str]); 8] = [
+const MORE_SINGLE: [(usize, &[&str]); 8] = [
     (
         0,
         &[
@@ -412,7 +428,7 @@ const UNKNOWN: [&str; 7] = [
 ];
 
 /// Pairs of mistakes, by index of the scene.
-const TOGETHER: &[(usize, [&str; 2])] = &[
+const PAIRS: &[(usize, [&str; 2])] = &[
     (0, ["no-ambient", "no-highlights"]),
     (0, ["no-shadows", "exponent-doubled"]),
     (0, ["mirrored", "no-ambient"]),
@@ -431,16 +447,18 @@ const TOGETHER: &[(usize, [&str; 2])] = &[
 
 /// Returns all wrong pictures.
 pub fn cases() -> Vec<Case> {
-    let alone = ALONE.iter().enumerate();
+    let alone = SINGLE.iter().enumerate();
     let mut cases: Vec<Case> =
-        alone.flat_map(|(scene, names)| names.iter().map(move |name| Case { scene, made: vec![*name] })).collect();
+        alone.flat_map(|(scene, names)| names.iter().map(move |name| Case { scene, mistakes: vec![*name] })).collect();
     cases.extend(
-        MORE.iter().flat_map(|(scene, names)| names.iter().map(|name| Case { scene: *scene, made: vec![*name] })),
+        MORE_SINGLE
+            .iter()
+            .flat_map(|(scene, names)| names.iter().map(|name| Case { scene: *scene, mistakes: vec![*name] })),
     );
     for scene in [0, 1, 5, 6] {
-        cases.extend(UNKNOWN.iter().map(|name| Case { scene, made: vec![*name] }));
+        cases.extend(UNKNOWN.iter().map(|name| Case { scene, mistakes: vec![*name] }));
     }
-    cases.extend(TOGETHER.iter().map(|(scene, names)| Case { scene: *scene, made: names.to_vec() }));
+    cases.extend(PAIRS.iter().map(|(scene, names)| Case { scene: *scene, mistakes: names.to_vec() }));
     cases
 }
 

@@ -13,13 +13,13 @@ pub struct Case {
     pub materials: String,
     pub lights: String,
     pub group: String,
-    pub what: What,
+    pub what: Quantity,
     pub bounces: u32,
     pub answer: f64,
 }
 
 /// Quantity that a case measures.
-pub enum What {
+pub enum Quantity {
     /// Illuminance at a point, for the side to which a normal points.
     Illuminance(Vec3, Vec3),
     /// Luminance seen from a point in a direction.
@@ -29,13 +29,13 @@ pub enum What {
     Flux(Vec<[Vec3; 3]>),
 }
 
-impl What {
+impl Quantity {
     /// Returns the unit of the quantity.
     pub fn unit(&self) -> &'static str {
         match self {
-            What::Illuminance(..) => "lx",
-            What::Luminance(..) => "cd/m²",
-            What::Flux(_) => "lm",
+            Quantity::Illuminance(..) => "lx",
+            Quantity::Luminance(..) => "cd/m²",
+            Quantity::Flux(_) => "lm",
         }
     }
 }
@@ -49,7 +49,7 @@ const CANDELAS_100: &str = "color 31.830989 31.830989 31.830989 attenuation 0 0 
 /// A sun at the zenith with an illuminance of 1000 lux.
 const SUN: &str = "DirectionalLight { direction 0 -1 0 color 318.30989 318.30989 318.30989 }";
 /// Fields of a sky with uniform luminance, also below the horizon.
-const EVEN: &str = "color 1000 1000 1000";
+const UNIFORM_SKY: &str = "color 1000 1000 1000";
 
 /// Form factor from a floor element to a parallel rectangle that has a corner above the element.
 /// The arguments are the sides of the rectangle divided by its distance.
@@ -61,7 +61,7 @@ fn parallel(x: f64, y: f64) -> f64 {
 /// Form factor from an element to a perpendicular rectangle. The element is opposite a corner, and
 /// its normal is along the sides of length `a`; `b` is the length of the other sides and `c` the
 /// distance.
-fn upright(a: f64, b: f64, c: f64) -> f64 {
+fn perpendicular(a: f64, b: f64, c: f64) -> f64 {
     let far = (a * a + c * c).sqrt();
     (fp::atan_f64(b / c) - c / far * fp::atan_f64(b / far)) / (2.0 * PI)
 }
@@ -120,7 +120,7 @@ fn through(opening: [Vec3; 3], n: Vec3, sky: impl Fn(Vec3) -> f64) -> f64 {
 
 /// Returns the text of a plate with a rectangular opening: four rectangles in the plane of the
 /// opening.
-fn around(opening: [Vec3; 3]) -> String {
+fn walls_around(opening: [Vec3; 3]) -> String {
     let [corner, a, b] = opening;
     const FAR: f32 = 999.0;
     let (u, v) = (a.normalize(), b.normalize());
@@ -135,14 +135,14 @@ fn around(opening: [Vec3; 3]) -> String {
         + &piece(corner + b, a, FAR * v)
 }
 
-fn case(name: &'static str, formula: &'static str, what: What, answer: f64) -> Case {
+fn case(name: &'static str, formula: &'static str, what: Quantity, answer: f64) -> Case {
     let none = String::new;
     let materials = BLACK.into();
     Case { name, formula, background: none(), materials, lights: none(), group: none(), what, bounces: 0, answer }
 }
 
-fn floor() -> What {
-    What::Illuminance(Vec3::ZERO, Vec3::Y)
+fn floor() -> Quantity {
+    Quantity::Illuminance(Vec3::ZERO, Vec3::Y)
 }
 
 /// Returns the six inner faces of a cube of 4 m around the origin, with normals pointing inwards.
@@ -205,12 +205,12 @@ fn area_lights() -> Vec<Case> {
             PI * 1000.0 * parallel(1.5, 0.5),
         ),
         Case {
-            what: What::Illuminance(Vec3::new(0.0, 0.7, 0.0), Vec3::X),
+            what: Quantity::Illuminance(Vec3::new(0.0, 0.7, 0.0), Vec3::X),
             ..light(
                 "[5.3] Panel of 1000 cd/m², 2 m x 1.5 m, on the floor next to a wall, point on the wall 0.7 m above its corner",
                 "Howell C-12",
                 "Rectangle { corner 0 0 0 edge0 0 0 1.5 edge1 2 0 0 }",
-                PI * 1000.0 * upright(2.0, 1.5, 0.7),
+                PI * 1000.0 * perpendicular(2.0, 1.5, 0.7),
             )
         },
     ]
@@ -228,10 +228,10 @@ fn skies() -> Vec<Case> {
             true => "Rectangle { corner -999 2.5 -999 edge0 1001 0 0 edge1 0 0 1998 }",
             false => "",
         };
-        Case { group: format!("MaterialIndex 0 {} {lid}", around(opening)), ..open(name, formula, sky, answer) }
+        Case { group: format!("MaterialIndex 0 {} {lid}", walls_around(opening)), ..open(name, formula, sky, answer) }
     };
     let mut all = vec![
-        open("Open field under a uniform sky of 1000 cd/m²", "E = π L", EVEN, PI * 1000.0),
+        open("Open field under a uniform sky of 1000 cd/m²", "E = π L", UNIFORM_SKY, PI * 1000.0),
         open(
             "Open field under the CIE overcast sky, 9000 cd/m² at the zenith",
             "E = 7 π Lz / 9",
@@ -239,7 +239,7 @@ fn skies() -> Vec<Case> {
             7_000.0 * PI,
         ),
         Case {
-            what: What::Illuminance(Vec3::new(0.0, 0.5, 0.0), Vec3::X),
+            what: Quantity::Illuminance(Vec3::new(0.0, 0.5, 0.0), Vec3::X),
             ..open(
                 "Wall under the same sky, no light from the ground",
                 "E = Lz (π/6 + 4/9): the cosine integrated over half the sky",
@@ -248,25 +248,25 @@ fn skies() -> Vec<Case> {
             )
         },
         Case {
-            what: What::Illuminance(Vec3::ZERO, Vec3::X),
+            what: Quantity::Illuminance(Vec3::ZERO, Vec3::X),
             group:
                 "MaterialIndex 0 Transform { UniformScale 1000 Disc { center 0 -0.000001 0 normal 0 -1 0 radius 1 } }"
                     .into(),
-            ..open("Wall beside a black field, uniform sky of 1000 cd/m²", "E = π L / 2", EVEN, PI * 500.0)
+            ..open("Wall beside a black field, uniform sky of 1000 cd/m²", "E = π L / 2", UNIFORM_SKY, PI * 500.0)
         },
         behind(
             "[5.9] Open roof light of 3 m x 1 m, 2 m overhead, uniform sky",
             "E = π L F, Howell C-11",
-            EVEN,
+            UNIFORM_SKY,
             roof,
             PI * 1000.0 * parallel(1.5, 0.5),
         ),
         behind(
             "[5.11] Open window of 1.6 m x 1.2 m, 2 m away, sill 1 m up, uniform sky",
             "E = π L F, Howell C-12",
-            EVEN,
+            UNIFORM_SKY,
             window,
-            2.0 * PI * 1000.0 * (upright(2.2, 0.8, 2.0) - upright(1.0, 0.8, 2.0)),
+            2.0 * PI * 1000.0 * (perpendicular(2.2, 0.8, 2.0) - perpendicular(1.0, 0.8, 2.0)),
         ),
     ];
     for (name, sky, number) in [
@@ -340,30 +340,30 @@ fn reflections() -> Vec<Case> {
     let roof = [Vec3::new(-1.0, 3.0, -0.5), Vec3::new(2.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
     vec![
         Case {
-            background: EVEN.into(),
+            background: UNIFORM_SKY.into(),
             group: format!(
                 "MaterialIndex 0 {} Rectangle {{ corner -2 0 -2 edge0 4 0 0 edge1 0 0 4 }} Rectangle {{ corner -2 0 -2 edge0 4 0 0 edge1 0 3.01 0 }} Rectangle {{ corner -2 0 2 edge0 4 0 0 edge1 0 3.01 0 }} \
                  Rectangle {{ corner -2 0 -2 edge0 0 0 4 edge1 0 3.01 0 }} Rectangle {{ corner 2 0 -2 edge0 0 0 4 edge1 0 3.01 0 }}",
-                around(roof)
+                walls_around(roof)
             ),
             ..case(
                 "[5.4] Flux into a black room of 4 m x 4 m x 3 m through a roof light of 2 m², uniform sky",
                 "Φ = π L A: all flux reaches the walls and the floor",
-                What::Flux(inside),
+                Quantity::Flux(inside),
                 PI * 1000.0 * 2.0,
             )
         },
         matte(
-            What::Illuminance(Vec3::new(0.0, 0.7, 0.0), Vec3::X),
+            Quantity::Illuminance(Vec3::new(0.0, 0.7, 0.0), Vec3::X),
             SUN,
             patch,
             1,
             "[5.6] Wall beside a matte floor of 2 m x 1.5 m, ρ 0.5, in 1000 lx from above",
             "E = ρ E₀ F, Howell C-12",
-            500.0 * upright(2.0, 1.5, 0.7),
+            500.0 * perpendicular(2.0, 1.5, 0.7),
         ),
         matte(
-            What::Illuminance(Vec3::new(0.0, 2.0, 0.0), Vec3::NEG_Y),
+            Quantity::Illuminance(Vec3::new(0.0, 2.0, 0.0), Vec3::NEG_Y),
             SUN,
             patch,
             1,
@@ -372,7 +372,7 @@ fn reflections() -> Vec<Case> {
             500.0 * parallel(1.0, 0.75),
         ),
         matte(
-            What::Illuminance(Vec3::new(0.0, 2.0, 0.0), Vec3::NEG_Y),
+            Quantity::Illuminance(Vec3::new(0.0, 2.0, 0.0), Vec3::NEG_Y),
             SUN,
             &format!("{patch} MaterialIndex 1 Rectangle {{ corner 1 0 -5 edge0 0 1 0 edge1 0 0 10 }}"),
             1,
@@ -381,7 +381,7 @@ fn reflections() -> Vec<Case> {
             500.0 * parallel(0.5, 0.75),
         ),
         matte(
-            What::Illuminance(Vec3::new(0.0, 0.0, -1.999), Vec3::Z),
+            Quantity::Illuminance(Vec3::new(0.0, 0.0, -1.999), Vec3::Z),
             &light("0 0 0"),
             "Sphere { center 0 0 0 radius 2 }",
             60,
@@ -390,7 +390,7 @@ fn reflections() -> Vec<Case> {
             100.0 / (1.999 * 1.999) + flux / (16.0 * PI),
         ),
         matte(
-            What::Flux(inside_of_cube()),
+            Quantity::Flux(inside_of_cube()),
             &light("0.3 0.5 -0.4"),
             "Box { min -2 -2 -2 max 2 2 2 }",
             60,
@@ -404,7 +404,7 @@ fn reflections() -> Vec<Case> {
 fn panes() -> Vec<Case> {
     let ball = "Difference { Sphere { center 0 0 0 radius 1 } Sphere { center 0 0 0 radius 0.9 } }";
     let mut all = vec![Case {
-        background: EVEN.into(),
+        background: UNIFORM_SKY.into(),
         materials: GLASS.into(),
         group: format!("MaterialIndex 0 {ball}"),
         bounces: 60,
@@ -444,7 +444,7 @@ fn panes() -> Vec<Case> {
             ..case(
                 name,
                 "T = (1 − F)² τ / (1 − F² τ²), Fresnel at each face, and Beer",
-                What::Luminance(Vec3::ZERO, Vec3::new(sine as f32, cosine as f32, 0.0)),
+                Quantity::Luminance(Vec3::ZERO, Vec3::new(sine as f32, cosine as f32, 0.0)),
                 1000.0 * pane(cosine, kept),
             )
         });
@@ -463,7 +463,7 @@ fn panes() -> Vec<Case> {
             ..case(
                 name,
                 "mean of T for both polarisations: light keeps its polarisation inside the sheet",
-                What::Luminance(Vec3::ZERO, Vec3::new(sine as f32, cosine as f32, 0.0)),
+                Quantity::Luminance(Vec3::ZERO, Vec3::new(sine as f32, cosine as f32, 0.0)),
                 1000.0 * polarised_pane(cosine, kept),
             )
         });

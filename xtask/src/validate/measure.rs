@@ -1,7 +1,7 @@
 //! Compares measurements of the path tracer with known answers.
 
 use super::Table;
-use super::cases::{Case, What, cases};
+use super::cases::{Case, Quantity, cases};
 use anyhow::Result;
 use durer::integrator::{Integrate, Path, PathOptions, RenderSettings};
 use durer::math::Ray;
@@ -19,12 +19,14 @@ pub fn world(name: &str, background: &str, materials: &str, lights: &str, group:
 }
 
 /// Returns one sample of a case's quantity.
-fn one(path: &Path, what: &What, sample: u32) -> f64 {
+fn one(path: &Path, what: &Quantity, sample: u32) -> f64 {
     let id = SampleId::new(0, (0, 0), sample);
     match what {
-        What::Illuminance(point, normal) => f64::from(path.irradiance(point.as_dvec3(), *normal, id, &mut ()).y),
-        What::Luminance(origin, dir) => f64::from(path.radiance(&Ray::new(*origin, dir.normalize()), id, &mut ()).y),
-        What::Flux(patches) => {
+        Quantity::Illuminance(point, normal) => f64::from(path.irradiance(point.as_dvec3(), *normal, id, &mut ()).y),
+        Quantity::Luminance(origin, dir) => {
+            f64::from(path.radiance(&Ray::new(*origin, dir.normalize()), id, &mut ()).y)
+        }
+        Quantity::Flux(patches) => {
             // Choose a uniform point on all parallelograms.
             let area = |patch: &[durer::math::Vec3; 3]| f64::from(patch[1].cross(patch[2]).length());
             let all: f64 = patches.iter().map(area).sum();

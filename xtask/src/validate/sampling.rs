@@ -105,7 +105,7 @@ pub fn densities(table: &mut Table) -> Result<()> {
     for (name, background) in [("clear sky", "sun 1 1 0.3"), ("overcast sky", "cieSky 16")] {
         let world = world(name, background, light, "", "MaterialIndex 0 Sphere { center 0 -50 0 radius 0.001 }")?;
         if let Some(environment) = world.environment() {
-            let sample = |_, u| environment.sample(u).map(|(wi, ..)| turned(wi));
+            let sample = |_, u| environment.sample(u).map(|(wi, ..)| rotated(wi));
             rows.push((name.into(), finely.compare(14, sample, |wi| environment.pdf(back(wi)))));
         }
     }
@@ -128,7 +128,7 @@ pub fn densities(table: &mut Table) -> Result<()> {
 }
 
 /// Rotates a direction, because cells are arranged around the z axis but skies around the y axis.
-fn turned(v: Vec3) -> Vec3 {
+fn rotated(v: Vec3) -> Vec3 {
     Vec3::new(v.x, -v.z, v.y)
 }
 
@@ -141,7 +141,7 @@ fn of_lights(world: &World, cells: DirectionGrid) -> PdfComparison {
     let to = Receiver { point, n: Vec3::ZERO, uniform_threshold: Receiver::UNIFORM_THRESHOLD };
     let sample = |choice: f32, u: Vec2| {
         let choice = world.emitters().choose(world, &to, choice)?;
-        Some(turned(world.emitters().sample(world, &choice, point, u)?.wi))
+        Some(rotated(world.emitters().sample(world, &choice, point, u)?.wi))
     };
     let pdf = |wi: Vec3| {
         let dir = back(wi);

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::job::job;
 use crate::open::load_options;
 use crate::options::{accel, aspect};
-use durer::check::{Finding, Subject, check, reported};
+use durer::check::{CheckInput, Finding, check, reader_findings};
 use durer::diag::{Diagnostics, Files};
 use durer::load_text;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ pub struct CheckedScene {
     /// True if the scene can be rendered.
     pub readable: bool,
     /// Files that the scene refers to.
-    pub named: Vec<PathBuf>,
+    pub referenced_files: Vec<PathBuf>,
 }
 
 impl CheckedScene {
@@ -32,7 +32,7 @@ impl CheckedScene {
 }
 
 /// Reads and checks the text of a scene file. The text need not be saved yet.
-pub fn look(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<CheckedScene, Failure> {
+pub fn check_text(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<CheckedScene, Failure> {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let mut options = load_options(&args.reading);
     options.accel = accel(&args.job)?;
@@ -46,10 +46,10 @@ pub fn look(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<CheckedSc
             let job = job(&args.job, Some(&args.view), loaded, false)?;
             let exposure = args.exposure.factor()?;
             let (scene, dialect, files) = (&loaded.scene, loaded.dialect, &files);
-            check(&Subject { scene, world, dialect, files, job: &job, exposure, rejected: None }, &diagnostics)
+            check(&CheckInput { scene, world, dialect, files, job: &job, exposure, rejected: None }, &diagnostics)
         }
-        _ => reported(&diagnostics),
+        _ => reader_findings(&diagnostics),
     };
-    let named = loaded.map(|loaded| loaded.files()).unwrap_or_default();
-    Ok(CheckedScene { path: path.into(), files, findings, dialect, readable, named })
+    let referenced_files = loaded.map(|loaded| loaded.files()).unwrap_or_default();
+    Ok(CheckedScene { path: path.into(), files, findings, dialect, readable, referenced_files })
 }

@@ -2,46 +2,46 @@
 
 use crate::open::CompiledInput;
 use crate::report;
-use crate::terminal::complain;
+use crate::terminal::print_error_line;
 use codespan_reporting::term::termcolor::StandardStream;
-use durer::check::picture::{Oddity, PictureScan};
-use durer::check::{Subject, check};
+use durer::check::picture::{PictureFault, PictureScan};
+use durer::check::{CheckInput, check};
 use durer::diag::Diagnostic;
 use durer::image::{Display, Layer, Tone};
 use durer::math::Color;
 use durer::render::{Job, Statistics};
 
 /// Maximum number of findings printed.
-const MOST: usize = 3;
+const MAX_PRINTED: usize = 3;
 
 /// Returns the scan of the first picture, if it is the colour picture.
-pub fn looks(job: &Job, pictures: &[Layer], exposure: f32) -> Option<PictureScan> {
+pub fn scan(job: &Job, pictures: &[Layer], exposure: f32) -> Option<PictureScan> {
     let color = pictures.first().filter(|_| job.color)?;
-    let mut looks = PictureScan::new(exposure);
-    looks.add(&color.image.pixels);
-    Some(looks)
+    let mut scan = PictureScan::new(exposure);
+    scan.add(&color.image.pixels);
+    Some(scan)
 }
 
 /// Reports a visible fault of a picture from `durer render`, with its likely causes.
 pub fn after_render(
     compiled: &CompiledInput,
     job: &Job,
-    looks: Option<&PictureScan>,
+    scan: Option<&PictureScan>,
     pictures: &[Layer],
     statistics: &Statistics,
     display: Display,
 ) {
     // A tone curve maps values above white back into range.
-    let is_odd = |oddity: &Oddity| display.tone == Tone::default() || *oddity != Oddity::White;
-    RenderReview { compiled, job, statistics, exposure: display.exposure }.look(looks, pictures, is_odd);
+    let is_odd = |oddity: &PictureFault| display.tone == Tone::default() || *oddity != PictureFault::White;
+    RenderReview { compiled, job, statistics, exposure: display.exposure }.review(scan, pictures, is_odd);
 }
 
 /// Reports black or single-colour pictures from `durer course`. No scene of any year is meant to
 /// give such a picture.
 pub fn after_course(compiled: &CompiledInput, job: &Job, pictures: &[Layer], statistics: &Statistics) {
-    let is_odd = |oddity: &Oddity| matches!(oddity, Oddity::Black | Oddity::OneColor);
-    let looks = looks(job, pictures, 1.0);
-    RenderReview { compiled, job, statistics, exposure: 1.0 }.look(looks.as_ref(), pictures, is_odd);
+    let is_odd = |oddity: &PictureFault| matches!(oddity, PictureFault::Black | PictureFault::OneColor);
+    let scan = scan(job, pictures, 1.0);
+    RenderReview { compiled, job, statistics, exposure: 1.0 }.review(scan.as_ref(), pictures, is_odd);
 }
 
 /// A finished render and its scene, to be checked if the picture looks wrong.
@@ -53,9 +53,9 @@ struct RenderReview<'a> {
 }
 
 impl RenderReview<'_> {
-    fn look(&self, looks: Option<&PictureScan>, pictures: &[Layer], is_odd: impl Fn(&Oddity) -> bool) {
-        match looks.and_then(|looks| looks.oddity(self.statistics)).filter(is_odd) {
-            Some(oddity) => self.report(&format!("the picture {}", oddity.words())),
+    fn review(&self, scan: Option<&PictureScan>, pictures: &[Layer], is_odd: impl Fn(&PictureFault) -> bool) {
+        match scan.and_then(|scan| scan.fault(self.statistics)).filter(is_odd) {
+            Some(oddity) => self.report(&format!("the picture {}", oddity.description())),
             None => self.depths(pictures),
         }
     }
@@ -74,16 +74,17 @@ impl RenderReview<'_> {
         let rejected = self.statistics.first_rejected.first().map(|first| (first.x, first.y, first.sample));
         let (loaded, files) = (&self.compiled.loaded, &self.compiled.files);
         let (scene, world, dialect) = (&loaded.scene, &self.compiled.world, loaded.dialect);
-        let subject = Subject { scene, world, dialect, files, job: self.job, exposure: self.exposure, rejected };
-        let found = check(&subject, &self.compiled.diagnostics);
+        let input = CheckInput { scene, world, dialect, files, job: self.job, exposure: self.exposure, rejected };
+        let found = check(&input, &self.compiled.diagnostics);
         let serious: Vec<_> = found.iter().filter(|f| f.is_serious()).map(|finding| &finding.diagnostic).collect();
         // Skip findings that were printed before the render.
         let is_known = |diagnostic: &Diagnostic| {
             let same = |known: &Diagnostic| known.code == diagnostic.code && known.message == diagnostic.message;
             self.compiled.diagnostics.iter().any(same)
         };
-        let reported: Vec<_> = serious.iter().filter(|diagnostic| !is_known(diagnostic)).take(MOST).copied().collect();
-        complain(&match (serious.is_empty(), reported.is_empty()) {
+        let reported: Vec<_> =
+            serious.iter().filter(|diagnostic| !is_known(diagnostic)).take(MAX_PRINTED).copied().collect();
+        print_error_line(&match (serious.is_empty(), reported.is_empty()) {
             (true, _) => format!("warning: {what}"),
             (false, true) => format!("warning: {what}; the findings above explain why"),
             (false, false) => format!("warning: {what}; `durer check` reports:"),

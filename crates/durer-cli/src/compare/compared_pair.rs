@@ -20,7 +20,7 @@ pub struct ComparedPair {
     pub pair: Pair,
     pub outcome: Outcome,
     /// Pictures for the report, if one is written.
-    pub shown: Option<PairPictures>,
+    pub pictures: Option<PairPictures>,
     /// For each region, the hit of the ray through the pixel that differs most; empty without a
     /// scene.
     pub hits: Vec<PixelHit>,
@@ -32,15 +32,15 @@ pub struct ComparedPair {
 
 impl ComparedPair {
     /// Creates a compared pair without hits and diagnosis.
-    pub fn new(pair: Pair, outcome: Outcome, shown: Option<PairPictures>) -> Self {
-        ComparedPair { pair, outcome, shown, hits: Vec::new(), diagnosis: None, note: None }
+    pub fn new(pair: Pair, outcome: Outcome, pictures: Option<PairPictures>) -> Self {
+        ComparedPair { pair, outcome, pictures, hits: Vec::new(), diagnosis: None, note: None }
     }
 
     /// Returns lines that explain the difference.
     pub fn causes(&self) -> Vec<String> {
         match (&self.outcome, &self.diagnosis) {
             (_, Some(diagnosis)) => mistakes::lines(diagnosis),
-            (Outcome::Compared(found), None) => explained(found),
+            (Outcome::Compared(comparison), None) => explained(comparison),
             _ => Vec::new(),
         }
     }
@@ -48,11 +48,15 @@ impl ComparedPair {
     /// Returns the names of the mistakes that explain the difference; empty if there are none.
     pub fn mistakes(&self) -> String {
         let all: Vec<&str> = match (&self.outcome, &self.diagnosis) {
-            (_, Some(diagnosis)) => {
-                diagnosis.named.first().into_iter().flat_map(|named| &named.mistakes).map(|one| one.0.name).collect()
-            }
-            (Outcome::Compared(found), None) if found.verdict == Verdict::Different => {
-                found.findings.iter().map(|finding| finding.kind).collect()
+            (_, Some(diagnosis)) => diagnosis
+                .explanations
+                .first()
+                .into_iter()
+                .flat_map(|explanation| &explanation.mistakes)
+                .map(|one| one.0.name)
+                .collect(),
+            (Outcome::Compared(comparison), None) if comparison.verdict == Verdict::Different => {
+                comparison.findings.iter().map(|finding| finding.kind).collect()
             }
             _ => Vec::new(),
         };
@@ -78,15 +82,15 @@ pub struct PairPictures {
 
 /// Returns the name of a pair, with the student's name in front.
 pub fn name(pair: &Pair) -> String {
-    pair.who.as_ref().map_or_else(|| pair.name.clone(), |who| format!("{who}/{}", pair.name))
+    pair.student.as_ref().map_or_else(|| pair.name.clone(), |who| format!("{who}/{}", pair.name))
 }
 
 /// Explains a difference from the pictures alone; one line per cause.
-fn explained(found: &Comparison) -> Vec<String> {
-    if found.verdict != Verdict::Different {
+fn explained(comparison: &Comparison) -> Vec<String> {
+    if comparison.verdict != Verdict::Different {
         return Vec::new();
     }
-    if found.findings.is_empty() {
+    if comparison.findings.is_empty() {
         return vec![
             "the pictures alone do not reveal the cause; pass `--scene` and the options that the reference was \
              rendered with"
@@ -104,5 +108,5 @@ fn explained(found: &Comparison) -> Vec<String> {
             _ => format!("and {}: together {percent}", finding.description),
         }
     };
-    found.findings.iter().enumerate().map(line).collect()
+    comparison.findings.iter().enumerate().map(line).collect()
 }

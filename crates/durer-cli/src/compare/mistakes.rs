@@ -1,26 +1,26 @@
 //! Formats the result of the search for a student's mistakes as text and JSON.
 
-use super::stage::Stage;
+use super::stage::ReferenceScene;
 use crate::progress;
 use durer::image::compare::Picture;
 use durer::mistakes::{Diagnosis, DiagnosisInput, Explanation, diagnose};
 use serde_json::{Value, json};
 
 /// Searches for the mistakes that explain the difference between two pictures.
-pub fn named(stage: &Stage, reference: &Picture, test: &Picture) -> Diagnosis {
-    let Stage { compiled, job, transfer, .. } = stage;
+pub fn find_mistakes(stage: &ReferenceScene, reference: &Picture, test: &Picture) -> Diagnosis {
+    let ReferenceScene { compiled, job, transfer, .. } = stage;
     let scene = &compiled.loaded.scene;
-    let question = DiagnosisInput { scene, world: &compiled.world, job, transfer: *transfer, reference, test };
-    progress::shares("trying mistakes", |share| diagnose(&question, share))
+    let input = DiagnosisInput { scene, world: &compiled.world, job, transfer: *transfer, reference, test };
+    progress::show_progress("trying mistakes", |share| diagnose(&input, share))
 }
 
 /// Formats a diagnosis as lines: the mistake first, then the code.
 pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
-    if !diagnosis.is_of_scene() {
+    if !diagnosis.reference_matches_scene() {
         return vec![format!(
             "cause unknown: with these options, {:.0} % of this scene's pixels differ from the reference; pass the \
              options that it was rendered with (--dialect, --shadows, --bounces, --samples, --transfer)",
-            100.0 * diagnosis.off
+            100.0 * diagnosis.reference_difference
         )];
     }
     if let Some(nearly) = &diagnosis.nearly {
@@ -33,18 +33,23 @@ pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
     if let Some(remark) = &diagnosis.remark {
         return vec![remark.clone()];
     }
-    let Some(first) = diagnosis.named.first() else {
+    let Some(first) = diagnosis.explanations.first() else {
         return vec!["cause unknown: none of the known mistakes explains the difference".into()];
     };
     let mut lines = vec![format!("{}: explains {} of the squared difference", words(first), percent(first.explained))];
     for (mistake, value) in &first.mistakes {
-        let [right, wrong] = mistake.forms(*value, &diagnosis.formulas);
+        let [right, wrong] = mistake.code(*value, &diagnosis.formulas);
         lines.push(format!("  should be:  {right}"));
         lines.push(format!("  may be:     {wrong}"));
         lines.push(format!("  see the step `{}` of `durer lesson`", mistake.step));
     }
     lines.extend(
-        diagnosis.named.iter().skip(1).take(4).map(|named| format!("  or, equivalent in this scene: {}", words(named))),
+        diagnosis
+            .explanations
+            .iter()
+            .skip(1)
+            .take(4)
+            .map(|explanation| format!("  or, equivalent in this scene: {}", words(explanation))),
     );
     lines
 }
@@ -55,33 +60,33 @@ pub fn percent(share: f64) -> String {
 }
 
 /// Describes one or two mistakes.
-pub fn words(named: &Explanation) -> String {
-    let each: Vec<String> = named.mistakes.iter().map(|(mistake, value)| mistake.describe(*value)).collect();
+pub fn words(explanation: &Explanation) -> String {
+    let each: Vec<String> = explanation.mistakes.iter().map(|(mistake, value)| mistake.describe(*value)).collect();
     each.join("; and ")
 }
 
 /// Returns the diagnosis as JSON.
 pub fn json(diagnosis: &Diagnosis) -> Value {
-    let one = |named: &Explanation| {
+    let one = |explanation: &Explanation| {
         let mistake = |(mistake, value): &(&durer::mistakes::Mistake, f32)| {
-            let [right, wrong] = mistake.forms(*value, &diagnosis.formulas);
+            let [right, wrong] = mistake.code(*value, &diagnosis.formulas);
             json!({
                 "name": mistake.name, "words": mistake.describe(*value), "value": value,
                 "right": right, "wrong": wrong, "step": mistake.step,
             })
         };
         json!({
-            "mistakes": named.mistakes.iter().map(mistake).collect::<Vec<_>>(),
-            "words": words(named), "explained": named.explained, "matched": named.matched,
+            "mistakes": explanation.mistakes.iter().map(mistake).collect::<Vec<_>>(),
+            "words": words(explanation), "explained": explanation.explained, "matched": explanation.matched,
         })
     };
     json!({
-        "reference_off": diagnosis.off,
-        "told": !diagnosis.named.is_empty(),
-        "nearest": diagnosis.tried.iter().map(|n| json!([words(n), n.explained, n.matched])).collect::<Vec<_>>(),
+        "reference_off": diagnosis.reference_difference,
+        "told": !diagnosis.explanations.is_empty(),
+        "nearest": diagnosis.closest_trials.iter().map(|n| json!([words(n), n.explained, n.matched])).collect::<Vec<_>>(),
         "remark": diagnosis.remark,
         "nearly": diagnosis.nearly.as_ref().map(one),
-        "named": diagnosis.named.iter().map(one).collect::<Vec<_>>(),
+        "named": diagnosis.explanations.iter().map(one).collect::<Vec<_>>(),
         "lines": lines(diagnosis),
     })
 }

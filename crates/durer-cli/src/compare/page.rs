@@ -14,7 +14,7 @@ use std::path::PathBuf;
 const PAGE: &str = include_str!("page.html");
 
 /// Encodes the pictures of a pair for the page.
-pub fn shown(reference: &Picture, picture: &Picture, found: &Comparison) -> Result<PairPictures, String> {
+pub fn pair_pictures(reference: &Picture, picture: &Picture, comparison: &Comparison) -> Result<PairPictures, String> {
     let png = |(layer, transfer): (Layer, Transfer)| -> Result<String, String> {
         let png = page::png(layer, transfer).map_err(|_| "the picture is too large for a page")?;
         Ok(page::uri(&png))
@@ -22,15 +22,15 @@ pub fn shown(reference: &Picture, picture: &Picture, found: &Comparison) -> Resu
     Ok(PairPictures {
         reference: png(screen(reference))?,
         picture: png(screen(picture))?,
-        heat: png((heat(found), Transfer::Linear))?,
+        heat: png((heat(comparison), Transfer::Linear))?,
     })
 }
 
 /// Returns the heat map as a layer.
-pub fn heat(found: &Comparison) -> Layer {
-    let map = heat_map(found.width, found.height, &found.flip_map);
+pub fn heat(comparison: &Comparison) -> Layer {
+    let map = heat_map(comparison.width, comparison.height, &comparison.flip_map);
     let pixels = map.pixels.iter().map(|pixel| pixel.map(decode_linear).into()).collect();
-    Layer::data("heat", Image { width: found.width, height: found.height, pixels })
+    Layer::data("heat", Image { width: comparison.width, height: comparison.height, pixels })
 }
 
 /// Returns a picture as a layer, with the transfer curve for display.
@@ -58,11 +58,11 @@ pub fn page(all: &[ComparedPair], extra: &[PathBuf], args: &CompareArgs) -> Resu
 fn pair(compared: &ComparedPair) -> Value {
     let mut value = text::pair(compared);
     value["title"] = name(&compared.pair).into();
-    if let Outcome::Compared(found) = &compared.outcome {
+    if let Outcome::Compared(comparison) = &compared.outcome {
         value["causes"] = compared.causes().into();
-        value["places"] = found.regions.iter().map(text::place).collect::<Vec<_>>().into();
+        value["places"] = comparison.regions.iter().map(text::region_text).collect::<Vec<_>>().into();
     }
-    if let Some(PairPictures { reference, picture, heat }) = &compared.shown {
+    if let Some(PairPictures { reference, picture, heat }) = &compared.pictures {
         value["images"] = json!([reference, picture, heat]);
     }
     value

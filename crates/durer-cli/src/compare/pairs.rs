@@ -1,13 +1,13 @@
 //! Pairs the pictures in two files or folders.
 
-use crate::failure::{Failure, bad};
+use crate::failure::{Failure, invalid_input};
 use durer::image::format_for;
 use std::path::{Path, PathBuf};
 
 /// A reference picture and the picture to compare with it.
 pub struct Pair {
     /// Name of the student, if there is a folder for each student.
-    pub who: Option<String>,
+    pub student: Option<String>,
     /// File name, or path below the folder.
     pub name: String,
     pub reference: PathBuf,
@@ -30,17 +30,17 @@ const DEPTH: usize = 16;
 pub fn find(reference: &Path, picture: &Path) -> Result<Pairs, Failure> {
     for path in [reference, picture] {
         if !path.exists() {
-            return Err(bad(format!("cannot read `{}`: no such file or folder", path.display())));
+            return Err(invalid_input(format!("cannot read `{}`: no such file or folder", path.display())));
         }
     }
     match (reference.is_dir(), picture.is_dir()) {
         (false, false) => {
             let name = picture.file_name().unwrap_or(picture.as_os_str()).to_string_lossy().into_owned();
-            let pair = Pair { who: None, name, reference: reference.into(), picture: Some(picture.into()) };
+            let pair = Pair { student: None, name, reference: reference.into(), picture: Some(picture.into()) };
             Ok(Pairs { pairs: vec![pair], extra: Vec::new(), folders: false })
         }
         (true, true) => folders(reference, picture),
-        _ => Err(bad(format!(
+        _ => Err(invalid_input(format!(
             "`{}` and `{}`: one is a folder and the other is a file; pass two pictures or two folders",
             reference.display(),
             picture.display()
@@ -52,10 +52,10 @@ fn folders(reference: &Path, picture: &Path) -> Result<Pairs, Failure> {
     let mut references = Vec::new();
     pictures(reference, Path::new(""), DEPTH, &mut references)?;
     if references.is_empty() {
-        return Err(bad(format!("no pictures in `{}`", reference.display())));
+        return Err(invalid_input(format!("no pictures in `{}`", reference.display())));
     }
-    let mut found = Pairs { pairs: Vec::new(), extra: Vec::new(), folders: true };
-    let matched = found.add(None, reference, picture, &references)?;
+    let mut pairs = Pairs { pairs: Vec::new(), extra: Vec::new(), folders: true };
+    let matched = pairs.add(None, reference, picture, &references)?;
     if matched == 0 {
         // The picture folder contains one folder for each student.
         let mut class = Pairs { pairs: Vec::new(), extra: Vec::new(), folders: true };
@@ -67,15 +67,15 @@ fn folders(reference: &Path, picture: &Path) -> Result<Pairs, Failure> {
             }
         }
         if any == 0 {
-            return Err(bad(format!(
+            return Err(invalid_input(format!(
                 "no picture in `{}` has the name of one in `{}`",
                 picture.display(),
                 reference.display()
             )));
         }
-        found = class;
+        pairs = class;
     }
-    Ok(found)
+    Ok(pairs)
 }
 
 impl Pairs {
@@ -94,16 +94,16 @@ impl Pairs {
         for name in references {
             let stem = name.with_extension("");
             let exact = own.iter().position(|path| path == name);
-            let place = exact.or_else(|| own.iter().position(|path| path.with_extension("") == stem));
-            if let Some(place) = place {
-                used[place] = true;
+            let index = exact.or_else(|| own.iter().position(|path| path.with_extension("") == stem));
+            if let Some(index) = index {
+                used[index] = true;
                 matched += 1;
             }
             self.pairs.push(Pair {
-                who: who.clone(),
+                student: who.clone(),
                 name: name.display().to_string(),
                 reference: reference.join(name),
-                picture: place.map(|place| folder.join(&own[place])),
+                picture: index.map(|index| folder.join(&own[index])),
             });
         }
         self.extra.extend(own.iter().zip(used).filter(|(_, used)| !used).map(|(path, _)| folder.join(path)));
@@ -113,7 +113,8 @@ impl Pairs {
 
 /// Returns the names in a folder, sorted, without hidden files.
 fn names(folder: &Path) -> Result<Vec<std::ffi::OsString>, Failure> {
-    let unreadable = |error: std::io::Error| bad(format!("cannot read the folder `{}`: {error}", folder.display()));
+    let unreadable =
+        |error: std::io::Error| invalid_input(format!("cannot read the folder `{}`: {error}", folder.display()));
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(unreadable)? {
         names.push(entry.map_err(unreadable)?.file_name());
@@ -124,15 +125,15 @@ fn names(folder: &Path) -> Result<Vec<std::ffi::OsString>, Failure> {
 }
 
 /// Collects the pictures in and below a folder, recognised by extension.
-fn pictures(root: &Path, below: &Path, depth: usize, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
+fn pictures(root: &Path, below: &Path, depth: usize, pairs: &mut Vec<PathBuf>) -> Result<(), Failure> {
     for name in names(&root.join(below))? {
         let path = below.join(&name);
         if root.join(&path).is_dir() {
             if depth > 0 {
-                pictures(root, &path, depth - 1, found)?;
+                pictures(root, &path, depth - 1, pairs)?;
             }
         } else if format_for(&path).is_ok() {
-            found.push(path);
+            pairs.push(path);
         }
     }
     Ok(())

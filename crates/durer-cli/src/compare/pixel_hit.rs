@@ -1,7 +1,7 @@
 //! Traces the scene where pictures differ.
 
-use super::stage::Stage;
-use crate::explain::shown;
+use super::stage::ReferenceScene;
+use crate::explain::format_line;
 use crate::failure::Failure;
 use crate::open::CompiledInput;
 use durer::image::Transfer;
@@ -32,16 +32,16 @@ pub struct Hit {
 }
 
 /// Traces the ray through the pixel that differs most in each region.
-pub fn pixel_hits(stage: &Stage, found: &Comparison) -> Result<Vec<PixelHit>, Failure> {
-    let Stage { compiled, job, .. } = stage;
+pub fn pixel_hits(stage: &ReferenceScene, comparison: &Comparison) -> Result<Vec<PixelHit>, Failure> {
+    let ReferenceScene { compiled, job, .. } = stage;
     let raster = raster(&compiled.world, job.width, job.height);
-    let look = |place: (u32, u32)| {
-        let ray = center_ray(&compiled.world, &raster, place);
+    let look = |pixel: (u32, u32)| {
+        let ray = center_ray(&compiled.world, &raster, pixel);
         let (hit, explanation) =
             ray.map_or(Ok((None, Vec::new())), |ray| along(compiled, job, &ray, stage.transfer))?;
-        Ok(PixelHit { hit, explanation, command: stage.explain(place) })
+        Ok(PixelHit { hit, explanation, command: stage.explain(pixel) })
     };
-    found.regions.iter().map(|region| look(region.worst)).collect()
+    comparison.regions.iter().map(|region| look(region.worst)).collect()
 }
 
 fn along(
@@ -62,7 +62,7 @@ fn along(
     let lines = light
         .iter()
         .flat_map(|light| ray_text(light, &names, &ExplainOptions { transfer, ..ExplainOptions::default() }));
-    Ok((hit, lines.map(|line| shown(&line, false, transfer)).collect()))
+    Ok((hit, lines.map(|line| format_line(&line, false, transfer)).collect()))
 }
 
 impl PixelHit {

@@ -3,8 +3,8 @@
 
 use super::args::CompareArgs;
 use super::pairs::Pair;
-use crate::failure::{Failure, bad};
-use crate::guard::Guard;
+use crate::failure::{Failure, invalid_input};
+use crate::file_registry::FileRegistry;
 use crate::job;
 use crate::open::{CompiledInput, load_options, open, readable};
 use durer::LoadOptions;
@@ -16,12 +16,12 @@ use durer::render::{Job, Sampling};
 use std::path::{Path, PathBuf};
 
 /// Maximum share of differing pixels at which options count as those of the reference.
-const SAME: f64 = 0.01;
-/// The limit used instead of [`SAME`] for filters wider than a pixel.
-const MAX_OFF: f64 = 0.2;
+const MAX_SAME: f64 = 0.01;
+/// The limit used instead of [`MAX_SAME`] for filters wider than a pixel.
+const MAX_SAME_FILTERED: f64 = 0.2;
 
 /// A compiled scene with the options that reproduce the reference, used to explain differences.
-pub struct Stage {
+pub struct ReferenceScene {
     pub compiled: CompiledInput,
     pub job: Job,
     pub transfer: Transfer,
@@ -48,19 +48,19 @@ pub fn stage(
     args: &CompareArgs,
     pair: &Pair,
     reference: &Picture,
-    guard: &mut Guard,
-) -> Result<Option<Stage>, Failure> {
+    registry: &mut FileRegistry,
+) -> Result<Option<ReferenceScene>, Failure> {
     let Some(scene) = &args.scene else { return Ok(None) };
     let path = path(scene, pair)?;
     let requested = load_options(&args.reading);
-    let first = compiled(args, &path, &requested, reference, guard)?;
+    let first = compiled(args, &path, &requested, reference, registry)?;
     let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
-    let mut best = (way_off(&first, reference, transfer), first, transfer, None);
+    let mut best = (reference_difference(&first, reference, transfer), first, transfer, None);
     // With filters wider than a pixel, edges cannot be reproduced exactly.
-    let enough = if best.1.1.sampling.is_local() { SAME } else { MAX_OFF };
+    let enough = if best.1.1.sampling.is_local() { MAX_SAME } else { MAX_SAME_FILTERED };
     // The course's programs have no path tracer, so there are no other dialects to try.
     if best.0 <= enough || best.1.1.method.path_options().is_some() {
-        return Ok(Some(finished(args, path, best.1, best.2, None)));
+        return Ok(Some(reference_scene(args, path, best.1, best.2, None)));
     }
     let guessed = requested.dialect.or(best.1.0.loaded.guess.as_ref().map(|guess| guess.dialect));
     let mut dialects = vec![requested.dialect];
@@ -79,23 +79,23 @@ pub fn stage(
     'found: for dialect in dialects {
         let options = LoadOptions { dialect, ..load_options(&args.reading) };
         // Skip dialects in which the scene cannot be read.
-        let Some((compiled, job)) = tried(args, &path, &options, reference, guard) else { continue };
+        let Some((compiled, job)) = tried(args, &path, &options, reference, registry) else { continue };
         let mut current = (compiled, job);
-        for way in shadows.iter().flat_map(|&shadows| {
+        for candidate in shadows.iter().flat_map(|&shadows| {
             bounces
                 .iter()
                 .flat_map(move |&bounces| [false, true].map(|center| RenderGuess { dialect, center, shadows, bounces }))
         }) {
             let kept = current.1.clone();
-            way.apply(&mut current.1);
+            candidate.apply(&mut current.1);
             let tried = [transfer, Transfer::Course, Transfer::Linear, Transfer::Srgb];
             for transfer in tried {
-                let off = way_off(&current, reference, transfer);
+                let off = reference_difference(&current, reference, transfer);
                 if off < 0.5 * best.0 {
-                    let again = reopened(args, &path, &options, reference, &way, guard)?;
-                    best = (off, again, transfer, Some(way.dialect));
+                    let again = reopened(args, &path, &options, reference, &candidate, registry)?;
+                    best = (off, again, transfer, Some(candidate.dialect));
                 }
-                if best.0 <= SAME {
+                if best.0 <= MAX_SAME {
                     break 'found;
                 }
             }
@@ -103,8 +103,8 @@ pub fn stage(
         }
     }
     let (off, found, transfer, _) = best;
-    let mut stage = finished(args, path, found, transfer, None);
-    if off <= SAME {
+    let mut stage = reference_scene(args, path, found, transfer, None);
+    if off <= MAX_SAME {
         stage.note = Some(format!("inferred that the reference was rendered with `{}`", stage.options));
     }
     Ok(Some(stage))
@@ -125,11 +125,11 @@ fn reopened(
     path: &Path,
     options: &LoadOptions,
     reference: &Picture,
-    way: &RenderGuess,
-    guard: &mut Guard,
+    guess: &RenderGuess,
+    registry: &mut FileRegistry,
 ) -> Result<(CompiledInput, Job), Failure> {
-    let (compiled, mut job) = compiled(args, path, options, reference, guard)?;
-    way.apply(&mut job);
+    let (compiled, mut job) = compiled(args, path, options, reference, registry)?;
+    guess.apply(&mut job);
     Ok((compiled, job))
 }
 
@@ -139,10 +139,10 @@ fn tried(
     path: &Path,
     options: &LoadOptions,
     reference: &Picture,
-    guard: &mut Guard,
+    registry: &mut FileRegistry,
 ) -> Option<(CompiledInput, Job)> {
     let is_readable = options.dialect.is_none() || readable(path, options);
-    is_readable.then(|| compiled(args, path, options, reference, guard).ok()).flatten()
+    is_readable.then(|| compiled(args, path, options, reference, registry).ok()).flatten()
 }
 
 fn compiled(
@@ -150,19 +150,19 @@ fn compiled(
     path: &Path,
     options: &LoadOptions,
     reference: &Picture,
-    guard: &mut Guard,
+    registry: &mut FileRegistry,
 ) -> Result<(CompiledInput, Job), Failure> {
-    let compiled = open(path, options, true, guard)?;
+    let compiled = open(path, options, true, registry)?;
     let job = job::job(&args.job, Some(&args.view), &compiled.loaded, false)?;
     if !job.color || !job.aovs.is_empty() {
-        return Err(bad("`--scene` needs colour pictures: remove `--show` or `--scene`"));
+        return Err(invalid_input("`--scene` needs colour pictures: remove `--show` or `--scene`"));
     }
     let (width, height) = (reference.image.width, reference.image.height);
     let job = Job { width, height, crop: None, color: true, aovs: Vec::new(), ..job };
     Ok((compiled, job))
 }
 
-fn way_off((compiled, job): &(CompiledInput, Job), reference: &Picture, transfer: Transfer) -> f64 {
+fn reference_difference((compiled, job): &(CompiledInput, Job), reference: &Picture, transfer: Transfer) -> f64 {
     off(&DiagnosisInput {
         scene: &compiled.loaded.scene,
         world: &compiled.world,
@@ -173,21 +173,21 @@ fn way_off((compiled, job): &(CompiledInput, Job), reference: &Picture, transfer
     })
 }
 
-fn finished(
+fn reference_scene(
     args: &CompareArgs,
     path: PathBuf,
     (compiled, job): (CompiledInput, Job),
     transfer: Transfer,
     note: Option<String>,
-) -> Stage {
+) -> ReferenceScene {
     let mut options = job::spelled(&args.reading, &job, &compiled.loaded);
     if transfer != Transfer::Srgb {
         options += &format!(" --transfer {}", transfer.name());
     }
-    Stage { options: options.trim().into(), compiled, job, transfer, path, note }
+    ReferenceScene { options: options.trim().into(), compiled, job, transfer, path, note }
 }
 
-impl Stage {
+impl ReferenceScene {
     /// Returns the command that explains a pixel of the reference.
     pub fn explain(&self, (x, y): (u32, u32)) -> String {
         let shown = self.path.to_string_lossy();
@@ -207,6 +207,6 @@ fn path(scene: &Path, pair: &Pair) -> Result<PathBuf, Failure> {
     let path = scene.join(&name);
     match path.exists() {
         true => Ok(path),
-        false => Err(bad(format!("no `{}` in `{}`", name.display(), scene.display()))),
+        false => Err(invalid_input(format!("no `{}` in `{}`", name.display(), scene.display()))),
     }
 }

@@ -5,7 +5,7 @@ use super::compared_pair::{ComparedPair, Outcome, name};
 use super::mistakes;
 use super::pixel_hit::PixelHit;
 use crate::report::counted;
-use crate::terminal::{complain, say};
+use crate::terminal::{print_error_line, print_line};
 use durer::image::compare::{Options, Region, Verdict};
 use durer::report;
 use serde_json::{Value, json};
@@ -17,9 +17,9 @@ const VERSION: u32 = 1;
 
 /// Prints the comparison of a single pair.
 pub fn single(compared: &ComparedPair, options: &Options) {
-    let Outcome::Compared(found) = &compared.outcome else { return };
-    let measures = &found.measures;
-    let pixels = found.width as usize * found.height as usize;
+    let Outcome::Compared(comparison) = &compared.outcome else { return };
+    let measures = &comparison.measures;
+    let pixels = comparison.width as usize * comparison.height as usize;
     let over = format!(
         "{} of {} ({:.3} %) differ by more than {}",
         measures.over_tolerance,
@@ -27,30 +27,30 @@ pub fn single(compared: &ComparedPair, options: &Options) {
         100.0 * measures.over_tolerance as f64 / pixels as f64,
         tolerance(options.tolerance),
     );
-    match found.verdict {
-        Verdict::Identical => say("identical"),
-        verdict => say(&format!("{}: {over}", verdict.name())),
+    match comparison.verdict {
+        Verdict::Identical => print_line("identical"),
+        verdict => print_line(&format!("{}: {over}", verdict.name())),
     }
     compared.note.iter().for_each(|line| note(line));
     for line in compared.causes() {
-        say(&format!("  {line}"));
+        print_line(&format!("  {line}"));
     }
-    say(&format!("  RMSE      {:.6}", measures.rmse));
-    say(&format!(
+    print_line(&format!("  RMSE      {:.6}", measures.rmse));
+    print_line(&format!(
         "  PSNR      {} dB",
         if measures.psnr.is_finite() { format!("{:.2}", measures.psnr) } else { "infinite".into() }
     ));
-    say(&format!(
+    print_line(&format!(
         "  SSIM      {}",
         measures.ssim.map_or("- (a side has fewer than 11 pixels)".into(), |s| format!("{s:.5}"))
     ));
-    say(&format!("  FLIP      {:.5}", measures.flip));
+    print_line(&format!("  FLIP      {:.5}", measures.flip));
     if let Some(flip) = measures.hdr_flip {
-        say(&format!("  HDR-FLIP  {flip:.5}"));
+        print_line(&format!("  HDR-FLIP  {flip:.5}"));
     }
     if let Some(largest) = &measures.largest {
         let values = |color: [f32; 3]| color.map(|value| format!("{value:.4}")).join(" ");
-        say(&format!(
+        print_line(&format!(
             "  largest   {} at {},{}: {} in the reference, {} here",
             tolerance(largest.difference),
             largest.x,
@@ -61,21 +61,21 @@ pub fn single(compared: &ComparedPair, options: &Options) {
     }
     if let Some((x, y)) = measures.first_not_finite {
         let [reference, picture] = measures.not_finite;
-        say(&format!(
+        print_line(&format!(
             "  not finite  {reference} pixels of the reference, {picture} here, the first that differs at {x},{y}"
         ));
     }
-    for (i, region) in found.regions.iter().enumerate().take(3) {
-        say(&format!("  where     {}", place(region)));
+    for (i, region) in comparison.regions.iter().enumerate().take(3) {
+        print_line(&format!("  where     {}", region_text(region)));
         if let Some(hit) = compared.hits.get(i) {
-            say(&format!("            {}", hit.line()));
-            say(&format!("            {}", hit.command));
+            print_line(&format!("            {}", hit.line()));
+            print_line(&format!("            {}", hit.command));
         }
     }
 }
 
 /// Describes a region of differing pixels.
-pub fn place(region: &Region) -> String {
+pub fn region_text(region: &Region) -> String {
     let Region { x, y, width, height, pixels, mean_difference, share, worst } = region;
     let [r, g, b] = mean_difference.to_array();
     format!(
@@ -97,30 +97,31 @@ fn tolerance(value: f32) -> String {
 pub fn table(all: &[ComparedPair], extra: &[PathBuf]) {
     let names: Vec<String> = all.iter().map(|compared| name(&compared.pair)).collect();
     let wide = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(7);
-    say(&format!("{:wide$}  verdict    differ %     RMSE    SSIM    FLIP  why", "picture"));
+    print_line(&format!("{:wide$}  verdict    differ %     RMSE    SSIM    FLIP  why", "picture"));
     for (name, compared) in names.iter().zip(all) {
         let verdict = compared.verdict();
         match &compared.outcome {
-            Outcome::Compared(found) => {
-                let m = &found.measures;
-                let share = 100.0 * m.over_tolerance as f64 / (f64::from(found.width) * f64::from(found.height));
+            Outcome::Compared(comparison) => {
+                let m = &comparison.measures;
+                let share =
+                    100.0 * m.over_tolerance as f64 / (f64::from(comparison.width) * f64::from(comparison.height));
                 let ssim = m.ssim.map_or("-".into(), |ssim| format!("{ssim:.4}"));
                 let flip = m.hdr_flip.unwrap_or(m.flip);
                 let why = compared.causes().first().cloned().unwrap_or_default();
                 let line =
                     format!("{name:wide$}  {verdict:9}  {share:8.3}  {:7.4}  {ssim:>6}  {flip:6.4}  {why}", m.rmse);
-                say(line.trim_end());
+                print_line(line.trim_end());
             }
-            Outcome::Missing => say(&format!("{name:wide$}  {verdict}")),
-            Outcome::Failed(reason) => say(&format!("{name:wide$}  {verdict}      {reason}")),
+            Outcome::Missing => print_line(&format!("{name:wide$}  {verdict}")),
+            Outcome::Failed(reason) => print_line(&format!("{name:wide$}  {verdict}      {reason}")),
         }
     }
     let students = students(all);
     if !students.is_empty() {
         let wide = students.keys().map(|who| who.chars().count()).max().unwrap_or(0).max(7);
-        say(&format!("\n{:wide$}  same  different  missing  error", "student"));
+        print_line(&format!("\n{:wide$}  same  different  missing  error", "student"));
         for (who, [same, different, missing, error]) in &students {
-            say(&format!("{who:wide$}  {same:4}  {different:9}  {missing:7}  {error:5}"));
+            print_line(&format!("{who:wide$}  {same:4}  {different:9}  {missing:7}  {error:5}"));
         }
     }
     if !extra.is_empty() {
@@ -140,11 +141,13 @@ pub fn csv(all: &[ComparedPair]) -> String {
     let mut table = "student,picture,verdict,differ_percent,rmse,ssim,flip,mistake,why\r\n".to_string();
     for compared in all {
         let pair = &compared.pair;
-        let mut cells = vec![pair.who.clone().unwrap_or_default(), pair.name.clone(), compared.verdict().to_string()];
+        let mut cells =
+            vec![pair.student.clone().unwrap_or_default(), pair.name.clone(), compared.verdict().to_string()];
         let (numbers, why) = match &compared.outcome {
-            Outcome::Compared(found) => {
-                let m = &found.measures;
-                let share = 100.0 * m.over_tolerance as f64 / (f64::from(found.width) * f64::from(found.height));
+            Outcome::Compared(comparison) => {
+                let m = &comparison.measures;
+                let share =
+                    100.0 * m.over_tolerance as f64 / (f64::from(comparison.width) * f64::from(comparison.height));
                 let ssim = m.ssim.map_or(String::new(), |ssim| ssim.to_string());
                 let flip = m.hdr_flip.unwrap_or(m.flip).to_string();
                 ([share.to_string(), m.rmse.to_string(), ssim, flip], compared.causes().first().cloned())
@@ -165,10 +168,10 @@ pub fn csv(all: &[ComparedPair]) -> String {
 pub fn students(all: &[ComparedPair]) -> BTreeMap<String, [usize; 4]> {
     let mut students = BTreeMap::new();
     for compared in all {
-        let Some(who) = &compared.pair.who else { continue };
+        let Some(who) = &compared.pair.student else { continue };
         let counts: &mut [usize; 4] = students.entry(who.clone()).or_default();
         counts[match &compared.outcome {
-            Outcome::Compared(found) => usize::from(found.verdict == Verdict::Different),
+            Outcome::Compared(comparison) => usize::from(comparison.verdict == Verdict::Different),
             Outcome::Missing => 2,
             Outcome::Failed(_) => 3,
         }] += 1;
@@ -199,7 +202,7 @@ pub fn pair(compared: &ComparedPair) -> Value {
     let pair = &compared.pair;
     let mut value = json!({
         "name": pair.name,
-        "student": pair.who,
+        "student": pair.student,
         "reference": pair.reference.to_string_lossy(),
         "picture": pair.picture.as_ref().map(|path| path.to_string_lossy()),
         "verdict": compared.verdict(),
@@ -207,8 +210,8 @@ pub fn pair(compared: &ComparedPair) -> Value {
     let more = match &compared.outcome {
         Outcome::Missing => json!({}),
         Outcome::Failed(reason) => json!({ "error": reason }),
-        Outcome::Compared(found) => {
-            report::comparison(found, &compared.hits.iter().map(PixelHit::json).collect::<Vec<_>>())
+        Outcome::Compared(comparison) => {
+            report::comparison(comparison, &compared.hits.iter().map(PixelHit::json).collect::<Vec<_>>())
         }
     };
     if let Some(diagnosis) = &compared.diagnosis {
@@ -222,5 +225,5 @@ pub fn pair(compared: &ComparedPair) -> Value {
 
 /// Prints a note.
 fn note(line: &str) {
-    complain(&format!("note: {line}"));
+    print_error_line(&format!("note: {line}"));
 }

@@ -1,7 +1,7 @@
 //! The options of the course's programs as a table, and their parser.
 
-use crate::failure::{Failure, bad};
-use crate::terminal::{complain, say};
+use crate::failure::{Failure, invalid_input};
+use crate::terminal::{print_error_line, print_line};
 use durer::diag::did_you_mean;
 use durer::dialect::{Dialect, DialectSet, Quirk, set};
 use durer::format::course::Hint;
@@ -32,62 +32,62 @@ pub fn program(name: &str) -> Option<&'static Program> {
 }
 
 /// An option of the course's programs: name, names of its values, years that have it, help text.
-pub struct Row(&'static str, &'static [&'static str], DialectSet, &'static str);
+pub struct CourseOption(&'static str, &'static [&'static str], DialectSet, &'static str);
 
 const NOT_A4: DialectSet = set::ALL & !set::F12A4;
 
 #[rustfmt::skip]
-const OPTIONS: [Row; 32] = [
-    Row("-input", &["FILE"], set::ALL, "the scene"),
-    Row("-size", &["W", "H"], set::ALL, "size of the pictures in pixels"),
-    Row("-output", &["FILE"], set::ALL, "the colour picture"),
-    Row("-depth", &["MIN", "MAX", "FILE"], set::ALL, "the depth picture"),
-    Row("-normals", &["FILE"], set::ALL, "the picture of normals"),
-    Row("-shadows", &[], NOT_A4, "cast shadows"),
-    Row("-bounces", &["N"], NOT_A4, "maximum depth of reflected and transmitted rays"),
-    Row("-shade_back", &[], set::OLD, "also shade surfaces seen from behind"),
-    Row("-weight", &["X"], set::OLD, "minimum weight of a ray"),
-    Row("-grid", &["NX", "NY", "NZ"], set::OLD, "use a uniform grid"),
-    Row("-visualize_grid", &[], set::OLD, "show the grid's occupied cells"),
-    Row("-stats", &[], set::OLD, "print the number of objects and rays"),
-    Row("-random_samples", &["N"], set::OLD, "samples per pixel, at random"),
-    Row("-uniform_samples", &["N"], set::OLD, "samples per pixel, in a regular pattern"),
-    Row("-jittered_samples", &["N"], set::OLD, "samples per pixel, one at a random place in each cell of a grid"),
-    Row("-box_filter", &["R"], set::OLD, "box filter"),
-    Row("-tent_filter", &["R"], set::OLD, "tent filter"),
-    Row("-gaussian_filter", &["SIGMA"], set::OLD, "Gaussian filter"),
-    Row("-render_samples", &["FILE", "ZOOM"], set::OLD, "show the sample positions"),
-    Row("-render_filter", &["FILE", "ZOOM"], set::OLD, "show the filter's weights"),
-    Row("-transparent_shadows", &[], set::OLD, "transparent objects cast coloured shadows"),
-    Row("-gui", &[], set::OLD, "ignored: Dürer has no window"),
-    Row("-tessellation", &["THETA", "PHI"], set::OLD, "ignored: for the window only"),
-    Row("-gouraud", &[], set::OLD, "ignored: for the window only"),
-    Row("-jitter", &[], set::F12A5 | set::F16 | set::F23, "3x3 jittered subpixels"),
-    Row("-filter", &[], set::F12A5 | set::F16 | set::F23, "five-tap blur"),
-    Row("-reflection_off", &[], set::F12A5, "do not trace reflected rays"),
-    Row("-refraction_off", &[], set::F12A5, "do not trace transmitted rays"),
-    Row("--program", &["NAME"], set::ALL, "emulate this official program"),
-    Row("--dialect", &["NAME"], set::ALL, "dialect of the scene [default: detected from the scene and the options]"),
-    Row("--compat", &["NAMES"], set::ALL, "quirks by name; see `durer dialects`"),
-    Row("--assets", &["FOLDER"], set::ALL, "folder to search for missing meshes and textures"),
+const OPTIONS: [CourseOption; 32] = [
+    CourseOption("-input", &["FILE"], set::ALL, "the scene"),
+    CourseOption("-size", &["W", "H"], set::ALL, "size of the pictures in pixels"),
+    CourseOption("-output", &["FILE"], set::ALL, "the colour picture"),
+    CourseOption("-depth", &["MIN", "MAX", "FILE"], set::ALL, "the depth picture"),
+    CourseOption("-normals", &["FILE"], set::ALL, "the picture of normals"),
+    CourseOption("-shadows", &[], NOT_A4, "cast shadows"),
+    CourseOption("-bounces", &["N"], NOT_A4, "maximum depth of reflected and transmitted rays"),
+    CourseOption("-shade_back", &[], set::OLD, "also shade surfaces seen from behind"),
+    CourseOption("-weight", &["X"], set::OLD, "minimum weight of a ray"),
+    CourseOption("-grid", &["NX", "NY", "NZ"], set::OLD, "use a uniform grid"),
+    CourseOption("-visualize_grid", &[], set::OLD, "show the grid's occupied cells"),
+    CourseOption("-stats", &[], set::OLD, "print the number of objects and rays"),
+    CourseOption("-random_samples", &["N"], set::OLD, "samples per pixel, at random"),
+    CourseOption("-uniform_samples", &["N"], set::OLD, "samples per pixel, in a regular pattern"),
+    CourseOption("-jittered_samples", &["N"], set::OLD, "samples per pixel, one at a random place in each cell of a grid"),
+    CourseOption("-box_filter", &["R"], set::OLD, "box filter"),
+    CourseOption("-tent_filter", &["R"], set::OLD, "tent filter"),
+    CourseOption("-gaussian_filter", &["SIGMA"], set::OLD, "Gaussian filter"),
+    CourseOption("-render_samples", &["FILE", "ZOOM"], set::OLD, "show the sample positions"),
+    CourseOption("-render_filter", &["FILE", "ZOOM"], set::OLD, "show the filter's weights"),
+    CourseOption("-transparent_shadows", &[], set::OLD, "transparent objects cast coloured shadows"),
+    CourseOption("-gui", &[], set::OLD, "ignored: Dürer has no window"),
+    CourseOption("-tessellation", &["THETA", "PHI"], set::OLD, "ignored: for the window only"),
+    CourseOption("-gouraud", &[], set::OLD, "ignored: for the window only"),
+    CourseOption("-jitter", &[], set::F12A5 | set::F16 | set::F23, "3x3 jittered subpixels"),
+    CourseOption("-filter", &[], set::F12A5 | set::F16 | set::F23, "five-tap blur"),
+    CourseOption("-reflection_off", &[], set::F12A5, "do not trace reflected rays"),
+    CourseOption("-refraction_off", &[], set::F12A5, "do not trace transmitted rays"),
+    CourseOption("--program", &["NAME"], set::ALL, "emulate this official program"),
+    CourseOption("--dialect", &["NAME"], set::ALL, "dialect of the scene [default: detected from the scene and the options]"),
+    CourseOption("--compat", &["NAMES"], set::ALL, "quirks by name; see `durer dialects`"),
+    CourseOption("--assets", &["FOLDER"], set::ALL, "folder to search for missing meshes and textures"),
 ];
 
 /// Dürer's own options, which the course's programs do not have.
-const CONTROL: [Row; 4] = [
-    Row("--seed", &["N"], set::ALL, "seed of the random number generator"),
-    Row("--threads", &["N"], set::ALL, "threads"),
-    Row("--quiet", &[], set::ALL, "print only errors"),
-    Row("--allow-outside", &[], set::ALL, "allow files outside the scene's folder"),
+const CONTROL: [CourseOption; 4] = [
+    CourseOption("--seed", &["N"], set::ALL, "seed of the random number generator"),
+    CourseOption("--threads", &["N"], set::ALL, "threads"),
+    CourseOption("--quiet", &[], set::ALL, "print only errors"),
+    CourseOption("--allow-outside", &[], set::ALL, "allow files outside the scene's folder"),
 ];
 
 /// Iterates over all options.
-pub fn rows() -> impl Iterator<Item = &'static Row> {
+pub fn rows() -> impl Iterator<Item = &'static CourseOption> {
     OPTIONS.iter().chain(&CONTROL)
 }
 
 /// The parsed command line of `durer course`.
 pub struct Arguments {
-    options: Vec<(&'static Row, Vec<String>)>,
+    options: Vec<(&'static CourseOption, Vec<String>)>,
     unknown: Vec<String>,
 }
 
@@ -106,7 +106,7 @@ impl Arguments {
             let option = values.iter().find(|value| rows().any(|row| row.0 == **value));
             if values.len() < row.1.len() || option.is_some() {
                 let found = option.map(|option| format!(", but found {option}")).unwrap_or_default();
-                return Err(bad(format!("{word} needs {}{found}", row.1.join(" "))));
+                return Err(invalid_input(format!("{word} needs {}{found}", row.1.join(" "))));
             }
             parsed.options.push((row, values));
         }
@@ -131,7 +131,8 @@ impl Arguments {
     /// Returns the first `count` values of an option as numbers.
     pub fn numbers<T: std::str::FromStr>(&self, name: &str, count: usize) -> Result<Option<Vec<T>>, Failure> {
         let Some(values) = self.values(name) else { return Ok(None) };
-        let parse = |text: &String| text.parse().map_err(|_| bad(format!("{name}: `{text}` is not a valid number")));
+        let parse =
+            |text: &String| text.parse().map_err(|_| invalid_input(format!("{name}: `{text}` is not a valid number")));
         values.iter().take(count).map(parse).collect::<Result<_, _>>().map(Some)
     }
 
@@ -144,7 +145,7 @@ impl Arguments {
     pub fn zoom(&self, name: &str) -> Result<Option<u32>, Failure> {
         let Some(values) = self.values(name) else { return Ok(None) };
         let zoom = values[1].parse().ok().filter(|zoom| (1..=1000).contains(zoom));
-        zoom.map(Some).ok_or_else(|| bad(format!("{name}: the zoom must be from 1 to 1000")))
+        zoom.map(Some).ok_or_else(|| invalid_input(format!("{name}: the zoom must be from 1 to 1000")))
     }
 
     /// Reports unknown options. The program of f12a4 ignores them; the others fail.
@@ -156,10 +157,10 @@ impl Arguments {
                 None => format!("unknown option {word}; `durer course` lists all options"),
             };
             if dialect != Some(Dialect::F12a4) {
-                return Err(bad(message));
+                return Err(invalid_input(message));
             }
             if !quiet {
-                complain(&format!("warning: {message} (ignored, as the official program does)"));
+                print_error_line(&format!("warning: {message} (ignored, as the official program does)"));
             }
         }
         Ok(())
@@ -173,13 +174,13 @@ impl Arguments {
             .filter(|(row, _)| row.2 != set::ALL)
             .map(|(row, _)| Hint {
                 set: row.2,
-                why: format!("`{}` is an option of that year's program", row.0),
+                reason: format!("`{}` is an option of that year's program", row.0),
                 weak: false,
             })
             .collect();
         let extension = self.text("-output").and_then(|name| Path::new(name).extension()?.to_str());
         let wanted =
-            |set: DialectSet, format: &str| Hint { set, why: format!("the output is a {format} file"), weak: true };
+            |set: DialectSet, format: &str| Hint { set, reason: format!("the output is a {format} file"), weak: true };
         hints.extend(match extension {
             Some("bmp") => Some(wanted(set::F12A4 | set::F12A5, "BMP")),
             Some("png") => Some(wanted(set::F16 | set::F23, "PNG")),
@@ -192,18 +193,18 @@ impl Arguments {
 
 /// Prints the options and the emulated programs.
 pub fn usage() {
-    say("durer course: accepts the arguments of the course's own programs from any year\n");
-    say(
+    print_line("durer course: accepts the arguments of the course's own programs from any year\n");
+    print_line(
         "  durer course -input scene.txt -size 200 200 -output o.tga -depth 9 10 d.tga -normals n.tga -shadows -bounces 4\n",
     );
-    for Row(name, values, years, doc) in rows() {
+    for CourseOption(name, values, years, doc) in rows() {
         let left = format!("{name} {}", values.join(" "));
         let all = *years == set::ALL;
         let names: Vec<&str> =
             Dialect::ALL.iter().filter(|d| d.is_in(*years) && **d != Dialect::Durer).map(|d| d.name()).collect();
         let years = if all { String::new() } else { format!(" ({})", names.join(", ")) };
-        say(&format!("  {left:<28}{doc}{years}"));
+        print_line(&format!("  {left:<28}{doc}{years}"));
     }
-    say(&format!("\nPrograms: {}.", PROGRAMS.map(|p| p.name).join(", ")));
-    say("A link to durer with one of these names emulates that program.");
+    print_line(&format!("\nPrograms: {}.", PROGRAMS.map(|p| p.name).join(", ")));
+    print_line("A link to durer with one of these names emulates that program.");
 }

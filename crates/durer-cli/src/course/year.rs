@@ -5,8 +5,8 @@
 
 use super::job;
 use super::options::Arguments;
-use crate::failure::{Failure, failed};
-use crate::guard::Guard;
+use crate::failure::{Failure, from_render_error};
+use crate::file_registry::FileRegistry;
 use crate::open::{CompiledInput, read};
 use crate::report;
 use durer::LoadOptions;
@@ -22,10 +22,10 @@ use std::path::Path;
 const SIDE: u32 = 64;
 
 /// Maximum difference per channel between pixels that look the same.
-const ALIKE: f32 = 2.0 / 255.0;
+const MAX_CHANNEL_DIFFERENCE: f32 = 2.0 / 255.0;
 
 /// Two pictures look the same if at most one in this many pixels differs visibly.
-const ONE_OF: usize = 1000;
+const MIN_PIXELS_PER_DIFFERENCE: usize = 1000;
 
 /// Opens a scene in the dialect that fits best. Prints its warnings, and a note if the picture
 /// differs from that of the dialect guessed from keywords alone.
@@ -33,19 +33,19 @@ pub fn open(
     scene: &Path,
     options: &LoadOptions,
     arguments: &Arguments,
-    guard: &mut Guard,
+    registry: &mut FileRegistry,
 ) -> Result<CompiledInput, Failure> {
     let quiet = arguments.has("--quiet");
-    let read = read(scene, options, quiet, guard)?;
-    let guess = read.loaded.guess.clone().filter(|guess| guess.is_hinted() || guess.fitting.len() > 1);
+    let read = read(scene, options, quiet, registry)?;
+    let guess = read.loaded.guess.clone().filter(|guess| guess.changed_by_hints() || guess.fitting.len() > 1);
     let Some(guess) = guess else {
-        return read.compile(options, guard);
+        return read.compile(options, registry);
     };
-    let mut chosen = read.quiet().compile(options, guard)?;
+    let mut chosen = read.quiet().compile(options, registry)?;
     let mut trial = Trial::of(&chosen, arguments)?;
     let mut under = |dialect| {
         let options = LoadOptions { dialect: Some(dialect), ..options.clone() };
-        let compiled = self::read(scene, &options, true, guard)?.compile(&options, guard)?;
+        let compiled = self::read(scene, &options, true, registry)?.compile(&options, registry)?;
         Ok::<_, Failure>((Trial::of(&compiled, arguments)?, compiled))
     };
     if trial.nan > 0 {
@@ -56,8 +56,8 @@ pub fn open(
         }
     }
     let dialect = chosen.loaded.dialect;
-    if !quiet && dialect != guess.by_words {
-        let is_same = under(guess.by_words).is_ok_and(|(by_words, _)| by_words.looks_like(&trial));
+    if !quiet && dialect != guess.by_keywords {
+        let is_same = under(guess.by_keywords).is_ok_and(|(by_words, _)| by_words.looks_like(&trial));
         if !is_same {
             report::note(&note(&guess, dialect));
         }
@@ -90,16 +90,17 @@ impl Trial {
         let times = job.width.max(job.height).div_ceil(SIDE);
         let [width, height] = [job.width, job.height].map(|length| (length / times).max(1));
         let job = Job { width, height, sampling: Sampling::Center, ..job };
-        let rendered = durer::render::render(&compiled.world, &job, &Control::default()).map_err(failed)?;
+        let rendered = durer::render::render(&compiled.world, &job, &Control::default()).map_err(from_render_error)?;
         Ok(Trial { nan: rendered.statistics.rejected, layers: rendered.pictures })
     }
 
     fn looks_like(&self, other: &Trial) -> bool {
-        let differs = |(a, b): (&Vec3, &Vec3)| (*a - *b).abs().max_element() > ALIKE;
+        let differs = |(a, b): (&Vec3, &Vec3)| (*a - *b).abs().max_element() > MAX_CHANNEL_DIFFERENCE;
         self.nan == other.nan
             && self.layers.iter().zip(&other.layers).all(|(a, b)| {
                 let (a, b) = (&a.image.pixels, &b.image.pixels);
-                a.len() == b.len() && a.iter().zip(b).filter(|pair| differs(*pair)).count() * ONE_OF <= a.len()
+                a.len() == b.len()
+                    && a.iter().zip(b).filter(|pair| differs(*pair)).count() * MIN_PIXELS_PER_DIFFERENCE <= a.len()
             })
     }
 }

@@ -118,7 +118,7 @@ fn check_scripts(scripts: &str, names: &[[String; 3]]) {
 }
 
 #[test]
-fn names_of_scenes_are_words_of_bash_and_nothing_else() {
+fn scene_names_are_quoted_for_bash() {
     // If a name escaped its quotes, the file would have more lines than the template.
     let lines = |template: &str| made_plain(template).lines().count();
     for template in ["slurm", "k8s", "openjd", "dask"] {
@@ -165,7 +165,7 @@ for text in sys.stdin.buffer.read().decode().split('\\0')[:-1]:
 ";
 
 #[test]
-fn names_of_scenes_are_texts_of_yaml_and_nothing_else() {
+fn scene_names_are_quoted_for_yaml() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("documents");
     for template in ["k8s", "openjd"] {
@@ -195,7 +195,7 @@ for text in sys.stdin.buffer.read().decode().split('\\0')[:-1]:
 ";
 
 #[test]
-fn names_of_scenes_are_strings_of_python_and_nothing_else() {
+fn scene_names_are_quoted_for_python() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("programs");
     let all: Vec<_> = (0..rounds()).map(|number| made("dask", number)).collect();
@@ -216,14 +216,14 @@ fn frames_are_merged_under_their_own_names() {
 }
 
 #[test]
-fn names_of_jobs_are_names_of_hosts() {
+fn job_names_are_valid_host_names() {
     for (stem, name) in [("Room 1", "durer-room-1"), ("", "durer"), ("---", "durer"), ("é", "durer"), ("é1", "durer-1")]
     {
         assert_eq!(job_name(stem), name);
     }
     for number in 0..rounds() {
         let job = job_name(&name(number).repeat(4));
-        assert!(job.len() <= LONGEST_NAME && !job.ends_with('-'), "{job}");
+        assert!(job.len() <= MAX_NAME_LENGTH && !job.ends_with('-'), "{job}");
         assert!(job.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-'), "{job}");
     }
 }

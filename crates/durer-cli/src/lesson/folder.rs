@@ -1,8 +1,8 @@
 //! Writes the folder of a lesson. Only files of an earlier lesson are replaced.
 
 use super::step_files::TEXT;
-use crate::failure::{Failure, bad};
-use crate::guard::Guard;
+use crate::failure::{Failure, invalid_input};
+use crate::file_registry::FileRegistry;
 use crate::output::save_silently;
 use durer::format::folder::FolderSource;
 use durer::image::Destination;
@@ -15,7 +15,7 @@ pub const MARK: &str =
     "<!-- Written by durer lesson, which also replaces or removes the files that are linked here. -->";
 
 /// Maximum size of a lesson's text in bytes.
-const LONGEST: u64 = 16 << 20;
+const MAX_TEXT: u64 = 16 << 20;
 
 /// Output folder of `durer lesson`, with the files of an earlier lesson that can be replaced.
 pub struct Folder {
@@ -28,31 +28,31 @@ pub struct Folder {
 
 impl Folder {
     /// Checks before the render that the folder can be written.
-    pub fn new(path: PathBuf, guard: &mut Guard) -> Result<Self, Failure> {
+    pub fn new(path: PathBuf, registry: &mut FileRegistry) -> Result<Self, Failure> {
         if path.exists() && !path.is_dir() {
-            return Err(bad(format!("`{}` is a file; a lesson needs a folder", path.display())));
+            return Err(invalid_input(format!("`{}` is a file; a lesson needs a folder", path.display())));
         }
         let new = !path.exists();
         let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
         if new && !parent.is_dir() {
-            return Err(bad(format!("folder `{}` does not exist", parent.display())));
+            return Err(invalid_input(format!("folder `{}` does not exist", parent.display())));
         }
         if !new {
             Destination::new(path.join(TEXT))?;
         }
-        let text = FolderSource::new(&path).budget(LONGEST).read_path(&path.join(TEXT), TEXT);
+        let text = FolderSource::new(&path).budget(MAX_TEXT).read_path(&path.join(TEXT), TEXT);
         let own = text.map(|text| linked(&String::from_utf8_lossy(&text))).unwrap_or_default();
-        own.iter().try_for_each(|name| guard.claim("--output", &path.join(name)))?;
+        own.iter().try_for_each(|name| registry.register_removal("--output", &path.join(name)))?;
         Ok(Folder { path, new, own })
     }
 
     /// Writes all files or none, and removes files of an earlier lesson that are no longer needed.
     /// Returns the path of the folder.
-    pub fn write(self, files: Vec<(String, Vec<u8>)>, guard: &mut Guard) -> Result<PathBuf, Failure> {
+    pub fn write(self, files: Vec<(String, Vec<u8>)>, registry: &mut FileRegistry) -> Result<PathBuf, Failure> {
         let foreign = |name: &String| !self.own.contains(name) && self.path.join(name).exists();
         if let Some((name, _)) = files.iter().find(|(name, _)| foreign(name)) {
             let path = self.path.join(name);
-            return Err(bad(format!(
+            return Err(invalid_input(format!(
                 "`{}` does not belong to an earlier lesson: choose another folder, or move the file",
                 path.display()
             )));
@@ -62,14 +62,14 @@ impl Folder {
             std::fs::create_dir(&self.path).map_err(failed)?;
         }
         let names: BTreeSet<String> = files.iter().map(|file| file.0.clone()).collect();
-        let mut place = |name: &String| match self.own.contains(name) {
+        let mut destination = |name: &String| match self.own.contains(name) {
             true => Ok(Destination::new(self.path.join(name))?),
-            false => guard.writes("--output", &self.path.join(name)),
+            false => registry.register_output("--output", &self.path.join(name)),
         };
-        let places = files.iter().map(|(name, _)| place(name)).collect::<Result<Vec<_>, Failure>>();
-        let saved = places.and_then(|places| {
+        let destinations = files.iter().map(|(name, _)| destination(name)).collect::<Result<Vec<_>, Failure>>();
+        let saved = destinations.and_then(|destinations| {
             let bytes = files.into_iter().map(|(_, bytes)| bytes);
-            save_silently(&places.iter().zip(bytes).collect::<Vec<_>>())
+            save_silently(&destinations.iter().zip(bytes).collect::<Vec<_>>())
         });
         if let Err(failure) = saved {
             // Remove the folder if this run created it. If that fails, an empty folder remains.

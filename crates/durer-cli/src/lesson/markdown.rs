@@ -26,7 +26,7 @@ fn step(text: &mut String, number: usize, step: &StepFiles, scene: &str) {
         let link = format!("[{OWN_SCENE_NAME}]({OWN_SCENE_NAME})");
         let _ = writeln!(text, "> {}\n", plain(&elsewhere).replace(OWN_SCENE_NAME, &link));
     }
-    if !step.goes_on {
+    if !step.continues_topic {
         let _ = writeln!(text, "{}\n\n```text\n{}\n```\n", step.topic.words, step.topic.equations.join("\n"));
     }
     // Show the pictures side by side in a table, with captions above.
@@ -39,8 +39,8 @@ fn step(text: &mut String, number: usize, step: &StepFiles, scene: &str) {
     let _ = writeln!(text, "{}", row(columns.iter().map(|_| ":-:".to_string()).collect()));
     let _ =
         writeln!(text, "{}\n", row(columns.iter().map(|column| format!("![{}]({})", column.0, column.1)).collect()));
-    let _ = writeln!(text, "{}\n", plain(&step.words));
-    if step.goes_on {
+    let _ = writeln!(text, "{}\n", plain(&step.effect));
+    if step.continues_topic {
         return;
     }
     let places: Vec<String> = step.topic.places.iter().map(|p| format!("`{}`: `{}`", p.file, p.symbol)).collect();

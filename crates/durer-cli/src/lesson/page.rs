@@ -27,13 +27,13 @@ fn step(step: &StepFiles, scene: &str) -> Value {
         "title": step.title,
         "elsewhere": step.elsewhere(scene),
         // Print the text of a topic once, at its first step.
-        "words": (!step.goes_on).then_some(step.topic.words),
-        "equations": (!step.goes_on).then_some(step.topic.equations),
+        "words": (!step.continues_topic).then_some(step.topic.words),
+        "equations": (!step.continues_topic).then_some(step.topic.equations),
         "before": step.before.as_ref().map(figure),
         "after": figure(&step.after),
         "change": step.change,
         "plan": step.plan.as_ref().map(|plan| &plan.0),
-        "facts": step.words,
-        "places": step.topic.places.iter().filter(|_| !step.goes_on).map(|place| json!([place.file, place.symbol])).collect::<Vec<_>>(),
+        "facts": step.effect,
+        "places": step.topic.places.iter().filter(|_| !step.continues_topic).map(|place| json!([place.file, place.symbol])).collect::<Vec<_>>(),
     })
 }

@@ -20,12 +20,12 @@ pub struct Figure {
 pub struct StepFiles {
     pub topic: &'static Topic,
     pub title: String,
-    pub words: String,
-    pub ours: bool,
+    pub effect: String,
+    pub uses_built_in_scene: bool,
     /// Reason why the user's scene cannot show the step.
-    pub lacking: &'static str,
+    pub missing_because: &'static str,
     /// True if the step continues the topic of the previous step.
-    pub goes_on: bool,
+    pub continues_topic: bool,
     pub before: Option<Figure>,
     pub after: Figure,
     pub change: Option<String>,
@@ -56,8 +56,19 @@ impl Lesson {
         let change = step.change.as_ref().map(|change| self.picture(format!("{name}-change.png"), &change.picture));
         let change = change.transpose()?;
         let plan = step.plan.map(|svg| (svg, format!("{name}-plan.svg")));
-        let Step { topic, title, words, ours, lacking, goes_on, .. } = step;
-        self.steps.push(StepFiles { topic, title, words, ours, lacking, goes_on, before, after, change, plan });
+        let Step { topic, title, effect, uses_built_in_scene, missing_because, continues_topic, .. } = step;
+        self.steps.push(StepFiles {
+            topic,
+            title,
+            effect,
+            uses_built_in_scene,
+            missing_because,
+            continues_topic,
+            before,
+            after,
+            change,
+            plan,
+        });
         Ok(())
     }
 
@@ -74,7 +85,7 @@ impl Lesson {
 
     /// Returns true if some step uses the built-in scene.
     pub fn shows_ours(&self) -> bool {
-        self.steps.iter().any(|step| step.ours)
+        self.steps.iter().any(|step| step.uses_built_in_scene)
     }
 }
 
@@ -82,10 +93,12 @@ impl StepFiles {
     /// Returns a sentence that says why the step uses the built-in scene; `None` if it uses the
     /// user's scene.
     pub fn elsewhere(&self, scene: &str) -> Option<String> {
-        let lacking = self.lacking;
+        let missing_because = self.missing_because;
         // Later steps of the same topic need no explanation.
-        (self.ours && !self.goes_on).then(|| {
-            format!("{scene} cannot show this: {lacking}. This step uses a small built-in scene, {OWN_SCENE_NAME}.")
+        (self.uses_built_in_scene && !self.continues_topic).then(|| {
+            format!(
+                "{scene} cannot show this: {missing_because}. This step uses a small built-in scene, {OWN_SCENE_NAME}."
+            )
         })
     }
 }

@@ -1,8 +1,8 @@
 //! Command-line options of the render job, generated from the library's table, and of the
 //! acceleration structure.
 
-use super::method::IntegratorArgs;
-use crate::failure::{Failure, bad};
+use super::integrator::IntegratorArgs;
+use crate::failure::{Failure, invalid_input};
 use clap::builder::{ArgPredicate, PossibleValuesParser, TypedValueParser};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, value_parser};
@@ -110,7 +110,7 @@ impl FromArgMatches for JobArgs {
 pub fn accel(args: &JobArgs) -> Result<AccelKind, Failure> {
     let AccelArgs { accel, grid } = &args.accel;
     if grid.is_some() && accel != "grid" {
-        return Err(bad(format!("--grid does not apply to --accel {accel}")));
+        return Err(invalid_input(format!("--grid does not apply to --accel {accel}")));
     }
     Ok(match accel.as_str() {
         "grid" => AccelKind::Grid(*grid),

@@ -1,12 +1,12 @@
 //! `durer photo camera`: computes the camera of one photograph.
 
 use super::args::CameraArgs;
-use super::inputs::{bytes, wrong};
-use crate::failure::{Failure, bad};
-use crate::guard::Guard;
+use super::inputs::{bytes, from_photo_error};
+use crate::failure::{Failure, invalid_input};
+use crate::file_registry::FileRegistry;
 use crate::output::save;
-use crate::terminal::complain;
-use crate::terminal::say;
+use crate::terminal::print_error_line;
+use crate::terminal::print_line;
 use durer_photo::format::{projective_camera, read_lines, read_points, read_project};
 use durer_photo::photo;
 use durer_photo::resect::{LensPriors, camera, from_vanishing_lines};
@@ -14,45 +14,49 @@ use durer_photo::{Lens, Pose};
 
 /// Runs `durer photo camera`.
 pub fn run(args: &CameraArgs) -> Result<(), Failure> {
-    let mut guard = Guard::default();
+    let mut registry = FileRegistry::default();
     let file = args.picture.to_string_lossy();
-    let content = bytes(&args.picture, &mut guard)?;
-    let place = args.output.as_ref().map(|path| guard.writes("--output", path)).transpose()?;
+    let content = bytes(&args.picture, &mut registry)?;
+    let destination = args.output.as_ref().map(|path| registry.register_output("--output", path)).transpose()?;
     let report = |line: String| {
         if args.quiet {
         } else {
-            complain(&line)
+            print_error_line(&line)
         }
     };
     let (lens, pose): (Lens, Pose) = if args.picture.extension().is_some_and(|end| end == "fspy") {
-        let (lines, _) = read_project(&file, &content).map_err(wrong)?;
-        from_vanishing_lines(&lines, args.distance).map_err(wrong)?
+        let (lines, _) = read_project(&file, &content).map_err(from_photo_error)?;
+        from_vanishing_lines(&lines, args.distance).map_err(from_photo_error)?
     } else if let Some(path) = &args.lines {
-        let size = photo::size(&file, &content).map_err(wrong)?;
-        let lines = read_lines(&path.to_string_lossy(), &bytes(path, &mut guard)?, size).map_err(wrong)?;
-        from_vanishing_lines(&lines, args.distance).map_err(wrong)?
+        let size = photo::size(&file, &content).map_err(from_photo_error)?;
+        let lines =
+            read_lines(&path.to_string_lossy(), &bytes(path, &mut registry)?, size).map_err(from_photo_error)?;
+        from_vanishing_lines(&lines, args.distance).map_err(from_photo_error)?
     } else if let Some(path) = &args.points {
-        let size = photo::size(&file, &content).map_err(wrong)?;
-        let pairs = read_points(&path.to_string_lossy(), &bytes(path, &mut guard)?).map_err(wrong)?;
+        let size = photo::size(&file, &content).map_err(from_photo_error)?;
+        let pairs = read_points(&path.to_string_lossy(), &bytes(path, &mut registry)?).map_err(from_photo_error)?;
         let threshold = args.threshold.unwrap_or(0.005 * f64::from(size[0].max(size[1])));
-        let known = LensPriors { size, focal: args.focal, distortion: args.distortion, threshold };
-        let found = camera(&pairs, &known).map_err(wrong)?;
-        report(format!("{} of {} points agree; rms {:.3} pixels", found.inliers.len(), pairs.len(), found.rms));
-        for i in (0..pairs.len()).filter(|i| !found.inliers.contains(i)) {
+        let priors = LensPriors { size, focal: args.focal, distortion: args.distortion, threshold };
+        let estimate = camera(&pairs, &priors).map_err(from_photo_error)?;
+        report(format!("{} of {} points agree; rms {:.3} pixels", estimate.inliers.len(), pairs.len(), estimate.rms));
+        for i in (0..pairs.len()).filter(|i| !estimate.inliers.contains(i)) {
             report(format!("point {} does not agree: its position or its pixel is wrong", i + 1));
         }
-        report(format!("conditioning {:.2e}: ratio of the worst to the best determined direction", found.conditioning));
-        (found.lens, found.pose)
+        report(format!(
+            "conditioning {:.2e}: ratio of the worst to the best determined direction",
+            estimate.conditioning
+        ));
+        (estimate.lens, estimate.pose)
     } else {
-        return Err(bad("pass known points or lines of the photograph: --points FILE or --lines FILE"));
+        return Err(invalid_input("pass known points or lines of the photograph: --points FILE or --lines FILE"));
     };
     let (c, f) = (pose.center(), lens.focal);
     report(format!("taken at ({:.6}, {:.6}, {:.6}); focal length {f:.3} pixels", c.x, c.y, c.z));
     let text = projective_camera(&lens, &pose);
-    match place {
-        Some(place) => save(&[(&place, text.into_bytes())], args.quiet),
+    match destination {
+        Some(destination) => save(&[(&destination, text.into_bytes())], args.quiet),
         None => {
-            say(text.trim_end());
+            print_line(text.trim_end());
             Ok(())
         }
     }

@@ -4,8 +4,8 @@
 //! a folder, must be in or below that folder after links are resolved. The same rule applies to the
 //! files of a scene.
 
-use crate::failure::{Failure, bad};
-use crate::guard::Guard;
+use crate::failure::{Failure, invalid_input};
+use crate::file_registry::FileRegistry;
 use durer::format::folder::FolderSource;
 use durer::options::memory::Memory;
 use durer::source::SourceError;
@@ -15,25 +15,25 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Converts an error in a photograph or a reconstruction into a failure for invalid input.
-pub fn wrong(error: Error) -> Failure {
-    bad(error.to_string())
+pub fn from_photo_error(error: Error) -> Failure {
+    invalid_input(error.to_string())
 }
 
 /// Reads a file that the user named.
-pub fn bytes(path: &Path, guard: &mut Guard) -> Result<Arc<[u8]>, Failure> {
-    guard.reads(path)?;
-    let read = within(FolderSource::new(".").allow_outside(), path);
-    read.map_err(|error| bad(error.to_string()))
+pub fn bytes(path: &Path, registry: &mut FileRegistry) -> Result<Arc<[u8]>, Failure> {
+    registry.register_input(path)?;
+    let read = read_below(FolderSource::new(".").allow_outside(), path);
+    read.map_err(|error| invalid_input(error.to_string()))
 }
 
 /// Reads a file that a reconstruction names, or that was found in a folder.
-pub fn bytes_below(folder: &Path, name: &Path, guard: &mut Guard) -> Result<Arc<[u8]>, Failure> {
+pub fn bytes_below(folder: &Path, name: &Path, registry: &mut FileRegistry) -> Result<Arc<[u8]>, Failure> {
     let path = folder.join(name);
-    let read = within(FolderSource::new(folder), &path).map_err(|error| match error {
-        SourceError::Outside { .. } => bad(outside(&path, folder)),
-        error => bad(error.to_string()),
+    let read = read_below(FolderSource::new(folder), &path).map_err(|error| match error {
+        SourceError::Outside { .. } => invalid_input(outside(&path, folder)),
+        error => invalid_input(error.to_string()),
     })?;
-    guard.reads(&path)?;
+    registry.register_input(&path)?;
     Ok(read)
 }
 
@@ -46,14 +46,14 @@ fn outside(path: &Path, folder: &Path) -> String {
 }
 
 /// Reads a regular file that the source allows, if it fits into memory.
-fn within(source: FolderSource, path: &Path) -> Result<Arc<[u8]>, SourceError> {
+fn read_below(source: FolderSource, path: &Path) -> Result<Arc<[u8]>, SourceError> {
     let most = Memory::default().bytes().unwrap_or(u64::MAX).min(FolderSource::DEFAULT_BUDGET);
     let real = source.allowed(path)?;
     source.budget(most).read_path(&real, &path.to_string_lossy())
 }
 
 /// Runs `work` with the given number of threads; `None` means one per processor.
-pub fn threaded<R: Send>(threads: Option<u16>, work: impl FnOnce() -> R + Send) -> Result<R, Failure> {
+pub fn with_threads<R: Send>(threads: Option<u16>, work: impl FnOnce() -> R + Send) -> Result<R, Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from)).build()?;
     Ok(pool.install(work))
 }
@@ -61,7 +61,7 @@ pub fn threaded<R: Send>(threads: Option<u16>, work: impl FnOnce() -> R + Send) 
 /// Returns the photographs of a folder, sorted by name.
 pub fn photographs(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let entries = std::fs::read_dir(folder)
-        .map_err(|error| bad(format!("cannot read the folder `{}`: {error}", folder.display())))?;
+        .map_err(|error| invalid_input(format!("cannot read the folder `{}`: {error}", folder.display())))?;
     let mut paths = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, Failure>>()?;
     let known = |path: &PathBuf| {
         let end = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
@@ -73,7 +73,7 @@ pub fn photographs(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     paths.retain(known);
     paths.sort();
     match paths.is_empty() {
-        true => Err(bad(format!("no photographs (.jpg, .jpeg, .png) in `{}`", folder.display()))),
+        true => Err(invalid_input(format!("no photographs (.jpg, .jpeg, .png) in `{}`", folder.display()))),
         false => Ok(paths),
     }
 }
@@ -90,23 +90,23 @@ pub fn name(path: &Path) -> String {
 
 /// Reads cameras and points. If the file lacks the names and sizes of photographs, those in the
 /// folder `pictures` are used, in order.
-pub fn read(file: &Path, pictures: Option<&Path>, guard: &mut Guard) -> Result<Reconstruction, Failure> {
-    inputs(file).iter().try_for_each(|path| guard.reads(path))?;
+pub fn read(file: &Path, pictures: Option<&Path>, registry: &mut FileRegistry) -> Result<Reconstruction, Failure> {
+    inputs(file).iter().try_for_each(|path| registry.register_input(path))?;
     let folder = if file.is_dir() { file } else { folder_of(file) };
     let mut open = |path: &Path| {
         // The user named only the file itself; other files are named by it or found in its folder.
         let source = FolderSource::new(folder);
         let source = if path == file { source.allow_outside() } else { source };
-        within(source, path).map_err(|error| match error {
+        read_below(source, path).map_err(|error| match error {
             SourceError::Outside { .. } => Error::new(outside(path, folder)),
             error => Error::new(error.to_string()),
         })
     };
-    let mut all = read_with(file, &mut open).map_err(wrong)?;
+    let mut all = read_with(file, &mut open).map_err(from_photo_error)?;
     let Some(folder) = pictures.filter(|_| all.lenses.iter().any(|lens| lens.size == [0, 0])) else { return Ok(all) };
     let paths = photographs(folder)?;
     if paths.len() != all.views.len() {
-        return Err(bad(format!(
+        return Err(invalid_input(format!(
             "there are {} photographs in `{}` but {} cameras in `{}`",
             paths.len(),
             folder.display(),
@@ -115,8 +115,8 @@ pub fn read(file: &Path, pictures: Option<&Path>, guard: &mut Guard) -> Result<R
         )));
     }
     for (i, path) in paths.iter().enumerate() {
-        let content = bytes_below(folder, Path::new(path.file_name().unwrap_or_default()), guard)?;
-        let size = durer_photo::photo::size(&path.to_string_lossy(), &content).map_err(wrong)?;
+        let content = bytes_below(folder, Path::new(path.file_name().unwrap_or_default()), registry)?;
+        let size = durer_photo::photo::size(&path.to_string_lossy(), &content).map_err(from_photo_error)?;
         all.set_image(i, &name(path), size);
     }
     Ok(all)

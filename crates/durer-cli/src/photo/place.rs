@@ -6,10 +6,10 @@
 //! colours of the stand-ins cancel.
 
 use super::args::PlaceArgs;
-use super::inputs::{bytes, wrong};
-use crate::failure::failed;
-use crate::failure::{Failure, bad};
-use crate::guard::Guard;
+use super::inputs::{bytes, from_photo_error};
+use crate::failure::from_render_error;
+use crate::failure::{Failure, invalid_input};
+use crate::file_registry::FileRegistry;
 use crate::open::{CompiledInput, load_options, read};
 use crate::options::accel;
 use crate::output::{encode, format, save};
@@ -30,24 +30,24 @@ const ACROSS: u32 = 4;
 /// Number of rows of pixels traced at once.
 const BAND: u32 = 64;
 /// Radius in pixels of the neighbourhood from which a partly covered pixel takes its shadow.
-const NEAR: usize = 2;
+const SHADOW_RADIUS: usize = 2;
 
 /// Runs `durer photo place`.
 pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
-    let mut guard = Guard::default();
+    let mut registry = FileRegistry::default();
     let format = format(&args.output)?;
     let name = args.backplate.to_string_lossy();
-    let photo = photo::read(&name, &bytes(&args.backplate, &mut guard)?).map_err(wrong)?;
-    let place = guard.writes("--output", &args.output)?;
+    let photo = photo::read(&name, &bytes(&args.backplate, &mut registry)?).map_err(from_photo_error)?;
+    let destination = registry.register_output("--output", &args.output)?;
     let [width, height] = photo.size();
     let mut options = load_options(&args.reading);
     let threads = args.threads.map(usize::from);
     (options.accel, options.threads) = (accel(&args.job)?, threads);
-    let mut with = read(&args.scene, &options, args.quiet, &mut guard)?.compile(&options, &mut guard)?;
+    let mut with = read(&args.scene, &options, args.quiet, &mut registry)?.compile(&options, &mut registry)?;
     let stand_in = stand_ins(&with, &args.stand_in)?;
     let mut job = job::job(&args.job, None, &with.loaded, false)?;
     if args.job.options.requested_size().is_some_and(|size| size != (width, height)) {
-        return Err(bad(format!("the picture has the photograph's size, {width}x{height}: remove --size")));
+        return Err(invalid_input(format!("the picture has the photograph's size, {width}x{height}: remove --size")));
     }
     (job.width, job.height) = (width, height);
     if let (Sampling::Filtered { filter, .. }, None) = (&mut job.sampling, args.job.options.get("filter")) {
@@ -55,13 +55,14 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
         *filter = Filter::Box { radius: 0.5 };
     }
     if raster(&with.world, width, height).empty() != (0, 0) {
-        return Err(bad(format!(
+        return Err(invalid_input(format!(
             "the scene's camera does not fit `{name}`, which is {width}x{height}: compute it with `durer photo camera`"
         )));
     }
     let control = Arc::new(Control { threads, memory: options.memory, ..Control::default() });
     let color = |world: &World| -> Result<Vec<Vec3>, Failure> {
-        let rendered = progress::watch(&control, args.quiet, || render(world, &job, &control)).map_err(failed)?;
+        let rendered =
+            progress::watch(&control, args.quiet, || render(world, &job, &control)).map_err(from_render_error)?;
         Ok(rendered.layers.into_iter().next().map(|layer| layer.image.pixels.clone()).unwrap_or_default())
     };
     let colors = color(&with.world)?;
@@ -69,12 +70,14 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
     let root = with.loaded.scene.root.take();
     with.loaded.scene.root = root.map(|root| Group { objects: kept(root.objects, &stand_in) });
     let without = with.loaded.compile(&options, &mut Files::default(), &mut Diagnostics::default());
-    let empty = color(&without.ok_or_else(|| bad("the scene without the inserted objects does not compile"))?)?;
+    let empty =
+        color(&without.ok_or_else(|| invalid_input("the scene without the inserted objects does not compile"))?)?;
     let plate: Vec<Vec3> = photo.pixels.pixels().map(|p| Vec3::from(p.0.map(decode_srgb))).collect();
     let pixels = composed(width as usize, &plate, &colors, &empty, &covered);
-    let layer = Layer::color("color", Image::from_pixels(width, height, pixels).map_err(|e| bad(e.to_string()))?);
+    let layer =
+        Layer::color("color", Image::from_pixels(width, height, pixels).map_err(|e| invalid_input(e.to_string()))?);
     let file = encode(format, &[layer], Transfer::Srgb, &[])?;
-    save(&[(&place, file)], args.quiet)
+    save(&[(&destination, file)], args.quiet)
 }
 
 /// Returns for each material whether it is that of a stand-in.
@@ -83,8 +86,9 @@ fn stand_ins(compiled: &CompiledInput, numbers: &[u32]) -> Result<Vec<bool>, Fai
     let mut all = vec![false; count];
     for number in numbers {
         let slot = all.get_mut(*number as usize);
-        *slot.ok_or_else(|| bad(format!("--stand-in {number}: the scene has {count} materials, numbered from 0")))? =
-            true;
+        *slot.ok_or_else(|| {
+            invalid_input(format!("--stand-in {number}: the scene has {count} materials, numbered from 0"))
+        })? = true;
     }
     let objects = compiled.loaded.scene.root.iter().flat_map(|root| &root.objects);
     let (there, others) = objects.fold((false, false), |(a, b), object| {
@@ -92,8 +96,8 @@ fn stand_ins(compiled: &CompiledInput, numbers: &[u32]) -> Result<Vec<bool>, Fai
         (a || c, b || d)
     });
     match (there, others) {
-        (false, _) => Err(bad("no object has a material of --stand-in: nothing can catch a shadow")),
-        (_, false) => Err(bad("every object has a material of --stand-in: there is nothing to insert")),
+        (false, _) => Err(invalid_input("no object has a material of --stand-in: nothing can catch a shadow")),
+        (_, false) => Err(invalid_input("every object has a material of --stand-in: there is nothing to insert")),
         _ => Ok(all),
     }
 }
@@ -151,8 +155,8 @@ fn coverage(
         let aovs = Aov::from_name("material").into_iter().collect();
         let job =
             Job { width, height, crop: Some(crop), sampling: Sampling::Center, color: false, aovs, ..job.clone() };
-        let seen = progress::watch(control, quiet, || render(world, &job, control)).map_err(failed)?;
-        let Some(layer) = seen.layers.first() else { continue };
+        let rendered = progress::watch(control, quiet, || render(world, &job, control)).map_err(from_render_error)?;
+        let Some(layer) = rendered.layers.first() else { continue };
         for (i, material) in layer.image.pixels.iter().enumerate() {
             let (x, y) = (i as u32 % width, top + i as u32 / width);
             // A negative material is the background.
@@ -177,8 +181,8 @@ fn composed(width: usize, plate: &[Vec3], with: &[Vec3], without: &[Vec3], cover
     let around = |i: usize| {
         let (x, y) = (i % width, i / width);
         let (mut sum, mut count) = (Vec3::ZERO, 0.0);
-        for y in y.saturating_sub(NEAR)..(y + NEAR + 1).min(height) {
-            for j in (x.saturating_sub(NEAR)..(x + NEAR + 1).min(width)).map(|x| y * width + x) {
+        for y in y.saturating_sub(SHADOW_RADIUS)..(y + SHADOW_RADIUS + 1).min(height) {
+            for j in (x.saturating_sub(SHADOW_RADIUS)..(x + SHADOW_RADIUS + 1).min(width)).map(|x| y * width + x) {
                 if covered[j] == 0.0 {
                     (sum, count) = (sum + shadow(j), count + 1.0);
                 }
@@ -192,8 +196,8 @@ fn composed(width: usize, plate: &[Vec3], with: &[Vec3], without: &[Vec3], cover
             0.0 => shadow(i),
             _ => around(i),
         };
-        let seen = with[i] + (1.0 - covered[i]) * r * (plate[i] - without[i]);
-        Vec3::new(seen.x.max(0.0), seen.y.max(0.0), seen.z.max(0.0))
+        let rendered = with[i] + (1.0 - covered[i]) * r * (plate[i] - without[i]);
+        Vec3::new(rendered.x.max(0.0), rendered.y.max(0.0), rendered.z.max(0.0))
     };
     (0..plate.len()).map(pixel).collect()
 }

@@ -1,11 +1,11 @@
 //! Prints and writes reconstructions.
 
 use super::args::ResultArgs;
-use super::inputs::wrong;
-use crate::failure::{Failure, bad};
-use crate::guard::Guard;
+use super::inputs::from_photo_error;
+use crate::failure::{Failure, invalid_input};
+use crate::file_registry::FileRegistry;
 use crate::output::save;
-use crate::terminal::say;
+use crate::terminal::print_line;
 use durer::image::Destination;
 use durer_photo::Reconstruction;
 use durer_photo::format::Output;
@@ -14,11 +14,13 @@ use std::path::{Path, PathBuf};
 /// Prints a summary of a reconstruction and its residuals.
 pub fn report(all: &Reconstruction) {
     let (fit, count) = (all.reprojection_error(), all.registered_count());
-    say(&format!("{count} of {} photographs registered; {} points", all.views.len(), all.points.len()));
+    print_line(&format!("{count} of {} photographs registered; {} points", all.views.len(), all.points.len()));
     if fit.observations > 0 {
         let (track, n) = (all.track_length(), fit.observations);
         let (rms, max, cost) = (fit.rms, fit.max, fit.cost);
-        say(&format!("{n} observations, {track:.2} per point; rms {rms:.4} pixels, at most {max:.2}; cost {cost:.6e}"));
+        print_line(&format!(
+            "{n} observations, {track:.2} per point; rms {rms:.4} pixels, at most {max:.2}; cost {cost:.6e}"
+        ));
     }
 }
 
@@ -32,21 +34,24 @@ pub struct Results {
 impl Results {
     /// Checks before the work that the files can be written. Folders are created only when the
     /// files are saved.
-    pub fn new(args: &ResultArgs, guard: &mut Guard) -> Result<Self, Failure> {
+    pub fn new(args: &ResultArgs, registry: &mut FileRegistry) -> Result<Self, Failure> {
         let mut results = Results { outputs: Vec::new(), folders: Vec::new(), files: Vec::new() };
         for path in &args.output {
-            let output = Output::of(path, args.binary).map_err(wrong)?;
+            let output = Output::of(path, args.binary).map_err(from_photo_error)?;
             if output.is_folder() && !path.exists() {
                 let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
                 if !parent.is_dir() {
-                    return Err(bad(format!("folder `{}` does not exist", parent.display())));
+                    return Err(invalid_input(format!("folder `{}` does not exist", parent.display())));
                 }
                 results.folders.push(path.clone());
                 results.outputs.push((output, path.clone(), Vec::new()));
                 continue;
             }
-            let places =
-                output.files(path).iter().map(|file| guard.writes("--output", file)).collect::<Result<_, _>>()?;
+            let places = output
+                .files(path)
+                .iter()
+                .map(|file| registry.register_output("--output", file))
+                .collect::<Result<_, _>>()?;
             results.outputs.push((output, path.clone(), places));
         }
         Ok(results)
@@ -55,7 +60,7 @@ impl Results {
     /// Encodes a reconstruction for each output.
     pub fn add(&mut self, all: &Reconstruction) -> Result<(), Failure> {
         for (output, ..) in &self.outputs {
-            self.files.extend(output.write(all).map_err(wrong)?);
+            self.files.extend(output.write(all).map_err(from_photo_error)?);
         }
         Ok(())
     }

@@ -1,12 +1,12 @@
 //! `durer photo solve`: computes or adjusts cameras and points.
 
 use super::args::SolveArgs;
-use super::inputs::{bytes, read, threaded, wrong};
+use super::inputs::{bytes, from_photo_error, read, with_threads};
 use super::results::{Results, report};
 use crate::failure::Failure;
-use crate::guard::Guard;
+use crate::file_registry::FileRegistry;
 use crate::progress;
-use crate::terminal::{complain, say};
+use crate::terminal::{print_error_line, print_line};
 use durer_photo::adjust::{self, Loss, adjust_with_progress, covariance};
 use durer_photo::format::{ControlPoint, is_matches, read_control};
 use durer_photo::geometry::align::align_to_control_points;
@@ -16,40 +16,40 @@ use durer_photo::{Lens, Reconstruction};
 
 /// Runs `durer photo solve`.
 pub fn run(args: &SolveArgs) -> Result<(), Failure> {
-    let mut guard = Guard::default();
-    let mut results = Results::new(&args.results, &mut guard)?;
+    let mut registry = FileRegistry::default();
+    let mut results = Results::new(&args.results, &mut registry)?;
     let is_file = !args.file.is_dir();
-    let content = if is_file { bytes(&args.file, &mut guard)? } else { [].into() };
+    let content = if is_file { bytes(&args.file, &mut registry)? } else { [].into() };
     let file = args.file.to_string_lossy();
     let (mut all, control) = match is_matches(&content) {
         true => {
-            let matches = Matches::from_json(&file, &content).map_err(wrong)?;
+            let matches = Matches::from_json(&file, &content).map_err(from_photo_error)?;
             let names: Vec<&str> = matches.pictures.iter().map(|picture| &*picture.name).collect();
-            let control = control(args, &names, &mut guard)?;
+            let control = control(args, &names, &mut registry)?;
             (incremental(args, &matches)?, control)
         }
         false => {
-            let all = read_input(args, &mut guard)?;
+            let all = read_input(args, &mut registry)?;
             let names: Vec<&str> = all.views.iter().map(|view| &*view.name).collect();
-            let control = control(args, &names, &mut guard)?;
+            let control = control(args, &names, &mut registry)?;
             (adjusted(args, all)?, control)
         }
     };
     if let Some(control) = control {
-        let (similarity, left) = align_to_control_points(&all, &control).map_err(wrong)?;
+        let (similarity, left) = align_to_control_points(&all, &control).map_err(from_photo_error)?;
         similarity.apply_to(&mut all);
         let worst = left.iter().fold(0.0_f64, |m, d| m.max(*d));
         if !args.run.quiet {
             let (count, scale) = (left.len(), similarity.scale);
-            say(&format!("aligned with {count} control points, scale {scale:.6}; largest distance {worst:.4}"));
+            print_line(&format!("aligned with {count} control points, scale {scale:.6}; largest distance {worst:.4}"));
         }
     }
     if !args.run.quiet {
         report(&all);
-        all.lenses.iter().enumerate().for_each(|(i, lens)| say(&lens_line(&all, i, lens)));
+        all.lenses.iter().enumerate().for_each(|(i, lens)| print_line(&lens_line(&all, i, lens)));
     }
     if args.covariance {
-        exactness(args, &all)?;
+        print_standard_deviations(args, &all)?;
     }
     results.add(&all)?;
     results.save(args.run.quiet)
@@ -62,9 +62,9 @@ fn lens_line(all: &Reconstruction, number: usize, lens: &Lens) -> String {
 }
 
 /// Reads the control points before the work, so that errors in the file are reported at once.
-fn control(args: &SolveArgs, names: &[&str], guard: &mut Guard) -> Result<Option<Vec<ControlPoint>>, Failure> {
+fn control(args: &SolveArgs, names: &[&str], registry: &mut FileRegistry) -> Result<Option<Vec<ControlPoint>>, Failure> {
     let Some(path) = &args.control else { return Ok(None) };
-    read_control(&path.to_string_lossy(), &bytes(path, guard)?, names).map(Some).map_err(wrong)
+    read_control(&path.to_string_lossy(), &bytes(path, registry)?, names).map(Some).map_err(from_photo_error)
 }
 
 /// Computes cameras and points from matches, one photograph after the other.
@@ -78,25 +78,25 @@ fn incremental(args: &SolveArgs, matches: &Matches) -> Result<Reconstruction, Fa
         ..Options::default()
     };
     let count = matches.pictures.len() as f64;
-    let solved = progress::shares("solving", |share| {
+    let solved = progress::show_progress("solving", |share| {
         let watch = |known: usize| {
             if args.run.quiet {
             } else {
                 share(known as f64 / count)
             }
         };
-        threaded(args.run.threads, || solve(matches, &options, &watch))
+        with_threads(args.run.threads, || solve(matches, &options, &watch))
     });
-    let solved = solved?.map_err(wrong)?;
+    let solved = solved?.map_err(from_photo_error)?;
     if !args.run.quiet {
-        solved.notes.iter().for_each(|note| complain(&format!("note: {note}")));
+        solved.notes.iter().for_each(|note| print_error_line(&format!("note: {note}")));
     }
     Ok(solved.reconstruction)
 }
 
 /// Reads a file that already has cameras.
-fn read_input(args: &SolveArgs, guard: &mut Guard) -> Result<Reconstruction, Failure> {
-    let mut all = read(&args.file, args.pictures.as_deref(), guard)?;
+fn read_input(args: &SolveArgs, registry: &mut FileRegistry) -> Result<Reconstruction, Failure> {
+    let mut all = read(&args.file, args.pictures.as_deref(), registry)?;
     if args.own_lenses {
         all.lenses = all.views.iter().map(|view| all.lenses[view.lens]).collect();
         all.views.iter_mut().enumerate().for_each(|(i, view)| view.lens = i);
@@ -108,22 +108,25 @@ fn read_input(args: &SolveArgs, guard: &mut Guard) -> Result<Reconstruction, Fai
 fn adjusted(args: &SolveArgs, mut all: Reconstruction) -> Result<Reconstruction, Failure> {
     let before = all.reprojection_error();
     if before.observations == 0 {
-        return Err(crate::bad(format!("`{}` has no observations: there is nothing to adjust", args.file.display())));
+        return Err(crate::invalid_input(format!(
+            "`{}` has no observations: there is nothing to adjust",
+            args.file.display()
+        )));
     }
     let options = options(args);
-    let report = progress::shares("adjusting", |share| {
+    let report = progress::show_progress("adjusting", |share| {
         let watch = |step: usize, _: f64| {
             if args.run.quiet {
             } else {
                 share(step as f64 / options.iterations as f64)
             }
         };
-        threaded(args.run.threads, || adjust_with_progress(&mut all, &options, &watch))
+        with_threads(args.run.threads, || adjust_with_progress(&mut all, &options, &watch))
     })?;
     if !args.run.quiet {
         let (steps, end) = (report.costs.len() - 1, if report.converged { "converged" } else { "not converged" });
-        say(&format!("cost {:.6e}, rms {:.4} pixels, before", before.cost, before.rms));
-        say(&format!("{end} after {steps} steps"));
+        print_line(&format!("cost {:.6e}, rms {:.4} pixels, before", before.cost, before.rms));
+        print_line(&format!("{end} after {steps} steps"));
     }
     Ok(all)
 }
@@ -138,16 +141,16 @@ fn options(args: &SolveArgs) -> adjust::Options {
 }
 
 /// Prints the standard deviations of the cameras.
-fn exactness(args: &SolveArgs, all: &Reconstruction) -> Result<(), Failure> {
-    let found = covariance(all, &options(args)).map_err(wrong)?;
-    say(&format!(
+fn print_standard_deviations(args: &SolveArgs, all: &Reconstruction) -> Result<(), Failure> {
+    let covariance = covariance(all, &options(args)).map_err(from_photo_error)?;
+    print_line(&format!(
         "standard deviations, for an error of {:.3} pixels in each coordinate; the first photograph is fixed:",
-        found.sigma
+        covariance.sigma
     ));
-    for (view, _) in &found.views {
-        let (name, place) = (&all.views[*view].name, found.position_deviation(all, *view).unwrap_or(0.0));
-        let turn = found.pose(*view).map_or(0.0, |c| c.fixed_view::<3, 3>(0, 0).trace().max(0.0).sqrt());
-        say(&format!("{name}: position {place:.6}, direction {:.4} degrees", turn.to_degrees()));
+    for (view, _) in &covariance.views {
+        let (name, place) = (&all.views[*view].name, covariance.position_deviation(all, *view).unwrap_or(0.0));
+        let turn = covariance.pose(*view).map_or(0.0, |c| c.fixed_view::<3, 3>(0, 0).trace().max(0.0).sqrt());
+        print_line(&format!("{name}: position {place:.6}, direction {:.4} degrees", turn.to_degrees()));
     }
     Ok(())
 }

@@ -1,9 +1,9 @@
 //! `durer photo tour`: writes an HTML page for moving through photographs in 3D.
 
 use super::args::TourArgs;
-use super::inputs::{bytes_below, read, wrong};
-use crate::failure::{Failure, bad};
-use crate::guard::Guard;
+use super::inputs::{bytes_below, from_photo_error, read};
+use crate::failure::{Failure, invalid_input};
+use crate::file_registry::FileRegistry;
 use crate::output::save;
 use crate::{page, progress};
 use base64::Engine;
@@ -18,26 +18,26 @@ const PAGE: &str = include_str!("tour.html");
 
 /// Runs `durer photo tour`.
 pub fn run(args: &TourArgs) -> Result<(), Failure> {
-    let mut guard = Guard::default();
-    let all = read(&args.file, Some(&args.pictures), &mut guard)?;
-    let place = guard.writes("--output", &args.output)?;
+    let mut registry = FileRegistry::default();
+    let all = read(&args.file, Some(&args.pictures), &mut registry)?;
+    let destination = registry.register_output("--output", &args.output)?;
     let photographs = tour_views(&all);
     if photographs.is_empty() {
-        return Err(bad(format!("no photograph of `{}` has a camera position", args.file.display())));
+        return Err(invalid_input(format!("no photograph of `{}` has a camera position", args.file.display())));
     }
-    let names: Vec<String> = photographs.iter().map(|shown| shown.name.clone()).collect();
-    let pictures = progress::each(&names, photographs.iter().collect(), args.quiet, |shown| {
-        let path = args.pictures.join(&shown.name);
-        let content = bytes_below(&args.pictures, Path::new(&shown.name), &mut guard)?;
-        let photo = photo::read(&path.to_string_lossy(), &content).map_err(wrong)?;
-        if photo.size() != shown.size {
-            let ([w, h], [x, y]) = (photo.size(), shown.size);
-            return Err(bad(format!(
+    let names: Vec<String> = photographs.iter().map(|photograph| photograph.name.clone()).collect();
+    let pictures = progress::each(&names, photographs.iter().collect(), args.quiet, |photograph| {
+        let path = args.pictures.join(&photograph.name);
+        let content = bytes_below(&args.pictures, Path::new(&photograph.name), &mut registry)?;
+        let photo = photo::read(&path.to_string_lossy(), &content).map_err(from_photo_error)?;
+        if photo.size() != photograph.size {
+            let ([w, h], [x, y]) = (photo.size(), photograph.size);
+            return Err(invalid_input(format!(
                 "`{}` is {w}x{h}, but its camera belongs to a photograph of {x}x{y}",
                 path.display()
             )));
         }
-        let jpeg = photo.to_jpeg(args.side).map_err(wrong)?;
+        let jpeg = photo.to_jpeg(args.side).map_err(from_photo_error)?;
         Ok(format!("data:image/jpeg;base64,{}", STANDARD.encode(jpeg)))
     });
     let pictures = pictures.into_iter().collect::<Result<Vec<_>, Failure>>()?;
@@ -46,5 +46,5 @@ pub fn run(args: &TourArgs) -> Result<(), Failure> {
     let points: Vec<_> = all.points.iter().map(|point| point.position.map(short).as_slice().to_vec()).collect();
     let colors: Vec<_> = all.points.iter().map(|point| point.color).collect();
     let data = json!({"photographs": photographs, "pictures": pictures, "points": points, "colors": colors});
-    save(&[(&place, page::with_data(PAGE, &data).into_bytes())], args.quiet)
+    save(&[(&destination, page::with_data(PAGE, &data).into_bytes())], args.quiet)
 }

@@ -40,18 +40,18 @@ fn chromium() -> Option<PathBuf> {
 /// The page must load nothing from disk or network. It must be readable at several window widths,
 /// in light and dark mode.
 #[track_caller]
-pub fn sees(place: &TestFolder, page: &str, script: &str, wanted: &[&str]) {
+pub fn sees(folder: &TestFolder, page: &str, script: &str, wanted: &[&str]) {
     let Some(chromium) = chromium() else { return };
-    let title = title_of(place, &chromium, page, "clicked.html", &format!("{HELPERS}{script}"));
+    let title = title_of(folder, &chromium, page, "clicked.html", &format!("{HELPERS}{script}"));
     for wanted in wanted.iter().chain(&["fetched 0"]) {
         assert!(title.contains(wanted), "`{wanted}` is not in {title}");
     }
     // Inside a frame, the content sees the frame as its window.
-    put_with(place, page, "framed.html", READABLE);
+    put_with(folder, page, "framed.html", READABLE);
     let frames =
         WIDTHS.map(|width| format!("<iframe src=framed.html style='width:{width}px;height:1000px;border:0'></iframe>"));
-    place.put("frames.html", format!("<!DOCTYPE html><title></title><body>{}</body>", frames.concat()));
-    let title = title_of(place, &chromium, "frames.html", "framing.html", FRAMES);
+    folder.write("frames.html", format!("<!DOCTYPE html><title></title><body>{}</body>", frames.concat()));
+    let title = title_of(folder, &chromium, "frames.html", "framing.html", FRAMES);
     assert_eq!(title.matches(": readable").count(), 2 * WIDTHS.len(), "{page}: {title}");
 }
 
@@ -111,26 +111,26 @@ setTimeout(() => {
 "#;
 
 /// Writes a copy of a page with a script added at its end.
-fn put_with(place: &TestFolder, page: &str, name: &str, script: &str) {
-    let text = String::from_utf8(place.bytes(page)).unwrap();
+fn put_with(folder: &TestFolder, page: &str, name: &str, script: &str) {
+    let text = String::from_utf8(folder.bytes(page)).unwrap();
     let end = text.rfind("</body>").unwrap();
-    place.put(name, format!("{}<script>{script}</script>{}", &text[..end], &text[end..]));
+    folder.write(name, format!("{}<script>{script}</script>{}", &text[..end], &text[end..]));
 }
 
 /// Returns the title of a page after a script at its end has run.
 #[track_caller]
-fn title_of(place: &TestFolder, chromium: &Path, page: &str, name: &str, script: &str) -> String {
-    let text = String::from_utf8(place.bytes(page)).unwrap();
+fn title_of(folder: &TestFolder, chromium: &Path, page: &str, name: &str, script: &str) -> String {
+    let text = String::from_utf8(folder.bytes(page)).unwrap();
     // The SVG namespace is a URL that is never loaded.
     let links = text.replace("http://www.w3.org/2000/svg", "");
     assert!(!links.contains("http://") && !links.contains("https://"), "{page} names an address");
-    put_with(place, page, name, script);
+    put_with(folder, page, name, script);
     let run = Command::new("timeout")
         .arg("60")
         .arg(chromium)
         .args(["--no-sandbox", "--headless=new", "--disable-gpu", "--virtual-time-budget=4000", "--dump-dom"])
-        .arg(format!("--user-data-dir={}", place.path("browser").display()))
-        .arg(format!("file://{}", place.path(name).display()))
+        .arg(format!("--user-data-dir={}", folder.path("browser").display()))
+        .arg(format!("file://{}", folder.path(name).display()))
         .output()
         .unwrap();
     let dom = String::from_utf8_lossy(&run.stdout);

@@ -46,10 +46,10 @@ pub struct ProgramOutput {
 impl TestFolder {
     /// Creates the folder.
     pub fn new() -> TestFolder {
-        let place = TestFolder { folder: TempDir::new().unwrap() };
-        place.put("scene.txt", SCENE);
-        place.put("endless.txt", ENDLESS);
-        place
+        let folder = TestFolder { folder: TempDir::new().unwrap() };
+        folder.write("scene.txt", SCENE);
+        folder.write("endless.txt", ENDLESS);
+        folder
     }
 
     /// Returns the path of a file in the folder.
@@ -58,7 +58,7 @@ impl TestFolder {
     }
 
     /// Writes a file.
-    pub fn put(&self, name: &str, content: impl AsRef<[u8]>) {
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {
         std::fs::write(self.path(name), content).unwrap();
     }
 
@@ -85,7 +85,7 @@ impl TestFolder {
 
     /// Runs the program. Checks that it fails with these words and writes no file.
     #[track_caller]
-    pub fn refused(&self, code: i32, arguments: &str, words: &[&str]) {
+    pub fn expect_failure(&self, code: i32, arguments: &str, words: &[&str]) {
         let before = self.names();
         let output = self.expect_exit(code, arguments);
         for word in words {
@@ -121,12 +121,12 @@ impl TestFolder {
     /// Interrupts a run after some time. Returns its output and the time it took to end.
     #[cfg(unix)]
     pub fn interrupted(&self, arguments: &str, after: Duration) -> (ProgramOutput, Duration) {
-        self.signalled(arguments, after, &["INT"])
+        self.send_signals(arguments, after, &["INT"])
     }
 
     /// Sends several signals in quick succession to a run, as in [`Self::interrupted`].
     #[cfg(unix)]
-    pub fn signalled(&self, arguments: &str, after: Duration, signals: &[&str]) -> (ProgramOutput, Duration) {
+    pub fn send_signals(&self, arguments: &str, after: Duration, signals: &[&str]) -> (ProgramOutput, Duration) {
         let mut command = self.command(arguments);
         let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         std::thread::sleep(after);

@@ -3,7 +3,7 @@
 use super::lexer::TokenKind;
 use super::reader::{Reader, names};
 use super::words::begins_block;
-use crate::report::shown;
+use crate::report::quoted;
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::describe::{Constraint, DescribedKind, Field, FieldKind, FileName, Value};
 use durer_scene::dialect::{Dialect, DialectSet, Quirk};
@@ -46,7 +46,7 @@ impl Reader<'_, '_> {
                     continue;
                 }
                 let block = begins_block(&word) && (self.at_open() || word == "MaterialIndex");
-                if block && !self.goes_on_after(fields) {
+                if block && !self.block_continues_after(fields) {
                     self.step_back();
                     self.unclosed();
                     return;
@@ -58,7 +58,7 @@ impl Reader<'_, '_> {
             let field = &fields[index];
             if !ours && field.keyword(self.options.dialect) != Some(word.as_str()) {
                 let set = field.keywords.iter().find(|(w, _)| *w == word).map_or(0, |s| s.1);
-                self.foreign(&word, span, set);
+                self.report_foreign_word(&word, span, set);
             }
             if order == Order::Listed && index < last && self.options.strict {
                 self.error(Diagnostic::error(format!("`{word}` must be written earlier in `{name}`")).at(span));
@@ -134,7 +134,7 @@ impl Reader<'_, '_> {
 
     /// Returns true if the current block continues after the nested block or the number that comes
     /// next.
-    fn goes_on_after(&self, fields: &[Field]) -> bool {
+    fn block_continues_after(&self, fields: &[Field]) -> bool {
         let mut depth = 0usize;
         for i in 0.. {
             match self.ahead(i).map(|t| t.kind) {
@@ -169,8 +169,8 @@ impl Reader<'_, '_> {
         });
         let help = super::suggestions::misplaced(word, name).map_or(help, String::from);
         let message = match word.parse::<f32>() {
-            Ok(_) => format!("unexpected number {} in `{name}`", shown(word.as_bytes())),
-            Err(_) => format!("`{name}` has no field {}", shown(word.as_bytes())),
+            Ok(_) => format!("unexpected number {} in `{name}`", quoted(word.as_bytes())),
+            Err(_) => format!("`{name}` has no field {}", quoted(word.as_bytes())),
         };
         let error = Diagnostic::error(message).code("unknown-word").at(span).label("not known here").help(help);
         self.error(self.with_suggestion(error, word, span, known()));
@@ -183,7 +183,7 @@ impl Reader<'_, '_> {
         let value = match field.kind {
             FieldKind::Float => Value::Float(self.number(word, 1, 1)?),
             FieldKind::Int if word == "materialIndex" => Value::Int(self.material_number(word)?),
-            FieldKind::Int => Value::Int(self.whole(word)?),
+            FieldKind::Int => Value::Int(self.integer(word)?),
             FieldKind::Vec3 => Value::Vec3(self.vec3(word)?),
             FieldKind::Path => {
                 let token = self.peek().filter(|t| t.kind == TokenKind::Word);
@@ -201,7 +201,7 @@ impl Reader<'_, '_> {
             && let Err(violation) = field.constraint.validate(&value)
         {
             let span = start.join(self.last_span());
-            if let Some(drawn) = self.any_values().then(|| field.quirk_value(item, &value)).flatten() {
+            if let Some(drawn) = self.accepts_any_values().then(|| field.quirk_value(item, &value)).flatten() {
                 let warning = Diagnostic::warning(format!("`{word}` {violation}")).code("bad-value").at(span);
                 self.diagnostics.push(warning.effect("rendered anyway, as the official program does"));
                 return Some(drawn);
@@ -232,7 +232,7 @@ impl Reader<'_, '_> {
             return None;
         };
         self.advance();
-        let message = format!("`{field}` cannot be {}", shown(text.as_bytes()));
+        let message = format!("`{field}` cannot be {}", quoted(text.as_bytes()));
         let help = match did_you_mean(&text, words.iter().copied()) {
             Some(near) => format!("did you mean `{near}`?"),
             None => format!("it is one of {list}"),
@@ -289,7 +289,7 @@ impl Reader<'_, '_> {
     }
 
     /// Reads a whole number, 0 or more.
-    pub(super) fn whole(&mut self, word: &str) -> Option<u32> {
+    pub(super) fn integer(&mut self, word: &str) -> Option<u32> {
         let value = self.peek_word().and_then(|text| text.parse().ok());
         match value {
             Some(_) => {
@@ -301,7 +301,7 @@ impl Reader<'_, '_> {
     }
 
     /// Returns true if the quirk `any-values`, which accepts invalid values, is set.
-    pub(super) fn any_values(&self) -> bool {
+    pub(super) fn accepts_any_values(&self) -> bool {
         self.options.compat & Quirk::AnyValues.bit() != 0
     }
 
@@ -311,9 +311,11 @@ impl Reader<'_, '_> {
         // Rust also parses words such as `inf` and `nan`, so require a digit at the start.
         let numeric = text.trim_start_matches(['+', '-', '.']).starts_with(|c: char| c.is_ascii_digit());
         // C's `scanf`, which all years before 2020 use, accepts hexadecimal numbers.
-        if let Some(value) = hexadecimal(&text).filter(|_| self.any_values() && self.options.dialect != Dialect::F23) {
+        if let Some(value) =
+            hexadecimal(&text).filter(|_| self.accepts_any_values() && self.options.dialect != Dialect::F23)
+        {
             let span = self.advance();
-            let warning = Diagnostic::warning(format!("{} is a hexadecimal number", shown(text.as_bytes()))).at(span);
+            let warning = Diagnostic::warning(format!("{} is a hexadecimal number", quoted(text.as_bytes()))).at(span);
             self.diagnostics.push(warning.effect(format!("interpreted as {value}, as the official program does")));
             return Some(value);
         }
@@ -324,7 +326,7 @@ impl Reader<'_, '_> {
             }
             Ok(_) if numeric => {
                 let span = self.advance();
-                let error = Diagnostic::error(format!("{} is too large a number", shown(text.as_bytes()))).at(span);
+                let error = Diagnostic::error(format!("{} is too large a number", quoted(text.as_bytes()))).at(span);
                 let error = error.code("bad-value");
                 self.error(error.help("numbers must be within about ±3.4e38"));
                 None
@@ -350,7 +352,7 @@ impl Reader<'_, '_> {
             return self.error(error);
         }
         let text = self.text(token.span);
-        let message = format!("`{after}` needs {what}, but found {}", shown(text.as_bytes()));
+        let message = format!("`{after}` needs {what}, but found {}", quoted(text.as_bytes()));
         let error = Diagnostic::error(message).code("syntax").at(token.span).label(format!("{what} expected"));
         let Some((help, suggestion)) = number_help(&text).filter(|_| what.contains("number")) else {
             return self.error(error);
@@ -396,7 +398,7 @@ impl Reader<'_, '_> {
 
     /// Reports a word that this dialect does not have: an error if strict, otherwise one warning
     /// per word.
-    pub(super) fn foreign(&mut self, word: &str, span: Span, set: DialectSet) {
+    pub(super) fn report_foreign_word(&mut self, word: &str, span: Span, set: DialectSet) {
         let dialect = self.options.dialect;
         if self.options.strict && set == Dialect::Durer as u8 {
             let message = format!("`{word}` is a Dürer extension, not a word of the course's language");
@@ -406,7 +408,7 @@ impl Reader<'_, '_> {
         if dialect.is_in(set) || dialect == Dialect::Durer && !self.options.strict {
             return;
         }
-        if !self.options.strict && !self.foreign_seen.insert(word.to_string()) {
+        if !self.options.strict && !self.reported_words.insert(word.to_string()) {
             return;
         }
         let message = format!("`{word}` is not a word of {}, but of {}", dialect.name(), names(set));
@@ -414,7 +416,7 @@ impl Reader<'_, '_> {
             self.error(Diagnostic::error(message).at(span));
         } else {
             let warning = Diagnostic::warning(message).code("foreign-word").at(span);
-            self.diagnostics.push(match super::suggestions::here(word, dialect) {
+            self.diagnostics.push(match super::suggestions::word_in_dialect(word, dialect) {
                 Some(here) => warning.help(format!("in {} it is `{here}`", dialect.name())),
                 None => warning,
             });

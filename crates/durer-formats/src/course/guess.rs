@@ -12,7 +12,7 @@ pub struct Hint {
     /// Dialects that are possible according to the hint.
     pub set: DialectSet,
     /// Reason, as the end of a sentence.
-    pub why: String,
+    pub reason: String,
     /// True for a hint that counts only if something else also distinguishes the years.
     pub weak: bool,
 }
@@ -29,18 +29,18 @@ pub struct Guess {
     /// Dialects that agree with the keywords and with the strong hints, most likely first.
     pub fitting: Vec<Dialect>,
     /// Dialect suggested by the keywords alone.
-    pub by_words: Dialect,
+    pub by_keywords: Dialect,
 }
 
 impl Guess {
     /// Returns the guess for a file that states its dialect.
     pub fn certain(dialect: Dialect) -> Self {
-        Guess { dialect, reasons: Vec::new(), others: Vec::new(), fitting: vec![dialect], by_words: dialect }
+        Guess { dialect, reasons: Vec::new(), others: Vec::new(), fitting: vec![dialect], by_keywords: dialect }
     }
 
     /// Returns true if hints changed the dialect that the keywords alone suggest.
-    pub fn is_hinted(&self) -> bool {
-        self.dialect != self.by_words
+    pub fn changed_by_hints(&self) -> bool {
+        self.dialect != self.by_keywords
     }
 
     /// Returns the guess as a note to the user.
@@ -85,7 +85,7 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         let _ = token;
         let word = text(i);
         match dialects_of(&word) {
-            Some(set::F23) => nodes += usize::from(is_telling(&word)) * 2,
+            Some(set::F23) => nodes += usize::from(is_distinctive(&word)) * 2,
             Some(words) if !Dialect::F23.is_in(words) && words != set::DURER => classic += 1,
             _ => {}
         }
@@ -115,7 +115,7 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         {
             (set::DURER, "only the Dürer dialect names materials".into())
         } else if let Some(set) = dialects_of(&word).filter(|set| match *set {
-            set::F23 => is_telling(&word),
+            set::F23 => is_distinctive(&word),
             // A word of the Dürer dialect counts only if a block follows, because `top` or `min`
             // could be a file name.
             set::DURER => braced,
@@ -148,7 +148,7 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         let keep = left & hint.set;
         if keep != 0 && keep != left && !(hint.weak && reasons.is_empty()) {
             left = keep;
-            reasons.push((hint.set, hint.why.clone(), None));
+            reasons.push((hint.set, hint.reason.clone(), None));
         }
         fitting = if hint.weak { fitting } else { left };
     }
@@ -167,7 +167,7 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         reasons,
         others: of(left).filter(|other| *other != dialect).collect(),
         fitting: of(fitting).collect(),
-        by_words: by_words.unwrap_or(dialect),
+        by_keywords: by_words.unwrap_or(dialect),
     }
 }
 
@@ -181,6 +181,6 @@ fn names(set: DialectSet) -> String {
 }
 
 /// Returns true if a word of 2020 alone proves that year: `sphere` or `point` may be a file name.
-fn is_telling(word: &str) -> bool {
+fn is_distinctive(word: &str) -> bool {
     word.contains(['<', '_']) || word.starts_with(char::is_uppercase)
 }

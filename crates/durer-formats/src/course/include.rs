@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// Limits on the depth of nested includes, the number of included files, and the number of words in
 /// all files.
-const DEEPEST: usize = 32;
+const MAX_INCLUDE_DEPTH: usize = 32;
 const MAX_FILES: usize = 4096;
 const MAX_WORDS: usize = 1 << 26;
 
@@ -21,11 +21,11 @@ pub enum IncludedFile {
     /// The file cannot be read.
     Failed(SourceError),
     /// The scene is not in a folder, so it cannot include files.
-    Nowhere,
+    NoFolder,
 }
 
 /// Returns a function that opens included files in or below a folder, and registers them.
-pub fn below<'a>(source: &'a dyn AssetSource, files: &'a RefCell<Files>) -> impl Fn(&str) -> IncludedFile + 'a {
+pub fn open_below<'a>(source: &'a dyn AssetSource, files: &'a RefCell<Files>) -> impl Fn(&str) -> IncludedFile + 'a {
     move |name| match source.read(name) {
         Ok(bytes) => IncludedFile::Text(files.borrow_mut().add_once(name, &bytes), bytes),
         Err(error) => IncludedFile::Failed(error),
@@ -59,7 +59,7 @@ impl<'a> Texts<'a> {
 
 /// Preprocessor that replaces each `include` in a list of tokens with the tokens of the included
 /// file.
-pub(super) struct Splicer<'o, 't, 'a> {
+pub(super) struct IncludePreprocessor<'o, 't, 'a> {
     pub open: &'o dyn Fn(&str) -> IncludedFile,
     pub texts: &'t mut Texts<'a>,
     pub diagnostics: &'t mut Diagnostics,
@@ -69,15 +69,15 @@ pub(super) struct Splicer<'o, 't, 'a> {
     pub words: usize,
 }
 
-impl Splicer<'_, '_, '_> {
+impl IncludePreprocessor<'_, '_, '_> {
     /// Returns the tokens with each `include` replaced by the tokens of its file.
-    pub fn splice(&mut self, written: Vec<Token>) -> Vec<Token> {
+    pub fn expand_includes(&mut self, tokens: Vec<Token>) -> Vec<Token> {
         let is_include =
             |texts: &Texts, token: &Token| token.kind == TokenKind::Word && texts.at(token.span) == b"include";
-        if !written.iter().any(|token| is_include(self.texts, token)) {
-            return written;
+        if !tokens.iter().any(|token| is_include(self.texts, token)) {
+            return tokens;
         }
-        let (mut all, mut rest) = (Vec::new(), written.into_iter().peekable());
+        let (mut all, mut rest) = (Vec::new(), tokens.into_iter().peekable());
         while let Some(token) = rest.next() {
             if !is_include(self.texts, &token) {
                 all.push(token);
@@ -102,7 +102,9 @@ impl Splicer<'_, '_, '_> {
         self.files += 1;
         let refused = match () {
             () if self.stack.contains(&name) => Some(format!("`{name}` includes itself")),
-            () if self.stack.len() >= DEEPEST => Some(format!("includes are nested more than {DEEPEST} levels deep")),
+            () if self.stack.len() >= MAX_INCLUDE_DEPTH => {
+                Some(format!("includes are nested more than {MAX_INCLUDE_DEPTH} levels deep"))
+            }
             () if self.files > MAX_FILES => Some(format!("more than {MAX_FILES} files are included")),
             () if self.words > MAX_WORDS => Some("all files together have too many words".to_string()),
             () => None,
@@ -122,35 +124,35 @@ impl Splicer<'_, '_, '_> {
                 self.diagnostics.push(Diagnostic { help, ..error });
                 return Vec::new();
             }
-            IncludedFile::Nowhere => {
+            IncludedFile::NoFolder => {
                 let message = "a text without a folder cannot include files";
                 self.diagnostics.push(Diagnostic::error(message).code("include").at(keyword.join(at)));
                 return Vec::new();
             }
         };
-        if let Some(problem) = super::no_text(&bytes) {
+        if let Some(problem) = super::not_text_reason(&bytes) {
             let start = Span { file: number, start: 0, end: 0 };
             let error = Diagnostic::error(problem).code("syntax").at(start);
             self.diagnostics.push(error.related(at, "included here"));
             return Vec::new();
         }
-        let written = tokens(&bytes, number);
-        self.words += written.len();
-        if !self.is_balanced(&written, at) {
+        let tokens = tokens(&bytes, number);
+        self.words += tokens.len();
+        if !self.is_balanced(&tokens, at) {
             return Vec::new();
         }
         self.texts.others.insert(number, bytes);
         self.stack.push(name);
-        let all = self.splice(written);
+        let all = self.expand_includes(tokens);
         self.stack.pop();
         all
     }
 
     /// Returns true if the braces of an included file are balanced; reports an error if not.
-    fn is_balanced(&mut self, written: &[Token], included: Span) -> bool {
+    fn is_balanced(&mut self, tokens: &[Token], included: Span) -> bool {
         let mut open: Vec<Span> = Vec::new();
         let mut wrong = None;
-        for token in written {
+        for token in tokens {
             match token.kind {
                 TokenKind::Open => open.push(token.span),
                 TokenKind::Close if open.pop().is_none() => {

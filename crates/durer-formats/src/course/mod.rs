@@ -23,9 +23,9 @@ use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::dialect::{Dialect, QuirkSet};
 use durer_scene::scene::Scene;
 pub use guess::{Guess, Hint, guess};
-pub use include::{IncludedFile, below};
+pub use include::{IncludedFile, open_below};
 pub(super) use lexer::is_word;
-pub(super) use transform::{flat, senseless};
+pub(super) use transform::{flat_matrix_error, invalid_matrix_error};
 pub use write::write;
 
 /// Options for reading a scene file: its dialect, and how closely to follow the course's programs.
@@ -43,7 +43,7 @@ pub struct ReadOptions {
 /// Reads a scene that includes no other files. Collects all errors; returns `None` if there are
 /// any.
 pub fn read(bytes: &[u8], file: u32, options: ReadOptions, diagnostics: &mut Diagnostics) -> Option<Scene> {
-    read_with(bytes, file, options, &|_| IncludedFile::Nowhere, diagnostics)
+    read_with(bytes, file, options, &|_| IncludedFile::NoFolder, diagnostics)
 }
 
 /// Reads a scene; `open` is called to open the files that it includes.
@@ -58,7 +58,7 @@ pub fn read_with(
         diagnostics.push(Diagnostic::error("a scene file must be smaller than 4 GiB"));
         return None;
     }
-    if let Some(problem) = no_text(bytes) {
+    if let Some(problem) = not_text_reason(bytes) {
         diagnostics.push(Diagnostic::error(problem).code("syntax").at(Span { file, start: 0, end: 0 }));
         return None;
     }
@@ -75,7 +75,7 @@ pub fn read_with(
 }
 
 /// Returns the reason why a file cannot be a scene; `None` if it can be.
-fn no_text(bytes: &[u8]) -> Option<&'static str> {
+fn not_text_reason(bytes: &[u8]) -> Option<&'static str> {
     let head = &bytes[..bytes.len().min(1 << 16)];
     let zeros = |from: usize| head.iter().skip(from).step_by(2).filter(|b| **b == 0).count() * 4 > head.len();
     if head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff") || head.len() > 3 && (zeros(0) != zeros(1)) {

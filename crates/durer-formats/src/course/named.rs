@@ -1,7 +1,7 @@
 //! Names of materials, and of objects that are defined once and used several times.
 
 use super::lexer::TokenKind;
-use super::nodes::paint;
+use super::nodes::set_material;
 use super::reader::Reader;
 use super::words::dialects_of;
 use crate::growth::MAX_OBJECTS;
@@ -15,7 +15,7 @@ impl Reader<'_, '_> {
         let named = self.peek_word().filter(|_| self.ahead(1).is_some_and(|next| next.kind == TokenKind::Open));
         let name = named.filter(|name| dialects_of(name).is_none())?;
         let span = self.advance();
-        self.foreign("names of materials", span, set::DURER);
+        self.report_foreign_word("names of materials", span, set::DURER);
         Some((name, span))
     }
 
@@ -36,7 +36,7 @@ impl Reader<'_, '_> {
         // A word of the language means that the number is missing.
         let Some(name) = name.filter(|name| self.named.materials.contains_key(name) || dialects_of(name).is_none())
         else {
-            return self.whole(word);
+            return self.integer(word);
         };
         let span = self.advance();
         let number = self.named.materials.get(&name).copied();
@@ -52,7 +52,7 @@ impl Reader<'_, '_> {
             });
             return None;
         }
-        self.foreign("names of materials", span, set::DURER);
+        self.report_foreign_word("names of materials", span, set::DURER);
         number
     }
 
@@ -81,18 +81,18 @@ impl Reader<'_, '_> {
     /// Reads `define NAME object`, without adding the object to the scene. Parts without a material
     /// take the material that is current at each use.
     pub(super) fn define(&mut self, keyword: Span) {
-        self.foreign("define", keyword, set::DURER);
+        self.report_foreign_word("define", keyword, set::DURER);
         let Some((name, span)) = self.name_after("define") else { return };
         let sound = self.is_name(&name, span);
         let Some(word) = self.peek_word() else { return self.expected("an object", "define") };
         let at = self.advance();
-        let (outer, used) = (self.material.take(), self.named.used);
+        let (outer, used) = (self.material.take(), self.named.used_objects);
         let object = self.object(&word, at);
         self.material = outer;
         // Uses inside a definition are counted at each use of the definition.
-        self.named.used = used;
+        self.named.used_objects = used;
         let Some(object) = object.filter(|_| sound) else {
-            self.named.broken.insert(name);
+            self.named.invalid_objects.insert(name);
             return;
         };
         if let Some((_, _, first)) = self.named.objects.get(&name) {
@@ -105,10 +105,10 @@ impl Reader<'_, '_> {
     }
 
     /// Reads `use NAME`; returns a copy of the defined object.
-    pub(super) fn used(&mut self, keyword: Span) -> Option<ObjectKind> {
-        self.foreign("use", keyword, set::DURER);
+    pub(super) fn use_object(&mut self, keyword: Span) -> Option<ObjectKind> {
+        self.report_foreign_word("use", keyword, set::DURER);
         let (name, span) = self.name_after("use")?;
-        if self.named.broken.contains(&name) {
+        if self.named.invalid_objects.contains(&name) {
             self.repeated += 1;
             return None;
         }
@@ -122,8 +122,8 @@ impl Reader<'_, '_> {
             });
             return None;
         };
-        self.named.used = self.named.used.saturating_add(*count);
-        if self.named.used > MAX_OBJECTS {
+        self.named.used_objects = self.named.used_objects.saturating_add(*count);
+        if self.named.used_objects > MAX_OBJECTS {
             let message = format!("the scene has more than {MAX_OBJECTS} objects, counting each use");
             self.error(Diagnostic::error(message).code("limit").at(keyword.join(span)));
             self.stop();
@@ -131,7 +131,7 @@ impl Reader<'_, '_> {
         }
         let mut object = object.clone();
         if let Some(material) = self.material {
-            paint(&mut object, material);
+            set_material(&mut object, material);
         }
         // A group with a single object cannot have a material.
         Some(ObjectKind::Group(Group { objects: vec![object] }))

@@ -3,7 +3,7 @@
 use super::fields::Order;
 use super::reader::Reader;
 use super::words::camera_of;
-use crate::report::shown;
+use crate::report::quoted;
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::camera::Camera;
 use durer_scene::describe::DescribedKind;
@@ -73,7 +73,8 @@ impl Reader<'_, '_> {
 
     /// Reads one node: its transform, components and child nodes, in any order.
     fn node(&mut self, keyword: Span) -> NodeContent {
-        const KNOWN: [&str; 5] = ["Node", "Transform", "Component<Material>", "Component<Light>", "Component<Object>"];
+        const KEYWORDS: [&str; 5] =
+            ["Node", "Transform", "Component<Material>", "Component<Light>", "Component<Object>"];
         let mut inside = NodeContent::default();
         if !self.descend("nodes", keyword) || !self.open(keyword) {
             return inside;
@@ -111,17 +112,17 @@ impl Reader<'_, '_> {
                 }
                 _ => match CsgOperation::from_keyword(&word) {
                     Some(operation) => {
-                        self.foreign(&word, span, set::DURER);
+                        self.report_foreign_word(&word, span, set::DURER);
                         let node = ObjectKind::Solid(operation, self.node_parts(span));
                         inside.objects.push(Object { node, material: None, span });
                     }
-                    None => self.unknown(&word, span, "in a node", &KNOWN),
+                    None => self.unknown(&word, span, "in a node", &KEYWORDS),
                 },
             }
         }
         self.depth -= 1;
         if let Some(material) = inside.material {
-            inside.objects.iter_mut().for_each(|object| paint(object, material));
+            inside.objects.iter_mut().for_each(|object| set_material(object, material));
         }
         inside
     }
@@ -148,7 +149,8 @@ impl Reader<'_, '_> {
     }
 
     fn node_matrices(&mut self, keyword: Span) -> Vec<MatrixOp> {
-        const KNOWN: [&str; 7] = ["translate", "scale", "x_rotate", "y_rotate", "z_rotate", "uniform_scale", "rotate"];
+        const KEYWORDS: [&str; 7] =
+            ["translate", "scale", "x_rotate", "y_rotate", "z_rotate", "uniform_scale", "rotate"];
         let mut ops = Vec::new();
         if !self.open(keyword) {
             return ops;
@@ -165,7 +167,7 @@ impl Reader<'_, '_> {
                 // Operations that nodes lack have the syntax of earlier years.
                 "Matrix4f" => self.matrix(&word, span).flatten(),
                 _ => {
-                    self.unknown(&word, span, "in a transform", &KNOWN);
+                    self.unknown(&word, span, "in a transform", &KEYWORDS);
                     continue;
                 }
             };
@@ -189,7 +191,7 @@ impl Reader<'_, '_> {
                 self.unknown(&word, span, "in a material component", &["index"]);
                 continue;
             }
-            index = self.whole(&word);
+            index = self.integer(&word);
             match index {
                 Some(index) => self.material_uses.push((index, span.join(self.last_span()))),
                 None => self.skip_values(),
@@ -222,7 +224,7 @@ impl Reader<'_, '_> {
         if known.contains(&kind.as_str()) || ours.contains(&kind.as_str()) {
             return Some(kind);
         }
-        let error = Diagnostic::error(format!("`{name}` has no type {}", shown(kind.as_bytes()))).at(span);
+        let error = Diagnostic::error(format!("`{name}` has no type {}", quoted(kind.as_bytes()))).at(span);
         let list = format!("types are {}", known.join(", "));
         self.error(
             error.help(
@@ -317,12 +319,12 @@ impl NodeContent {
 }
 
 /// Sets the material of an object, and of its parts, where they have none.
-pub(super) fn paint(object: &mut Object, material: u32) {
+pub(super) fn set_material(object: &mut Object, material: u32) {
     object.material.get_or_insert(material);
     match &mut object.node {
-        ObjectKind::Group(group) => group.objects.iter_mut().for_each(|object| paint(object, material)),
-        ObjectKind::Transform(_, inner) => paint(inner, material),
-        ObjectKind::Solid(_, parts) => parts.iter_mut().for_each(|part| paint(part, material)),
+        ObjectKind::Group(group) => group.objects.iter_mut().for_each(|object| set_material(object, material)),
+        ObjectKind::Transform(_, inner) => set_material(inner, material),
+        ObjectKind::Solid(_, parts) => parts.iter_mut().for_each(|part| set_material(part, material)),
         ObjectKind::Primitive(_) | ObjectKind::Mesh(_) | ObjectKind::HeightField(_) | ObjectKind::Voxels(..) => {}
     }
 }

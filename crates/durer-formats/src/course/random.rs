@@ -17,23 +17,23 @@ use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid
 
 /// Generator of random scenes for tests; makes its choices from given bytes, then from a linear
 /// congruential generator (Knuth's multiplier, upper half of the state).
-pub struct Random {
+pub struct SceneGenerator {
     state: u64,
     bytes: std::vec::IntoIter<u8>,
     /// True to generate scenes that can be rendered: with small numbers, and only the files `a.obj`
     /// and `a.ppm`.
-    tame: bool,
+    renderable: bool,
 }
 
-impl Random {
+impl SceneGenerator {
     /// Creates a generator from a seed.
     pub fn seeded(state: u64) -> Self {
-        Random { state, bytes: Vec::new().into_iter(), tame: false }
+        SceneGenerator { state, bytes: Vec::new().into_iter(), renderable: false }
     }
 
     /// Creates a generator that makes choices from bytes, for scenes that can be rendered.
-    pub fn tame(bytes: &[u8]) -> Self {
-        Random { state: 1, bytes: Vec::from(bytes).into_iter(), tame: true }
+    pub fn renderable(bytes: &[u8]) -> Self {
+        SceneGenerator { state: 1, bytes: Vec::from(bytes).into_iter(), renderable: true }
     }
 
     /// Returns a number below `n`, which must not be 0.
@@ -49,7 +49,7 @@ impl Random {
 
     /// Returns any finite number, including special values.
     pub fn float(&mut self) -> f32 {
-        if self.tame {
+        if self.renderable {
             return self.below(129) as f32 / 16.0 - 4.0;
         }
         match self.below(6) {
@@ -76,7 +76,7 @@ impl Random {
                 FieldKind::Int if is_material_index(field) => Value::Int(self.below(materials) as u32),
                 FieldKind::Int => Value::Int(self.below(40) as u32),
                 FieldKind::Vec3 => Value::Vec3(self.vec3()),
-                FieldKind::Path if self.tame => {
+                FieldKind::Path if self.renderable => {
                     let path = if field.name == "obj_file" { "a.obj" } else { "a.ppm" }.into();
                     Value::Path(FileName { path, ..Default::default() })
                 }
@@ -116,7 +116,7 @@ impl Random {
         let mut entry = kinds.remove(self.below(kinds.len()));
         for (i, field) in entry.fields().iter().enumerate() {
             // A cube map needs six files.
-            let missing = self.tame && field.name.to_lowercase().starts_with("cube");
+            let missing = self.renderable && field.name.to_lowercase().starts_with("cube");
             if field.required || self.below(2) == 0 && !missing {
                 let value = self.value(field, materials);
                 entry.set(i, value);

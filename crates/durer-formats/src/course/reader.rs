@@ -1,16 +1,16 @@
 //! State of the scene language reader: the tokens of a file, and recovery after errors.
 
 use super::ReadOptions;
-use super::include::{IncludedFile, Splicer, Texts};
+use super::include::{IncludePreprocessor, IncludedFile, Texts};
 use super::lexer::{Token, TokenKind, tokens};
-use super::words::{begins_block, dialects_of, home_of, is_section};
+use super::words::{begins_block, block_of, dialects_of, is_section};
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::dialect::{Dialect, DialectSet};
 use durer_scene::scene::{Object, Scene};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 /// Maximum depth of nested groups, transforms and nodes.
-const DEEPEST: usize = 200;
+const MAX_DEPTH: usize = 200;
 
 /// Named materials and objects of a scene file that is being read.
 #[derive(Default)]
@@ -18,9 +18,9 @@ pub(super) struct NamedItems {
     pub materials: BTreeMap<String, u32>,
     pub objects: BTreeMap<String, (Object, usize, Span)>,
     /// Names of objects that contain errors, which have already been reported.
-    pub broken: BTreeSet<String>,
+    pub invalid_objects: BTreeSet<String>,
     /// Number of objects added so far by `use`.
-    pub used: usize,
+    pub used_objects: usize,
 }
 
 impl NamedItems {
@@ -38,7 +38,7 @@ pub(super) struct Reader<'a, 'd> {
     pub options: ReadOptions,
     pub diagnostics: &'d mut Diagnostics,
     pub scene: Scene,
-    pub foreign_seen: HashSet<String>,
+    pub reported_words: HashSet<String>,
     pub depth: usize,
     /// Keywords of the open blocks, outermost first.
     pub blocks: Vec<Span>,
@@ -68,8 +68,8 @@ impl<'a, 'd> Reader<'a, 'd> {
         let (mut all, mut texts) = (tokens(bytes, file), Texts::new(bytes, file));
         if options.dialect == Dialect::Durer {
             let stack = Vec::new();
-            let mut splicer = Splicer { open, texts: &mut texts, diagnostics, stack, files: 0, words: 0 };
-            all = splicer.splice(all);
+            let mut splicer = IncludePreprocessor { open, texts: &mut texts, diagnostics, stack, files: 0, words: 0 };
+            all = splicer.expand_includes(all);
         }
         let (comments, tokens): (Vec<Token>, Vec<Token>) = all.into_iter().partition(|t| t.kind == TokenKind::Comment);
         let mut reader = Reader {
@@ -79,7 +79,7 @@ impl<'a, 'd> Reader<'a, 'd> {
             options,
             diagnostics,
             scene: Scene::default(),
-            foreign_seen: HashSet::new(),
+            reported_words: HashSet::new(),
             depth: 0,
             blocks: Vec::new(),
             unclosed_at: None,
@@ -226,8 +226,8 @@ impl<'a, 'd> Reader<'a, 'd> {
 
     /// Enters one more level of nesting; reports an error if the limit is reached.
     pub(super) fn descend(&mut self, what: &str, span: Span) -> bool {
-        if self.depth >= DEEPEST {
-            self.error(Diagnostic::error(format!("{what} are nested more than {DEEPEST} levels deep")).at(span));
+        if self.depth >= MAX_DEPTH {
+            self.error(Diagnostic::error(format!("{what} are nested more than {MAX_DEPTH} levels deep")).at(span));
             self.stop();
             return false;
         }
@@ -245,7 +245,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         } else {
             self.expected("`{`", &name);
         }
-        let is_inside = |word: &str| !begins_block(word) || home_of(word) == Some(&name);
+        let is_inside = |word: &str| !begins_block(word) || block_of(word) == Some(&name);
         let inside = self.peek_word().is_some_and(|word| dialects_of(&word).is_some() && is_inside(&word));
         if opens || inside {
             self.blocks.push(keyword);

@@ -2,9 +2,9 @@
 
 use super::lexer::TokenKind;
 use super::reader::{Reader, names};
-use super::suggestions::{counterpart, misplaced, slip};
-use super::words::{dialects_of, home_of};
-use crate::report::shown;
+use super::suggestions::{common_mistake, counterpart, misplaced};
+use super::words::{block_of, dialects_of};
+use crate::report::quoted;
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::dialect::Dialect;
 
@@ -77,8 +77,8 @@ impl Reader<'_, '_> {
     /// Reports an unknown word, and skips its values and its block.
     pub(super) fn unknown(&mut self, word: &str, span: Span, place: &str, known: &[&str]) {
         let message = match word.parse::<f32>() {
-            Ok(_) => format!("unexpected number {} {place}", shown(word.as_bytes())),
-            Err(_) => format!("unknown word {} {place}", shown(word.as_bytes())),
+            Ok(_) => format!("unexpected number {} {place}", quoted(word.as_bytes())),
+            Err(_) => format!("unknown word {} {place}", quoted(word.as_bytes())),
         };
         let list = || format!("known here: {}", known.join(", "));
         let help = misplaced(word, place).map(String::from);
@@ -105,7 +105,7 @@ impl Reader<'_, '_> {
         if let Some(there) = known.iter().find(|known| there == Some(*known)) {
             return Some(there);
         }
-        if let Some((suggestion, _)) = slip(word, known.iter().copied()) {
+        if let Some((suggestion, _)) = common_mistake(word, known.iter().copied()) {
             return Some(suggestion);
         }
         let near = did_you_mean(word, known).filter(|near| *near != word)?;
@@ -129,7 +129,8 @@ impl Reader<'_, '_> {
         let known: Vec<&str> = known.into_iter().collect();
         let year = self.options.dialect.name();
         if let Some(near) = self.suggest(word, known.iter().copied()) {
-            let remark = slip(word, known.iter().copied()).map(|slip| slip.1).filter(|remark| !remark.is_empty());
+            let remark =
+                common_mistake(word, known.iter().copied()).map(|slip| slip.1).filter(|remark| !remark.is_empty());
             return Some(match (counterpart(word, self.options.dialect), remark) {
                 (Some(there), _) if there == near => format!("in {year} it is `{near}`"),
                 (_, Some(remark)) => format!("did you mean `{near}`? {remark}"),
@@ -144,6 +145,6 @@ impl Reader<'_, '_> {
         if nodes && !Dialect::F23.is_in(set) || !nodes && set == Dialect::F23 as u8 {
             return Some(format!("it is a word of {}", names(set)));
         }
-        home_of(word).map(|home| format!("it belongs in a `{home}`"))
+        block_of(word).map(|home| format!("it belongs in a `{home}`"))
     }
 }

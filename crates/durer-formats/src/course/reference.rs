@@ -116,15 +116,17 @@ impl Entry {
             Chapter::Structure => return None,
             Chapter::Cameras => format!("{example}\n{TOWN}"),
             Chapter::Lights => format!(
-                "{EYE}Background {{ color 0 0 0 ambientLight 0.05 0.05 0.05 }}\nLights {{ {example} }}\n{PAINTS}{STILL_LIFE}"
+                "{EYE}Background {{ color 0 0 0 ambientLight 0.05 0.05 0.05 }}\nLights {{ {example} }}\n{MATERIALS}{STILL_LIFE}"
             ),
             Chapter::Materials => format!(
-                "{EYE}{DAY}Materials {{\n    {GROUND_PAINT}\n    PhongMaterial {{ diffuseColor 0.75 0.35 0.2 }}\n    \
+                "{EYE}{DAY}Materials {{\n    {GROUND_MATERIAL}\n    PhongMaterial {{ diffuseColor 0.75 0.35 0.2 }}\n    \
                  PhongMaterial {{ diffuseColor 0.9 0.85 0.7 }}\n    {example}\n}}\nGroup {{\n    MaterialIndex 0 \
                  Plane {{ normal 0 1 0 offset -1 }}\n    MaterialIndex 3 Sphere {{ center 0 0 0 radius 1 }}\n}}\n"
             ),
             Chapter::Shapes | Chapter::Solids | Chapter::Transforms => {
-                format!("{EYE}{DAY}{PAINTS}Group {{\n    MaterialIndex 0 {FLOOR}\n    MaterialIndex 1\n{example}\n}}\n")
+                format!(
+                    "{EYE}{DAY}{MATERIALS}Group {{\n    MaterialIndex 0 {FLOOR}\n    MaterialIndex 1\n{example}\n}}\n"
+                )
             }
         })
     }
@@ -134,8 +136,8 @@ const EYE: &str = "PerspectiveCamera { center 3.2 2.3 4.4 direction -3.2 -2.4 -4
 const DAY: &str = "Background { color 0.78 0.84 0.92 ambientLight 0.3 0.3 0.32 }
 Lights { DirectionalLight { direction -1 -2.2 -0.7 color 0.75 0.75 0.7 } }
 ";
-const GROUND_PAINT: &str = "PhongMaterial { diffuseColor 0.72 0.72 0.7 }";
-const PAINTS: &str = "Materials {
+const GROUND_MATERIAL: &str = "PhongMaterial { diffuseColor 0.72 0.72 0.7 }";
+const MATERIALS: &str = "Materials {
     PhongMaterial { diffuseColor 0.72 0.72 0.7 }
     PhongMaterial { diffuseColor 0.8 0.5 0.25 specularColor 0.25 0.25 0.25 exponent 30 }
     PhongMaterial { diffuseColor 0.3 0.5 0.7 }

@@ -3,7 +3,7 @@
 use super::fields::Order;
 use super::lexer::TokenKind;
 use super::reader::Reader;
-use super::words::{OURS, SECTIONS, camera_of, home_of, is_section};
+use super::words::{DURER_SECTIONS, SECTIONS, block_of, camera_of, is_section};
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::camera::Camera;
 use durer_scene::describe::{DescribedKind, FileName};
@@ -34,7 +34,7 @@ impl Reader<'_, '_> {
         let dialect = self.options.dialect;
         let kinds = Camera::kinds();
         let cameras = kinds.iter().filter(|c| dialect == Dialect::Durer || c.keywords()[0].1 != set::DURER);
-        let sections = SECTIONS.into_iter().filter(|word| dialect == Dialect::Durer || !OURS.contains(word));
+        let sections = SECTIONS.into_iter().filter(|word| dialect == Dialect::Durer || !DURER_SECTIONS.contains(word));
         let known: Vec<&str> = cameras.map(|camera| camera.keywords()[0].0).chain(sections).collect();
         self.top(&known, |reader, word, span| {
             match word {
@@ -112,7 +112,7 @@ impl Reader<'_, '_> {
     pub(super) fn check_keyword<T: DescribedKind>(&mut self, item: &T, keyword: Span) {
         let word = self.text(keyword);
         let set = item.keywords().iter().find(|(w, _)| *w == word).map_or(0, |k| k.1);
-        self.foreign(&word, keyword, set);
+        self.report_foreign_word(&word, keyword, set);
     }
 
     /// Reads `{ count n element ... }`. The count must equal the number of elements.
@@ -134,7 +134,7 @@ impl Reader<'_, '_> {
             };
             if word == count_word || word == "num_objects" && count_word == "numObjects" {
                 if word == "num_objects" {
-                    self.foreign(&word, span, set::F03);
+                    self.report_foreign_word(&word, span, set::F03);
                 }
                 if found > 0 && self.options.strict {
                     self.error(Diagnostic::error(format!("`{word}` must come first in `{name}`")).at(span));
@@ -144,7 +144,7 @@ impl Reader<'_, '_> {
                     let warning = Diagnostic::warning(message).code("repeated").at(span);
                     self.diagnostics.push(warning.related(first, "first given here"));
                 }
-                match self.whole(&word) {
+                match self.integer(&word) {
                     Some(n) => count = Some((n, span.join(self.last_span()))),
                     None => self.skip_values(),
                 }
@@ -174,7 +174,7 @@ impl Reader<'_, '_> {
     /// belongs in that section.
     fn closed_early(&self, name: &str) -> bool {
         let word = self.peek_word().unwrap_or_default();
-        self.depth == 0 && !is_section(&word) && home_of(&word) == Some(name)
+        self.depth == 0 && !is_section(&word) && block_of(&word) == Some(name)
     }
 
     fn lights(&mut self, keyword: Span) {
@@ -200,7 +200,7 @@ impl Reader<'_, '_> {
     }
 
     fn textures(&mut self, keyword: Span) {
-        self.foreign("Textures", keyword, set::DURER);
+        self.report_foreign_word("Textures", keyword, set::DURER);
         self.counted(keyword, "numTextures", |reader, word, span| {
             let Some(mut texture) = NamedTexture::from_keyword(word) else {
                 reader.unknown(word, span, "among textures", &["Texture"]);
@@ -352,7 +352,7 @@ impl Reader<'_, '_> {
                 }
                 // The dialect of 2003 defines materials where they are used.
                 "Material" | "PhongMaterial" => {
-                    reader.foreign("Material in Group", span, set::F03);
+                    reader.report_foreign_word("Material in Group", span, set::F03);
                     if let Some(value) = reader.material(word, span) {
                         reader.material = Some(reader.scene.materials.len() as u32);
                         reader.scene.materials.push(Spanned { value, span });
@@ -400,9 +400,9 @@ impl Reader<'_, '_> {
         } else if word == "Transform" {
             self.transform(span)
         } else if word == "use" {
-            self.used(span)
+            self.use_object(span)
         } else if let Some(operation) = CsgOperation::from_keyword(word) {
-            self.foreign(word, span, set::DURER);
+            self.report_foreign_word(word, span, set::DURER);
             Some(ObjectKind::Solid(operation, self.group(span).objects))
         } else if word == "HeightField" {
             let mut field = HeightField::default();

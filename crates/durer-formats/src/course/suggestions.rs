@@ -29,7 +29,7 @@ const COUNTERPARTS: [(&str, &str); 20] = [
 
 /// Common mistakes: the wrong word, the words that may be meant, and a remark. The first of these
 /// words that is valid in the block is suggested.
-const SLIPS: [(&str, &[&str], &str); 29] = [
+const COMMON_MISTAKES: [(&str, &[&str], &str); 29] = [
     ("plain", &["Plane", "plane"], ""),
     ("ball", &["Sphere", "sphere"], ""),
     ("mesh", &["TriangleMesh"], ""),
@@ -87,16 +87,19 @@ const YEARS: [(&str, &str); 5] = [
 ];
 
 /// Returns the word of this dialect for a word of another year.
-pub(super) fn here(word: &str, dialect: Dialect) -> Option<&'static str> {
+pub(super) fn word_in_dialect(word: &str, dialect: Dialect) -> Option<&'static str> {
     let other = YEARS.iter().find_map(|&(a, b)| (a == word).then_some(b).or((b == word).then_some(a)));
     let known = |word: &&str| dialects_of(word).is_some_and(|set| dialect.is_in(set));
     counterpart(word, dialect).or(other.filter(known))
 }
 
 /// Returns the valid word that is meant by a common mistake, with a remark.
-pub(super) fn slip<'w>(word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<(&'w str, &'static str)> {
+pub(super) fn common_mistake<'w>(
+    word: &str,
+    known: impl IntoIterator<Item = &'w str>,
+) -> Option<(&'w str, &'static str)> {
     let known: Vec<&str> = known.into_iter().collect();
-    let row = SLIPS.iter().find(|row| row.0.eq_ignore_ascii_case(word))?;
+    let row = COMMON_MISTAKES.iter().find(|row| row.0.eq_ignore_ascii_case(word))?;
     let suggestion = row.1.iter().find_map(|suggestion| known.iter().find(|known| *known == suggestion))?;
     (*suggestion != word).then_some((suggestion, row.2))
 }

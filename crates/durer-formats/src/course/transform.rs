@@ -3,7 +3,7 @@
 use super::lexer::TokenKind;
 use super::reader::Reader;
 use super::sections::{IN_GROUP, OBJECTS};
-use super::words::home_of;
+use super::words::block_of;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::dialect::{Dialect, set};
 use durer_scene::math::Vec3;
@@ -31,7 +31,7 @@ impl Reader<'_, '_> {
                 let error = Diagnostic::error("`MaterialIndex` is not allowed in a `Transform`").at(span);
                 self.error(error.help("write it before the `Transform`"));
                 self.skip_value();
-            } else if home_of(&word) != Some("Group") {
+            } else if block_of(&word) != Some("Group") {
                 let known: Vec<&str> =
                     MatrixOp::words().into_iter().chain(IN_GROUP.into_iter().take(OBJECTS)).collect();
                 self.unknown(&word, span, "in a transform", &known);
@@ -68,9 +68,9 @@ impl Reader<'_, '_> {
 
     /// Reports a matrix that alone flattens space.
     pub(super) fn check_flat(&mut self, op: Option<MatrixOp>, span: Span) {
-        if let Some(error) = op.and_then(flat) {
+        if let Some(error) = op.and_then(flat_matrix_error) {
             let at = span.join(self.last_span());
-            if self.any_values() {
+            if self.accepts_any_values() {
                 let warning = Diagnostic::warning(error.message).code("flat-transform").at(at);
                 return self.diagnostics.push(warning.effect("applied anyway, as the official program does"));
             }
@@ -89,7 +89,7 @@ impl Reader<'_, '_> {
         if opens {
             let open = self.advance();
             if !braces_needed {
-                self.foreign(&format!("{word} {{"), open, set::F03);
+                self.report_foreign_word(&format!("{word} {{"), open, set::F03);
             }
         } else if braces_needed {
             if word == "Rotate" && self.rotate_without_braces(span) {
@@ -109,7 +109,7 @@ impl Reader<'_, '_> {
             self.close(word, self.errors() == known);
         }
         if self.errors() == errors
-            && let Some(error) = op.and_then(senseless)
+            && let Some(error) = op.and_then(invalid_matrix_error)
         {
             self.error(error.at(span.join(self.last_span())));
         }
@@ -204,7 +204,7 @@ impl Reader<'_, '_> {
 }
 
 /// Returns an error if a matrix flattens space.
-pub(crate) fn flat(op: MatrixOp) -> Option<Diagnostic> {
+pub(crate) fn flat_matrix_error(op: MatrixOp) -> Option<Diagnostic> {
     let flat = match op {
         MatrixOp::Scale(v) => v.to_array().contains(&0.0),
         MatrixOp::UniformScale(s) => s == 0.0,
@@ -215,7 +215,7 @@ pub(crate) fn flat(op: MatrixOp) -> Option<Diagnostic> {
 }
 
 /// Returns an error if the values of a complete matrix are invalid.
-pub(crate) fn senseless(op: MatrixOp) -> Option<Diagnostic> {
+pub(crate) fn invalid_matrix_error(op: MatrixOp) -> Option<Diagnostic> {
     match op {
         MatrixOp::Rotate(axis, _) if axis == Vec3::ZERO => {
             Some(Diagnostic::error("an axis of 0 0 0 has no direction").help("write the axis first, then the angle"))

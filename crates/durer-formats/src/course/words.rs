@@ -101,7 +101,7 @@ pub(super) fn begins_block(word: &str) -> bool {
 }
 
 /// Returns the block in which a misplaced word belongs.
-pub(super) fn home_of(word: &str) -> Option<&'static str> {
+pub(super) fn block_of(word: &str) -> Option<&'static str> {
     Some(match word {
         "TriangleMesh" | "HeightField" | "Grid" | "Transform" | "MaterialIndex" | "Group" | "use" | "define" => "Group",
         "PhongMaterial" | "PrincipledMaterial" | "HairMaterial" | "Material" | "Checkerboard" | "Marble" | "Wood"
@@ -120,7 +120,7 @@ pub(super) fn home_of(word: &str) -> Option<&'static str> {
 pub(super) const SECTIONS: [&str; 6] = ["Background", "Fog", "Lights", "Textures", "Materials", "Group"];
 
 /// Sections that exist only in the Dürer dialect.
-pub(super) const OURS: [&str; 2] = ["Fog", "Textures"];
+pub(super) const DURER_SECTIONS: [&str; 2] = ["Fog", "Textures"];
 
 /// Returns the camera that a word begins, in files of the grammar without nodes.
 pub(super) fn camera_of(word: &str) -> Option<Camera> {

@@ -119,8 +119,10 @@ fn asset_folders_are_searched_by_path_and_bare_name() {
 #[test]
 fn given_files_take_precedence_and_enter_the_record() {
     let (root, source) = house();
-    let in_memory =
-        source.clone().give("near.obj", b"given".as_slice().into()).give("none.obj", b"n".as_slice().into());
+    let in_memory = source
+        .clone()
+        .add_in_memory("near.obj", b"given".as_slice().into())
+        .add_in_memory("none.obj", b"n".as_slice().into());
     assert!(in_memory.contains("none.obj") && !source.contains("none.obj"));
     assert_eq!(
         (&*in_memory.read("near.obj").unwrap(), &*in_memory.read("none.obj").unwrap()),
@@ -138,7 +140,7 @@ fn file_is_read_whole_despite_a_wrong_size() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a");
     fs::write(&path, b"0123456789").unwrap();
-    let read = |size, most| all_of(fs::File::open(&path).unwrap(), size, most).unwrap().to_vec();
+    let read = |size, most| read_all(fs::File::open(&path).unwrap(), size, most).unwrap().to_vec();
     // The file may have grown or shrunk. At most one byte beyond the limit is read.
     for size in [10, 0, 4, 25] {
         assert_eq!(read(size, 100), b"0123456789", "{size}");

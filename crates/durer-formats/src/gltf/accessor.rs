@@ -2,13 +2,13 @@
 //! sparse values.
 
 use super::Model;
-use super::buffers::View;
+use super::buffers::BufferView;
 use super::json::JsonRef;
 use rayon::prelude::*;
 
 /// Number type of the components of a glTF accessor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Component {
+pub(super) enum ComponentType {
     I8,
     U8,
     I16,
@@ -17,15 +17,15 @@ pub(super) enum Component {
     F32,
 }
 
-impl Component {
-    fn of(code: u64) -> Option<Component> {
+impl ComponentType {
+    fn of(code: u64) -> Option<ComponentType> {
         Some(match code {
-            5120 => Component::I8,
-            5121 => Component::U8,
-            5122 => Component::I16,
-            5123 => Component::U16,
-            5125 => Component::U32,
-            5126 => Component::F32,
+            5120 => ComponentType::I8,
+            5121 => ComponentType::U8,
+            5122 => ComponentType::I16,
+            5123 => ComponentType::U16,
+            5125 => ComponentType::U32,
+            5126 => ComponentType::F32,
             _ => return None,
         })
     }
@@ -33,9 +33,9 @@ impl Component {
     /// Returns the size of a number in bytes.
     pub fn size(self) -> usize {
         match self {
-            Component::I8 | Component::U8 => 1,
-            Component::I16 | Component::U16 => 2,
-            Component::U32 | Component::F32 => 4,
+            ComponentType::I8 | ComponentType::U8 => 1,
+            ComponentType::I16 | ComponentType::U16 => 2,
+            ComponentType::U32 | ComponentType::F32 => 4,
         }
     }
 
@@ -43,21 +43,21 @@ impl Component {
     /// (chapter 3.11 of the specification).
     fn float(self, b: &[u8], normalized: bool) -> f32 {
         let (value, most) = match self {
-            Component::I8 => (f32::from(b[0] as i8), 127.0),
-            Component::U8 => (f32::from(b[0]), 255.0),
-            Component::I16 => (f32::from(i16::from_le_bytes([b[0], b[1]])), 32767.0),
-            Component::U16 => (f32::from(u16::from_le_bytes([b[0], b[1]])), 65535.0),
-            Component::U32 => return u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32,
-            Component::F32 => return f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+            ComponentType::I8 => (f32::from(b[0] as i8), 127.0),
+            ComponentType::U8 => (f32::from(b[0]), 255.0),
+            ComponentType::I16 => (f32::from(i16::from_le_bytes([b[0], b[1]])), 32767.0),
+            ComponentType::U16 => (f32::from(u16::from_le_bytes([b[0], b[1]])), 65535.0),
+            ComponentType::U32 => return u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32,
+            ComponentType::F32 => return f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
         };
         if normalized { (value / most).max(-1.0) } else { value }
     }
 
-    fn whole(self, b: &[u8]) -> u32 {
+    fn integer(self, b: &[u8]) -> u32 {
         match self {
-            Component::I8 | Component::U8 => b[0].into(),
-            Component::I16 | Component::U16 => u16::from_le_bytes([b[0], b[1]]).into(),
-            Component::U32 | Component::F32 => u32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+            ComponentType::I8 | ComponentType::U8 => b[0].into(),
+            ComponentType::I16 | ComponentType::U16 => u16::from_le_bytes([b[0], b[1]]).into(),
+            ComponentType::U32 | ComponentType::F32 => u32::from_le_bytes([b[0], b[1], b[2], b[3]]),
         }
     }
 }
@@ -65,15 +65,15 @@ impl Component {
 /// glTF accessor: describes rows of numbers in a buffer view, and reads them.
 #[derive(Clone)]
 pub(super) struct Accessor {
-    pub component: Component,
+    pub component: ComponentType,
     pub normalized: bool,
     /// Number of components in a row: 1 to 4, or for matrices 4, 9 or 16.
     pub width: usize,
     pub is_matrix: bool,
     pub count: usize,
-    view: Option<View>,
+    view: Option<BufferView>,
     offset: usize,
-    sparse: Option<Sparse>,
+    sparse: Option<SparseValues>,
     pub has_bounds: bool,
     /// True if the buffer view has an explicit stride.
     pub strided: bool,
@@ -81,11 +81,11 @@ pub(super) struct Accessor {
 
 /// Sparse part of an accessor: rows that replace those with the given indices.
 #[derive(Clone)]
-struct Sparse {
+struct SparseValues {
     count: usize,
-    component: Component,
-    indices: (View, usize),
-    values: (View, usize),
+    component: ComponentType,
+    indices: (BufferView, usize),
+    values: (BufferView, usize),
 }
 
 const TYPES: [(&str, usize); 7] =
@@ -98,9 +98,9 @@ impl Model<'_> {
         accessors.items().map(|accessor| self.accessor_of(&accessor)).collect()
     }
 
-    fn component(&self, at: &JsonRef) -> Option<Component> {
-        let code = at.whole(..)?;
-        let component = Component::of(code);
+    fn component(&self, at: &JsonRef) -> Option<ComponentType> {
+        let code = at.integer(..)?;
+        let component = ComponentType::of(code);
         if component.is_none() {
             at.error("VALUE_NOT_IN_LIST", format!("invalid value {code}: not a component type"));
         }
@@ -109,13 +109,13 @@ impl Model<'_> {
 
     fn accessor_of(&self, at: &JsonRef) -> Option<Accessor> {
         at.object()?;
-        let component = at.need("componentType").and_then(|code| self.component(&code));
-        let count = at.need("count").and_then(|count| count.whole(1..=u64::from(u32::MAX)));
-        let width = at.need("type").and_then(|kind| kind.word(&TYPES));
+        let component = at.required("componentType").and_then(|code| self.component(&code));
+        let count = at.required("count").and_then(|count| count.integer(1..=u64::from(u32::MAX)));
+        let width = at.required("type").and_then(|kind| kind.word(&TYPES));
         let normalized = at.get("normalized").and_then(|flag| flag.boolean()).unwrap_or(false);
         let (component, count, width) = (component?, count?, width?);
         let is_matrix = at.get("type").and_then(|kind| kind.string()).is_some_and(|kind| kind.starts_with("MAT"));
-        let offset = at.get("byteOffset").map_or(Some(0), |offset| offset.whole(..))? as usize;
+        let offset = at.get("byteOffset").map_or(Some(0), |offset| offset.integer(..))? as usize;
         let view = match at.get("bufferView") {
             Some(view) => Some(self.views[view.index(self.views.len())?].clone()?),
             None => {
@@ -154,37 +154,37 @@ impl Model<'_> {
         Some(accessor)
     }
 
-    fn sparse(&self, at: &JsonRef, accessor: &Accessor) -> Option<Sparse> {
-        let count = at.need("count")?.whole(1..)? as usize;
+    fn sparse(&self, at: &JsonRef, accessor: &Accessor) -> Option<SparseValues> {
+        let count = at.required("count")?.integer(1..)? as usize;
         if count > accessor.count {
             let message = format!("{count} rows are replaced, but the accessor has {}", accessor.count);
             at.get("count").unwrap_or(*at).error("ACCESSOR_SPARSE_COUNT_OUT_OF_RANGE", message);
             return None;
         }
-        let (indices, values) = (at.need("indices")?, at.need("values")?);
-        let component = self.component(&indices.need("componentType")?)?;
-        if matches!(component, Component::I8 | Component::I16 | Component::F32) {
+        let (indices, values) = (at.required("indices")?, at.required("values")?);
+        let component = self.component(&indices.required("componentType")?)?;
+        if matches!(component, ComponentType::I8 | ComponentType::I16 | ComponentType::F32) {
             indices.error("VALUE_NOT_IN_LIST", "indices must be unsigned whole numbers");
             return None;
         }
         let place = |at: &JsonRef, size: usize| {
-            let view = at.need("bufferView")?;
-            let found = self.views[view.index(self.views.len())?].clone()?;
-            if found.stride.is_some() {
+            let view = at.required("bufferView")?;
+            let source = self.views[view.index(self.views.len())?].clone()?;
+            if source.stride.is_some() {
                 view.error("BUFFER_VIEW_INVALID_BYTE_STRIDE", "sparse data must be tightly packed");
                 return None;
             }
-            let offset = at.get("byteOffset").map_or(Some(0), |offset| offset.whole(..))? as usize;
+            let offset = at.get("byteOffset").map_or(Some(0), |offset| offset.integer(..))? as usize;
             let end = count.checked_mul(size).and_then(|size| size.checked_add(offset));
-            if end.is_none_or(|end| end > found.length) {
+            if end.is_none_or(|end| end > source.length) {
                 at.error("ACCESSOR_TOO_LONG", "the sparse data do not fit into their buffer view");
                 return None;
             }
-            found.slice.as_ref()?;
-            Some((found, offset))
+            source.slice.as_ref()?;
+            Some((source, offset))
         };
         let places = (place(&indices, component.size()), place(&values, accessor.row()));
-        let sparse = Sparse { count, component, indices: places.0?, values: places.1? };
+        let sparse = SparseValues { count, component, indices: places.0?, values: places.1? };
         self.charge(count, 4, at)?;
         let mut previous = None;
         for i in 0..count {
@@ -203,17 +203,17 @@ impl Model<'_> {
     }
 }
 
-impl Sparse {
+impl SparseValues {
     fn index(&self, i: usize) -> u32 {
         let (view, offset) = &self.indices;
-        self.component.whole(&view.bytes()[offset + i * self.component.size()..])
+        self.component.integer(&view.bytes()[offset + i * self.component.size()..])
     }
 }
 
 impl Accessor {
     /// Returns the byte offset of the i-th number in a row. Matrix columns are aligned to four
     /// bytes.
-    fn place(&self, i: usize) -> usize {
+    fn byte_offset(&self, i: usize) -> usize {
         let size = self.component.size();
         let rows = match self.width {
             9 => 3,
@@ -225,7 +225,7 @@ impl Accessor {
 
     /// Returns the size of a row in bytes.
     fn row(&self) -> usize {
-        self.place(self.width - 1) + self.component.size()
+        self.byte_offset(self.width - 1) + self.component.size()
     }
 
     fn stride(&self) -> usize {
@@ -258,17 +258,17 @@ impl Accessor {
     }
 
     /// Replaces the data with tightly packed numbers of another component type.
-    pub fn fill(&mut self, component: Component, view: View) {
+    pub fn fill(&mut self, component: ComponentType, view: BufferView) {
         (self.component, self.view, self.offset, self.sparse, self.strided) = (component, Some(view), 0, None, false);
     }
 
     /// Checks that all numbers are finite.
     pub fn check_values(&self, at: &JsonRef) {
-        if self.component != Component::F32 {
+        if self.component != ComponentType::F32 {
             return;
         }
         let Some(view) = &self.view else { return };
-        let (bytes, stride, last) = (&view.bytes()[self.offset..], self.stride(), self.place(self.width - 1));
+        let (bytes, stride, last) = (&view.bytes()[self.offset..], self.stride(), self.byte_offset(self.width - 1));
         // Fast path for the usual case: tightly packed data without infinities and NaN.
         const EXPONENT: u32 = 0x7f80_0000;
         let is_finite = |number: &[u8; 4]| u32::from_le_bytes(*number) & EXPONENT != EXPONENT;
@@ -291,7 +291,8 @@ impl Accessor {
         match &self.view {
             Some(view) => {
                 let bytes = &view.bytes()[self.offset + i * self.stride()..];
-                (0..row.len()).for_each(|k| row[k] = self.component.float(&bytes[self.place(k)..], self.normalized));
+                (0..row.len())
+                    .for_each(|k| row[k] = self.component.float(&bytes[self.byte_offset(k)..], self.normalized));
             }
             None => row.fill(0.0),
         }
@@ -300,7 +301,7 @@ impl Accessor {
     /// Returns all rows, each mapped by `of`. Missing components are 0.
     pub fn rows<const N: usize, T: Send>(&self, of: impl Fn([f32; N]) -> T + Sync + Send) -> Vec<T> {
         let width = self.width.min(N);
-        let is_plain = self.component == Component::F32 && !self.is_matrix;
+        let is_plain = self.component == ComponentType::F32 && !self.is_matrix;
         let plain = self.view.as_ref().filter(|_| is_plain).map(|view| (&view.bytes()[self.offset..], self.stride()));
         let row = |i: usize| {
             let mut row = [0.0; N];
@@ -320,7 +321,7 @@ impl Accessor {
             let (view, offset) = &sparse.values;
             for i in 0..sparse.count {
                 let (bytes, mut row) = (&view.bytes()[offset + i * self.row()..], [0.0; N]);
-                (0..width).for_each(|k| row[k] = self.component.float(&bytes[self.place(k)..], self.normalized));
+                (0..width).for_each(|k| row[k] = self.component.float(&bytes[self.byte_offset(k)..], self.normalized));
                 rows[sparse.index(i) as usize] = of(row);
             }
         }
@@ -328,15 +329,15 @@ impl Accessor {
     }
 
     /// Returns the numbers of all rows as unsigned integers.
-    pub fn wholes(&self) -> Vec<u32> {
+    pub fn integers(&self) -> Vec<u32> {
         let mut all: Vec<u32> = match &self.view {
             Some(view) => {
                 let (bytes, stride) = (&view.bytes()[self.offset..], self.stride());
                 let rows = (0..self.count).into_par_iter().with_min_len(1 << 13);
                 match self.component {
-                    Component::U32 => rows.map(|i| Component::U32.whole(&bytes[i * stride..])).collect(),
-                    Component::U16 => rows.map(|i| Component::U16.whole(&bytes[i * stride..])).collect(),
-                    other => rows.map(|i| other.whole(&bytes[i * stride..])).collect(),
+                    ComponentType::U32 => rows.map(|i| ComponentType::U32.integer(&bytes[i * stride..])).collect(),
+                    ComponentType::U16 => rows.map(|i| ComponentType::U16.integer(&bytes[i * stride..])).collect(),
+                    other => rows.map(|i| other.integer(&bytes[i * stride..])).collect(),
                 }
             }
             None => vec![0; self.count],
@@ -344,7 +345,7 @@ impl Accessor {
         if let Some(sparse) = &self.sparse {
             let (view, offset) = &sparse.values;
             for i in 0..sparse.count {
-                all[sparse.index(i) as usize] = self.component.whole(&view.bytes()[offset + i * self.row()..]);
+                all[sparse.index(i) as usize] = self.component.integer(&view.bytes()[offset + i * self.row()..]);
             }
         }
         all

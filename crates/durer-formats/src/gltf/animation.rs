@@ -5,7 +5,7 @@
 use super::Model;
 use super::json::JsonRef;
 use super::nodes::NodeData;
-use crate::report::counted;
+use crate::report::count_text;
 use durer_scene::math::fp;
 use glam::{DQuat, DVec3, DVec4};
 
@@ -18,12 +18,12 @@ enum Interpolation {
 }
 
 /// Key frames of a glTF animation sampler: times, values and interpolation.
-struct Track {
+struct Sampler {
     times: Vec<f32>,
     /// Values of the key frames, one after the other. For cubic splines, each key frame has its
     /// in-tangent, value and out-tangent.
     values: Vec<f32>,
-    between: Interpolation,
+    interpolation: Interpolation,
 }
 
 impl Model<'_> {
@@ -37,18 +37,18 @@ impl Model<'_> {
             (None, None) => return,
         };
         let Some(first) = animations.items().next() else { return };
-        let (Some(channels), Some(samplers)) = (first.need("channels"), first.need("samplers")) else { return };
-        let samplers: Vec<Option<Track>> = samplers.items().map(|sampler| self.track(&sampler)).collect();
+        let (Some(channels), Some(samplers)) = (first.required("channels"), first.required("samplers")) else { return };
+        let samplers: Vec<Option<Sampler>> = samplers.items().map(|sampler| self.track(&sampler)).collect();
         for channel in channels.items() {
             self.channel(&channel, &samplers, at, nodes);
         }
     }
 
-    fn channel(&self, channel: &JsonRef, samplers: &[Option<Track>], at: f32, nodes: &mut [NodeData]) -> Option<()> {
-        let track = samplers[channel.need("sampler")?.index(samplers.len())?].as_ref()?;
-        let target = channel.need("target")?;
+    fn channel(&self, channel: &JsonRef, samplers: &[Option<Sampler>], at: f32, nodes: &mut [NodeData]) -> Option<()> {
+        let track = samplers[channel.required("sampler")?.index(samplers.len())?].as_ref()?;
+        let target = channel.required("target")?;
         let node = &mut nodes[target.get("node")?.index(nodes.len())?];
-        let path = target.need("path")?;
+        let path = target.required("path")?;
         match path.string()? {
             "translation" => node.local.translation = track.vector(at)?,
             "scale" => node.local.scale = track.vector(at)?,
@@ -59,11 +59,11 @@ impl Model<'_> {
         Some(())
     }
 
-    fn track(&self, at: &JsonRef) -> Option<Track> {
+    fn track(&self, at: &JsonRef) -> Option<Sampler> {
         let words =
             [("STEP", Interpolation::Step), ("LINEAR", Interpolation::Linear), ("CUBICSPLINE", Interpolation::Cubic)];
-        let between = at.get("interpolation").map_or(Some(Interpolation::Linear), |word| word.word(&words))?;
-        let (input, output) = (at.need("input")?, at.need("output")?);
+        let interpolation = at.get("interpolation").map_or(Some(Interpolation::Linear), |word| word.word(&words))?;
+        let (input, output) = (at.required("input")?, at.required("output")?);
         let times = self.rows::<1>(self.accessor(&input)?, &input)?.into_iter().map(|[t]| t).collect::<Vec<_>>();
         if !times.is_sorted() {
             input.error("ACCESSOR_ANIMATION_INPUT_NON_INCREASING", "the times of key frames must increase");
@@ -72,14 +72,14 @@ impl Model<'_> {
         let accessor = self.accessor(&output)?;
         let rows = self.rows::<4>(accessor, &output)?;
         let values = rows.iter().flat_map(|row| row[..accessor.width.min(4)].iter().copied()).collect();
-        Some(Track { times, values, between })
+        Some(Sampler { times, values, interpolation })
     }
 }
 
-impl Track {
+impl Sampler {
     /// Returns the number of components per key frame.
     fn width(&self) -> Option<usize> {
-        let rows = self.times.len() * if self.between == Interpolation::Cubic { 3 } else { 1 };
+        let rows = self.times.len() * if self.interpolation == Interpolation::Cubic { 3 } else { 1 };
         self.values.len().checked_div(rows).filter(|&width| width > 0)
     }
 
@@ -89,8 +89,8 @@ impl Track {
     }
 
     fn rotation(&self, at: f32) -> Option<DQuat> {
-        let (i, share, _) = self.around(at);
-        let row = match self.between {
+        let (i, share, _) = self.keyframes_around(at);
+        let row = match self.interpolation {
             Interpolation::Linear if share > 0.0 => slerp(self.key(i, 4)?, self.key(i + 1, 4)?, share),
             _ => self.row(at, 4)?,
         };
@@ -100,7 +100,7 @@ impl Track {
 
     /// Returns the last key frame before a time, the position of the time within the interval to
     /// the next one (0 to 1), and the length of the interval in seconds.
-    fn around(&self, at: f32) -> (usize, f32, f32) {
+    fn keyframes_around(&self, at: f32) -> (usize, f32, f32) {
         let next = self.times.partition_point(|&time| time <= at);
         match (next.checked_sub(1), self.times.get(next)) {
             (Some(i), Some(&end)) => {
@@ -114,18 +114,18 @@ impl Track {
     }
 
     fn key(&self, i: usize, width: usize) -> Option<&[f32]> {
-        let (stride, skip) = if self.between == Interpolation::Cubic { (3 * width, width) } else { (width, 0) };
+        let (stride, skip) = if self.interpolation == Interpolation::Cubic { (3 * width, width) } else { (width, 0) };
         self.values.get(i * stride + skip..i * stride + skip + width)
     }
 
     fn row(&self, at: f32, width: usize) -> Option<Vec<f32>> {
-        let (i, t, length) = self.around(at);
+        let (i, t, length) = self.keyframes_around(at);
         let first = self.key(i, width)?;
-        if t == 0.0 || self.between == Interpolation::Step {
+        if t == 0.0 || self.interpolation == Interpolation::Step {
             return Some(first.to_vec());
         }
         let second = self.key(i + 1, width)?;
-        if self.between == Interpolation::Linear {
+        if self.interpolation == Interpolation::Linear {
             return Some(first.iter().zip(second).map(|(a, b)| a + t * (b - a)).collect());
         }
         // Cubic Hermite spline, with the out-tangent of the first key frame and the in-tangent of
@@ -153,7 +153,7 @@ fn at_rest(animations: &JsonRef) {
         (_, true) => "the first moment of the first".into(),
         (_, false) => format!("the first moment of the first,{name}"),
     };
-    let count = counted(count, "animation", "animations");
+    let count = count_text(count, "animation", "animations");
     animations.note("animations", format!("the file has {count} and is shown at rest: `--at 0` shows {moment}"));
 }
 

@@ -2,8 +2,8 @@
 
 use super::Model;
 use super::json::JsonRef;
-use crate::files::unescaped;
-use crate::report::shown;
+use crate::files::percent_decoded;
+use crate::report::quoted;
 use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::general_purpose::{GeneralPurpose, NO_PAD};
@@ -17,12 +17,12 @@ const MESHOPT: &str = "EXT_meshopt_compression";
 
 /// Range of bytes of a file or of decoded data, shared by reference counting.
 #[derive(Clone)]
-pub(super) struct Slice {
+pub(super) struct SharedBytes {
     bytes: Arc<[u8]>,
     range: Range<usize>,
 }
 
-impl Slice {
+impl SharedBytes {
     /// Returns the bytes in the range.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes[self.range.clone()]
@@ -30,39 +30,39 @@ impl Slice {
 
     /// Returns a slice of all the bytes.
     pub fn whole(bytes: Arc<[u8]>) -> Self {
-        Slice { range: 0..bytes.len(), bytes }
+        SharedBytes { range: 0..bytes.len(), bytes }
     }
 
     /// Returns a slice of a range of these bytes; `None` if the range is too long.
-    pub fn part(&self, range: Range<usize>) -> Option<Slice> {
+    pub fn part(&self, range: Range<usize>) -> Option<SharedBytes> {
         let (start, end) = (self.range.start.checked_add(range.start)?, self.range.start.checked_add(range.end)?);
-        (start <= end && end <= self.range.end).then(|| Slice { bytes: self.bytes.clone(), range: start..end })
+        (start <= end && end <= self.range.end).then(|| SharedBytes { bytes: self.bytes.clone(), range: start..end })
     }
 }
 
 /// Buffer of a glTF file: its declared length, and its bytes if they can be read.
 pub(super) struct Buffer {
     length: usize,
-    pub slice: Option<Slice>,
+    pub slice: Option<SharedBytes>,
 }
 
 /// Buffer view of a glTF file: part of a buffer, with an optional stride.
 #[derive(Clone)]
-pub(super) struct View {
+pub(super) struct BufferView {
     pub length: usize,
-    pub slice: Option<Slice>,
+    pub slice: Option<SharedBytes>,
     pub stride: Option<usize>,
 }
 
-impl View {
+impl BufferView {
     /// Returns the bytes of the view; empty if they cannot be read.
     pub fn bytes(&self) -> &[u8] {
-        self.slice.as_ref().map_or(&[], Slice::bytes)
+        self.slice.as_ref().map_or(&[], SharedBytes::bytes)
     }
 }
 
 /// Target of a URI in a glTF file: embedded data, or another file.
-pub(super) enum Target<'a> {
+pub(super) enum UriTarget<'a> {
     /// Embedded data, with its media type.
     Data(&'a str, Arc<[u8]>),
     /// Path of a file, relative to the glTF file.
@@ -73,13 +73,13 @@ pub(super) enum Target<'a> {
 ///
 /// Source: RFC 3986 and RFC 2397. Implementations of [`durer_scene::source::AssetSource`] that read
 /// folders reject paths that leave the folder.
-pub(super) fn target<'a>(at: &JsonRef<'a>) -> Option<Target<'a>> {
+pub(super) fn resolve_uri<'a>(at: &JsonRef<'a>) -> Option<UriTarget<'a>> {
     let uri = at.string()?;
     if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
         let data = uri[5..].split_once(',').and_then(|(kind, data)| {
             let Some(kind) = kind.strip_suffix(";base64") else {
                 // Without `;base64`, the data is percent-encoded text.
-                return Some((kind.split(';').next()?, unescaped(data)?.into_bytes()));
+                return Some((kind.split(';').next()?, percent_decoded(data)?.into_bytes()));
             };
             if kind.ends_with(';') {
                 return None;
@@ -90,25 +90,25 @@ pub(super) fn target<'a>(at: &JsonRef<'a>) -> Option<Target<'a>> {
         if data.is_none() {
             at.error("INVALID_URI", "the data URI is invalid");
         }
-        return data.map(|(kind, bytes)| Target::Data(kind, bytes.into()));
+        return data.map(|(kind, bytes)| UriTarget::Data(kind, bytes.into()));
     }
     let scheme = uri.split_once(':').filter(|(scheme, _)| !scheme.contains('/'));
     if let Some((scheme, _)) = scheme {
         at.error("INVALID_URI", format!("the URI has the scheme `{scheme}`: only relative file paths are supported"));
         return None;
     }
-    let Some(path) = unescaped(uri).filter(|path| !path.is_empty() && !path.contains('\0')) else {
-        at.error("INVALID_URI", format!("invalid URI {}", shown(uri.as_bytes())));
+    let Some(path) = percent_decoded(uri).filter(|path| !path.is_empty() && !path.contains('\0')) else {
+        at.error("INVALID_URI", format!("invalid URI {}", quoted(uri.as_bytes())));
         return None;
     };
     if path.starts_with(['/', '\\']) {
         at.error(
             "INVALID_URI",
-            format!("the URI {} is absolute: only relative file paths are supported", shown(uri.as_bytes())),
+            format!("the URI {} is absolute: only relative file paths are supported", quoted(uri.as_bytes())),
         );
         return None;
     }
-    Some(Target::File(path))
+    Some(UriTarget::File(path))
 }
 
 impl Model<'_> {
@@ -120,23 +120,23 @@ impl Model<'_> {
 
     fn buffer(&self, number: usize, at: &JsonRef) -> Option<Buffer> {
         at.object()?;
-        let length = at.need("byteLength")?.whole(1..)? as usize;
+        let length = at.required("byteLength")?.integer(1..)? as usize;
         // A fallback buffer is only for readers that do not support compressed views.
         let is_fallback = compression(at).is_some_and(|packed| packed["fallback"] == true);
         Some(Buffer { length, slice: if is_fallback { None } else { self.data(number, length, at) } })
     }
 
     /// Returns the bytes of a buffer.
-    fn data(&self, number: usize, length: usize, at: &JsonRef) -> Option<Slice> {
+    fn data(&self, number: usize, length: usize, at: &JsonRef) -> Option<SharedBytes> {
         let bytes = match at.get("uri") {
-            Some(uri) => match target(&uri)? {
-                Target::Data(kind, bytes) => {
+            Some(uri) => match resolve_uri(&uri)? {
+                UriTarget::Data(kind, bytes) => {
                     if !matches!(kind, "application/octet-stream" | "application/gltf-buffer") {
                         uri.error("BUFFER_DATA_URI_MIME_TYPE_INVALID", format!("unexpected media type `{kind}`"));
                     }
                     bytes
                 }
-                Target::File(path) => self.file(&uri, &path)?,
+                UriTarget::File(path) => self.file(&uri, &path)?,
             },
             None => match (&self.parts.bin, number) {
                 (Some(bin), 0) => {
@@ -146,7 +146,7 @@ impl Model<'_> {
                         at.error("BUFFER_BYTE_LENGTH_MISMATCH", message);
                         return None;
                     }
-                    return Some(Slice { bytes: self.input.bytes.clone(), range: bin.start..bin.start + length });
+                    return Some(SharedBytes { bytes: self.input.bytes.clone(), range: bin.start..bin.start + length });
                 }
                 _ => {
                     if self.parts.is_glb && number == 0 {
@@ -161,7 +161,7 @@ impl Model<'_> {
             at.error("BUFFER_BYTE_LENGTH_MISMATCH", message);
             return None;
         }
-        Some(Slice { bytes, range: 0..length })
+        Some(SharedBytes { bytes, range: 0..length })
     }
 
     /// Reads a file named by a URI.
@@ -177,20 +177,20 @@ impl Model<'_> {
     }
 
     /// Reads all buffer views; `None` for each invalid one.
-    pub(super) fn views(&self, root: &JsonRef) -> Vec<Option<View>> {
+    pub(super) fn views(&self, root: &JsonRef) -> Vec<Option<BufferView>> {
         let Some(views) = root.get("bufferViews") else { return Vec::new() };
         views.items().map(|view| self.view_of(&view)).collect()
     }
 
-    fn view_of(&self, at: &JsonRef) -> Option<View> {
+    fn view_of(&self, at: &JsonRef) -> Option<BufferView> {
         at.object()?;
-        let buffer = at.need("buffer").and_then(|buffer| buffer.index(self.buffers.len()));
-        let offset = at.get("byteOffset").map_or(Some(0), |offset| offset.whole(..));
-        let length = at.need("byteLength").and_then(|length| length.whole(1..));
+        let buffer = at.required("buffer").and_then(|buffer| buffer.index(self.buffers.len()));
+        let offset = at.get("byteOffset").map_or(Some(0), |offset| offset.integer(..));
+        let length = at.required("byteLength").and_then(|length| length.integer(1..));
         let stride = match at.get("byteStride") {
             None => None,
             Some(stride) => {
-                let bytes = stride.whole(4..=252)?;
+                let bytes = stride.integer(4..=252)?;
                 if bytes % 4 != 0 {
                     stride.error("VALUE_MULTIPLE_OF", format!("value {bytes} is not a multiple of 4"));
                     return None;
@@ -210,10 +210,10 @@ impl Model<'_> {
             at.get("byteLength").unwrap_or(*at).error("BUFFER_VIEW_TOO_LONG", message);
         }
         let slice = match compression(at) {
-            Some(_) => self.unpacked(&at.get("extensions")?.get(MESHOPT)?, length),
+            Some(_) => self.decompress_view(&at.get("extensions")?.get(MESHOPT)?, length),
             None => buffer.slice.as_ref().and_then(|slice| slice.part(offset..end?)),
         };
-        end.map(|_| View { length, slice, stride })
+        end.map(|_| BufferView { length, slice, stride })
     }
 }
 

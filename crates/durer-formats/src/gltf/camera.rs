@@ -46,22 +46,22 @@ impl Model<'_> {
             if at.get("perspective").is_some() && at.get("orthographic").is_some() {
                 at.error("ONE_OF_MISMATCH", "exactly one of `perspective` and `orthographic` must be defined");
             }
-            let is_flat = at.need("type")?.word(&[("perspective", false), ("orthographic", true)])?;
-            let lens = at.need(if is_flat { "orthographic" } else { "perspective" })?;
-            let far = lens.get("zfar").and_then(|far| far.within(0.0..));
-            if let (Some(far), Some(near)) = (far, lens.get("znear").and_then(|near| near.within(0.0..)))
+            let is_flat = at.required("type")?.word(&[("perspective", false), ("orthographic", true)])?;
+            let lens = at.required(if is_flat { "orthographic" } else { "perspective" })?;
+            let far = lens.get("zfar").and_then(|far| far.number_in(0.0..));
+            if let (Some(far), Some(near)) = (far, lens.get("znear").and_then(|near| near.number_in(0.0..)))
                 && far <= near
             {
                 lens.error("CAMERA_ZFAR_LEQUAL_ZNEAR", format!("`zfar` {far} must be greater than `znear` {near}"));
             }
             let view = match is_flat {
-                true => Projection::Orthographic(lens.need("ymag")?.number().filter(|half| *half != 0.0)?.abs()),
+                true => Projection::Orthographic(lens.required("ymag")?.number().filter(|half| *half != 0.0)?.abs()),
                 false => {
-                    let angle = lens.need("yfov")?.within(1e-4..)?;
+                    let angle = lens.required("yfov")?.number_in(1e-4..)?;
                     if angle >= PI {
                         lens.warning("CAMERA_YFOV_GEQUAL_PI", "`yfov` must be less than pi");
                     }
-                    let aspect = lens.get("aspectRatio").and_then(|aspect| aspect.within(1e-4..));
+                    let aspect = lens.get("aspectRatio").and_then(|aspect| aspect.number_in(1e-4..));
                     Projection::Perspective(angle.min(3.1), aspect)
                 }
             };
@@ -76,12 +76,13 @@ impl Model<'_> {
         punctual.list("lights", |at| {
             at.object()?;
             let kinds = [("directional", (true, false)), ("point", (false, false)), ("spot", (false, true))];
-            let (is_directional, is_spot) = at.need("type")?.word(&kinds)?;
+            let (is_directional, is_spot) = at.required("type")?.word(&kinds)?;
             let color = at.get("color").and_then(|color| color.numbers::<3>()).map_or(Vec3::ONE, Vec3::from_array);
-            let intensity = at.get("intensity").and_then(|intensity| intensity.within(0.0..)).unwrap_or(1.0);
-            let spot = if is_spot { at.need("spot") } else { None };
+            let intensity = at.get("intensity").and_then(|intensity| intensity.number_in(0.0..)).unwrap_or(1.0);
+            let spot = if is_spot { at.required("spot") } else { None };
             let cone = spot.map(|spot| {
-                let angle = |name: &str, usual: f32| spot.get(name).and_then(|a| a.within(0.0..)).unwrap_or(usual);
+                let angle =
+                    |name: &str, default: f32| spot.get(name).and_then(|a| a.number_in(0.0..)).unwrap_or(default);
                 [angle("innerConeAngle", 0.0), angle("outerConeAngle", 0.25 * PI)].map(f32::to_degrees)
             });
             // Intensities are photometric: a white diffuse surface reflects 1 / pi of them.
@@ -99,8 +100,8 @@ impl Model<'_> {
             Some(wanted) => {
                 let by_name = there.iter().find(|camera| names(camera).contains(wanted));
                 let by_number = || wanted.parse().ok().and_then(|number: usize| there.get(number));
-                let found = by_name.or_else(by_number);
-                if found.is_none() {
+                let index = by_name.or_else(by_number);
+                if index.is_none() {
                     let all: Vec<String> = there.iter().flat_map(names).filter(|name| !name.is_empty()).collect();
                     let suggestion = did_you_mean(wanted, all.iter().map(String::as_str));
                     let known = match (suggestion, all.is_empty()) {
@@ -108,14 +109,14 @@ impl Model<'_> {
                         (None, true) => format!("the {} cameras have no names, only numbers from 0", there.len()),
                         (None, false) => format!("the cameras are `{}`", all.join("`, `")),
                     };
-                    self.findings.say(
+                    self.report.report(
                         durer_diag::Diagnostic::error,
                         "no-camera",
                         "",
                         &format!("the scene has no camera `{wanted}`: {known}"),
                     );
                 }
-                found
+                index
             }
         };
         let &(node, camera) = chosen?;
@@ -154,6 +155,6 @@ impl Model<'_> {
             }
             (false, None) => PointLight { position, color, attenuation: Some(Vec3::Z), ..PointLight::default() }.into(),
         };
-        scene.lights.get_or_insert_default().push(Spanned { value, span: self.findings.node(number) });
+        scene.lights.get_or_insert_default().push(Spanned { value, span: self.report.node(number) });
     }
 }

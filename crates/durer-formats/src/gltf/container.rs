@@ -2,7 +2,7 @@
 //!
 //! Source: *glTF 2.0 Specification*, Khronos Group, chapter 4.
 
-use crate::report::{Report, shown};
+use crate::report::{Report, quoted};
 use durer_diag::Diagnostic;
 use std::ops::Range;
 
@@ -32,13 +32,13 @@ pub(super) fn open(bytes: &[u8], name: &str, report: &mut Report) -> Option<Part
         return glb(bytes, report);
     }
     if bytes.starts_with(b"\xef\xbb\xbf") {
-        say(report, 0..3, "INVALID_JSON", "the file begins with a byte order mark, which JSON must not have");
+        report_error(report, 0..3, "INVALID_JSON", "the file begins with a byte order mark, which JSON must not have");
         return None;
     }
     Some(Parts { json: 0..bytes.len(), bin: None, is_glb: false })
 }
 
-fn say(report: &mut Report, at: Range<usize>, code: &'static str, message: impl Into<String>) {
+fn report_error(report: &mut Report, at: Range<usize>, code: &'static str, message: impl Into<String>) {
     report.add(at, Diagnostic::error(message).code(code));
 }
 
@@ -46,17 +46,17 @@ fn glb(bytes: &[u8], report: &mut Report) -> Option<Parts> {
     let word = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?));
     let end = bytes.len();
     if !bytes.starts_with(MAGIC) {
-        let found = shown(&bytes[..end.min(4)]);
+        let magic = quoted(&bytes[..end.min(4)]);
         let code = if end < 4 { "GLB_UNEXPECTED_END_OF_HEADER" } else { "GLB_INVALID_MAGIC" };
-        say(report, 0..end.min(4), code, format!("a GLB file begins with `glTF`, but this one with {found}"));
+        report_error(report, 0..end.min(4), code, format!("a GLB file begins with `glTF`, but this one with {magic}"));
         return None;
     }
     let (Some(version), Some(length)) = (word(4), word(8)) else {
-        say(report, 0..end, "GLB_UNEXPECTED_END_OF_HEADER", "the file ends within its header of 12 bytes");
+        report_error(report, 0..end, "GLB_UNEXPECTED_END_OF_HEADER", "the file ends within its header of 12 bytes");
         return None;
     };
     if version != 2 {
-        say(
+        report_error(
             report,
             4..8,
             "GLB_INVALID_VERSION",
@@ -65,11 +65,11 @@ fn glb(bytes: &[u8], report: &mut Report) -> Option<Parts> {
         return None;
     }
     if length < 20 {
-        say(report, 8..12, "GLB_LENGTH_TOO_SMALL", format!("the header declares a length of {length} bytes"));
+        report_error(report, 8..12, "GLB_LENGTH_TOO_SMALL", format!("the header declares a length of {length} bytes"));
         return None;
     }
     if length as usize > end {
-        say(
+        report_error(
             report,
             8..12,
             "GLB_LENGTH_MISMATCH",
@@ -89,31 +89,33 @@ fn chunks(bytes: &[u8], end: usize, report: &mut Report) -> Option<Parts> {
     let (mut json, mut bin, mut at, mut number) = (None, None, 12, 0);
     while at < end {
         let (Some(length), Some(kind)) = (word(at), word(at + 4)) else {
-            say(report, at..end, "GLB_UNEXPECTED_END_OF_CHUNK_HEADER", "the file ends within a chunk header");
+            report_error(report, at..end, "GLB_UNEXPECTED_END_OF_CHUNK_HEADER", "the file ends within a chunk header");
             return None;
         };
         let chunk = at + 8..at + 8 + length as usize;
         if length % 4 != 0 {
             let message = format!("the length of a chunk must be a multiple of 4, but is {length}");
-            say(report, at..at + 4, "GLB_CHUNK_LENGTH_UNALIGNED", message);
+            report_error(report, at..at + 4, "GLB_CHUNK_LENGTH_UNALIGNED", message);
         }
         if chunk.end > end {
             let message = format!("a chunk of {length} bytes does not fit into the file's {end}");
-            say(report, at..at + 4, "GLB_CHUNK_TOO_BIG", message);
+            report_error(report, at..at + 4, "GLB_CHUNK_TOO_BIG", message);
             return None;
         }
         match (kind, number) {
             (JSON, 0) if length == 0 => {
-                say(report, at..at + 4, "GLB_EMPTY_CHUNK", "the JSON chunk is empty");
+                report_error(report, at..at + 4, "GLB_EMPTY_CHUNK", "the JSON chunk is empty");
                 return None;
             }
             (JSON, 0) => json = Some(chunk.clone()),
             (_, 0) => {
-                say(report, at + 4..at + 8, "GLB_UNEXPECTED_FIRST_CHUNK", "the first chunk must be JSON");
+                report_error(report, at + 4..at + 8, "GLB_UNEXPECTED_FIRST_CHUNK", "the first chunk must be JSON");
                 return None;
             }
-            (JSON, _) => say(report, at + 4..at + 8, "GLB_DUPLICATE_CHUNK", "a second JSON chunk"),
-            (BIN, _) if bin.is_some() => say(report, at + 4..at + 8, "GLB_DUPLICATE_CHUNK", "a second binary chunk"),
+            (JSON, _) => report_error(report, at + 4..at + 8, "GLB_DUPLICATE_CHUNK", "a second JSON chunk"),
+            (BIN, _) if bin.is_some() => {
+                report_error(report, at + 4..at + 8, "GLB_DUPLICATE_CHUNK", "a second binary chunk")
+            }
             (BIN, _) => bin = Some(chunk.clone()),
             // Ignore other chunks, which belong to extensions.
             _ => {}

@@ -3,7 +3,7 @@
 //! Source: *glTF 2.0 Specification*, chapters 3.7.2.2 and 3.7.3.
 
 use super::Model;
-use super::accessor::Component;
+use super::accessor::ComponentType;
 use super::json::JsonRef;
 use durer_scene::math::Vec3;
 use durer_scene::shape::MeshData;
@@ -12,15 +12,15 @@ use glam::{DAffine3, DMat3, DMat4, DVec3};
 /// Data that deforms the vertices of a glTF primitive: its morph targets, and the joints and
 /// weights of each vertex.
 #[derive(Clone, Default)]
-pub(super) struct Pose {
-    targets: Vec<Target>,
+pub(super) struct Deformation {
+    targets: Vec<MorphTarget>,
     joints: Vec<[u32; 4]>,
     weights: Vec<[f32; 4]>,
 }
 
 /// Morph target: offsets of positions and normals, or empty lists if it has none.
 #[derive(Clone, Default)]
-struct Target {
+struct MorphTarget {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
 }
@@ -49,7 +49,7 @@ impl Model<'_> {
 
     fn skin(&self, at: &JsonRef, nodes: usize) -> Option<Skin> {
         at.object()?;
-        let joints = at.need("joints")?;
+        let joints = at.required("joints")?;
         let joints: Vec<usize> = joints.items().map(|joint| joint.index(nodes)).collect::<Option<_>>()?;
         if let Some(skeleton) = at.get("skeleton") {
             skeleton.index(nodes);
@@ -58,7 +58,7 @@ impl Model<'_> {
             return Some(Skin { inverse: vec![DAffine3::IDENTITY; joints.len()], joints });
         };
         let accessor = self.accessor(&matrices)?;
-        if accessor.width != 16 || accessor.component != Component::F32 {
+        if accessor.width != 16 || accessor.component != ComponentType::F32 {
             matrices.error("SKIN_IBM_INVALID_FORMAT", "inverse bind matrices must have type MAT4 and single precision");
             return None;
         }
@@ -77,17 +77,19 @@ impl Model<'_> {
     }
 
     /// Reads the morph targets and joints of a primitive, if it has any.
-    pub(super) fn pose(&self, primitive: &JsonRef, attributes: &JsonRef, count: usize) -> Option<Pose> {
+    pub(super) fn pose(&self, primitive: &JsonRef, attributes: &JsonRef, count: usize) -> Option<Deformation> {
         let targets = primitive.list("targets", |target| self.target(target, count));
         let joints = attributes.get("JOINTS_0");
         let weights = attributes.get("WEIGHTS_0");
         if joints.is_some() != weights.is_some() {
             attributes.error("MESH_PRIMITIVE_JOINTS_WEIGHTS_MISMATCH", "JOINTS_0 and WEIGHTS_0 must occur together");
         }
-        let mut pose = Pose { targets, ..Pose::default() };
+        let mut pose = Deformation { targets, ..Deformation::default() };
         if let (Some(joints), Some(weights)) = (joints, weights) {
             let numbers = self.accessor(&joints)?;
-            if numbers.width != 4 || !matches!(numbers.component, Component::U8 | Component::U16) || numbers.normalized
+            if numbers.width != 4
+                || !matches!(numbers.component, ComponentType::U8 | ComponentType::U16)
+                || numbers.normalized
             {
                 let message = "JOINTS_0 must have four unsigned integers of 8 or 16 bits";
                 joints.error("MESH_PRIMITIVE_ATTRIBUTES_ACCESSOR_INVALID_FORMAT", message);
@@ -102,7 +104,7 @@ impl Model<'_> {
         (sizes && !(pose.targets.is_empty() && pose.joints.is_empty())).then_some(pose)
     }
 
-    fn target(&self, at: &JsonRef, count: usize) -> Target {
+    fn target(&self, at: &JsonRef, count: usize) -> MorphTarget {
         at.object();
         let rows = |key| {
             let Some(attribute) = at.get(key) else { return Vec::new() };
@@ -119,11 +121,11 @@ impl Model<'_> {
             let rows = self.rows(accessor, &attribute).unwrap_or_default();
             rows.into_iter().map(Vec3::from_array).collect()
         };
-        Target { positions: rows("POSITION"), normals: rows("NORMAL") }
+        MorphTarget { positions: rows("POSITION"), normals: rows("NORMAL") }
     }
 }
 
-impl Pose {
+impl Deformation {
     /// Returns true if morph target weights or joints move vertices.
     pub fn moves(&self, weights: &[f32], skinned: bool) -> bool {
         skinned && !self.joints.is_empty() || weights.iter().zip(&self.targets).any(|(weight, _)| *weight != 0.0)
@@ -154,7 +156,7 @@ impl Pose {
                 data.positions[i] = map.transform_point3(data.positions[i].as_dvec3()).as_vec3();
                 let turn = |matrix: DMat3, v: Vec3| (matrix * v.as_dvec3()).normalize_or(v.as_dvec3()).as_vec3();
                 if let Some(normal) = data.normals.get_mut(i) {
-                    *normal = turn(of_normals(map.matrix3), *normal);
+                    *normal = turn(normal_matrix(map.matrix3), *normal);
                 }
                 if let Some([x, y, z, _]) = data.tangents.get_mut(i) {
                     [*x, *y, *z] = turn(map.matrix3, Vec3::new(*x, *y, *z)).to_array();
@@ -185,7 +187,7 @@ impl Pose {
 
 /// Returns the matrix that transforms normals: the transposed inverse times a positive factor. It
 /// also exists for singular maps.
-pub(super) fn of_normals(map: DMat3) -> DMat3 {
+pub(super) fn normal_matrix(map: DMat3) -> DMat3 {
     let [x, y, z] = [map.x_axis, map.y_axis, map.z_axis];
     1f64.copysign(map.determinant()) * DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y))
 }
@@ -203,7 +205,7 @@ mod tests {
 
     #[test]
     fn skinned_normals_stay_perpendicular() {
-        let pose = Pose { joints: vec![[0; 4]], weights: vec![[1.0, 0.0, 0.0, 0.0]], ..Pose::default() };
+        let pose = Deformation { joints: vec![[0; 4]], weights: vec![[1.0, 0.0, 0.0, 0.0]], ..Deformation::default() };
         let (n, u) = (Vec3::new(0.48, 0.6, 0.64), Vec3::new(0.8, 0.0, -0.6));
         let v = n.cross(u);
         let tall = DMat3::from_diagonal(DVec3::new(1.0, 1.0, 3.0));

@@ -4,8 +4,8 @@
 //! the decompressed data but have no buffer view; this module sets their data.
 
 use super::Model;
-use super::accessor::Component;
-use super::buffers::{Slice, View};
+use super::accessor::ComponentType;
+use super::buffers::{BufferView, SharedBytes};
 use super::json::JsonRef;
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, Mesh, MeshDecoder, PointAttribute, PointIndex};
 use durer_image::panics::catch_panic;
@@ -34,9 +34,9 @@ impl Model<'_> {
             at.error("VALUE_NOT_IN_LIST", format!("{DRACO} supports only triangles, not mode {mode}"));
             return None;
         }
-        let view = at.need("bufferView")?;
+        let view = at.required("bufferView")?;
         let packed = self.views[view.index(self.views.len())?].clone()?.slice?;
-        let mesh = match decoded(packed.bytes(), self.work.left().min(self.kept.left())) {
+        let mesh = match decode(packed.bytes(), self.work.left().min(self.kept.left())) {
             Ok(mesh) => mesh,
             Err(message) => {
                 at.error("compressed-data", format!("the Draco data is damaged: {message}"));
@@ -46,12 +46,12 @@ impl Model<'_> {
         let points = mesh.num_points();
         if let Some(indices) = primitive.get("indices") {
             let bytes = mesh.faces().iter().flatten().flat_map(|corner| corner.0.to_le_bytes()).collect();
-            self.give(&indices, (Component::U32, 1, 3 * mesh.num_faces()), bytes)?;
+            self.set_accessor_data(&indices, (ComponentType::U32, 1, 3 * mesh.num_faces()), bytes)?;
         }
-        let (attributes, packed) = (primitive.need("attributes")?, at.need("attributes")?);
+        let (attributes, packed) = (primitive.required("attributes")?, at.required("attributes")?);
         for key in packed.object()?.keys() {
             let number = packed.get(key)?;
-            let id = number.whole(..=u64::from(u32::MAX))? as u32;
+            let id = number.integer(..=u64::from(u32::MAX))? as u32;
             let Some(attribute) = mesh.attribute_by_unique_id(id) else {
                 number.error("UNRESOLVED_REFERENCE", format!("the compressed bytes have no attribute {id}"));
                 continue;
@@ -63,17 +63,17 @@ impl Model<'_> {
             let width = usize::from(attribute.num_components());
             self.charge(points, 2 * width * component.size(), &number)?;
             let bytes = rows(attribute, points, width * component.size());
-            self.give(&attributes.need(key)?, (component, width, points), bytes);
+            self.set_accessor_data(&attributes.required(key)?, (component, width, points), bytes);
         }
         Some(())
     }
 
     /// Stores decoded bytes in the accessor with the index in `at`: `count` rows of `width`
     /// numbers.
-    fn give(
+    fn set_accessor_data(
         &mut self,
         at: &JsonRef,
-        (component, width, count): (Component, usize, usize),
+        (component, width, count): (ComponentType, usize, usize),
         bytes: Vec<u8>,
     ) -> Option<()> {
         let number = at.index(self.accessors.len())?;
@@ -86,14 +86,17 @@ impl Model<'_> {
             at.error("MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT", message);
             return None;
         }
-        accessor.fill(component, View { length: bytes.len(), slice: Some(Slice::whole(bytes.into())), stride: None });
+        accessor.fill(
+            component,
+            BufferView { length: bytes.len(), slice: Some(SharedBytes::whole(bytes.into())), stride: None },
+        );
         accessor.check_values(at);
         Some(())
     }
 }
 
 /// Decodes points and triangles, using at most `left` bytes of memory.
-fn decoded(bytes: &[u8], left: u64) -> Result<Mesh, String> {
+fn decode(bytes: &[u8], left: u64) -> Result<Mesh, String> {
     let limits =
         DecodeLimits::default().with_max_points(left / 16).with_max_faces(left / 64).with_max_decoded_bytes(left);
     let decode = || {
@@ -115,21 +118,21 @@ fn rows(attribute: &PointAttribute, points: usize, size: usize) -> Vec<u8> {
     let mut all = vec![0; points * size];
     for (i, row) in all.chunks_exact_mut(size.max(1)).enumerate() {
         let start = (attribute.mapped_index(PointIndex(i as u32)).0 as usize).saturating_mul(stride);
-        if let Some(found) = start.checked_add(size).and_then(|end| data.get(start..end)) {
-            row.copy_from_slice(found);
+        if let Some(bytes) = start.checked_add(size).and_then(|end| data.get(start..end)) {
+            row.copy_from_slice(bytes);
         }
     }
     all
 }
 
-fn component(kind: DataType) -> Option<Component> {
+fn component(kind: DataType) -> Option<ComponentType> {
     Some(match kind {
-        DataType::Int8 => Component::I8,
-        DataType::Uint8 => Component::U8,
-        DataType::Int16 => Component::I16,
-        DataType::Uint16 => Component::U16,
-        DataType::Uint32 => Component::U32,
-        DataType::Float32 => Component::F32,
+        DataType::Int8 => ComponentType::I8,
+        DataType::Uint8 => ComponentType::U8,
+        DataType::Int16 => ComponentType::I16,
+        DataType::Uint16 => ComponentType::U16,
+        DataType::Uint32 => ComponentType::U32,
+        DataType::Float32 => ComponentType::F32,
         _ => return None,
     })
 }

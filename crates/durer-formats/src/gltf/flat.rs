@@ -3,7 +3,7 @@
 //! Source: *glTF 2.0 Specification*, chapter 3.5.3: only nodes scaled to 0 along all axes may be
 //! omitted.
 
-use super::deform::of_normals;
+use super::deform::normal_matrix;
 use durer_scene::math::Vec3;
 use durer_scene::shape::MeshData;
 use glam::{DAffine3, DMat3, DVec3};
@@ -12,9 +12,9 @@ use glam::{DAffine3, DMat3, DVec3};
 const AREA: f64 = 1e-9;
 
 /// Returns true if a singular map flattens space to a plane, rather than to a line or a point.
-pub(super) fn is_sheet(map: DAffine3) -> bool {
+pub(super) fn flattens_to_plane(map: DAffine3) -> bool {
     let longest = |map: DMat3| [map.x_axis, map.y_axis, map.z_axis].map(DVec3::length).into_iter().fold(0.0, f64::max);
-    let (size, area) = (longest(map.matrix3), longest(of_normals(map.matrix3)));
+    let (size, area) = (longest(map.matrix3), longest(normal_matrix(map.matrix3)));
     area.is_finite() && area > 1e-12 * size * size
 }
 

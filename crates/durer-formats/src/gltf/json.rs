@@ -3,9 +3,9 @@
 //!
 //! Error codes are those of the Khronos validator (see its ISSUES.md).
 
-mod place;
+mod locate;
 
-use crate::report::{Report, shown};
+use crate::report::{Report, quoted};
 use durer_diag::{Diagnostic, Severity, Span};
 use serde_json::{Map, Value};
 use std::cell::{Cell, RefCell};
@@ -41,7 +41,7 @@ impl<'a> JsonReport<'a> {
 
     /// Returns the byte range of a value in the file, or of the nearest existing value around it.
     fn range(&self, pointer: &str) -> Range<usize> {
-        self.in_list(pointer).unwrap_or_else(|| place::locate(self.text, pointer))
+        self.in_list(pointer).unwrap_or_else(|| locate::locate(self.text, pointer))
     }
 
     /// Returns the range of a value inside a top-level list. Each list is scanned only once.
@@ -49,9 +49,9 @@ impl<'a> JsonReport<'a> {
         let (list, rest) = pointer.strip_prefix('/')?.split_once('/')?;
         let (number, rest) = rest.split_at(rest.find('/').unwrap_or(rest.len()));
         let mut starts = self.starts.borrow_mut();
-        let starts = starts.entry(list.to_string()).or_insert_with(|| place::items(self.text, list));
+        let starts = starts.entry(list.to_string()).or_insert_with(|| locate::items(self.text, list));
         let start = *starts.get(number.parse::<usize>().ok()?)?;
-        let at = place::locate(&self.text[start..], rest);
+        let at = locate::locate(&self.text[start..], rest);
         Some(start + at.start..start + at.end)
     }
 
@@ -67,7 +67,7 @@ impl<'a> JsonReport<'a> {
 
     /// Reports an error, warning or note about the value at a JSON pointer. The message begins with
     /// the pointer.
-    pub fn say(&self, kind: fn(String) -> Diagnostic, code: &'static str, pointer: &str, message: &str) {
+    pub fn report(&self, kind: fn(String) -> Diagnostic, code: &'static str, pointer: &str, message: &str) {
         let is_error = kind(String::new()).severity == Severity::Error;
         // Record errors even if the report is full and drops the message.
         self.failed.set(self.failed.get() || is_error);
@@ -77,8 +77,8 @@ impl<'a> JsonReport<'a> {
         if full || !is_error && count > 256 {
             return;
         }
-        let shown = if pointer.is_empty() { String::new() } else { format!("{pointer}: ") };
-        self.report.borrow_mut().add(self.range(pointer), kind(shown + message).code(code));
+        let prefix = if pointer.is_empty() { String::new() } else { format!("{pointer}: ") };
+        self.report.borrow_mut().add(self.range(pointer), kind(prefix + message).code(code));
     }
 }
 
@@ -87,36 +87,36 @@ impl<'a> JsonReport<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct JsonRef<'a> {
     pub value: &'a Value,
-    pub findings: &'a JsonReport<'a>,
+    pub report: &'a JsonReport<'a>,
     parent: Option<&'a JsonRef<'a>>,
-    step: Step<'a>,
+    step: PathStep<'a>,
 }
 
 /// Last step of the path to a JSON value: a key in an object, or an index in an array.
 #[derive(Clone, Copy)]
-enum Step<'a> {
+enum PathStep<'a> {
     Key(&'a str),
     Index(usize),
 }
 
 impl<'a> JsonRef<'a> {
     /// Returns the root value of the document.
-    pub fn root(value: &'a Value, findings: &'a JsonReport<'a>) -> Self {
-        JsonRef { value, findings, parent: None, step: Step::Key("") }
+    pub fn root(value: &'a Value, report: &'a JsonReport<'a>) -> Self {
+        JsonRef { value, report, parent: None, step: PathStep::Key("") }
     }
 
     /// Returns the JSON pointer (RFC 6901) to this value.
     pub fn pointer(&self) -> String {
         let Some(parent) = self.parent else { return String::new() };
         match self.step {
-            Step::Key(key) => format!("{}/{}", parent.pointer(), key.replace('~', "~0").replace('/', "~1")),
-            Step::Index(i) => format!("{}/{i}", parent.pointer()),
+            PathStep::Key(key) => format!("{}/{}", parent.pointer(), key.replace('~', "~0").replace('/', "~1")),
+            PathStep::Index(i) => format!("{}/{i}", parent.pointer()),
         }
     }
 
     /// Returns the span of this value.
     pub fn span(&self) -> Span {
-        self.findings.span(&self.pointer())
+        self.report.span(&self.pointer())
     }
 
     /// Returns the name of the innermost named value around this one, to be put after a noun: a
@@ -124,7 +124,7 @@ impl<'a> JsonRef<'a> {
     pub fn name(&self) -> String {
         let own = self.value.get("name").and_then(Value::as_str).filter(|name| !name.is_empty());
         match (own, self.parent) {
-            (Some(name), _) => format!(" {}", shown(name.as_bytes())),
+            (Some(name), _) => format!(" {}", quoted(name.as_bytes())),
             (None, Some(parent)) => parent.name(),
             (None, None) => String::new(),
         }
@@ -132,37 +132,37 @@ impl<'a> JsonRef<'a> {
 
     /// Reports an error in this value.
     pub fn error(&self, code: &'static str, message: impl AsRef<str>) {
-        self.findings.say(Diagnostic::error, code, &self.pointer(), message.as_ref());
+        self.report.report(Diagnostic::error, code, &self.pointer(), message.as_ref());
     }
 
     /// Reports a warning about this value.
     pub fn warning(&self, code: &'static str, message: impl AsRef<str>) {
-        self.findings.say(Diagnostic::warning, code, &self.pointer(), message.as_ref());
+        self.report.report(Diagnostic::warning, code, &self.pointer(), message.as_ref());
     }
 
     /// Reports a note about this value.
     pub fn note(&self, code: &'static str, message: impl AsRef<str>) {
-        self.findings.say(Diagnostic::note, code, &self.pointer(), message.as_ref());
+        self.report.report(Diagnostic::note, code, &self.pointer(), message.as_ref());
     }
 
     /// Returns a member of this object, if present.
     pub fn get(&'a self, key: &'a str) -> Option<JsonRef<'a>> {
         let value = self.value.as_object()?.get(key)?;
-        Some(JsonRef { value, findings: self.findings, parent: Some(self), step: Step::Key(key) })
+        Some(JsonRef { value, report: self.report, parent: Some(self), step: PathStep::Key(key) })
     }
 
     /// Returns a required member; reports an error if it is missing.
-    pub fn need(&'a self, key: &'a str) -> Option<JsonRef<'a>> {
-        let found = self.get(key);
-        if found.is_none() && self.value.is_object() {
+    pub fn required(&'a self, key: &'a str) -> Option<JsonRef<'a>> {
+        let count = self.get(key);
+        if count.is_none() && self.value.is_object() {
             self.error("UNDEFINED_PROPERTY", format!("property `{key}` must be defined"));
         }
-        found
+        count
     }
 
     fn mismatch(&self, wanted: &str) {
         let text = self.value.to_string();
-        self.error("TYPE_MISMATCH", format!("expected {wanted}, found {}", shown(text.as_bytes())));
+        self.error("TYPE_MISMATCH", format!("expected {wanted}, found {}", quoted(text.as_bytes())));
     }
 
     /// Returns this value as an object; reports any other value.
@@ -190,9 +190,9 @@ impl<'a> JsonRef<'a> {
         };
         items.iter().enumerate().map(|(i, value)| JsonRef {
             value,
-            findings: self.findings,
+            report: self.report,
             parent: Some(self),
-            step: Step::Index(i),
+            step: PathStep::Index(i),
         })
     }
 
@@ -238,7 +238,7 @@ impl<'a> JsonRef<'a> {
     }
 
     /// Returns a number, which must be in a range.
-    pub fn within(&self, range: impl RangeBounds<f32>) -> Option<f32> {
+    pub fn number_in(&self, range: impl RangeBounds<f32>) -> Option<f32> {
         let number = self.number()?;
         if range.contains(&number) {
             return Some(number);
@@ -248,7 +248,7 @@ impl<'a> JsonRef<'a> {
     }
 
     /// Returns an integer in a range. It may be written as 4.0.
-    pub fn whole(&self, range: impl RangeBounds<u64>) -> Option<u64> {
+    pub fn integer(&self, range: impl RangeBounds<u64>) -> Option<u64> {
         let exact = |x: f64| (x.fract() == 0.0 && (0.0..9.0e15).contains(&x)).then_some(x as u64);
         match self.value.as_u64().or_else(|| self.value.as_f64().and_then(exact)) {
             Some(n) if range.contains(&n) => Some(n),
@@ -268,7 +268,7 @@ impl<'a> JsonRef<'a> {
 
     /// Returns an index into a list of `count` items.
     pub fn index(&self, count: usize) -> Option<usize> {
-        let number = self.whole(..)?;
+        let number = self.integer(..)?;
         if number < count as u64 {
             return Some(number as usize);
         }
@@ -280,8 +280,8 @@ impl<'a> JsonRef<'a> {
     pub fn numbers<const N: usize>(&'a self) -> Option<[f32; N]> {
         let items = self.items();
         if self.value.is_array() && items.len() != N {
-            let found = items.len();
-            self.error("ARRAY_LENGTH_NOT_IN_LIST", format!("expected {N} numbers, found {found}"));
+            let count = items.len();
+            self.error("ARRAY_LENGTH_NOT_IN_LIST", format!("expected {N} numbers, found {count}"));
             return None;
         }
         items.map(|item| item.number()).collect::<Option<Vec<_>>>()?.try_into().ok()
@@ -290,11 +290,11 @@ impl<'a> JsonRef<'a> {
     /// Returns the meaning of this string, which must be one of the given words.
     pub fn word<T: Copy>(&self, words: &[(&str, T)]) -> Option<T> {
         let text = self.string()?;
-        let found = words.iter().find(|(word, _)| *word == text).map(|&(_, meaning)| meaning);
-        if found.is_none() {
+        let count = words.iter().find(|(word, _)| *word == text).map(|&(_, meaning)| meaning);
+        if count.is_none() {
             let all: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
             self.error("VALUE_NOT_IN_LIST", format!("invalid value `{text}`, valid values are `{}`", all.join("`, `")));
         }
-        found
+        count
     }
 }

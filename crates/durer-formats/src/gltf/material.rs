@@ -70,12 +70,12 @@ impl Model<'_> {
         }
         let words = [("OPAQUE", Alpha::Opaque), ("MASK", Alpha::Mask), ("BLEND", Alpha::Blend)];
         let alpha = at.get("alphaMode").and_then(|mode| mode.word(&words)).unwrap_or(Alpha::Opaque);
-        let cutoff = at.get("alphaCutoff").and_then(|cutoff| cutoff.within(0.0..)).unwrap_or(0.5);
+        let cutoff = at.get("alphaCutoff").and_then(|cutoff| cutoff.number_in(0.0..)).unwrap_or(0.5);
         let extensions = at.get("extensions");
         let extension = |name| extensions.as_ref().and_then(|extensions| extensions.get(name));
         let glossiness = extension("KHR_materials_pbrSpecularGlossiness");
         match (&glossiness, at.get("pbrMetallicRoughness")) {
-            (Some(old), _) => self.glossy(&mut m, old, alpha, cutoff),
+            (Some(old), _) => self.specular_glossiness(&mut m, old, alpha, cutoff),
             (None, Some(pbr)) => self.metallic(&mut m, &pbr, alpha, cutoff),
             (None, None) => {}
         }
@@ -85,14 +85,14 @@ impl Model<'_> {
         let is_colored = self.colored.get(number) == Some(&true);
         if alpha == Alpha::Mask && is_colored {
             // The vertices' alpha is multiplied in before the cutoff is applied.
-            self.mask_whole(&mut m, at, cutoff);
+            self.set_mask(&mut m, at, cutoff);
         }
         m.normal_texture = at.get("normalTexture").and_then(|texture| {
             let strength = texture.get("scale").and_then(|scale| scale.number()).unwrap_or(1.0);
             self.texture(&texture, |mapping| mapping.strength = strength)
         });
         let strength = extension("KHR_materials_emissive_strength");
-        let strength = strength.and_then(|e| e.get("emissiveStrength")?.within(0.0..)).unwrap_or(1.0);
+        let strength = strength.and_then(|e| e.get("emissiveStrength")?.number_in(0.0..)).unwrap_or(1.0);
         let emissive = at.get("emissiveFactor").and_then(|factor| color(&factor)).unwrap_or(Vec3::ZERO);
         if emissive != Vec3::ZERO {
             (m.emission_luminance, m.emission_color) = (strength, emissive);
@@ -121,15 +121,15 @@ impl Model<'_> {
         let factor = pbr.get("baseColorFactor").and_then(|factor| factor.numbers::<4>()).unwrap_or([1.0; 4]);
         m.base_color = Vec3::new(factor[0], factor[1], factor[2]);
         self.base(m, pbr.get("baseColorTexture"), factor[3], alpha, cutoff);
-        m.base_metalness = share(pbr, "metallicFactor", 1.0);
-        m.specular_roughness = share(pbr, "roughnessFactor", 1.0);
+        m.base_metalness = unit_factor(pbr, "metallicFactor", 1.0);
+        m.specular_roughness = unit_factor(pbr, "roughnessFactor", 1.0);
         m.metallic_roughness_texture =
             pbr.get("metallicRoughnessTexture").and_then(|texture| self.texture(&texture, |_| ()));
     }
 
     /// Sets up a mask: the cutoff is applied to the product of the alphas of factor, texture and
     /// vertices.
-    fn mask_whole(&self, m: &mut PrincipledMaterial, at: &JsonRef, cutoff: f32) {
+    fn set_mask(&self, m: &mut PrincipledMaterial, at: &JsonRef, cutoff: f32) {
         let extensions = at.get("extensions");
         let old = extensions.as_ref().and_then(|extensions| extensions.get("KHR_materials_pbrSpecularGlossiness"));
         let (base, [factor, texture]) = match old {
@@ -167,12 +167,12 @@ impl Model<'_> {
 
     /// Reads KHR_materials_pbrSpecularGlossiness, which defines the reflectance at normal incidence
     /// as a colour.
-    fn glossy(&self, m: &mut PrincipledMaterial, old: &JsonRef, alpha: Alpha, cutoff: f32) {
+    fn specular_glossiness(&self, m: &mut PrincipledMaterial, old: &JsonRef, alpha: Alpha, cutoff: f32) {
         let factor = old.get("diffuseFactor").and_then(|factor| factor.numbers::<4>()).unwrap_or([1.0; 4]);
         let specular = old.get("specularFactor").and_then(|factor| color(&factor)).unwrap_or(Vec3::ONE);
         m.base_color = Vec3::new(factor[0], factor[1], factor[2]);
         m.base_metalness = 0.0;
-        m.specular_roughness = 1.0 - share(old, "glossinessFactor", 1.0);
+        m.specular_roughness = 1.0 - unit_factor(old, "glossinessFactor", 1.0);
         let most = specular.max_element();
         // An index of 1.5 reflects 0.04 at normal incidence.
         m.specular_weight = most / 0.04;
@@ -212,20 +212,20 @@ impl Model<'_> {
             // An index of 0 stands for an infinite index, which reflects all light.
             m.specular_ior = match e.get("ior") {
                 Some(ior) if ior.value.as_f64() == Some(0.0) => 1e4,
-                ior => ior.and_then(|ior| ior.within(1.0..)).unwrap_or(1.5),
+                ior => ior.and_then(|ior| ior.number_in(1.0..)).unwrap_or(1.5),
             };
         }
         if let Some(e) = extensions.get("KHR_materials_specular") {
-            m.specular_weight = share(&e, "specularFactor", 1.0);
+            m.specular_weight = unit_factor(&e, "specularFactor", 1.0);
             m.specular_color = e.get("specularColorFactor").and_then(|factor| color(&factor)).unwrap_or(Vec3::ONE);
             m.specular_weight_texture = number(&e, "specularTexture", Channel::Alpha);
             m.specular_color_texture = picture(&e, "specularColorTexture");
             let clear = extensions.get("KHR_materials_transmission").is_some();
-            weighed_by_brightness(m, clear);
-            not_of_metals(m, clear);
+            normalize_specular_color(m, clear);
+            without_specular_on_metals(m, clear);
         }
         if let Some(e) = extensions.get("KHR_materials_transmission") {
-            m.transmission_weight = share(&e, "transmissionFactor", 0.0);
+            m.transmission_weight = unit_factor(&e, "transmissionFactor", 0.0);
             // Transmitted light is tinted by the base colour.
             m.transmission_color = m.base_color;
             m.transmission_color_texture = m.base_color_texture.clone();
@@ -233,8 +233,8 @@ impl Model<'_> {
             m.walls = Walls::Thin;
         }
         if let Some(e) = extensions.get("KHR_materials_volume") {
-            let thickness = e.get("thicknessFactor").and_then(|thickness| thickness.within(0.0..)).unwrap_or(0.0);
-            let depth = e.get("attenuationDistance").and_then(|distance| distance.within(f32::MIN_POSITIVE..));
+            let thickness = e.get("thicknessFactor").and_then(|thickness| thickness.number_in(0.0..)).unwrap_or(0.0);
+            let depth = e.get("attenuationDistance").and_then(|distance| distance.number_in(f32::MIN_POSITIVE..));
             let tint = e.get("attenuationColor").and_then(|factor| color(&factor)).unwrap_or(Vec3::ONE);
             if thickness > 0.0 {
                 m.walls = Walls::Solid;
@@ -244,8 +244,8 @@ impl Model<'_> {
             }
         }
         if let Some(e) = extensions.get("KHR_materials_clearcoat") {
-            m.coat_weight = share(&e, "clearcoatFactor", 0.0);
-            m.coat_roughness = share(&e, "clearcoatRoughnessFactor", 0.0);
+            m.coat_weight = unit_factor(&e, "clearcoatFactor", 0.0);
+            m.coat_roughness = unit_factor(&e, "clearcoatRoughnessFactor", 0.0);
             (m.coat_ior, m.coat_darkening) = (1.5, 0.0);
             m.coat_weight_texture = number(&e, "clearcoatTexture", Channel::Red);
             m.coat_roughness_texture = number(&e, "clearcoatRoughnessTexture", Channel::Green);
@@ -255,12 +255,12 @@ impl Model<'_> {
             let most = tint.max_element();
             m.fuzz_weight = most.clamp(0.0, 1.0);
             m.fuzz_color = if most > 0.0 { tint / most } else { Vec3::ONE };
-            m.fuzz_roughness = share(&e, "sheenRoughnessFactor", 0.0);
+            m.fuzz_roughness = unit_factor(&e, "sheenRoughnessFactor", 0.0);
             m.fuzz_color_texture = picture(&e, "sheenColorTexture");
             m.fuzz_roughness_texture = number(&e, "sheenRoughnessTexture", Channel::Alpha);
         }
         if let Some(e) = extensions.get("KHR_materials_anisotropy") {
-            m.specular_anisotropy = share(&e, "anisotropyStrength", 0.0);
+            m.specular_anisotropy = unit_factor(&e, "anisotropyStrength", 0.0);
             let turn = e.get("anisotropyRotation").and_then(|turn| turn.number()).unwrap_or(0.0);
             m.specular_rotation = turn / TAU;
             let pictured = m.metallic_roughness_texture.is_some() || e.get("anisotropyTexture").is_some();
@@ -275,8 +275,8 @@ impl Model<'_> {
             m.specular_rotation_texture = number(&e, "anisotropyTexture", Channel::Angle);
         }
         if let Some(e) = extensions.get("KHR_materials_iridescence") {
-            let at_least = |key, or, least: f32| e.get(key).and_then(|x| x.within(least..)).unwrap_or(or);
-            m.thin_film_weight = share(&e, "iridescenceFactor", 0.0);
+            let at_least = |key, or, least: f32| e.get(key).and_then(|x| x.number_in(least..)).unwrap_or(or);
+            m.thin_film_weight = unit_factor(&e, "iridescenceFactor", 0.0);
             m.thin_film_weight_texture = number(&e, "iridescenceTexture", Channel::Red);
             m.thin_film_ior = at_least("iridescenceIor", 1.3, 1.0);
             // glTF uses nanometres, the scene uses micrometres. Without a texture, the maximum
@@ -291,12 +291,12 @@ impl Model<'_> {
         if let Some(e) = extensions.get("KHR_materials_dispersion") {
             // Dispersion is 20 / Abbe number; the scene has the Abbe number and a scale that
             // divides it.
-            let dispersion = e.get("dispersion").and_then(|x| x.within(0.0..)).unwrap_or(0.0);
+            let dispersion = e.get("dispersion").and_then(|x| x.number_in(0.0..)).unwrap_or(0.0);
             m.transmission_dispersion_scale = dispersion.min(1.0);
             m.transmission_dispersion_abbe_number = 20.0 / dispersion.max(1.0);
         }
         if let Some(e) = extensions.get("KHR_materials_diffuse_transmission") {
-            self.let_through(m, &e);
+            self.diffuse_transmission(m, &e);
         }
         if extensions.get("KHR_materials_unlit").is_some() {
             // Unlit materials emit their base colour.
@@ -309,7 +309,7 @@ impl Model<'_> {
 
 /// Removes the effect of KHR_materials_specular on metals. The extension applies only to
 /// dielectrics, but OpenPBR's specular parameters apply to metals too.
-fn not_of_metals(m: &mut PrincipledMaterial, clear: bool) {
+fn without_specular_on_metals(m: &mut PrincipledMaterial, clear: bool) {
     let is_metal = m.base_metalness == 1.0 && m.metallic_roughness_texture.is_none();
     if is_metal {
         (m.specular_weight, m.specular_color) = (1.0, Vec3::ONE);
@@ -323,7 +323,7 @@ fn not_of_metals(m: &mut PrincipledMaterial, clear: bool) {
 /// Moves the brightness of the specular colour into the weight. The colour applies only at normal
 /// incidence, whereas the weight also applies at grazing angles. Transmissive materials ignore the
 /// weight, so their colour is clamped.
-fn weighed_by_brightness(m: &mut PrincipledMaterial, clear: bool) {
+fn normalize_specular_color(m: &mut PrincipledMaterial, clear: bool) {
     let most = m.specular_color.max_element();
     if clear {
         m.specular_color = m.specular_color.min(Vec3::ONE);
@@ -338,8 +338,8 @@ fn weighed_by_brightness(m: &mut PrincipledMaterial, clear: bool) {
 impl Model<'_> {
     /// Reads KHR_materials_diffuse_transmission: a thin sheet transmits a fraction of the diffuse
     /// light, with its own colour.
-    fn let_through(&self, m: &mut PrincipledMaterial, e: &JsonRef) {
-        let through = share(e, "diffuseTransmissionFactor", 0.0);
+    fn diffuse_transmission(&self, m: &mut PrincipledMaterial, e: &JsonRef) {
+        let through = unit_factor(e, "diffuseTransmissionFactor", 0.0);
         if through == 0.0 || m.walls == Walls::Solid && m.transmission_weight > 0.0 {
             return;
         }
@@ -362,8 +362,8 @@ impl Model<'_> {
 }
 
 /// Reads a factor from 0 to 1; `or` is the default.
-fn share(at: &JsonRef, key: &str, or: f32) -> f32 {
-    at.get(key).and_then(|factor| factor.within(0.0..=1.0)).unwrap_or(or)
+fn unit_factor(at: &JsonRef, key: &str, or: f32) -> f32 {
+    at.get(key).and_then(|factor| factor.number_in(0.0..=1.0)).unwrap_or(or)
 }
 
 /// Reads a colour, and clamps negative components to 0.

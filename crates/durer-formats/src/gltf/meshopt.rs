@@ -5,7 +5,7 @@
 //! whose names are used here.
 
 use super::Model;
-use super::buffers::Slice;
+use super::buffers::SharedBytes;
 use super::json::JsonRef;
 
 /// Compression mode of a meshopt buffer view: what kind of data it contains.
@@ -27,15 +27,15 @@ enum Filter {
 
 impl Model<'_> {
     /// Decodes a compressed buffer view of `length` bytes.
-    pub(super) fn unpacked(&self, at: &JsonRef, length: usize) -> Option<Slice> {
+    pub(super) fn decompress_view(&self, at: &JsonRef, length: usize) -> Option<SharedBytes> {
         at.object()?;
-        let buffer = at.need("buffer").and_then(|buffer| buffer.index(self.buffers.len()))?;
-        let offset = at.get("byteOffset").map_or(Some(0), |offset| offset.whole(..))? as usize;
-        let size = at.need("byteLength").and_then(|length| length.whole(1..))? as usize;
-        let stride = at.need("byteStride").and_then(|stride| stride.whole(1..=256))? as usize;
-        let count = at.need("count").and_then(|count| count.whole(1..=u64::from(u32::MAX)))? as usize;
+        let buffer = at.required("buffer").and_then(|buffer| buffer.index(self.buffers.len()))?;
+        let offset = at.get("byteOffset").map_or(Some(0), |offset| offset.integer(..))? as usize;
+        let size = at.required("byteLength").and_then(|length| length.integer(1..))? as usize;
+        let stride = at.required("byteStride").and_then(|stride| stride.integer(1..=256))? as usize;
+        let count = at.required("count").and_then(|count| count.integer(1..=u64::from(u32::MAX)))? as usize;
         let modes = [("ATTRIBUTES", Mode::Attributes), ("TRIANGLES", Mode::Triangles), ("INDICES", Mode::Indices)];
-        let mode = at.need("mode").and_then(|mode| mode.word(&modes))?;
+        let mode = at.required("mode").and_then(|mode| mode.word(&modes))?;
         let filters = [
             ("NONE", Filter::None),
             ("OCTAHEDRAL", Filter::Octahedral),
@@ -104,7 +104,7 @@ impl Model<'_> {
                 *word = (power * ((n << 8) >> 8) as f32).to_le_bytes();
             }),
         }
-        Some(Slice::whole(decoded.into()))
+        Some(SharedBytes::whole(decoded.into()))
     }
 }
 

@@ -21,11 +21,11 @@ mod texture;
 mod variants;
 mod write;
 
-use super::growth::{Growth, TooMuch};
-use super::model::{Input, SceneFormat};
+use super::growth::{LimitExceeded, ResourceLimits};
+use super::model::{ReadInput, SceneFormat};
 use super::report::Report;
 use accessor::Accessor;
-use buffers::{Buffer, View};
+use buffers::{Buffer, BufferView};
 use camera::{CameraData, LightData};
 use container::{Parts, open, recognise};
 use deform::Skin;
@@ -41,7 +41,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use write::write;
 
 /// Extensions that a file may require. Readers warn about parts of them that they do not support.
-const KNOWN: [&str; 24] = [
+const SUPPORTED_EXTENSIONS: [&str; 24] = [
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
     "EXT_texture_webp",
@@ -71,13 +71,13 @@ const KNOWN: [&str; 24] = [
 /// Contents of a glTF file that is being read: buffers, images, meshes and the other arrays, in
 /// reading order.
 struct Model<'a> {
-    input: &'a Input<'a>,
-    findings: &'a JsonReport<'a>,
+    input: &'a ReadInput<'a>,
+    report: &'a JsonReport<'a>,
     parts: Parts,
     /// True if the file uses KHR_mesh_quantization, which allows integer attributes.
     quantized: bool,
     buffers: Vec<Option<Buffer>>,
-    views: Vec<Option<View>>,
+    views: Vec<Option<BufferView>>,
     accessors: Vec<Option<Accessor>>,
     images: Vec<Option<PictureBytes>>,
     /// Picture, mapping, and span of the picture's name, for each texture.
@@ -88,11 +88,11 @@ struct Model<'a> {
     /// Index of the selected material variant, if the file has variants.
     variant: Option<usize>,
     /// For each material, true if its alpha makes it translucent.
-    blends: Vec<bool>,
+    translucent: Vec<bool>,
     /// For each material, true if some of the vertices that use it have colours.
     colored: Vec<bool>,
     /// For each material, true if it needs tangents.
-    leans: Vec<bool>,
+    needs_tangents: Vec<bool>,
     meshes: Vec<Primitives>,
     /// Default weights of the morph targets of each mesh.
     weights: Vec<Vec<f32>>,
@@ -101,9 +101,9 @@ struct Model<'a> {
     lights: Vec<Option<LightData>>,
     /// Amount of decoded data, counted at each use. Limits time and memory in proportion to the
     /// file's size.
-    work: Growth,
+    work: ResourceLimits,
     /// Number of objects, and bytes of data that stay in memory.
-    kept: Growth,
+    kept: ResourceLimits,
     /// Codes of the warnings that have been reported.
     reported: RefCell<BTreeSet<&'static str>>,
 }
@@ -116,12 +116,12 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     read,
     write: Some(write),
     up: Axis::Y,
-    whole: false,
+    is_complete_scene: false,
     light_hint: None,
 };
 
 /// Reads a file; see [`read_model`](super::scene::read_model).
-fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let mut report = Report::new(input.file, diagnostics);
     let Some(parts) = open(input.bytes, input.name, &mut report) else {
         report.finish(diagnostics, ());
@@ -157,16 +157,16 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     scene
 }
 
-fn scene(input: &Input, parts: Parts, root: JsonRef) -> Option<Scene> {
+fn scene(input: &ReadInput, parts: Parts, root: JsonRef) -> Option<Scene> {
     root.object()?;
     check_version(&root)?;
     let quantized = required(&root);
-    if root.findings.has_errors() {
+    if root.report.has_errors() {
         return None;
     }
     let mut model = Model {
         input,
-        findings: root.findings,
+        report: root.report,
         parts,
         quantized,
         buffers: Vec::new(),
@@ -177,23 +177,23 @@ fn scene(input: &Input, parts: Parts, root: JsonRef) -> Option<Scene> {
         pictures: RefCell::default(),
         material_count: 0,
         variant: None,
-        blends: Vec::new(),
+        translucent: Vec::new(),
         colored: Vec::new(),
-        leans: Vec::new(),
+        needs_tangents: Vec::new(),
         meshes: Vec::new(),
         weights: Vec::new(),
         skins: Vec::new(),
         cameras: Vec::new(),
         lights: Vec::new(),
-        work: Growth::of_file(0, u64::MAX),
-        kept: Growth::within(input.memory),
+        work: ResourceLimits::of_file(0, u64::MAX),
+        kept: ResourceLimits::with_memory(input.memory),
         reported: RefCell::default(),
     };
     // Each step depends on the steps before it.
     model.buffers = model.buffers(&root);
     let slices = model.buffers.iter().flatten().filter_map(|buffer| buffer.slice.as_ref());
     let bytes: u64 = slices.map(|slice| slice.bytes().len() as u64).sum();
-    model.work.feed(bytes as usize);
+    model.work.add_input(bytes as usize);
     model.views = model.views(&root);
     model.accessors = model.accessors(&root);
     model.unpack_primitives(&root);
@@ -209,8 +209,8 @@ fn scene(input: &Input, parts: Parts, root: JsonRef) -> Option<Scene> {
         Some(materials) => materials.items().map(|material| what(&material)).collect(),
         None => Vec::new(),
     };
-    model.blends = of_materials(&alpha);
-    model.leans = of_materials(&material::needs_tangents);
+    model.translucent = of_materials(&alpha);
+    model.needs_tangents = of_materials(&material::needs_tangents);
     model.meshes = model.meshes(&root);
     model.weights = match root.get("meshes") {
         Some(meshes) => meshes.items().map(|mesh| mesh.list("weights", |w| w.number().unwrap_or(0.0))).collect(),
@@ -220,40 +220,40 @@ fn scene(input: &Input, parts: Parts, root: JsonRef) -> Option<Scene> {
     model.cameras = model.read_cameras(&root);
     model.lights = model.read_lights(&root);
     let mut nodes = model.read_nodes(&root);
-    if root.findings.has_errors() {
+    if root.report.has_errors() {
         return None;
     }
     model.animate(&root, &mut nodes);
-    let (order, maps) = model.placed(&root, &nodes);
+    let (order, maps) = model.world_transforms(&root, &nodes);
     let camera = model.camera(&order, &nodes, &maps);
     let camera_span = match camera {
-        Some((_, node)) => root.findings.node(node),
+        Some((_, node)) => root.report.node(node),
         None => root.span(),
     };
     let mut scene = Scene { camera: camera.map(|(camera, _)| camera), camera_span, ..Scene::default() };
     let spanned = |(i, m): (usize, PrincipledMaterial)| Spanned {
         value: Material::Principled(Box::new(m)),
-        span: root.findings.span(&format!("/materials/{i}")),
+        span: root.report.span(&format!("/materials/{i}")),
     };
     scene.materials = materials.into_iter().enumerate().map(spanned).collect();
     for &i in &order {
-        model.show(i, &nodes, &maps, &mut scene);
+        model.add_mesh(i, &nodes, &maps, &mut scene);
         model.light(i, &nodes[i], maps[i], &mut scene);
     }
     scene.assets.pictures = model.pictures.take();
-    if scene.root.is_none() && !root.findings.has_errors() {
+    if scene.root.is_none() && !root.report.has_errors() {
         let number = root.get("scene").and_then(|number| number.value.as_u64()).unwrap_or(0);
         let at = format!("/scenes/{number}");
-        root.findings.say(Diagnostic::warning, "no-objects", &at, "the scene has no visible triangles");
+        root.report.report(Diagnostic::warning, "no-objects", &at, "the scene has no visible triangles");
     }
     Some(scene)
 }
 
 /// Rejects versions other than 2.
 fn check_version(root: &JsonRef) -> Option<()> {
-    let asset = root.need("asset")?;
+    let asset = root.required("asset")?;
     asset.object()?;
-    let version = asset.need("version")?;
+    let version = asset.required("version")?;
     let number = |text: &str| text.split_once('.').and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
     let Some((major, minor)): Option<(u32, u32)> = number(version.string()?) else {
         version.error("PATTERN_MISMATCH", "a version must have the form `2.0`");
@@ -280,11 +280,11 @@ fn check_version(root: &JsonRef) -> Option<()> {
 fn required(root: &JsonRef) -> bool {
     let mut quantized = false;
     for key in ["extensionsUsed", "extensionsRequired"] {
-        let mut seen = BTreeSet::new();
+        let mut names = BTreeSet::new();
         root.list(key, |at| {
             let name = at.string().unwrap_or_default().to_string();
             quantized |= name == "KHR_mesh_quantization";
-            if key == "extensionsRequired" && !KNOWN.contains(&name.as_str()) {
+            if key == "extensionsRequired" && !SUPPORTED_EXTENSIONS.contains(&name.as_str()) {
                 let tool = match name.as_str() {
                     "KHR_meshopt_compression" => {
                         ": convert the file with `gltf-transform copy`, which removes the compression"
@@ -294,7 +294,7 @@ fn required(root: &JsonRef) -> bool {
                 };
                 at.error("UNSUPPORTED_EXTENSION", format!("the file requires {name}, which is not supported{tool}"));
             }
-            if !seen.insert(name) {
+            if !names.insert(name) {
                 at.error("DUPLICATE_ELEMENTS", "this name is listed twice");
             }
         });
@@ -311,7 +311,7 @@ impl Model<'_> {
     /// Reports a warning only once, at the first place where it applies.
     fn once_at(&self, code: &'static str, pointer: &str, message: &str) {
         if self.reported.borrow_mut().insert(code) {
-            self.findings.say(Diagnostic::warning, code, pointer, message);
+            self.report.report(Diagnostic::warning, code, pointer, message);
         }
     }
 
@@ -324,21 +324,21 @@ impl Model<'_> {
         let counted = self.work.bytes(count, size);
         if counted.is_err() {
             let message = "the file repeats its data so often that they exceed the memory limit";
-            self.findings.say(Diagnostic::error, "too-large", &pointer(), message);
+            self.report.report(Diagnostic::error, "too-large", &pointer(), message);
         }
         counted.ok()
     }
 
     /// Counts bytes of data that stay in memory.
-    fn keep(&self, count: usize, size: usize, at: &JsonRef) -> Option<()> {
-        self.told(self.kept.bytes(count, size), &|| at.pointer())
+    fn count_kept(&self, count: usize, size: usize, at: &JsonRef) -> Option<()> {
+        self.report_limit(self.kept.bytes(count, size), &|| at.pointer())
     }
 
     /// Reports that a limit was exceeded, but only the first time.
-    fn told(&self, counted: Result<(), TooMuch>, pointer: &dyn Fn() -> String) -> Option<()> {
-        let found = counted.map_err(|TooMuch { message, is_first }| {
+    fn report_limit(&self, counted: Result<(), LimitExceeded>, pointer: &dyn Fn() -> String) -> Option<()> {
+        let found = counted.map_err(|LimitExceeded { message, is_first }| {
             if is_first {
-                self.findings.say(Diagnostic::error, "too-large", &pointer(), &message);
+                self.report.report(Diagnostic::error, "too-large", &pointer(), &message);
             }
         });
         found.ok()
@@ -357,7 +357,7 @@ impl Model<'_> {
         of: impl Fn([f32; N]) -> T + Sync + Send,
     ) -> Option<Vec<T>> {
         self.charge(accessor.count, 4 * N, at)?;
-        self.keep(accessor.count, size_of::<T>(), at)?;
+        self.count_kept(accessor.count, size_of::<T>(), at)?;
         Some(accessor.rows(of))
     }
 }

@@ -2,9 +2,9 @@
 
 use super::Model;
 use super::deform::Skin;
-use super::flat::{flattened, is_sheet};
+use super::flat::{flattened, flattens_to_plane};
 use super::json::JsonRef;
-use crate::report::shown;
+use crate::report::quoted;
 use durer_diag::Span;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::{Affine, Vec3};
@@ -25,7 +25,7 @@ pub(super) struct NodeData {
     pub camera: Option<usize>,
     pub light: Option<usize>,
     pub weights: Vec<f32>,
-    pub local: Local,
+    pub local: LocalTransform,
     /// Transforms of instances, relative to the node (EXT_mesh_gpu_instancing); `None` if the node
     /// is not instanced.
     copies: Option<Vec<DAffine3>>,
@@ -33,20 +33,20 @@ pub(super) struct NodeData {
 
 /// Transform of a glTF node relative to its parent: a matrix, or translation, rotation and scale.
 #[derive(Clone, Copy)]
-pub(super) struct Local {
+pub(super) struct LocalTransform {
     matrix: Option<DAffine3>,
     pub translation: DVec3,
     pub rotation: DQuat,
     pub scale: DVec3,
 }
 
-impl Default for Local {
+impl Default for LocalTransform {
     fn default() -> Self {
-        Local { matrix: None, translation: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: DVec3::ONE }
+        LocalTransform { matrix: None, translation: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: DVec3::ONE }
     }
 }
 
-impl Local {
+impl LocalTransform {
     fn map(&self) -> DAffine3 {
         let trs = || DAffine3::from_scale_rotation_translation(self.scale, self.rotation, self.translation);
         self.matrix.unwrap_or_else(trs)
@@ -95,7 +95,7 @@ impl Model<'_> {
             stack.extend(nodes[i].children.iter().copied().filter(|&child| child < count && !reached[child]));
         }
         if let Some(lost) =
-            list.items().zip(&reached).find(|(_, reached)| !**reached).filter(|_| !self.findings.has_errors())
+            list.items().zip(&reached).find(|(_, reached)| !**reached).filter(|_| !self.report.has_errors())
         {
             lost.0.error("NODE_LOOP", "this node is its own ancestor, or below one that is");
         }
@@ -117,14 +117,14 @@ impl Model<'_> {
         node.local = self.local(at);
         if let Some(extensions) = at.get("extensions") {
             let light = extensions.get("KHR_lights_punctual");
-            node.light = light.and_then(|light| light.need("light")?.index(self.lights.len()));
+            node.light = light.and_then(|light| light.required("light")?.index(self.lights.len()));
             node.copies = extensions.get("EXT_mesh_gpu_instancing").and_then(|copies| self.copies(&copies));
         }
         node
     }
 
-    fn local(&self, at: &JsonRef) -> Local {
-        let mut local = Local::default();
+    fn local(&self, at: &JsonRef) -> LocalTransform {
+        let mut local = LocalTransform::default();
         if let Some(matrix) = at.get("matrix") {
             if ["translation", "rotation", "scale"].iter().any(|key| at.get(key).is_some()) {
                 matrix.error("NODE_MATRIX_TRS", "a node has either a matrix or translation, rotation and scale");
@@ -152,7 +152,7 @@ impl Model<'_> {
     }
 
     fn copies(&self, at: &JsonRef) -> Option<Vec<DAffine3>> {
-        let attributes = at.need("attributes")?;
+        let attributes = at.required("attributes")?;
         let rows = |key| attributes.get(key).and_then(|at| self.rows::<4>(self.accessor(&at)?, &at));
         let (moves, turns, scales) = (rows("TRANSLATION"), rows("ROTATION"), rows("SCALE"));
         let count = [&moves, &turns, &scales].into_iter().flatten().map(Vec::len).min()?;
@@ -170,13 +170,13 @@ impl Model<'_> {
 
     /// Returns the nodes of the visible scene, parents first, and the transforms from all nodes to
     /// world space. Joints can be nodes outside the visible scene.
-    pub(super) fn placed(&self, root: &JsonRef, nodes: &[NodeData]) -> (Vec<usize>, Vec<DAffine3>) {
+    pub(super) fn world_transforms(&self, root: &JsonRef, nodes: &[NodeData]) -> (Vec<usize>, Vec<DAffine3>) {
         let mut maps = vec![DAffine3::IDENTITY; nodes.len()];
         let mut order = Vec::with_capacity(nodes.len());
         let mut stack: Vec<usize> = (0..nodes.len()).filter(|&i| nodes[i].parent.is_none()).rev().collect();
-        let shown = self.shown(root, nodes);
+        let roots = self.root_nodes(root, nodes);
         let mut is_shown = vec![false; nodes.len()];
-        shown.iter().for_each(|&i| is_shown[i] = true);
+        roots.iter().for_each(|&i| is_shown[i] = true);
         while let Some(i) = stack.pop() {
             let parent = nodes[i].parent;
             maps[i] = parent.map_or(DAffine3::IDENTITY, |up| maps[up]) * nodes[i].local.map();
@@ -190,7 +190,7 @@ impl Model<'_> {
 
     /// Returns the roots of the visible scene: of the default scene, otherwise of the first scene,
     /// otherwise all roots if the file has no scenes.
-    fn shown(&self, root: &JsonRef, nodes: &[NodeData]) -> Vec<usize> {
+    fn root_nodes(&self, root: &JsonRef, nodes: &[NodeData]) -> Vec<usize> {
         let all = || (0..nodes.len()).filter(|&i| nodes[i].parent.is_none()).collect();
         let Some(scenes) = root.get("scenes") else {
             if let Some(wanted) = root.get("scene") {
@@ -214,11 +214,11 @@ impl Model<'_> {
     }
 
     /// Adds the mesh of a node to the scene, transformed to world space.
-    pub(super) fn show(&self, number: usize, nodes: &[NodeData], maps: &[DAffine3], scene: &mut Scene) {
+    pub(super) fn add_mesh(&self, number: usize, nodes: &[NodeData], maps: &[DAffine3], scene: &mut Scene) {
         let node = &nodes[number];
         let Some(mesh) = node.mesh else { return };
         let bones = node.skin.and_then(|skin| self.skins[skin].as_ref()).map(|skin: &Skin| skin.bones(maps));
-        let span = self.findings.node(number);
+        let span = self.report.node(number);
         let pointer = || format!("/nodes/{number}");
         for (i, primitive) in self.meshes[mesh].iter().enumerate() {
             let Some(primitive) = primitive else { continue };
@@ -230,7 +230,7 @@ impl Model<'_> {
                     if self.copied(&data, &pointer).is_none() {
                         return;
                     }
-                    data = primitive.posed(pose, weights, bones.as_deref()).into();
+                    data = primitive.deformed(pose, weights, bones.as_deref()).into();
                     name += &format!("@/nodes/{number}");
                 }
             }
@@ -241,19 +241,19 @@ impl Model<'_> {
             let here = if bones.is_some() { DAffine3::IDENTITY } else { maps[number] };
             let own = [DAffine3::IDENTITY];
             let copies = node.copies.as_deref().unwrap_or(&own);
-            if self.told(self.kept.objects(copies.len()), &pointer).is_none() {
+            if self.report_limit(self.kept.objects(copies.len()), &pointer).is_none() {
                 return;
             }
             for (copy, place) in copies.iter().enumerate() {
                 let mut instance = Instance { to_world: here * *place, name: name.clone(), data: data.clone(), span };
                 if matrix_of(instance.to_world).is_none() {
-                    let is_sheet = is_sheet(instance.to_world);
+                    let is_sheet = flattens_to_plane(instance.to_world);
                     if is_sheet && self.copied(&data, &pointer).is_none() {
                         return;
                     }
                     let flat = is_sheet.then(|| flattened(&data, instance.to_world)).flatten();
                     let Some(flat) = flat else {
-                        self.nothing(number, node);
+                        self.warn_left_out(number, node);
                         continue;
                     };
                     instance.name += &format!("@/nodes/{number}/{copy}");
@@ -268,12 +268,12 @@ impl Model<'_> {
     /// Counts a copy of a mesh against the memory limit.
     fn copied(&self, data: &MeshData, pointer: &dyn Fn() -> String) -> Option<()> {
         self.charge_at(data.bytes(), 1, pointer)?;
-        self.told(self.kept.bytes(data.bytes(), 1), pointer)
+        self.report_limit(self.kept.bytes(data.bytes(), 1), pointer)
     }
 
     /// Warns that a node is left out.
-    fn nothing(&self, number: usize, node: &NodeData) {
-        let name = if node.name.is_empty() { String::new() } else { format!(" {}", shown(node.name.as_bytes())) };
+    fn warn_left_out(&self, number: usize, node: &NodeData) {
+        let name = if node.name.is_empty() { String::new() } else { format!(" {}", quoted(node.name.as_bytes())) };
         let message = format!("node{name} is left out: its transform flattens it to a line or point, or overflows");
         self.once_at("flat", &format!("/nodes/{number}"), &message);
     }

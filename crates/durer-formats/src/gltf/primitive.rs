@@ -1,10 +1,10 @@
 //! Converts the attributes and indices of mesh primitives to triangles.
 
 use super::Model;
-use super::accessor::{Accessor, Component};
-use super::deform::{Pose, copy};
+use super::accessor::{Accessor, ComponentType};
+use super::deform::{Deformation, copy};
 use super::json::JsonRef;
-use crate::sticks::thickened;
+use crate::sticks::sticks_and_balls;
 use durer_scene::math::{Vec2, Vec3};
 use durer_scene::shape::MeshData;
 use glam::DAffine3;
@@ -24,12 +24,12 @@ pub(super) struct Primitive {
     /// True if the file has vertex normals, which are then deformed together with the positions.
     pub has_normals: bool,
     /// Joints and morph targets, if the primitive has any.
-    pub pose: Option<Arc<Pose>>,
+    pub pose: Option<Arc<Deformation>>,
 }
 
 impl Primitive {
     /// Returns the mesh with its vertices deformed.
-    pub fn posed(&self, pose: &Pose, weights: &[f32], bones: Option<&[DAffine3]>) -> MeshData {
+    pub fn deformed(&self, pose: &Deformation, weights: &[f32], bones: Option<&[DAffine3]>) -> MeshData {
         let mut data = MeshData::clone(&self.data);
         pose.apply(&mut data, weights, bones);
         index(&mut data, self.has_normals);
@@ -54,7 +54,7 @@ impl Model<'_> {
     }
 
     fn mesh(&self, at: &JsonRef) -> Primitives {
-        let Some(primitives) = at.object().and_then(|_| at.need("primitives")) else { return Vec::new() };
+        let Some(primitives) = at.object().and_then(|_| at.required("primitives")) else { return Vec::new() };
         if let Some(weights) = at.get("weights") {
             let targets = primitives.items().next().map_or(0, |first| first.list("targets", |_| ()).len());
             let count = weights.items().len();
@@ -79,10 +79,10 @@ impl Model<'_> {
 
     /// Returns the accessor of an attribute; reports an error if its format is invalid for the
     /// attribute.
-    fn attribute(&self, at: &JsonRef, name: &str, widths: &[usize], whole: &[Component]) -> Option<&Accessor> {
+    fn attribute(&self, at: &JsonRef, name: &str, widths: &[usize], whole: &[ComponentType]) -> Option<&Accessor> {
         let accessor = self.accessor(at)?;
-        let quantized = self.quantized && !matches!(accessor.component, Component::U32);
-        let right = accessor.component == Component::F32
+        let quantized = self.quantized && !matches!(accessor.component, ComponentType::U32);
+        let right = accessor.component == ComponentType::F32
             || quantized
             || accessor.normalized && whole.contains(&accessor.component);
         if right && widths.contains(&accessor.width) && !accessor.is_matrix {
@@ -96,8 +96,8 @@ impl Model<'_> {
     fn primitive(&self, at: &JsonRef) -> Option<Primitive> {
         at.object()?;
         let material = self.material_of(at)?;
-        let mode = at.get("mode").map_or(Some(TRIANGLES), |mode| mode.whole(0..=6))?;
-        let attributes = at.need("attributes")?;
+        let mode = at.get("mode").map_or(Some(TRIANGLES), |mode| mode.integer(0..=6))?;
+        let attributes = at.required("attributes")?;
         if attributes.object()?.is_empty() {
             attributes.error("EMPTY_ENTITY", "entity cannot be empty");
         }
@@ -124,7 +124,7 @@ impl Model<'_> {
             self.fill(&mut data, key, &attribute);
         }
         let has_normals = data.normals.len() == count;
-        if material.is_none_or(|material| !self.blends[material as usize]) {
+        if material.is_none_or(|material| !self.translucent[material as usize]) {
             data.colors.iter_mut().for_each(|color| color[3] = 1.0);
         }
         let mut pose = self.pose(at, &attributes, count);
@@ -133,9 +133,9 @@ impl Model<'_> {
         // one triangle per index.
         let triangles = if mode == TRIANGLES { order.len() / 3 } else { order.len() };
         let lists = 1 + usize::from(has_normals) + usize::from(!data.uvs.is_empty());
-        self.keep(triangles, 12 * lists, at)?;
+        self.count_kept(triangles, 12 * lists, at)?;
         // Account for the flags of the vertices in use.
-        self.keep(count, 5, at)?;
+        self.count_kept(count, 5, at)?;
         data.triangles = match mode {
             TRIANGLES => order.as_chunks::<3>().0.par_iter().copied().collect(),
             // Every other triangle of a strip has the opposite winding.
@@ -150,7 +150,7 @@ impl Model<'_> {
         }
         compact(&mut data, pose.is_some());
         index(&mut data, has_normals);
-        if data.tangents.is_empty() && material.is_some_and(|material| self.leans[material as usize]) {
+        if data.tangents.is_empty() && material.is_some_and(|material| self.needs_tangents[material as usize]) {
             let originals = data.make_tangents();
             copy(&mut data.normals, &originals);
             copy(&mut data.uvs, &originals);
@@ -174,7 +174,7 @@ impl Model<'_> {
         self.once_at("points-and-lines", &at.pointer(), &message);
         // Each point or line becomes about a dozen vertices.
         self.charge(order.len(), 12 * 64, at)?;
-        self.keep(order.len(), 12 * 64, at)?;
+        self.count_kept(order.len(), 12 * 64, at)?;
         let strip = || order.windows(2).map(|pair| [pair[0], pair[1]]);
         let lines: Vec<[u32; 2]> = match mode {
             LINES => order.as_chunks::<2>().0.to_vec(),
@@ -183,13 +183,13 @@ impl Model<'_> {
             _ => Vec::new(),
         };
         let points = if mode == POINTS { order } else { &[] };
-        let data = Arc::new(thickened(data, &lines, points));
+        let data = Arc::new(sticks_and_balls(data, &lines, points));
         Some(Primitive { data, material, has_normals: true, pose: None })
     }
 
     /// Reads an attribute other than the positions.
     fn fill(&self, data: &mut MeshData, key: &str, at: &JsonRef) {
-        const UNSIGNED: &[Component] = &[Component::U8, Component::U16];
+        const UNSIGNED: &[ComponentType] = &[ComponentType::U8, ComponentType::U16];
         match key {
             "POSITION" | "JOINTS_0" | "WEIGHTS_0" => {}
             "NORMAL" => {
@@ -232,11 +232,13 @@ impl Model<'_> {
     /// Returns the vertex indices of the primitive in drawing order.
     fn order(&self, at: &JsonRef, count: usize) -> Option<Vec<u32>> {
         let Some(indices) = at.get("indices") else {
-            self.keep(count, 4, at)?;
+            self.count_kept(count, 4, at)?;
             return Some((0..count as u32).collect());
         };
         let accessor = self.accessor(&indices)?;
-        if accessor.width != 1 || !matches!(accessor.component, Component::U8 | Component::U16 | Component::U32) {
+        if accessor.width != 1
+            || !matches!(accessor.component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32)
+        {
             indices.error("MESH_PRIMITIVE_INDICES_ACCESSOR_INVALID_FORMAT", "indices must be unsigned integers");
             return None;
         }
@@ -245,8 +247,8 @@ impl Model<'_> {
             indices.error("MESH_PRIMITIVE_INDICES_ACCESSOR_WITH_BYTESTRIDE", message);
         }
         self.charge(accessor.count, 4, &indices)?;
-        self.keep(accessor.count, 4, &indices)?;
-        let order = accessor.wholes();
+        self.count_kept(accessor.count, 4, &indices)?;
+        let order = accessor.integers();
         let most = u32::MAX >> (32 - 8 * accessor.component.size());
         let greatest = order.par_iter().copied().max().unwrap_or(0);
         if greatest == most {

@@ -1,7 +1,7 @@
 //! Tests with the reports of the Khronos validator, and tests of accessors and of damaged files.
 
 use crate::folder::FolderSource;
-use crate::scene::{Input, find_scene_format, read_model};
+use crate::scene::{ReadInput, find_scene_format, read_model};
 use durer_diag::{Diagnostics, Files, Severity};
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
@@ -37,7 +37,8 @@ fn staged(
     let file = files.add(name, std::sync::Arc::clone(&bytes));
     let source = FolderSource::new(folder);
     let files = std::cell::RefCell::new(files);
-    let input = Input { bytes: &bytes, file, files: &files, name, source: &source, scene_defaults, memory: u64::MAX };
+    let input =
+        ReadInput { bytes: &bytes, file, files: &files, name, source: &source, scene_defaults, memory: u64::MAX };
     let format = find_scene_format(&bytes, name).expect("it is known");
     let scene = read_model(format, &input, &mut diagnostics);
     // Every error has a span.
@@ -59,12 +60,12 @@ fn corpus(folder: &str) -> Option<PathBuf> {
     Some(root)
 }
 
-fn below(folder: &Path, found: &mut Vec<PathBuf>) {
+fn files_below(folder: &Path, found: &mut Vec<PathBuf>) {
     let mut entries: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     entries.sort();
     for path in entries {
         match path.is_dir() {
-            true => below(&path, found),
+            true => files_below(&path, found),
             false if path.extension().is_some_and(|e| e == "gltf" || e == "glb") => found.push(path),
             false => {}
         }
@@ -112,7 +113,7 @@ const SURVIVED: &[(&str, &str, &str)] = &[
 fn files_of_the_validator_are_rejected_or_accepted_for_a_reason() {
     let Some(root) = corpus("validator") else { return };
     let mut paths = Vec::new();
-    below(&root, &mut paths);
+    files_below(&root, &mut paths);
     let (mut refused, mut same, mut clean, mut survivors) = (0, 0, 0, 0);
     let mut unreasoned = Vec::new();
     for path in &paths {
@@ -160,7 +161,7 @@ fn files_of_the_validator_are_rejected_or_accepted_for_a_reason() {
 fn khronos_models_are_read_at_rest_and_animated() {
     let Some(root) = corpus("khronos") else { return };
     let mut paths = Vec::new();
-    below(&root, &mut paths);
+    files_below(&root, &mut paths);
     for path in &paths {
         for at in [None, Some(0.6)] {
             let name = path.file_name().unwrap().to_string_lossy().into_owned();
@@ -580,7 +581,7 @@ fn errors_count_if_diagnostics_are_full() {
     let file = files.add("a.gltf", lost.as_bytes().into());
     let (source, files) = (FolderSource::new("."), std::cell::RefCell::new(files));
     let (name, scene_defaults) = ("a.gltf", SceneDefaults::default());
-    let input = Input {
+    let input = ReadInput {
         bytes: &lost.as_bytes().into(),
         file,
         files: &files,

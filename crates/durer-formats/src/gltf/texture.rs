@@ -1,7 +1,7 @@
 //! Reads textures: images with samplers and coordinate transforms.
 
 use super::Model;
-use super::buffers::{Target, target};
+use super::buffers::{UriTarget, resolve_uri};
 use super::json::JsonRef;
 use durer_diag::Span;
 use durer_scene::describe::FileName;
@@ -11,7 +11,7 @@ use durer_scene::texture::{Mapping, Wrap};
 
 /// Returns the wrap mode for a sampler's `wrapS` or `wrapT`.
 fn wrap(at: &JsonRef) -> Option<Wrap> {
-    match at.whole(..)? {
+    match at.integer(..)? {
         10497 => Some(Wrap::Repeat),
         33648 => Some(Wrap::Mirror),
         33071 => Some(Wrap::Clamp),
@@ -33,14 +33,14 @@ impl Model<'_> {
         at.object()?;
         let name = format!("{}#{}", self.input.name, at.pointer());
         let kind = at.get("mimeType").and_then(|kind| kind.string());
-        let found = match (at.get("uri"), at.get("bufferView")) {
+        let picture = match (at.get("uri"), at.get("bufferView")) {
             (Some(_), Some(_)) | (None, None) => {
                 at.error("ONE_OF_MISMATCH", "exactly one of `uri` and `bufferView` must be defined");
                 return None;
             }
-            (Some(uri), None) => match target(&uri)? {
-                Target::File(path) => PictureBytes::File(path),
-                Target::Data(kind, bytes) => {
+            (Some(uri), None) => match resolve_uri(&uri)? {
+                UriTarget::File(path) => PictureBytes::File(path),
+                UriTarget::Data(kind, bytes) => {
                     if !kind.starts_with("image/") {
                         uri.error("IMAGE_MIME_TYPE_INVALID", format!("unexpected media type `{kind}`"));
                     }
@@ -51,15 +51,15 @@ impl Model<'_> {
                 if kind.is_none() {
                     at.error("UNSATISFIED_DEPENDENCY", "`bufferView` needs a `mimeType`");
                 }
-                let found = self.views[view.index(self.views.len())?].clone()?;
-                if found.stride.is_some() {
+                let picture = self.views[view.index(self.views.len())?].clone()?;
+                if picture.stride.is_some() {
                     view.error("IMAGE_BUFFER_VIEW_WITH_BYTESTRIDE", "the view of an image must not have a stride");
                 }
-                self.charge(found.length, 1, at)?;
-                PictureBytes::Memory(name, found.slice?.bytes().into())
+                self.charge(picture.length, 1, at)?;
+                PictureBytes::Memory(name, picture.slice?.bytes().into())
             }
         };
-        Some(found)
+        Some(picture)
     }
 
     /// Reads a `textureInfo` and changes its mapping; returns the name of the new asset.
@@ -71,11 +71,11 @@ impl Model<'_> {
     /// same texture.
     pub(super) fn texture_as(&self, at: &JsonRef, role: &str, change: impl FnOnce(&mut Mapping)) -> Option<FileName> {
         at.object()?;
-        let number = at.need("index")?.index(self.textures.len())?;
+        let number = at.required("index")?.index(self.textures.len())?;
         let (image, mut mapping, span) = self.textures[number].clone()?;
-        let mut set = at.get("texCoord").map_or(Some(0), |set| set.whole(..))?;
+        let mut set = at.get("texCoord").map_or(Some(0), |set| set.integer(..))?;
         if let Some(transform) = at.get("extensions").as_ref().and_then(|e| e.get("KHR_texture_transform")) {
-            set = transform.get("texCoord").and_then(|set| set.whole(..)).unwrap_or(set);
+            set = transform.get("texCoord").and_then(|set| set.integer(..)).unwrap_or(set);
             mapping.transform = transformed(&transform);
         }
         if set > 1 {
@@ -124,7 +124,7 @@ impl Model<'_> {
             };
             let image = source.index(self.images.len())?;
             // Errors in a picture are reported where the file names the picture.
-            let span = self.findings.span(&format!("/images/{image}/uri"));
+            let span = self.report.span(&format!("/images/{image}/uri"));
             Some((self.images[image].clone()?, mapping, span))
         };
         textures.items().map(one).collect()
@@ -132,9 +132,9 @@ impl Model<'_> {
 
     fn sampler(&self, at: &JsonRef) -> Mapping {
         let mode = |key| at.get(key).and_then(|mode| wrap(&mode)).unwrap_or_default();
-        let nearest = at.get("magFilter").and_then(|filter| filter.whole(9728..=9729)) == Some(9728);
+        let nearest = at.get("magFilter").and_then(|filter| filter.integer(9728..=9729)) == Some(9728);
         // These filters use mipmaps.
-        let mipmaps = at.get("minFilter").is_some_and(|filter| matches!(filter.whole(9728..=9987), Some(9984..)));
+        let mipmaps = at.get("minFilter").is_some_and(|filter| matches!(filter.integer(9728..=9987), Some(9984..)));
         Mapping { wrap: [mode("wrapS"), mode("wrapT")], nearest, mipmaps, ..Mapping::default() }
     }
 }

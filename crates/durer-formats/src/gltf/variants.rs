@@ -11,7 +11,7 @@ impl Model<'_> {
     pub(super) fn chosen_variant(&self, root: &JsonRef) -> Option<usize> {
         let extensions = root.get("extensions");
         let variants = extensions.as_ref().and_then(|extensions| extensions.get(VARIANTS));
-        let variants = variants.as_ref().and_then(|variants| variants.need("variants"));
+        let variants = variants.as_ref().and_then(|variants| variants.required("variants"));
         let names: Vec<&str> = match &variants {
             Some(variants) => variants.items().filter_map(|one| one.object()?.get("name")?.as_str()).collect(),
             None => Vec::new(),
@@ -25,8 +25,8 @@ impl Model<'_> {
             return None;
         };
         let by_number = || wanted.parse().ok().filter(|number| *number < names.len());
-        let found = names.iter().position(|name| name == wanted).or_else(by_number);
-        if found.is_none() {
+        let index = names.iter().position(|name| name == wanted).or_else(by_number);
+        if index.is_none() {
             let help = match did_you_mean(wanted, names.iter().copied()) {
                 Some(suggestion) => format!("did you mean `{suggestion}`?"),
                 None if names.is_empty() => "it has none".into(),
@@ -34,7 +34,7 @@ impl Model<'_> {
             };
             root.error("no-variant", format!("the file has no variant `{wanted}`: {help}"));
         }
-        found
+        index
     }
 
     /// Returns the material of a primitive: for the selected variant if it defines one, otherwise
@@ -47,12 +47,12 @@ impl Model<'_> {
                 .as_ref()
                 .and_then(|extensions| extensions.get(VARIANTS))
                 .as_ref()
-                .and_then(|variants| variants.need("mappings"))
+                .and_then(|variants| variants.required("mappings"))
         {
             for mapping in mappings.items() {
-                let shown = mapping.list("variants", |shown| shown.whole(..));
+                let shown = mapping.list("variants", |shown| shown.integer(..));
                 if shown.contains(&Some(variant as u64)) {
-                    return number(&mapping.need("material")?);
+                    return number(&mapping.required("material")?);
                 }
             }
         }

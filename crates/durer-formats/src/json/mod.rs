@@ -16,7 +16,7 @@ pub use write::write;
 pub const EXTENSION: &str = "json";
 
 /// Maximum depth of nested objects; equal to that of the scene language.
-const DEEPEST: usize = 200;
+const MAX_DEPTH: usize = 200;
 
 /// Returns true if a file is a JSON scene: its extension is `.json`, or it begins with `{`, as no
 /// text in the scene language does. glTF is JSON too, but is not a scene of this kind.

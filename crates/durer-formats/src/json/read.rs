@@ -2,9 +2,9 @@
 
 use super::tree::{Member, Node, Value, parse};
 use super::values::{Members, Reader};
-use super::{DEEPEST, schema};
-use crate::course::{flat, senseless};
-use crate::report::{Report, counted, shown};
+use super::{MAX_DEPTH, schema};
+use crate::course::{flat_matrix_error, invalid_matrix_error};
+use crate::report::{Report, count_text, quoted};
 use crate::shared_report::suggest;
 use durer_diag::{Diagnostic, Diagnostics};
 use durer_scene::camera::Camera;
@@ -56,7 +56,7 @@ impl<'a> Document<'a> {
     /// Reads the scene and reports all errors; `None` if there are any.
     pub fn scene(self, diagnostics: &mut Diagnostics) -> Option<Scene> {
         let (text, report, kinds) = (self.text, self.report, schema::objects());
-        let mut reader = Reader { text, report, material: None, uses: Vec::new(), depth: 0, kinds: &kinds };
+        let mut reader = Reader { text, report, material: None, uses: Vec::new(), depth: 0, object_types: &kinds };
         let scene = self.root.map(|root| reader.scene(&root)).unwrap_or_default();
         reader.report.finish(diagnostics, scene)
     }
@@ -92,7 +92,7 @@ impl Reader<'_> {
                 let texture = self.item(NamedTexture::default(), node, "texture");
                 let name = texture.name.path.clone();
                 if scene.assets.pictures.insert(name.clone(), texture.picture()).is_some() {
-                    let message = format!("a texture {} already exists", shown(name.as_bytes()));
+                    let message = format!("a texture {} already exists", quoted(name.as_bytes()));
                     self.error(node.head(), "repeated", message, None);
                 }
             }
@@ -115,7 +115,7 @@ impl Reader<'_> {
     fn check_materials(&mut self, count: usize) {
         for (index, at) in std::mem::take(&mut self.uses) {
             if index as usize >= count {
-                let has = counted(count, "material", "materials");
+                let has = count_text(count, "material", "materials");
                 let diagnostic =
                     self.report.warning(at, format!("material {index} does not exist: the scene has {has}"));
                 diagnostic.code = "material-index";
@@ -128,7 +128,8 @@ impl Reader<'_> {
         let known = schema::materials();
         let (word, mut members) = self.typed(node, "material", &known)?;
         let material = if let Some(mut solid) = schema::of_keyword::<PatternMaterial>(word) {
-            let transform = members.take("transform").map(|node| self.matrices(node, "transform", senseless));
+            let transform =
+                members.take("transform").map(|node| self.matrices(node, "transform", invalid_matrix_error));
             self.fields(&mut solid, &mut members);
             if let Some(index) = solid.materials().into_iter().find(|index| *index >= own) {
                 let message = format!("material {own} may use only earlier materials, but {index} is not before {own}");
@@ -141,7 +142,7 @@ impl Reader<'_> {
             if let (Some((node, name)), None) = (name, &preset) {
                 let help = suggest(name, presets::PRESETS.iter().map(|row| row.0));
                 let help = help.unwrap_or("`durer words preset` lists them".into());
-                let message = format!("unknown preset {}", shown(name.as_bytes()));
+                let message = format!("unknown preset {}", quoted(name.as_bytes()));
                 self.error(node.at.clone(), "unknown-word", message, Some(help));
             }
             let mut principled = preset.unwrap_or_default();
@@ -178,7 +179,7 @@ impl Reader<'_> {
         };
         let Some((name, like)) = MatrixOp::KINDS.iter().find(|row| row.0 == name) else {
             let help = suggest(name, words).unwrap_or_else(|| format!("one of {}", words.join(", ")));
-            self.error(at.clone(), "unknown-word", format!("{} is not a matrix", shown(name.as_bytes())), Some(help));
+            self.error(at.clone(), "unknown-word", format!("{} is not a matrix", quoted(name.as_bytes())), Some(help));
             return None;
         };
         let op = match like {
@@ -212,8 +213,8 @@ impl Reader<'_> {
     }
 
     fn object(&mut self, node: &Node) -> Option<Object> {
-        if self.depth >= DEEPEST {
-            self.error(node.head(), "bad-value", format!("objects are nested more than {DEEPEST} levels deep"), None);
+        if self.depth >= MAX_DEPTH {
+            self.error(node.head(), "bad-value", format!("objects are nested more than {MAX_DEPTH} levels deep"), None);
             return None;
         }
         self.depth += 1;
@@ -223,10 +224,10 @@ impl Reader<'_> {
     }
 
     fn object_here(&mut self, node: &Node) -> Option<Object> {
-        let (word, mut members) = self.typed(node, "object", self.kinds)?;
+        let (word, mut members) = self.typed(node, "object", self.object_types)?;
         let stated = members.take("material");
         if let Some(node) = stated {
-            let index = self.whole(node, "material");
+            let index = self.integer(node, "material");
             self.uses.extend(index.map(|index| (index, node.at.clone())));
             self.material = index.or(self.material);
         }
@@ -239,7 +240,7 @@ impl Reader<'_> {
         } else if word == "Group" {
             What::Group(Group { objects: self.inside(&mut members) })
         } else if word == "Transform" {
-            let wrong = |op| senseless(op).or_else(|| flat(op));
+            let wrong = |op| invalid_matrix_error(op).or_else(|| flat_matrix_error(op));
             let ops = members.take("matrices").map(|node| self.matrices(node, "matrices", wrong)).unwrap_or_default();
             let inner = self.required(&mut members, "object").and_then(|node| self.object(node));
             // The object inside a transform may name its own material.

@@ -1,7 +1,7 @@
 //! JSON Schema (2020-12) of JSON scenes. Like the language reference, it is generated from the
 //! descriptions of the statements.
 
-use super::DEEPEST;
+use super::MAX_DEPTH;
 use durer_scene::camera::Camera;
 use durer_scene::describe::{Constraint, DescribedKind, Field, FieldKind};
 use durer_scene::dialect::Dialect;
@@ -67,7 +67,7 @@ pub fn schema() -> Value {
         "title": "Dürer scene",
         "description": format!(
             "The content of the scene language as JSON. Written by `cargo xtask manual`. Beyond this schema, patterns use \
-             earlier materials only, and objects are nested at most {DEEPEST} deep."
+             earlier materials only, and objects are nested at most {MAX_DEPTH} deep."
         ),
         "type": "object",
         "properties": members,

@@ -3,7 +3,7 @@
 
 use super::{Document, schema, write};
 use crate::course;
-use crate::course::random::Random;
+use crate::course::random::SceneGenerator;
 use durer_diag::{Diagnostics, Files, Severity};
 use durer_scene::dialect::Dialect;
 use durer_scene::scene::{Material, ObjectKind, Scene};
@@ -31,7 +31,7 @@ fn same(a: &Scene, b: &Scene, context: &str) {
 
 #[test]
 fn random_scenes_round_trip() {
-    let mut random = Random::seeded(3);
+    let mut random = SceneGenerator::seeded(3);
     for _ in 0..500 {
         for dialect in Dialect::ALL {
             let scene = random.scene(dialect);
@@ -159,8 +159,8 @@ fn number_of_errors_and_nesting_are_limited() {
         let open = "{\"type\": \"Group\", \"objects\": [".repeat(depth);
         read(&format!("{{\"type\": \"Scene\", \"objects\": [{open}{}]}}", "]}".repeat(depth)))
     };
-    assert!(nested(super::DEEPEST).0.is_some());
-    assert!(nested(super::DEEPEST + 1).1[0].contains("objects are nested more than 200 levels deep"));
+    assert!(nested(super::MAX_DEPTH).0.is_some());
+    assert!(nested(super::MAX_DEPTH + 1).1[0].contains("objects are nested more than 200 levels deep"));
     assert!(nested(1000).1[0].contains("values are nested more than 640 levels deep"));
     // A material index out of range is reported, and the scene is still read.
     let (scene, messages) = read(&SMALL.replace("\"material\": 2", "\"material\": 3"));
@@ -225,7 +225,7 @@ fn fits(root: &Value, schema: &Value, value: &Value) -> bool {
 }
 
 /// Changes one value at a random place in a tree.
-fn changed(random: &mut Random, value: &mut Value) {
+fn changed(random: &mut SceneGenerator, value: &mut Value) {
     let others = [
         json!(null),
         json!("x"),
@@ -273,7 +273,7 @@ const BEYOND: [&str; 7] = [
 #[test]
 fn schema_and_reader_agree() {
     let schema = schema::schema();
-    let mut random = Random::seeded(4);
+    let mut random = SceneGenerator::seeded(4);
     assert!(fits(&schema, &schema, &serde_json::from_str(SMALL).unwrap()));
     let mut refused = 0;
     for i in 0..600 {

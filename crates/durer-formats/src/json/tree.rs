@@ -5,7 +5,7 @@ use std::ops::Range;
 
 /// Maximum depth of nested values. Each of the language's 200 levels of objects takes three levels
 /// of JSON: an object, a list and a transform.
-const DEEPEST: usize = 640;
+const MAX_DEPTH: usize = 640;
 
 /// JSON value with its byte range in the text; node of the tree that [`parse`] returns.
 #[derive(Clone, Debug)]
@@ -36,7 +36,7 @@ pub(super) struct Member {
 
 /// Syntax error found while parsing JSON.
 #[derive(Clone, Debug)]
-pub(super) struct Malformed {
+pub(super) struct SyntaxError {
     pub at: Range<usize>,
     pub message: String,
     /// Range of a related position, such as the first of two equal names.
@@ -67,12 +67,12 @@ impl Node {
 }
 
 /// Parses a JSON text.
-pub(super) fn parse(text: &[u8]) -> Result<Node, Malformed> {
+pub(super) fn parse(text: &[u8]) -> Result<Node, SyntaxError> {
     // Windows editors may put a byte order mark first.
     let at = if text.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
     let mut parser = Parser { text, at, depth: 0 };
     let node = parser.value()?;
-    parser.blanks();
+    parser.skip_whitespace();
     match parser.at == text.len() {
         true => Ok(node),
         false => Err(parser.unexpected("the end of the file")),
@@ -91,38 +91,38 @@ impl Parser<'_> {
         self.text.get(self.at).copied()
     }
 
-    fn blanks(&mut self) {
+    fn skip_whitespace(&mut self) {
         while matches!(self.peek(), Some(b' ' | b'\t' | b'\n' | b'\r')) {
             self.at += 1;
         }
     }
 
     /// Skips a byte if it comes next; returns true if it did.
-    fn passes(&mut self, byte: u8) -> bool {
+    fn skip_if(&mut self, byte: u8) -> bool {
         let passes = self.peek() == Some(byte);
         self.at += usize::from(passes);
         passes
     }
 
-    fn error<T>(&self, at: Range<usize>, message: impl Into<String>) -> Result<T, Malformed> {
-        Err(Malformed { at, message: message.into(), first: None })
+    fn error<T>(&self, at: Range<usize>, message: impl Into<String>) -> Result<T, SyntaxError> {
+        Err(SyntaxError { at, message: message.into(), first: None })
     }
 
     /// Returns an error for the word at the current position; `wanted` says what was expected.
-    fn unexpected(&self, wanted: &str) -> Malformed {
+    fn unexpected(&self, wanted: &str) -> SyntaxError {
         let ends = |b: &u8| b.is_ascii_whitespace() || b",:[]{}\"".contains(b);
         let rest = &self.text[self.at..];
         let length = rest.iter().position(ends).unwrap_or(rest.len()).max(1).min(rest.len());
         let at = self.at..self.at + length;
-        let found = match length {
+        let actual = match length {
             0 => "the file ends".to_string(),
-            _ => format!("found {}", crate::report::shown(&self.text[at.clone()])),
+            _ => format!("found {}", crate::report::quoted(&self.text[at.clone()])),
         };
-        Malformed { at, message: format!("expected {wanted}, but {found}"), first: None }
+        SyntaxError { at, message: format!("expected {wanted}, but {actual}"), first: None }
     }
 
-    fn value(&mut self) -> Result<Node, Malformed> {
-        self.blanks();
+    fn value(&mut self) -> Result<Node, SyntaxError> {
+        self.skip_whitespace();
         let start = self.at;
         let value = match self.peek() {
             Some(b'{') => self.nested(Self::object)?,
@@ -134,9 +134,9 @@ impl Parser<'_> {
         Ok(Node { value, at: start..self.at })
     }
 
-    fn nested(&mut self, read: fn(&mut Self) -> Result<Value, Malformed>) -> Result<Value, Malformed> {
-        if self.depth >= DEEPEST {
-            return self.error(self.at..self.at + 1, format!("values are nested more than {DEEPEST} levels deep"));
+    fn nested(&mut self, read: fn(&mut Self) -> Result<Value, SyntaxError>) -> Result<Value, SyntaxError> {
+        if self.depth >= MAX_DEPTH {
+            return self.error(self.at..self.at + 1, format!("values are nested more than {MAX_DEPTH} levels deep"));
         }
         self.depth += 1;
         self.at += 1;
@@ -145,50 +145,50 @@ impl Parser<'_> {
         Ok(value)
     }
 
-    fn object(&mut self) -> Result<Value, Malformed> {
+    fn object(&mut self) -> Result<Value, SyntaxError> {
         let mut members = Vec::new();
-        self.blanks();
-        while !self.passes(b'}') {
-            if !members.is_empty() && !self.passes(b',') {
+        self.skip_whitespace();
+        while !self.skip_if(b'}') {
+            if !members.is_empty() && !self.skip_if(b',') {
                 return Err(self.unexpected("`,` or `}`"));
             }
-            self.blanks();
+            self.skip_whitespace();
             let start = self.at;
             if self.peek() != Some(b'"') {
                 return Err(self.unexpected("a name in quotes"));
             }
             let (name, at) = (self.string()?, start..self.at);
-            self.blanks();
-            if !self.passes(b':') {
+            self.skip_whitespace();
+            if !self.skip_if(b':') {
                 return Err(self.unexpected("`:`"));
             }
             members.push(Member { name, at, node: self.value()? });
-            self.blanks();
+            self.skip_whitespace();
         }
-        match repeated(&members) {
-            Some((first, again)) => Err(Malformed {
+        match first_duplicate(&members) {
+            Some((first, again)) => Err(SyntaxError {
                 at: again.at.clone(),
-                message: format!("{} occurs twice in this object", crate::report::shown(again.name.as_bytes())),
+                message: format!("{} occurs twice in this object", crate::report::quoted(again.name.as_bytes())),
                 first: Some(first.at.clone()),
             }),
             None => Ok(Value::Object(members)),
         }
     }
 
-    fn array(&mut self) -> Result<Value, Malformed> {
+    fn array(&mut self) -> Result<Value, SyntaxError> {
         let mut items = Vec::new();
-        self.blanks();
-        while !self.passes(b']') {
-            if !items.is_empty() && !self.passes(b',') {
+        self.skip_whitespace();
+        while !self.skip_if(b']') {
+            if !items.is_empty() && !self.skip_if(b',') {
                 return Err(self.unexpected("`,` or `]`"));
             }
             items.push(self.value()?);
-            self.blanks();
+            self.skip_whitespace();
         }
         Ok(Value::Array(items))
     }
 
-    fn literal(&mut self) -> Result<Value, Malformed> {
+    fn literal(&mut self) -> Result<Value, SyntaxError> {
         for (word, value) in [("null", Value::Null), ("true", Value::Bool), ("false", Value::Bool)] {
             if self.text[self.at..].starts_with(word.as_bytes()) {
                 self.at += word.len();
@@ -206,17 +206,17 @@ impl Parser<'_> {
         self.at - start
     }
 
-    fn number(&mut self) -> Result<Value, Malformed> {
+    fn number(&mut self) -> Result<Value, SyntaxError> {
         let start = self.at;
-        self.passes(b'-');
+        self.skip_if(b'-');
         let zero = self.peek() == Some(b'0');
         let whole = self.digits();
         let mut sound = whole > 0 && !(zero && whole > 1);
-        if self.passes(b'.') {
+        if self.skip_if(b'.') {
             sound &= self.digits() > 0;
         }
-        if self.passes(b'e') || self.passes(b'E') {
-            let _ = self.passes(b'+') || self.passes(b'-');
+        if self.skip_if(b'e') || self.skip_if(b'E') {
+            let _ = self.skip_if(b'+') || self.skip_if(b'-');
             sound &= self.digits() > 0;
         }
         match sound {
@@ -228,7 +228,7 @@ impl Parser<'_> {
         }
     }
 
-    fn string(&mut self) -> Result<String, Malformed> {
+    fn string(&mut self) -> Result<String, SyntaxError> {
         let start = self.at;
         self.at += 1;
         let mut bytes = Vec::new();
@@ -276,7 +276,7 @@ impl Parser<'_> {
                     return char::from_u32(first);
                 }
                 // Characters above U+FFFF are written as a surrogate pair.
-                let second = (self.passes(b'\\') && self.passes(b'u')).then(|| self.hexadecimal()).flatten()?;
+                let second = (self.skip_if(b'\\') && self.skip_if(b'u')).then(|| self.hexadecimal()).flatten()?;
                 let low = second.checked_sub(0xdc00).filter(|low| *low < 0x400)?;
                 char::from_u32(0x10000 + ((first - 0xd800) << 10 | low))?
             }
@@ -292,7 +292,7 @@ impl Parser<'_> {
 }
 
 /// Returns the earliest member that repeats a name, preceded by the member with the same name.
-fn repeated(members: &[Member]) -> Option<(&Member, &Member)> {
+fn first_duplicate(members: &[Member]) -> Option<(&Member, &Member)> {
     let mut sorted: Vec<usize> = (0..members.len()).collect();
     sorted.sort_by_key(|&i| (&members[i].name, i));
     let pairs = sorted.windows(2).filter(|pair| members[pair[0]].name == members[pair[1]].name);
@@ -365,8 +365,8 @@ mod tests {
     #[test]
     fn nesting_is_bounded() {
         let nested = |depth: usize| [vec![b'['; depth], vec![b']'; depth]].concat();
-        assert!(parse(&nested(DEEPEST)).is_ok());
-        assert_eq!(parse(&nested(DEEPEST + 1)).unwrap_err().at, DEEPEST..DEEPEST + 1);
+        assert!(parse(&nested(MAX_DEPTH)).is_ok());
+        assert_eq!(parse(&nested(MAX_DEPTH + 1)).unwrap_err().at, MAX_DEPTH..MAX_DEPTH + 1);
         assert!(parse(&vec![b'['; 1 << 20]).is_err());
     }
 }

@@ -4,7 +4,7 @@
 use super::schema;
 use super::tree::{Member, Node, Value};
 use crate::course::is_word;
-use crate::report::{Report, counted, shown};
+use crate::report::{Report, count_text, quoted};
 use crate::shared_report::suggest;
 use durer_diag::Span;
 use durer_scene::describe::{self, Constraint, DescribedKind, FieldKind, FileName};
@@ -22,7 +22,7 @@ pub(super) struct Reader<'a> {
     pub uses: Vec<(u32, Range<usize>)>,
     pub depth: usize,
     /// Keywords that an object's `type` may have.
-    pub kinds: &'a [&'static str],
+    pub object_types: &'a [&'static str],
 }
 
 /// Members of one JSON object that is being read; records which have been read, so that unknown
@@ -84,7 +84,7 @@ impl Reader<'_> {
             // A list of seventy names would not help the user.
             let few = || (known.len() <= 24).then(|| format!("it has {}", known.join(", ")));
             let help = suggest(&member.name, known.iter().copied()).or_else(few);
-            let message = format!("`{name}` has no member {}", shown(member.name.as_bytes()));
+            let message = format!("`{name}` has no member {}", quoted(member.name.as_bytes()));
             self.error(member.at.clone(), "unknown-word", message, help);
         }
     }
@@ -118,7 +118,7 @@ impl Reader<'_> {
         if word.is_none() {
             let help =
                 suggest(text, words.iter().copied()).unwrap_or_else(|| format!("it is one of {}", words.join(", ")));
-            let message = format!("`{name}` cannot be {}", shown(text.as_bytes()));
+            let message = format!("`{name}` cannot be {}", quoted(text.as_bytes()));
             self.error(node.at.clone(), "bad-value", message, Some(help));
         }
         word
@@ -133,7 +133,7 @@ impl Reader<'_> {
         let number = std::str::from_utf8(&self.text[node.at.clone()]).ok()?.parse::<f32>().ok()?;
         if !number.is_finite() {
             let help = "numbers must be within about ±3.4e38".to_string();
-            let message = format!("{} is too large a number", shown(&self.text[node.at.clone()]));
+            let message = format!("{} is too large a number", quoted(&self.text[node.at.clone()]));
             self.error(node.at.clone(), "bad-value", message, Some(help));
             return None;
         }
@@ -145,7 +145,7 @@ impl Reader<'_> {
         let items = match &node.value {
             Value::Array(items) if items.len() == N => items,
             Value::Array(items) => {
-                let has = counted(items.len(), "value", "values");
+                let has = count_text(items.len(), "value", "values");
                 let message = format!("`{name}` needs a list of {N} numbers, but this one has {has}");
                 self.error(node.head(), "bad-value", message, None);
                 return None;
@@ -163,7 +163,7 @@ impl Reader<'_> {
     }
 
     /// Reads an integer from 0 to `u32::MAX`.
-    pub fn whole(&mut self, node: &Node, name: &str) -> Option<u32> {
+    pub fn integer(&mut self, node: &Node, name: &str) -> Option<u32> {
         let number = match node.value {
             Value::Number => std::str::from_utf8(&self.text[node.at.clone()]).ok()?.parse::<f64>().ok(),
             _ => None,
@@ -174,7 +174,7 @@ impl Reader<'_> {
             let message = format!(
                 "`{name}` needs a whole number, but found {}",
                 match node.value {
-                    Value::Number => shown(&self.text[node.at.clone()]),
+                    Value::Number => quoted(&self.text[node.at.clone()]),
                     _ => node.kind().to_string(),
                 }
             );
@@ -187,13 +187,13 @@ impl Reader<'_> {
     fn value(&mut self, node: &Node, name: &str, kind: FieldKind, rule: Constraint) -> Option<describe::Value> {
         let value = match kind {
             FieldKind::Float => describe::Value::Float(self.number(node, name)?),
-            FieldKind::Int => describe::Value::Int(self.whole(node, name)?),
+            FieldKind::Int => describe::Value::Int(self.integer(node, name)?),
             FieldKind::Vec3 => describe::Value::Vec3(Vec3::from(self.numbers::<3>(node, name)?)),
             FieldKind::Path => {
                 let path = self.string(node, name)?;
                 if !is_word(path) {
                     let help = "a path must not contain spaces or braces, as in the scene language".to_string();
-                    let message = format!("`{name}` cannot be {}", shown(path.as_bytes()));
+                    let message = format!("`{name}` cannot be {}", quoted(path.as_bytes()));
                     self.error(node.at.clone(), "bad-value", message, Some(help));
                     return None;
                 }
@@ -268,7 +268,7 @@ impl Reader<'_> {
             return None;
         };
         if !known.contains(&word.as_str()) {
-            let message = format!("{} is not a type of `{what}`", shown(word.as_bytes()));
+            let message = format!("{} is not a type of `{what}`", quoted(word.as_bytes()));
             let near = suggest(word, known.iter().copied());
             let help = near.unwrap_or_else(|| format!("known types are {}", known.join(", ")));
             self.error(named.at.clone(), "unknown-word", message, Some(help));

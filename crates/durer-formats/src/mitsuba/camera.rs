@@ -19,9 +19,9 @@ const SIZE: [u32; 2] = [768, 576];
 const NEAR: f32 = 0.01;
 const FAR: f32 = 10_000.0;
 /// Number of bounces used for paths of unlimited length.
-const ENDLESS: u32 = 64;
+const UNLIMITED_BOUNCES: u32 = 64;
 
-const KNOWN: [&str; 3] = ["perspective", "thinlens", "orthographic"];
+const SENSORS: [&str; 3] = ["perspective", "thinlens", "orthographic"];
 
 impl Reader<'_> {
     /// Reads the camera: the sensor selected by id or number, otherwise the first.
@@ -31,12 +31,12 @@ impl Reader<'_> {
         let (width, height) = self.film(&sensor);
         self.scene.render_defaults.size = Some((width, height));
         self.sampler(&sensor);
-        for (property, medium) in self.parts(&sensor, Some("medium")) {
+        for (property, medium) in self.child_plugins(&sensor, Some("medium")) {
             if let Some((medium, _)) = self.medium(&medium) {
                 self.scene.fog = medium.fog(property.at, report);
             }
         }
-        let to_world = sensor.map(report, "to_world");
+        let to_world = sensor.transform(report, "to_world");
         let size = DVec2::new(f64::from(width), f64::from(height));
         let camera = match sensor.kind.as_str() {
             "perspective" | "thinlens" => Some(self.perspective(&sensor, to_world, size)),
@@ -44,13 +44,13 @@ impl Reader<'_> {
             other => {
                 let what = format!("the sensor `{other}` has no counterpart: a camera that frames the scene is used");
                 let warning = Diagnostic::warning(what).code("NO_COUNTERPART").at(sensor.at);
-                report.push(Diagnostic { help: suggest(other, KNOWN), ..warning });
+                report.push(Diagnostic { help: suggest(other, SENSORS), ..warning });
                 None
             }
         };
-        sensor.known(&["near_clip", "far_clip", "shutter_open", "shutter_close"]);
+        sensor.mark_known(&["near_clip", "far_clip", "shutter_open", "shutter_close"]);
         if camera.is_some() {
-            sensor.finish(report);
+            sensor.warn_unused(report);
         }
         self.scene.camera = camera;
         self.scene.camera_span = sensor.at;
@@ -59,37 +59,37 @@ impl Reader<'_> {
     fn chosen(&self, sensors: &[Rc<Plugin>]) -> Option<Rc<Plugin>> {
         let Some(wanted) = &self.input.scene_defaults.camera else { return sensors.first().cloned() };
         let ids = &self.loader.plugins;
-        let by_id = ids.get(wanted).filter(|plugin| plugin.class == "sensor").cloned();
-        let found = by_id.or_else(|| sensors.get(wanted.parse::<usize>().ok()?).cloned());
-        if found.is_none() {
-            let known = ids.iter().filter(|(_, plugin)| plugin.class == "sensor").map(|(id, _)| id.as_str());
+        let by_id = ids.get(wanted).filter(|plugin| plugin.element == "sensor").cloned();
+        let sensor = by_id.or_else(|| sensors.get(wanted.parse::<usize>().ok()?).cloned());
+        if sensor.is_none() {
+            let known = ids.iter().filter(|(_, plugin)| plugin.element == "sensor").map(|(id, _)| id.as_str());
             let count = sensors.len();
             let message = format!("unknown sensor `{wanted}`: the file has {count}, numbered from 0");
             let help = suggest(wanted, known);
             self.report.push(Diagnostic { help, ..Diagnostic::error(message).code("bad-value") });
         }
-        found
+        sensor
     }
 
     fn film(&mut self, sensor: &Plugin) -> (u32, u32) {
         let report = self.report;
-        let films = self.parts(sensor, Some("film"));
+        let films = self.child_plugins(sensor, Some("film"));
         let Some((_, film)) = films.first() else { return (SIZE[0], SIZE[1]) };
-        let side = |name, usual: u32| match film.number(report, name) {
+        let side = |name, default: u32| match film.number(report, name) {
             Some(value) if (1.0..=1048576.0).contains(&value) && value.fract() == 0.0 => value as u32,
             Some(_) => {
-                report.bad(film.place(name), format!("`{name}` must be a whole number from 1 to {}", 1 << 20));
-                usual
+                report.error(film.span(name), format!("`{name}` must be a whole number from 1 to {}", 1 << 20));
+                default
             }
-            None => usual,
+            None => default,
         };
         let (width, height) = (side("width", SIZE[0]), side("height", SIZE[1]));
         if u64::from(width) * u64::from(height) > MAX_PIXELS {
-            report.bad(film.at, format!("too many pixels: {width} x {height}"));
+            report.error(film.at, format!("too many pixels: {width} x {height}"));
         }
         let crop = ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"];
         if crop.iter().any(|name| film.get(name).is_some()) {
-            let number = |name, usual: u32| film.number(report, name).unwrap_or(usual as f32);
+            let number = |name, default: u32| film.number(report, name).unwrap_or(default as f32);
             let part = [number(crop[0], 0), number(crop[1], 0), number(crop[2], width), number(crop[3], height)];
             let [left, top, columns, rows] = part.map(|value| value as u32);
             let whole = part.iter().all(|value| *value >= 0.0 && value.fract() == 0.0);
@@ -98,14 +98,15 @@ impl Reader<'_> {
                 self.scene.render_defaults.crop = Some((left, top, columns, rows));
             } else {
                 let place = crop.iter().find_map(|name| film.get(name)).map_or(film.at, |property| property.at);
-                report.bad(place, format!("the crop window must lie within the picture of {width} x {height} pixels"));
+                report
+                    .error(place, format!("the crop window must lie within the picture of {width} x {height} pixels"));
             }
         }
         if let Some(format) =
             film.text(report, "pixel_format").filter(|format| !format.to_lowercase().starts_with("rgb"))
         {
             let what = format!("the pixel format `{format}` has no counterpart: `rgb` is used");
-            report.once(film.place("pixel_format"), what);
+            report.unsupported_once(film.span("pixel_format"), what);
         }
         // Ignore output formats and reconstruction filters.
         film.properties.iter().for_each(|property| property.used.set(true));
@@ -113,13 +114,13 @@ impl Reader<'_> {
     }
 
     fn sampler(&mut self, sensor: &Plugin) {
-        let samplers = self.parts(sensor, Some("sampler"));
+        let samplers = self.child_plugins(sensor, Some("sampler"));
         let Some((_, sampler)) = samplers.first() else { return };
         match sampler.number(self.report, "sample_count") {
             Some(count) if (1.0..=1048576.0).contains(&count) => {
                 self.scene.render_defaults.samples = Some(count as u32)
             }
-            Some(_) => self.report.bad(sampler.place("sample_count"), "samples per pixel must be from 1 to 1048576"),
+            Some(_) => self.report.error(sampler.span("sample_count"), "samples per pixel must be from 1 to 1048576"),
             None => {}
         }
     }
@@ -142,7 +143,7 @@ impl Reader<'_> {
         };
         let focus = sensor.positive(report, "focus_distance").unwrap_or(1.0);
         if sensor.kind == "thinlens" && aperture == 0.0 {
-            report.bad(sensor.at, "a `thinlens` needs an `aperture_radius`");
+            report.error(sensor.at, "a `thinlens` needs an `aperture_radius`");
         }
         // Ignore the default clipping planes, since they clip nothing visible.
         let near = sensor.number(report, "near_clip").filter(|near| *near > NEAR).unwrap_or(0.0);
@@ -173,17 +174,17 @@ impl Reader<'_> {
         let aspect = size.x / size.y;
         let tan = |degrees: f64| fp::tan_f64(0.5 * degrees.to_radians());
         let (mut fov, mut axis) = (f64::from(sensor.number(report, "fov").unwrap_or(0.0)), "x".to_string());
-        if let Some(given) = sensor.text(report, "fov_axis") {
-            axis = given;
+        if let Some(text) = sensor.text(report, "fov_axis") {
+            axis = text;
         }
         match (sensor.text(report, "focal_length"), sensor.get("fov")) {
-            (Some(_), Some(fov)) => report.bad(fov.at, "a camera takes either `fov` or `focal_length`"),
-            (given, None) => {
-                let given = given.unwrap_or("50mm".into());
-                let length = given.trim().trim_end_matches("mm").trim().parse::<f64>().ok().filter(|x| *x > 0.0);
+            (Some(_), Some(fov)) => report.error(fov.at, "a camera takes either `fov` or `focal_length`"),
+            (text, None) => {
+                let text = text.unwrap_or("50mm".into());
+                let length = text.trim().trim_end_matches("mm").trim().parse::<f64>().ok().filter(|x| *x > 0.0);
                 if length.is_none() {
-                    let message = format!("expected a length in millimetres such as `50mm`, found `{given}`");
-                    report.bad(sensor.place("focal_length"), message);
+                    let message = format!("expected a length in millimetres such as `50mm`, found `{text}`");
+                    report.error(sensor.span("focal_length"), message);
                 }
                 // The field of view is that across the diagonal of a 36 x 24 mm film.
                 let half = (36f64 * 36.0 + 24.0 * 24.0).sqrt() / 2.0;
@@ -193,7 +194,7 @@ impl Reader<'_> {
             (None, Some(_)) => {}
         }
         if !(fov > 0.0 && fov < 180.0) {
-            report.bad(sensor.place("fov"), "a field of view must be more than 0 and less than 180 degrees");
+            report.error(sensor.span("fov"), "a field of view must be more than 0 and less than 180 degrees");
             fov = 45.0;
         }
         let tan = tan(fov);
@@ -205,7 +206,7 @@ impl Reader<'_> {
             "larger" => tan * aspect.min(1.0),
             other => {
                 let help = suggest(other, ["x", "y", "diagonal", "smaller", "larger"]);
-                report.bad_with(sensor.place("fov_axis"), format!("unknown axis `{other}`"), help);
+                report.error_with_help(sensor.span("fov_axis"), format!("unknown axis `{other}`"), help);
                 tan
             }
         };
@@ -222,14 +223,14 @@ impl Reader<'_> {
             "path" | "volpath" | "volpathmis" | "prb" | "ptracer" | "bdpt" => {}
             "direct" => {
                 self.scene.render_defaults.bounces = Some(0);
-                plugin.known(&["emitter_samples", "bsdf_samples", "shading_samples"]);
+                plugin.mark_known(&["emitter_samples", "bsdf_samples", "shading_samples"]);
             }
             // These integrators wrap the one that renders the picture.
             "aov" | "moment" => {
-                for (_, inner) in self.parts(plugin, Some("integrator")) {
+                for (_, inner) in self.child_plugins(plugin, Some("integrator")) {
                     self.integrator(&inner, depth + 1);
                 }
-                plugin.known(&["aovs"]);
+                plugin.mark_known(&["aovs"]);
             }
             other => {
                 let what = format!("the integrator `{other}` has no counterpart: path tracing is used");
@@ -240,20 +241,21 @@ impl Reader<'_> {
             }
         }
         match plugin.number(report, "max_depth") {
-            Some(-1.0) => self.scene.render_defaults.bounces = Some(ENDLESS),
+            Some(-1.0) => self.scene.render_defaults.bounces = Some(UNLIMITED_BOUNCES),
             Some(depth) if (0.0..=1e6).contains(&depth) => {
                 self.scene.render_defaults.bounces = Some((depth as u32).saturating_sub(2));
                 self.emitters_only = depth < 2.0;
             }
-            Some(_) => report.bad(plugin.place("max_depth"), "`max_depth` must be -1 or from 0 to 1000000"),
-            None if plugin.kind.contains("path") => self.scene.render_defaults.bounces = Some(ENDLESS),
+            Some(_) => report.error(plugin.span("max_depth"), "`max_depth` must be -1 or from 0 to 1000000"),
+            None if plugin.kind.contains("path") => self.scene.render_defaults.bounces = Some(UNLIMITED_BOUNCES),
             None => {}
         }
-        if plugin.truth(report, "hide_emitters") == Some(true) {
-            report.once(plugin.place("hide_emitters"), "hidden lights have no counterpart: they are visible");
+        if plugin.boolean(report, "hide_emitters") == Some(true) {
+            report
+                .unsupported_once(plugin.span("hide_emitters"), "hidden lights have no counterpart: they are visible");
         }
-        plugin.known(&["rr_depth", "strict_normals", "samples_per_pass", "block_size", "timeout"]);
-        plugin.finish(report);
+        plugin.mark_known(&["rr_depth", "strict_normals", "samples_per_pass", "block_size", "timeout"]);
+        plugin.warn_unused(report);
     }
 }
 

@@ -16,9 +16,9 @@ impl Reader<'_> {
     pub fn reflectance(&self, property: &Property) -> Option<Color> {
         match &property.value {
             Value::Number(number) => Some(Vec3::splat(*number as f32)),
-            Value::Even(number) => Some(Vec3::splat(*number)),
+            Value::ConstantSpectrum(number) => Some(Vec3::splat(*number)),
             Value::Rgb(color) => Some(*color),
-            Value::Curve(curve) => Some(SpectrumSource::Curve(curve.clone()).coefficient()),
+            Value::Spectrum(curve) => Some(SpectrumSource::Curve(curve.clone()).coefficient()),
             _ => self.spectrum_plugin(property, false),
         }
     }
@@ -27,9 +27,9 @@ impl Reader<'_> {
     pub fn emission(&self, property: &Property) -> Option<Color> {
         match &property.value {
             Value::Number(number) => Some(Vec3::splat(*number as f32)),
-            Value::Even(number) => Some(*number * radiance(|_| 1.0)),
+            Value::ConstantSpectrum(number) => Some(*number * radiance(|_| 1.0)),
             Value::Rgb(color) => Some(*color),
-            Value::Curve(curve) => {
+            Value::Spectrum(curve) => {
                 let curve = SpectrumSource::Curve(curve.clone());
                 Some(radiance(|nm| curve.at(nm)))
             }
@@ -39,7 +39,7 @@ impl Reader<'_> {
 
     /// Returns the colour of a spectrum plugin.
     fn spectrum_plugin(&self, property: &Property, emits: bool) -> Option<Color> {
-        let plugin = self.part(property)?;
+        let plugin = self.child_plugin(property)?;
         let report = self.report;
         let color = match plugin.kind.as_str() {
             "uniform" => {
@@ -57,17 +57,17 @@ impl Reader<'_> {
                 radiance(|nm| planck(nm, kelvin)) * plugin.number(report, "scale").unwrap_or(1.0)
             }
             "regular" | "irregular" => {
-                let curve = SpectrumSource::Curve(self.listed(&plugin)?);
+                let curve = SpectrumSource::Curve(self.sampled_spectrum(&plugin)?);
                 if emits { radiance(|nm| curve.at(nm)) } else { curve.coefficient() }
             }
             _ => return None,
         };
-        plugin.finish(report);
+        plugin.warn_unused(report);
         Some(color)
     }
 
     /// Returns the wavelengths and values of the plugins `regular` and `irregular`.
-    fn listed(&self, plugin: &Plugin) -> Option<Vec<[f32; 2]>> {
+    fn sampled_spectrum(&self, plugin: &Plugin) -> Option<Vec<[f32; 2]>> {
         let report = self.report;
         let list = |name| {
             let text = plugin.text(report, name)?;
@@ -87,7 +87,7 @@ impl Reader<'_> {
         let curve = curve.filter(|curve| curve.len() > 1 && curve.is_sorted_by(|a, b| a[0] < b[0]));
         if curve.is_none() {
             let message = format!("a `{}` spectrum needs increasing wavelengths and one value for each", plugin.kind);
-            report.bad(plugin.at, message);
+            report.error(plugin.at, message);
         }
         curve
     }

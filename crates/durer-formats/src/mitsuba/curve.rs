@@ -1,7 +1,7 @@
 //! Reader of curve files: each line is a point and its radius, and an empty line ends a curve.
 
-use crate::files::named_bytes;
-use crate::model::Input;
+use crate::files::read_named;
+use crate::model::ReadInput;
 use crate::number::parse_f32;
 use crate::shared_report::SharedReport;
 use durer_diag::{Diagnostic, Span};
@@ -17,12 +17,12 @@ const MANY: usize = 1 << 12;
 
 /// Builds tubes around the curves of a file, which are B-splines or polylines.
 pub(super) fn tubes(
-    input: &Input,
+    input: &ReadInput,
     report: &SharedReport,
     (path, at): (&str, Span),
     is_spline: bool,
 ) -> Option<MeshData> {
-    let (bytes, file) = named_bytes(input, report, "the curves", path, at)?;
+    let (bytes, file) = read_named(input, report, "the curves", path, at)?;
     let wrong = |(at, message): ParseError| {
         let span = Span { file, start: at.start as u32, end: at.end as u32 };
         report.push(Diagnostic::error(message).code("bad-file").at(span));
@@ -30,7 +30,7 @@ pub(super) fn tubes(
     let curves = parse(&bytes, is_spline).map_err(wrong).ok()?;
     let count = curves.iter().map(Vec::len).sum();
     if count > MAX_PIECES {
-        report.once(at, format!("these curves are left out: they have more than {MAX_PIECES} segments"));
+        report.unsupported_once(at, format!("these curves are left out: they have more than {MAX_PIECES} segments"));
         return None;
     }
     let mut data = MeshData::default();
@@ -51,13 +51,14 @@ pub(super) fn tubes(
 /// rounded, a sharp bend starts a new tube.
 fn runs(pieces: &[Piece], is_round: bool) -> Vec<Range<usize>> {
     let along = |i: usize| (pieces[i][3] - pieces[i][0]).truncate().normalize_or_zero();
-    let ends = (1..pieces.len()).filter(|&i| is_round && along(i - 1).dot(along(i)) < STRAIGHT).chain([pieces.len()]);
+    let ends =
+        (1..pieces.len()).filter(|&i| is_round && along(i - 1).dot(along(i)) < MIN_BEND_COSINE).chain([pieces.len()]);
     let mut start = 0;
     ends.map(|end| std::mem::replace(&mut start, end)..end).collect()
 }
 
 /// Cosine of the smallest bend angle that starts a new tube.
-const STRAIGHT: f64 = 0.99;
+const MIN_BEND_COSINE: f64 = 0.99;
 
 /// Byte range and message of an error.
 type ParseError = (Range<usize>, String);

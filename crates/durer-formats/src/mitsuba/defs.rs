@@ -12,27 +12,27 @@ use std::rc::Rc;
 
 /// Material read from a Mitsuba BSDF plugin, before it gets an index in the scene.
 pub(super) enum MaterialDef {
-    Layers(Box<PrincipledMaterial>),
+    Principled(Box<PrincipledMaterial>),
     Hair(HairMaterial),
     /// Mix of two materials: the share of the first, and a picture that multiplies the share.
     Mix(Rc<MaterialDef>, Rc<MaterialDef>, f32, Option<FileName>),
     /// One material on the front and another on the back.
-    Sides(Rc<MaterialDef>, Rc<MaterialDef>),
+    TwoSided(Rc<MaterialDef>, Rc<MaterialDef>),
     /// Material of a surface that is not rendered (`null`).
-    Nothing,
+    Null,
 }
 
 impl MaterialDef {
     /// Returns a matte grey material. Shapes without a material use 0.5.
     pub fn matte(grey: f32) -> MaterialDef {
-        MaterialDef::Layers(Box::new(matte(Vec3::splat(grey))))
+        MaterialDef::Principled(Box::new(matte(Vec3::splat(grey))))
     }
 
     /// Returns the number of materials it consists of, counting repeated ones each time; stops at
     /// `most + 1`.
     pub fn count(&self, most: usize) -> usize {
         match self {
-            MaterialDef::Mix(a, b, ..) | MaterialDef::Sides(a, b) => {
+            MaterialDef::Mix(a, b, ..) | MaterialDef::TwoSided(a, b) => {
                 let first = 1 + a.count(most);
                 if first > most { first } else { first + b.count(most - first) }
             }
@@ -43,19 +43,19 @@ impl MaterialDef {
     /// Returns a copy with `change` applied to each `PrincipledMaterial` in it.
     pub fn changed(&self, change: &impl Fn(&mut PrincipledMaterial)) -> MaterialDef {
         match self {
-            MaterialDef::Layers(layers) => {
+            MaterialDef::Principled(layers) => {
                 let mut layers = layers.clone();
                 change(&mut layers);
-                MaterialDef::Layers(layers)
+                MaterialDef::Principled(layers)
             }
             MaterialDef::Mix(a, b, share, picture) => {
                 MaterialDef::Mix(a.changed(change).into(), b.changed(change).into(), *share, picture.clone())
             }
-            MaterialDef::Sides(front, back) => {
-                MaterialDef::Sides(front.changed(change).into(), back.changed(change).into())
+            MaterialDef::TwoSided(front, back) => {
+                MaterialDef::TwoSided(front.changed(change).into(), back.changed(change).into())
             }
             MaterialDef::Hair(hair) => MaterialDef::Hair(hair.clone()),
-            MaterialDef::Nothing => MaterialDef::Nothing,
+            MaterialDef::Null => MaterialDef::Null,
         }
     }
 }
@@ -70,7 +70,7 @@ pub(super) struct AreaEmitter {
     pub color: Color,
     pub picture: Option<TextureImage>,
     /// True if both sides emit.
-    pub both: bool,
+    pub two_sided: bool,
     pub at: Span,
     pub key: Key,
 }
@@ -78,7 +78,7 @@ pub(super) struct AreaEmitter {
 /// Light from infinitely far away: constant, an environment map, or a sky. A Mitsuba scene has at
 /// most one.
 pub(super) enum InfiniteLight {
-    Even(Color, Span),
+    Constant(Color, Span),
     Picture {
         name: String,
         at: Span,
@@ -97,7 +97,7 @@ pub(super) enum InfiniteLight {
 impl InfiniteLight {
     /// Returns the span of the light.
     pub fn at(&self) -> Span {
-        let (InfiniteLight::Even(_, at) | InfiniteLight::Picture { at, .. } | InfiniteLight::Sky { at, .. }) = self;
+        let (InfiniteLight::Constant(_, at) | InfiniteLight::Picture { at, .. } | InfiniteLight::Sky { at, .. }) = self;
         *at
     }
 }

@@ -6,9 +6,9 @@ use super::defs::{AreaEmitter, InfiniteLight};
 use super::plugin::Plugin;
 use super::state::Reader;
 use super::texture::Texture;
-use crate::panorama::{self, between};
-use crate::pictures::unusable;
-use crate::profile_lights::{Axes, ProfileLights, steps};
+use crate::panorama::{self, bilinear};
+use crate::pictures::picture_error;
+use crate::profile_lights::{Axes, ProfileLight, steps};
 use crate::shared_report::suggest;
 use durer_diag::Diagnostic;
 use durer_image::{self as image, Image};
@@ -35,11 +35,11 @@ const MAX_ROWS: u32 = 2048;
 
 impl Reader<'_> {
     /// Returns the colour of a light.
-    fn strength(&self, plugin: &Plugin, name: &'static str) -> Color {
+    fn light_color(&self, plugin: &Plugin, name: &'static str) -> Color {
         let Some(property) = plugin.get(name) else { return Vec3::ONE };
         let color = self.emission(property).unwrap_or_else(|| self.color(plugin, name, Vec3::ONE));
         if color.min_element() < 0.0 {
-            self.report.once(property.at, "negative light has no counterpart: 0 is used");
+            self.report.unsupported_once(property.at, "negative light has no counterpart: 0 is used");
         }
         color.max(Vec3::ZERO)
     }
@@ -47,14 +47,14 @@ impl Reader<'_> {
     /// Reads a light that is not part of a shape.
     pub fn emitter(&mut self, plugin: &Rc<Plugin>) {
         let report = self.report;
-        let to_world = plugin.map(report, "to_world");
+        let to_world = plugin.transform(report, "to_world");
         let place = |name| plugin.vector(report, name).unwrap_or(to_world.translation).as_vec3();
         let along = |local: DVec3| to_world.transform_vector3(local).normalize_or(DVec3::Z).as_vec3();
         // A light's colour in Dürer is the radiance of a white diffuse surface that it illuminates:
         // illuminance over pi.
         let value: Light = match plugin.kind.as_str() {
             "point" => {
-                let color = self.strength(plugin, "intensity") / PI;
+                let color = self.light_color(plugin, "intensity") / PI;
                 PointLight { position: place("position"), color, attenuation: Some(Vec3::Z), ..PointLight::default() }
                     .into()
             }
@@ -67,29 +67,29 @@ impl Reader<'_> {
                 let direction = plugin.vector(report, "direction");
                 let direction = direction.map_or(along(DVec3::Z), |d| d.normalize_or_zero().as_vec3());
                 if direction == Vec3::ZERO {
-                    report.bad(plugin.place("direction"), "a direction must have a length");
+                    report.error(plugin.span("direction"), "a direction must have a length");
                 }
-                let color = self.strength(plugin, "irradiance") / PI;
+                let color = self.light_color(plugin, "irradiance") / PI;
                 DirectionalLight { direction, color, ..DirectionalLight::default() }.into()
             }
             "constant" => {
-                let color = self.strength(plugin, "radiance");
-                plugin.known(&["sampling_weight"]);
-                plugin.finish(report);
-                return self.far(InfiniteLight::Even(color, plugin.at));
+                let color = self.light_color(plugin, "radiance");
+                plugin.mark_known(&["sampling_weight"]);
+                plugin.warn_unused(report);
+                return self.set_infinite_light(InfiniteLight::Constant(color, plugin.at));
             }
             "envmap" => {
                 let Some(name) = plugin.text(report, "filename") else {
-                    return report.bad(plugin.at, "an `envmap` needs a `filename`");
+                    return report.error(plugin.at, "an `envmap` needs a `filename`");
                 };
-                let (name, at) = (self.loader.path(&name), plugin.place("filename"));
+                let (name, at) = (self.loader.path(&name), plugin.span("filename"));
                 let scale = plugin.number(report, "scale").unwrap_or(1.0).max(0.0);
-                plugin.known(&["sampling_weight", "mis_compensation"]);
-                plugin.finish(report);
-                return self.far(InfiniteLight::Picture { name, at, scale, to_world });
+                plugin.mark_known(&["sampling_weight", "mis_compensation"]);
+                plugin.warn_unused(report);
+                return self.set_infinite_light(InfiniteLight::Picture { name, at, scale, to_world });
             }
             "sky" | "sun" | "sunsky" => return self.daylight(plugin, to_world),
-            "area" => return report.bad(plugin.at, "an `area` light must be inside a shape"),
+            "area" => return report.error(plugin.at, "an `area` light must be inside a shape"),
             other => {
                 let known = ["point", "spot", "projector", "directional", "constant", "envmap", "sunsky", "area"];
                 let message = format!("the light `{other}` has no counterpart: it is ignored");
@@ -97,8 +97,8 @@ impl Reader<'_> {
                 return report.push(Diagnostic { help: suggest(other, known), ..warning });
             }
         };
-        plugin.known(&["sampling_weight", "position"]);
-        plugin.finish(report);
+        plugin.mark_known(&["sampling_weight", "position"]);
+        plugin.warn_unused(report);
         self.scene.lights.get_or_insert_default().push(Spanned { value, span: plugin.at });
     }
 
@@ -109,36 +109,36 @@ impl Reader<'_> {
         let angle = plugin.positive(report, "cutoff_angle").unwrap_or(20.0);
         let inner_angle = plugin.number(report, "beam_width").unwrap_or(0.75 * angle).clamp(0.0, angle);
         if angle >= 180.0 {
-            report.bad(plugin.place("cutoff_angle"), "`cutoff_angle` must be less than 180 degrees");
+            report.error(plugin.span("cutoff_angle"), "`cutoff_angle` must be less than 180 degrees");
             return None;
         }
-        let intensity = self.strength(plugin, "intensity");
-        let image = self.named_part(plugin, "texture").and_then(|texture| self.thrown(&texture));
+        let intensity = self.light_color(plugin, "intensity");
+        let image = self.named_plugin(plugin, "texture").and_then(|texture| self.projected_picture(&texture));
         if image.is_none() && inner_angle == angle {
             let direction = to_world.transform_vector3(DVec3::Z).normalize_or(DVec3::Z).as_vec3();
             let position = to_world.translation.as_vec3();
             let (color, fade) = (intensity / PI, Fade::Smooth);
             return Some(SpotLight { position, direction, color, angle, inner_angle, fade, ..SpotLight::default() });
         }
-        plugin.known(&["sampling_weight"]);
-        plugin.finish(report);
+        plugin.mark_known(&["sampling_weight"]);
+        plugin.warn_unused(report);
         // The falloff is linear in the angle.
-        let shown = |dir: Vec3| {
+        let lookup = |dir: Vec3| {
             let degrees = fp::atan2(dir.truncate().length(), dir.z).to_degrees();
             ((angle - degrees) / (angle - inner_angle).max(1e-6)).clamp(0.0, 1.0)
         };
         let axes = Axes::about_z(&to_world);
         let lights = match image {
             None => {
-                ProfileLights::new([vec![0.0, inner_angle, angle], vec![0.0]], &axes, |dir| Vec3::splat(shown(dir)))
+                ProfileLight::new([vec![0.0, inner_angle, angle], vec![0.0]], &axes, |dir| Vec3::splat(lookup(dir)))
             }
             Some(image) => {
                 // The picture covers a square as wide as the cone at distance 1.
                 let half = fp::tan_f64(f64::from(angle).to_radians()) as f32;
-                ProfileLights::new([steps(angle, STEPS[0]), steps(360.0, STEPS[1])], &axes, |dir| {
-                    let shown = shown(dir);
-                    if shown > 0.0 && dir.z > 0.0 {
-                        shown * between(&image, 0.5 + 0.5 * dir.truncate() / (dir.z * half))
+                ProfileLight::new([steps(angle, STEPS[0]), steps(360.0, STEPS[1])], &axes, |dir| {
+                    let lookup = lookup(dir);
+                    if lookup > 0.0 && dir.z > 0.0 {
+                        lookup * bilinear(&image, 0.5 + 0.5 * dir.truncate() / (dir.z * half))
                     } else {
                         Vec3::ZERO
                     }
@@ -153,45 +153,47 @@ impl Reader<'_> {
     /// at distance 1.
     fn projector(&mut self, plugin: &Plugin, to_world: DAffine3) {
         let report = self.report;
-        let image = self.named_part(plugin, "irradiance").and_then(|texture| self.thrown(&texture));
+        let image = self.named_plugin(plugin, "irradiance").and_then(|texture| self.projected_picture(&texture));
         let Some(image) = image else {
-            return report.once(plugin.at, "this projector is ignored: it has no picture");
+            return report.unsupported_once(plugin.at, "this projector is ignored: it has no picture");
         };
         let size = DVec2::new(f64::from(image.width), f64::from(image.height));
         let half = self.half_view(plugin, size).as_vec2();
         let scale = plugin.number(report, "scale").unwrap_or(1.0).max(0.0);
-        plugin.known(&["sampling_weight"]);
-        plugin.finish(report);
+        plugin.mark_known(&["sampling_weight"]);
+        plugin.warn_unused(report);
         let axes = Axes::about_z(&to_world);
         let widest = fp::atan2(half.length(), 1.0).to_degrees();
-        let lights = ProfileLights::new([steps(widest, STEPS[0]), steps(360.0, STEPS[1])], &axes, |dir| {
+        let lights = ProfileLight::new([steps(widest, STEPS[0]), steps(360.0, STEPS[1])], &axes, |dir| {
             let place = dir.truncate() / (dir.z * half);
             if dir.z <= 0.0 || place.abs().max_element() > 1.0 {
                 return Vec3::ZERO;
             }
             // As seen by a camera: +x is left, and +y is up.
-            between(&image, 0.5 - 0.5 * place) / (dir.z * dir.z * dir.z)
+            bilinear(&image, 0.5 - 0.5 * place) / (dir.z * dir.z * dir.z)
         });
         lights.add(&mut self.scene, self.input.name, (to_world, axes), Vec3::splat(PI * scale), plugin.at);
     }
 
     /// Returns the picture that a light projects.
-    fn thrown(&self, texture: &Plugin) -> Option<Image> {
+    fn projected_picture(&self, texture: &Plugin) -> Option<Image> {
         if texture.kind != "bitmap" {
-            self.report
-                .once(texture.at, "projecting other textures than `bitmap` has no counterpart: the texture is ignored");
+            self.report.unsupported_once(
+                texture.at,
+                "projecting other textures than `bitmap` has no counterpart: the texture is ignored",
+            );
             return None;
         }
         let name = texture.text(self.report, "filename")?;
-        let raw = texture.truth(self.report, "raw").unwrap_or(false);
-        texture.known(&["filter_type", "wrap_mode"]);
-        texture.finish(self.report);
+        let raw = texture.boolean(self.report, "raw").unwrap_or(false);
+        texture.mark_known(&["filter_type", "wrap_mode"]);
+        texture.warn_unused(self.report);
         let decode = if raw { image::decode_linear } else { image::decode_srgb };
-        self.pictures().decoded(&self.loader.path(&name), texture.place("filename"), decode)
+        self.pictures().decoded(&self.loader.path(&name), texture.span("filename"), decode)
     }
 
     /// Sets the infinite light; reports an error if there is a second one.
-    pub(super) fn far(&mut self, light: InfiniteLight) {
+    pub(super) fn set_infinite_light(&mut self, light: InfiniteLight) {
         if let Some(first) = &self.infinite {
             let error = Diagnostic::error("a scene may have only one infinite light").code("bad-value");
             return self.report.push(error.at(light.at()).related(first.at(), "the first is here"));
@@ -202,36 +204,38 @@ impl Reader<'_> {
     /// Reads the area light of a shape.
     pub fn area_light(&mut self, plugin: &Plugin) -> Option<AreaEmitter> {
         if plugin.kind != "area" {
-            self.report
-                .once(plugin.at, format!("the light `{}` of a shape has no counterpart: it is ignored", plugin.kind));
+            self.report.unsupported_once(
+                plugin.at,
+                format!("the light `{}` of a shape has no counterpart: it is ignored", plugin.kind),
+            );
             return None;
         }
         let even = plugin.get("radiance").is_none_or(|property| self.emission(property).is_some());
         let (color, picture) = match even {
-            true => (self.strength(plugin, "radiance"), None),
+            true => (self.light_color(plugin, "radiance"), None),
             false => match self.bright_texture(plugin, "radiance", Vec3::ONE) {
-                Texture::Even(color) => (color, None),
+                Texture::Constant(color) => (color, None),
                 Texture::Picture(picture, scale, raw) => {
-                    let picture = self.without_curve(picture, raw, plugin.place("radiance"));
+                    let picture = self.srgb_encoded(picture, raw, plugin.span("radiance"));
                     (scale, Some(picture))
                 }
             },
         };
-        plugin.known(&["sampling_weight"]);
-        plugin.finish(self.report);
+        plugin.mark_known(&["sampling_weight"]);
+        plugin.warn_unused(self.report);
         if color == Vec3::ZERO {
             self.report.push(Diagnostic::note("this light is black").code("black-light").at(plugin.at));
         }
-        Some(AreaEmitter { color, picture, both: false, at: plugin.at, key: plugin.key() })
+        Some(AreaEmitter { color, picture, two_sided: false, at: plugin.at, key: plugin.key() })
     }
 
     /// Converts the infinite light to the scene's environment.
-    pub fn surround(&mut self) {
+    pub fn set_environment(&mut self) {
         let background = &mut self.scene.background;
         (background.color, background.ambient_light) = (Vec3::ZERO, Vec3::ZERO);
         match self.infinite.take() {
             None => {}
-            Some(InfiniteLight::Even(color, _)) => background.color = color,
+            Some(InfiniteLight::Constant(color, _)) => background.color = color,
             Some(InfiniteLight::Sky { sky, at, scale, to_world }) => {
                 let to_sky = to_world.inverse();
                 let light = |dir: DVec3| {
@@ -240,9 +244,10 @@ impl Reader<'_> {
                     if dir.y < 0.0 { Vec3::ZERO } else { scale * sky.at(dir) }
                 };
                 let name = format!("{}#sky", self.input.name);
-                if let Err(error) = panorama::surround(&mut self.scene, (&name, at), SKY_ROWS, self.input.memory, light)
+                if let Err(error) =
+                    panorama::set_environment(&mut self.scene, (&name, at), SKY_ROWS, self.input.memory, light)
                 {
-                    self.report.push(unusable(&name, &error).at(at));
+                    self.report.push(picture_error(&name, &error).at(at));
                 }
             }
             Some(InfiniteLight::Picture { name, at, scale, to_world }) => {
@@ -263,11 +268,11 @@ impl Reader<'_> {
                 let to_light = to_world.inverse();
                 let light = |dir: DVec3| {
                     let DVec3 { x, y, z } = to_light.transform_vector3(dir).normalize_or(DVec3::Y);
-                    scale * panorama::between_poles(&picture, DVec3::new(-x, y, -z))
+                    scale * panorama::bilinear_between_poles(&picture, DVec3::new(-x, y, -z))
                 };
-                let memory = panorama::beside([&picture], self.input.memory);
-                if let Err(error) = panorama::surround(&mut self.scene, (&name, at), rows, memory, light) {
-                    self.report.push(unusable(&name, &error).at(at));
+                let memory = panorama::remaining_memory([&picture], self.input.memory);
+                if let Err(error) = panorama::set_environment(&mut self.scene, (&name, at), rows, memory, light) {
+                    self.report.push(picture_error(&name, &error).at(at));
                 }
             }
         }

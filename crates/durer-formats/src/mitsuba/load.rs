@@ -4,10 +4,10 @@
 //! Mitsuba 0.6 (`toWorld`) are converted to current names (`to_world`).
 
 use super::plugin::{Plugin, Property, Value};
-use crate::growth::Growth;
-use crate::model::Input;
+use crate::growth::ResourceLimits;
+use crate::model::ReadInput;
 use crate::shared_report::{SharedReport, suggest};
-use crate::xml::{Attribute, Piece, Tag, Xml, utf8};
+use crate::xml::{Attribute, Event, Tag, Xml, utf8};
 use durer_diag::{Diagnostic, Span};
 use durer_image::decode_srgb;
 use durer_scene::math::Vec3;
@@ -19,7 +19,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 /// Limits on the depth of includes, the number of files and the number of elements.
-const DEEPEST: usize = 15;
+const MAX_INCLUDE_DEPTH: usize = 15;
 const MAX_FILES: usize = 4096;
 const MAX_ELEMENTS: usize = 1 << 22;
 /// Maximum size in bytes of a value after variable substitution.
@@ -43,7 +43,7 @@ const CLASSES: [&str; 14] = [
     "camera",
 ];
 /// Names of other elements.
-const OTHERS: [&str; 15] = [
+const OTHER_ELEMENTS: [&str; 15] = [
     "float",
     "integer",
     "boolean",
@@ -63,7 +63,7 @@ const OTHERS: [&str; 15] = [
 
 /// Loader that converts the XML of a Mitsuba scene, and of the files that it includes, to plugins.
 pub(super) struct Loader<'a> {
-    input: &'a Input<'a>,
+    input: &'a ReadInput<'a>,
     report: &'a SharedReport,
     variables: BTreeMap<String, String>,
     /// Plugins by id.
@@ -71,10 +71,10 @@ pub(super) struct Loader<'a> {
     /// Additional folders in which files are searched.
     pub folders: Vec<String>,
     /// Names of the files being read, outermost first.
-    open: Vec<String>,
+    open_files: Vec<String>,
     files: usize,
     elements: usize,
-    pub growth: Growth,
+    pub limits: ResourceLimits,
     /// True if the file is older than Mitsuba 2.
     pub(super) is_old: bool,
 }
@@ -83,7 +83,7 @@ pub(super) struct Loader<'a> {
 pub(super) struct ErrorReported;
 
 /// Converts a name to snake case: `toWorld` to `to_world`, `intIOR` to `int_ior`.
-fn today(name: &str) -> String {
+fn snake_case(name: &str) -> String {
     let mut words = String::new();
     let mut small = false;
     for c in name.chars() {
@@ -103,17 +103,17 @@ pub(super) fn numbers(text: &str) -> Option<Vec<f64>> {
 }
 
 impl<'a> Loader<'a> {
-    pub fn new(input: &'a Input<'a>, report: &'a SharedReport) -> Self {
+    pub fn new(input: &'a ReadInput<'a>, report: &'a SharedReport) -> Self {
         Loader {
             input,
             report,
             variables: BTreeMap::new(),
             plugins: BTreeMap::new(),
             folders: Vec::new(),
-            open: Vec::new(),
+            open_files: Vec::new(),
             files: 0,
             elements: 0,
-            growth: Growth::of_file(input.bytes.len(), input.memory),
+            limits: ResourceLimits::of_file(input.bytes.len(), input.memory),
             is_old: false,
         }
     }
@@ -129,14 +129,14 @@ impl<'a> Loader<'a> {
     }
 
     fn file(&mut self, bytes: &Arc<[u8]>, file: u32, name: String, scene: &mut Plugin) -> Result<(), ErrorReported> {
-        self.open.push(name);
+        self.open_files.push(name);
         let report = self.report;
         let broken = |error: Box<Diagnostic>| {
             report.push(*error);
             ErrorReported
         };
         let mut xml = Xml::new(bytes, file).map_err(broken)?;
-        while let Piece::Open(tag) = xml.next().map_err(broken)? {
+        while let Event::Open(tag) = xml.next().map_err(broken)? {
             match tag.name {
                 "scene" => {
                     self.is_old |= tag.get("version").is_some_and(|version| version.value.starts_with("0."));
@@ -145,7 +145,7 @@ impl<'a> Loader<'a> {
                 _ => self.child(&mut xml, &tag, scene)?,
             }
         }
-        self.open.pop();
+        self.open_files.pop();
         Ok(())
     }
 
@@ -153,10 +153,10 @@ impl<'a> Loader<'a> {
     fn next<'x>(&mut self, xml: &mut Xml<'x>) -> Result<Option<Tag<'x>>, ErrorReported> {
         self.elements += 1;
         match xml.next() {
-            Ok(Piece::Open(tag)) if self.elements <= MAX_ELEMENTS && !self.report.is_full() => Ok(Some(tag)),
-            Ok(Piece::Open(tag)) => {
+            Ok(Event::Open(tag)) if self.elements <= MAX_ELEMENTS && !self.report.is_full() => Ok(Some(tag)),
+            Ok(Event::Open(tag)) => {
                 if !self.report.is_full() {
-                    self.report.bad(tag.at, format!("too many elements: more than {MAX_ELEMENTS}"));
+                    self.report.error(tag.at, format!("too many elements: more than {MAX_ELEMENTS}"));
                 }
                 Err(ErrorReported)
             }
@@ -171,7 +171,7 @@ impl<'a> Loader<'a> {
     /// Skips the content of an element; reports child elements.
     fn leaf(&mut self, xml: &mut Xml, of: &str) -> Result<(), ErrorReported> {
         while let Some(tag) = self.next(xml)? {
-            self.report.bad(tag.at, format!("a `{of}` must have no child elements"));
+            self.report.error(tag.at, format!("a `{of}` must have no child elements"));
             self.skip(xml)?;
         }
         Ok(())
@@ -207,29 +207,29 @@ impl<'a> Loader<'a> {
             }
             "alias" => self.alias(tag),
             "transform" => {
-                let map = self.transform(xml)?;
+                let transform = self.transform(xml)?;
                 if let Some(name) = self.name(tag) {
-                    self.give(parent, name, Value::Map(map), tag.at);
+                    self.add_property(parent, name, Value::Transform(transform), tag.at);
                 }
                 return Ok(());
             }
             "ref" => {
-                let name = tag.get("name").map(|name| today(&name.value)).unwrap_or_default();
+                let name = tag.get("name").map(|name| snake_case(&name.value)).unwrap_or_default();
                 if let Some((id, at)) = self.attribute(tag, "id") {
-                    self.give(parent, name, Value::Ref(id), at);
+                    self.add_property(parent, name, Value::Ref(id), at);
                 }
             }
             class if CLASSES.contains(&class) => return self.plugin(xml, tag, parent),
             // A spectrum is a number, a list of numbers or a plugin.
             "spectrum" if tag.get("type").is_some() => return self.plugin(xml, tag, parent),
-            kind if OTHERS.contains(&kind) => {
+            kind if OTHER_ELEMENTS.contains(&kind) => {
                 if let (Some(name), Some((value, at))) = (self.name(tag), self.value(tag)) {
-                    self.give(parent, name, value, at);
+                    self.add_property(parent, name, value, at);
                 }
             }
             other => {
-                let help = suggest(other, CLASSES.into_iter().chain(OTHERS));
-                self.report.bad_with(tag.at, format!("unknown element `<{other}>`"), help);
+                let help = suggest(other, CLASSES.into_iter().chain(OTHER_ELEMENTS));
+                self.report.error_with_help(tag.at, format!("unknown element `<{other}>`"), help);
                 return self.skip(xml);
             }
         }
@@ -243,7 +243,7 @@ impl<'a> Loader<'a> {
             name => name,
         };
         let Some((kind, at)) = self.attribute(tag, "type") else { return self.skip(xml) };
-        let name = tag.get("name").map(|name| today(&name.value)).unwrap_or_default();
+        let name = tag.get("name").map(|name| snake_case(&name.value)).unwrap_or_default();
         let id = tag.get("id").and_then(|id| Some((self.substituted(id)?, id.at)));
         let mut plugin = Plugin::new(class, kind, at);
         self.children(xml, &mut plugin)?;
@@ -271,13 +271,13 @@ impl<'a> Loader<'a> {
             Some(plugin) => self.register(other, other_at, plugin),
             None => {
                 let help = suggest(&id, self.plugins.keys().map(String::as_str));
-                self.report.bad_with(at, format!("no plugin has the id `{id}` before this"), help);
+                self.report.error_with_help(at, format!("no plugin has the id `{id}` before this"), help);
             }
         }
     }
 
     /// Adds a property; reports a second one with the same name.
-    fn give(&self, parent: &mut Plugin, name: String, value: Value, at: Span) {
+    fn add_property(&self, parent: &mut Plugin, name: String, value: Value, at: Span) {
         if let Some(other) = parent.properties.iter().find(|other| !name.is_empty() && other.name == name) {
             let error = Diagnostic::error(format!("`{name}` is given twice")).code("bad-value").at(at);
             return self.report.push(error.related(other.at, "the first is here"));
@@ -296,23 +296,23 @@ impl<'a> Loader<'a> {
     fn include(&mut self, tag: &Tag, parent: &mut Plugin) -> Result<(), ErrorReported> {
         let Some((name, at)) = self.attribute(tag, "filename") else { return Ok(()) };
         self.files += 1;
-        let refused = if self.open.contains(&name) {
+        let refused = if self.open_files.contains(&name) {
             Some(format!("`{name}` includes itself"))
-        } else if self.open.len() > DEEPEST {
-            Some(format!("includes are nested more than {DEEPEST} levels deep"))
+        } else if self.open_files.len() > MAX_INCLUDE_DEPTH {
+            Some(format!("includes are nested more than {MAX_INCLUDE_DEPTH} levels deep"))
         } else if self.files > MAX_FILES {
             Some(format!("too many files: more than {MAX_FILES} are included"))
         } else {
             None
         };
         if let Some(message) = refused {
-            self.report.bad(at, message);
+            self.report.error(at, message);
             return Err(ErrorReported);
         }
         let bytes = match self.input.source.read(&self.path(&name)) {
             Ok(bytes) if bytes.len() < u32::MAX as usize => utf8(bytes),
             Ok(_) => {
-                self.report.bad(at, format!("`{name}` is too large"));
+                self.report.error(at, format!("`{name}` is too large"));
                 return Ok(());
             }
             Err(error) => {
@@ -320,7 +320,7 @@ impl<'a> Loader<'a> {
                 return Ok(());
             }
         };
-        self.growth.feed(bytes.len());
+        self.limits.add_input(bytes.len());
         let file = self.input.files.borrow_mut().add(name.clone(), bytes.clone());
         self.file(&bytes, file, name, parent)
     }
@@ -343,36 +343,36 @@ impl<'a> Loader<'a> {
         match tag.get(name) {
             Some(attribute) => Some((self.substituted(attribute)?, attribute.at)),
             None => {
-                self.report.bad(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
+                self.report.error(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
                 None
             }
         }
     }
 
     fn name(&self, tag: &Tag) -> Option<String> {
-        self.attribute(tag, "name").map(|(name, _)| today(&name))
+        self.attribute(tag, "name").map(|(name, _)| snake_case(&name))
     }
 
     /// Returns a value with its variables replaced; the longest matching name counts. Reports an
     /// undefined variable and returns `None`.
     pub fn substituted(&self, attribute: &Attribute) -> Option<String> {
-        let mut made = String::new();
+        let mut text = String::new();
         let mut rest: &str = &attribute.value;
         while let Some(at) = rest.find('$') {
-            made.push_str(&rest[..at]);
+            text.push_str(&rest[..at]);
             rest = &rest[at + 1..];
-            let found = self.variables.iter().rev().find(|(name, _)| rest.starts_with(name.as_str()));
-            match found {
+            let variable = self.variables.iter().rev().find(|(name, _)| rest.starts_with(name.as_str()));
+            match variable {
                 Some((name, value)) => {
-                    if made.len() + value.len() > MAX_VALUE {
+                    if text.len() + value.len() > MAX_VALUE {
                         let message = format!("with its variables replaced, this is longer than {MAX_VALUE} bytes");
-                        self.report.bad(attribute.at, message);
+                        self.report.error(attribute.at, message);
                         return None;
                     }
-                    if !self.growth.has_bytes(value.len(), 1, self.report, attribute.at) {
+                    if !self.limits.count_bytes_or_report(value.len(), 1, self.report, attribute.at) {
                         return None;
                     }
-                    made.push_str(value);
+                    text.push_str(value);
                     rest = &rest[name.len()..];
                 }
                 None => {
@@ -380,30 +380,30 @@ impl<'a> Loader<'a> {
                     let word = &rest[..end];
                     let help = suggest(word, self.variables.keys().map(String::as_str));
                     let help = help.or_else(|| Some(format!("write `<default name=\"{word}\" value=\"...\"/>`")));
-                    self.report.bad_with(attribute.at, format!("the variable `${word}` is undefined"), help);
+                    self.report.error_with_help(attribute.at, format!("the variable `${word}` is undefined"), help);
                     return None;
                 }
             }
         }
-        Some(made + rest)
+        Some(text + rest)
     }
 
     /// Parses the `N` numbers of an attribute.
     pub fn numbers<const N: usize>(&self, (text, at): &(String, Span)) -> Option<[f64; N]> {
-        let found = numbers(text).and_then(|all| <[f64; N]>::try_from(all).ok());
-        if found.is_none() {
+        let variable = numbers(text).and_then(|all| <[f64; N]>::try_from(all).ok());
+        if variable.is_none() {
             let what = if N == 1 { "a number".into() } else { format!("{N} numbers") };
-            self.report.bad(*at, format!("expected {what}, found `{text}`"));
+            self.report.error(*at, format!("expected {what}, found `{text}`"));
         }
-        found
+        variable
     }
 
     /// Reads three coordinates: `x`, `y` and `z`, or all three as `value`.
-    pub fn triple(&self, tag: &Tag, usual: f64) -> Option<DVec3> {
+    pub fn triple(&self, tag: &Tag, default: f64) -> Option<DVec3> {
         if let Some(value) = tag.get("value") {
             return self.numbers(&(self.substituted(value)?, value.at)).map(DVec3::from_array);
         }
-        let mut triple = [usual; 3];
+        let mut triple = [default; 3];
         for (axis, name) in triple.iter_mut().zip(["x", "y", "z"]) {
             if let Some(attribute) = tag.get(name) {
                 [*axis] = self.numbers(&(self.substituted(attribute)?, attribute.at))?;
@@ -423,7 +423,7 @@ impl<'a> Loader<'a> {
             let lines: Vec<&str> = text.lines().map(|line| line.split('#').next().unwrap_or("")).collect();
             let all = numbers(&lines.join(" ")).filter(|all| all.len() > 1 && all.len() % 2 == 0);
             let Some(all) = all else {
-                self.report.bad(at, format!("`{name}` must contain pairs of wavelength and value"));
+                self.report.error(at, format!("`{name}` must contain pairs of wavelength and value"));
                 return None;
             };
             return self.curve(all, at).map(|curve| (curve, at));
@@ -435,15 +435,15 @@ impl<'a> Loader<'a> {
             "integer" => {
                 let number = attribute.0.trim().parse::<i64>().ok();
                 if number.is_none() {
-                    self.report.bad(at, format!("expected an integer, found `{}`", attribute.0));
+                    self.report.error(at, format!("expected an integer, found `{}`", attribute.0));
                 }
                 number.map(|number| Value::Number(number as f64))
             }
             "boolean" => match attribute.0.trim().to_lowercase().as_str() {
-                "true" => Some(Value::Truth(true)),
-                "false" => Some(Value::Truth(false)),
+                "true" => Some(Value::Bool(true)),
+                "false" => Some(Value::Bool(false)),
                 _ => {
-                    self.report.bad(at, format!("expected `true` or `false`, found `{}`", attribute.0));
+                    self.report.error(at, format!("expected `true` or `false`, found `{}`", attribute.0));
                     None
                 }
             },
@@ -467,7 +467,7 @@ impl<'a> Loader<'a> {
             Some([one]) => Vec3::splat(*one as f32),
             Some(&[r, g, b]) => DVec3::new(r, g, b).as_vec3(),
             _ => {
-                self.report.bad(attribute.1, format!("expected three numbers, found `{}`", attribute.0));
+                self.report.error(attribute.1, format!("expected three numbers, found `{}`", attribute.0));
                 return None;
             }
         };
@@ -480,12 +480,12 @@ impl<'a> Loader<'a> {
             return match numbers(&attribute.0).as_deref() {
                 // Mitsuba 0.6 also allows colours here.
                 Some(&[r, g, b]) => Some(Value::Rgb(DVec3::new(r, g, b).as_vec3())),
-                _ => self.numbers(attribute).map(|[number]| Value::Even(number as f32)),
+                _ => self.numbers(attribute).map(|[number]| Value::ConstantSpectrum(number as f32)),
             };
         }
         let all = numbers(&attribute.0.replace(':', " ")).filter(|all| all.len() % 2 == 0);
         let Some(all) = all else {
-            self.report.bad(attribute.1, format!("expected pairs `wavelength:value`, found `{}`", attribute.0));
+            self.report.error(attribute.1, format!("expected pairs `wavelength:value`, found `{}`", attribute.0));
             return None;
         };
         self.curve(all, attribute.1)
@@ -496,20 +496,20 @@ impl<'a> Loader<'a> {
         if let Some(pair) = curve.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
             let message =
                 format!("the wavelengths of a spectrum must increase: {} comes after {}", pair[1][0], pair[0][0]);
-            self.report.bad(at, message);
+            self.report.error(at, message);
             return None;
         }
-        Some(Value::Curve(curve))
+        Some(Value::Spectrum(curve))
     }
 
     /// Reports an error in an element.
-    pub fn bad(&self, at: Span, message: impl Into<String>, help: Option<String>) {
-        self.report.bad_with(at, message, help);
+    pub fn error(&self, at: Span, message: impl Into<String>, help: Option<String>) {
+        self.report.error_with_help(at, message, help);
     }
 
     /// Warns that something in an element has no exact counterpart.
     pub fn warn(&self, at: Span, message: &str) {
-        self.report.once(at, message);
+        self.report.unsupported_once(at, message);
     }
 
     /// Returns the next element of a transform, and consumes its end tag too.

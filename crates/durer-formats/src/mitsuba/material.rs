@@ -24,7 +24,7 @@ use durer_scene::scene::{Material, Spanned};
 use durer_scene::spectrum::SpectrumSource;
 use std::rc::Rc;
 
-const KNOWN: [&str; 18] = [
+const BSDFS: [&str; 18] = [
     "diffuse",
     "dielectric",
     "thindielectric",
@@ -55,64 +55,66 @@ impl Reader<'_> {
     /// Converts the material of a plugin. Each plugin is converted only once.
     pub fn material(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<MaterialDef> {
         let key = (plugin.key(), self.inside_out);
-        if let Some(known) = self.materials.get(&key) {
-            return known.clone();
+        if let Some(cached) = self.materials.get(&key) {
+            return cached.clone();
         }
         if self.too_deep(depth, plugin.at) {
             return Rc::new(MaterialDef::matte(0.5));
         }
-        let mut made = self.made(plugin, depth);
-        plugin.finish(self.report);
-        if !self.has_room_for(&made, plugin.at) {
-            made = Rc::new(MaterialDef::matte(0.5));
+        let mut material = self.convert_material(plugin, depth);
+        plugin.warn_unused(self.report);
+        if !self.has_room_for(&material, plugin.at) {
+            material = Rc::new(MaterialDef::matte(0.5));
         }
-        self.materials.insert(key, made.clone());
-        made
+        self.materials.insert(key, material.clone());
+        material
     }
 
     /// Returns true if a material has few enough parts to be copied; reports an error if not.
-    fn has_room_for(&self, made: &MaterialDef, at: Span) -> bool {
-        let count = made.count(MAX_PARTS);
+    fn has_room_for(&self, material: &MaterialDef, at: Span) -> bool {
+        let count = material.count(MAX_PARTS);
         if count > MAX_PARTS {
-            self.report.bad(at, format!("this material is too large: it consists of more than {MAX_PARTS} materials"));
+            self.report
+                .error(at, format!("this material is too large: it consists of more than {MAX_PARTS} materials"));
         }
-        count <= MAX_PARTS && self.loader.growth.has_bytes(count, size_of::<PrincipledMaterial>(), self.report, at)
+        count <= MAX_PARTS
+            && self.loader.limits.count_bytes_or_report(count, size_of::<PrincipledMaterial>(), self.report, at)
     }
 
-    fn made(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<MaterialDef> {
+    fn convert_material(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<MaterialDef> {
         let mut m = PrincipledMaterial::default();
         match plugin.kind.as_str() {
             "diffuse" | "roughdiffuse" => {
-                let (color, picture) = self.colored(plugin, "reflectance", 0.5);
+                let (color, picture) = self.color_or_texture(plugin, "reflectance", 0.5);
                 m = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
-                plugin.left_out(self.report, &["alpha", "use_fast_approx"], "the surface is Lambertian");
+                plugin.warn_unsupported(self.report, &["alpha", "use_fast_approx"], "the surface is Lambertian");
             }
             "dielectric" | "roughdielectric" | "thindielectric" => self.glass(plugin, &mut m),
             "conductor" | "roughconductor" => self.conductor(plugin, &mut m),
             "plastic" | "roughplastic" => self.plastic(plugin, &mut m),
             "principled" | "principledthin" => m = self.principled(plugin),
             "hair" => return Rc::new(self.hair(plugin)),
-            "null" => return Rc::new(MaterialDef::Nothing),
+            "null" => return Rc::new(MaterialDef::Null),
             "twosided" => {
-                let both = |made: &MaterialDef| Rc::new(made.changed(&|m| m.backs = Backs::Shown));
-                let parts = self.parts(plugin, Some("bsdf"));
+                let both = |material: &MaterialDef| Rc::new(material.changed(&|m| m.backs = Backs::Shown));
+                let parts = self.child_plugins(plugin, Some("bsdf"));
                 return match parts.as_slice() {
                     [(_, front), (_, back)] => {
                         let sides = [front, back].map(|side| both(&self.material(side, depth + 1)));
                         // The front of an inverted sphere is the back in Dürer.
                         let [front, back] = sides;
                         Rc::new(if self.inside_out {
-                            MaterialDef::Sides(back, front)
+                            MaterialDef::TwoSided(back, front)
                         } else {
-                            MaterialDef::Sides(front, back)
+                            MaterialDef::TwoSided(front, back)
                         })
                     }
-                    _ => both(&self.inner(plugin, depth)),
+                    _ => both(&self.nested_material(plugin, depth)),
                 };
             }
             "mask" => {
-                let (opacity, picture) = self.pictured(plugin, "opacity", 0.5, |x| x.clamp(0.0, 1.0));
-                return Rc::new(self.inner(plugin, depth).changed(&|m| {
+                let (opacity, picture) = self.number_or_texture(plugin, "opacity", 0.5, |x| x.clamp(0.0, 1.0));
+                return Rc::new(self.nested_material(plugin, depth).changed(&|m| {
                     m.opacity *= opacity;
                     if picture.is_some() {
                         m.opacity_texture = picture.clone();
@@ -122,10 +124,11 @@ impl Reader<'_> {
             "bumpmap" => return self.bump_map(plugin, depth),
             "normalmap" => return self.normal_map(plugin, depth),
             "blendbsdf" => {
-                let (share, picture) = self.pictured(plugin, "weight", 0.5, |weight| 1.0 - weight.clamp(0.0, 1.0));
-                let parts = self.parts(plugin, Some("bsdf"));
+                let (share, picture) =
+                    self.number_or_texture(plugin, "weight", 0.5, |weight| 1.0 - weight.clamp(0.0, 1.0));
+                let parts = self.child_plugins(plugin, Some("bsdf"));
                 let [(_, a), (_, b)] = parts.as_slice() else {
-                    self.report.bad(plugin.at, format!("a `blendbsdf` needs two materials, found {}", parts.len()));
+                    self.report.error(plugin.at, format!("a `blendbsdf` needs two materials, found {}", parts.len()));
                     return Rc::new(MaterialDef::matte(0.5));
                 };
                 let (a, b) = (self.material(a, depth + 1), self.material(b, depth + 1));
@@ -134,7 +137,7 @@ impl Reader<'_> {
             other => {
                 let message = format!("the material `{other}` has no counterpart: diffuse grey is used");
                 let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(plugin.at);
-                self.report.push(Diagnostic { help: suggest(other, KNOWN), ..warning });
+                self.report.push(Diagnostic { help: suggest(other, BSDFS), ..warning });
                 // Do not report its properties as unused: they were not read.
                 plugin.properties.iter().for_each(|property| property.used.set(true));
                 return Rc::new(MaterialDef::matte(0.5));
@@ -145,14 +148,14 @@ impl Reader<'_> {
         if !is_open && !self.inside_out {
             m.backs = Backs::Black;
         }
-        Rc::new(MaterialDef::Layers(Box::new(m)))
+        Rc::new(MaterialDef::Principled(Box::new(m)))
     }
 
     /// Reads a hair material, defined by absorption or by melanin.
     fn hair(&self, plugin: &Plugin) -> MaterialDef {
-        let usual = HairMaterial::default();
+        let default = HairMaterial::default();
         let number = |name| plugin.number(self.report, name);
-        let share = |name, usual: f32| number(name).unwrap_or(usual).clamp(0.0, 1.0);
+        let share = |name, default: f32| number(name).unwrap_or(default).clamp(0.0, 1.0);
         let scale = number("scale").unwrap_or(1.0);
         let absorbed = || scale * self.color(plugin, "sigma_a", Vec3::ZERO).max(Vec3::ZERO);
         let absorption = plugin.get("sigma_a").is_some().then(absorbed);
@@ -161,19 +164,19 @@ impl Reader<'_> {
             pheomelanin: number("pheomelanin").unwrap_or(0.2).max(0.0),
             color: None,
             absorption,
-            longitudinal_roughness: share("longitudinal_roughness", usual.longitudinal_roughness),
-            azimuthal_roughness: share("azimuthal_roughness", usual.azimuthal_roughness),
-            scale_tilt: number("scale_tilt").unwrap_or(usual.scale_tilt).clamp(-45.0, 45.0),
-            ior: self.relative_index(plugin, usual.ior).clamp(1.0, 4.0),
+            longitudinal_roughness: share("longitudinal_roughness", default.longitudinal_roughness),
+            azimuthal_roughness: share("azimuthal_roughness", default.azimuthal_roughness),
+            scale_tilt: number("scale_tilt").unwrap_or(default.scale_tilt).clamp(-45.0, 45.0),
+            ior: self.relative_index(plugin, default.ior).clamp(1.0, 4.0),
         })
     }
 
     /// Returns the material that another material wraps.
-    fn inner(&mut self, plugin: &Plugin, depth: u32) -> Rc<MaterialDef> {
-        match self.parts(plugin, Some("bsdf")).first() {
+    fn nested_material(&mut self, plugin: &Plugin, depth: u32) -> Rc<MaterialDef> {
+        match self.child_plugins(plugin, Some("bsdf")).first() {
             Some((_, part)) => self.material(part, depth + 1),
             None => {
-                self.report.bad(plugin.at, format!("a `{}` needs a nested material", plugin.kind));
+                self.report.error(plugin.at, format!("a `{}` needs a nested material", plugin.kind));
                 Rc::new(MaterialDef::matte(0.5))
             }
         }
@@ -181,16 +184,16 @@ impl Reader<'_> {
 
     /// Reads a bump map; `scale` is the height where the picture is 1.
     fn bump_map(&mut self, plugin: &Plugin, depth: u32) -> Rc<MaterialDef> {
-        let inner = self.inner(plugin, depth);
+        let inner = self.nested_material(plugin, depth);
         let height = plugin.number(self.report, "scale").unwrap_or(1.0);
-        let Some((property, _)) = self.parts(plugin, Some("texture")).into_iter().next() else {
-            self.report.once(plugin.at, "a `bumpmap` needs a texture: the surface stays smooth");
+        let Some((property, _)) = self.child_plugins(plugin, Some("texture")).into_iter().next() else {
+            self.report.unsupported_once(plugin.at, "a `bumpmap` needs a texture: the surface stays smooth");
             return inner;
         };
-        plugin.known(&["use_shadowing_function", "flip_invalid_normals"]);
-        let picture = self.numbers(property, |x| x);
+        plugin.mark_known(&["use_shadowing_function", "flip_invalid_normals"]);
+        let picture = self.number_texture(property, |x| x);
         if picture.is_none() {
-            self.report.once(property.at, "a `bumpmap` needs a picture: the surface stays smooth");
+            self.report.unsupported_once(property.at, "a `bumpmap` needs a picture: the surface stays smooth");
         }
         Rc::new(inner.changed(&|m| {
             (m.bump_texture, m.bump_height, m.normal_bending) = (picture.clone(), height, Switch::Off);
@@ -198,40 +201,40 @@ impl Reader<'_> {
     }
 
     fn normal_map(&mut self, plugin: &Plugin, depth: u32) -> Rc<MaterialDef> {
-        let inner = self.inner(plugin, depth);
-        let texture = self.parts(plugin, Some("texture")).into_iter().next();
+        let inner = self.nested_material(plugin, depth);
+        let texture = self.child_plugins(plugin, Some("texture")).into_iter().next();
         let Some((property, texture)) = texture.filter(|(_, texture)| texture.kind == "bitmap") else {
-            self.report.once(plugin.at, "a `normalmap` needs a `bitmap`: the surface stays smooth");
+            self.report.unsupported_once(plugin.at, "a `normalmap` needs a `bitmap`: the surface stays smooth");
             return inner;
         };
-        plugin.known(&["use_shadowing_function", "flip_invalid_normals"]);
+        plugin.mark_known(&["use_shadowing_function", "flip_invalid_normals"]);
         let picture = self.bitmap(&texture);
-        texture.finish(self.report);
+        texture.warn_unused(self.report);
         let Some(picture) = picture else { return inner };
         let name = asset(&mut self.scene, picture, property.at);
         Rc::new(inner.changed(&|m| (m.normal_texture, m.normal_bending) = (Some(name.clone()), Switch::Off)))
     }
 
     /// Reads an index of refraction: a number or the name of a material.
-    fn index(&self, plugin: &Plugin, name: &'static str, usual: f32) -> f32 {
-        let Some(property) = plugin.get(name) else { return usual };
+    fn index(&self, plugin: &Plugin, name: &'static str, default: f32) -> f32 {
+        let Some(property) = plugin.get(name) else { return default };
         if let Value::Text(text) = &property.value {
-            return metals::clear(text).unwrap_or_else(|| {
-                let help = suggest(text, metals::clear_names());
-                self.report.bad_with(
+            return metals::dielectric_ior(text).unwrap_or_else(|| {
+                let help = suggest(text, metals::dielectric_names());
+                self.report.error_with_help(
                     property.at,
                     format!("unknown material `{text}`: it has no index of refraction"),
                     help,
                 );
-                usual
+                default
             });
         }
-        plugin.positive(self.report, name).unwrap_or(usual)
+        plugin.positive(self.report, name).unwrap_or(default)
     }
 
     /// Returns the interior index divided by the exterior index.
-    fn relative_index(&self, plugin: &Plugin, usual: f32) -> f32 {
-        self.index(plugin, "int_ior", usual) / self.index(plugin, "ext_ior", AIR)
+    fn relative_index(&self, plugin: &Plugin, default: f32) -> f32 {
+        self.index(plugin, "int_ior", default) / self.index(plugin, "ext_ior", AIR)
     }
 
     /// Sets roughness, anisotropy and rotation from GGX's alpha along u and v.
@@ -247,31 +250,35 @@ impl Reader<'_> {
             [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
         } else {
             let root = |alpha: f32| alpha.clamp(0.0, 1.0).sqrt();
-            (m.specular_roughness, m.specular_roughness_texture) = self.pictured(plugin, "alpha", 0.1, root);
+            (m.specular_roughness, m.specular_roughness_texture) = self.number_or_texture(plugin, "alpha", 0.1, root);
         }
         match plugin.text(self.report, "distribution").as_deref() {
             Some("ggx") => {}
             Some(distribution @ ("beckmann" | "phong" | "as")) => {
                 let what =
                     format!("the distribution `{distribution}` has no counterpart: `ggx` of the same alpha is used");
-                self.report.once(plugin.place("distribution"), what);
+                self.report.unsupported_once(plugin.span("distribution"), what);
             }
             None => {
                 let what = "the default distribution `beckmann` has no counterpart: `ggx` of the same alpha \
                             is used";
-                self.report.once(plugin.at, what);
+                self.report.unsupported_once(plugin.at, what);
             }
             Some(other) => {
                 let help = suggest(other, ["beckmann", "ggx"]);
-                self.report.bad_with(plugin.place("distribution"), format!("unknown distribution `{other}`"), help);
+                self.report.error_with_help(
+                    plugin.span("distribution"),
+                    format!("unknown distribution `{other}`"),
+                    help,
+                );
             }
         }
-        plugin.known(&["sample_visible"]);
+        plugin.mark_known(&["sample_visible"]);
     }
 
     /// Reads the colour of the specular reflection.
     fn tint(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
-        (m.specular_color, m.specular_color_texture) = self.colored(plugin, "specular_reflectance", 1.0);
+        (m.specular_color, m.specular_color_texture) = self.color_or_texture(plugin, "specular_reflectance", 1.0);
         m.specular_color = m.specular_color.min(Vec3::ONE);
     }
 
@@ -283,7 +290,8 @@ impl Reader<'_> {
         // `ext_ior` replaces the index of refraction of any surrounding medium.
         m.surroundings = Surroundings::Ignored;
         self.tint(plugin, m);
-        (m.transmission_color, m.transmission_color_texture) = self.colored(plugin, "specular_transmittance", 1.0);
+        (m.transmission_color, m.transmission_color_texture) =
+            self.color_or_texture(plugin, "specular_transmittance", 1.0);
         m.transmission_color = m.transmission_color.min(Vec3::ONE);
         m.walls = if is_thin { Walls::Thin } else { Walls::Solid };
         self.roughness(plugin, m);
@@ -293,29 +301,29 @@ impl Reader<'_> {
         let name = plugin.text(self.report, "material").unwrap_or("none".into());
         let by_numbers = ["eta", "k"].iter().any(|name| plugin.get(name).is_some());
         if by_numbers && plugin.get("material").is_some() {
-            self.report.bad(plugin.place("material"), "a conductor takes either `material`, or `eta` and `k`");
+            self.report.error(plugin.span("material"), "a conductor takes either `material`, or `eta` and `k`");
         }
         let [f0, f82] = if !by_numbers && name == "none" {
             [Vec3::ONE; 2]
         } else {
-            let named = metals::metal(&name).unwrap_or_else(|| {
+            let metal = metals::metal(&name).unwrap_or_else(|| {
                 if !by_numbers {
                     let help = suggest(&name, metals::metal_names());
-                    self.report.bad_with(plugin.place("material"), format!("unknown metal `{name}`"), help);
+                    self.report.error_with_help(plugin.span("material"), format!("unknown metal `{name}`"), help);
                 }
                 [[0.0; 3], [1.0; 3]]
             });
-            let [eta, k] = [("eta", named[0]), ("k", named[1])]
-                .map(|(name, usual)| SpectrumSource::Rgb(self.color(plugin, name, Vec3::from_array(usual))));
+            let [eta, k] = [("eta", metal[0]), ("k", metal[1])]
+                .map(|(name, default)| SpectrumSource::Rgb(self.color(plugin, name, Vec3::from_array(default))));
             conductor_colors(&eta, &k, self.index(plugin, "ext_eta", 1.0))
         };
         // The tint applies at all angles, so the reflectance at 82 degrees includes it too.
         let over = |tint: Vec3| f82 * tint / schlick_82(f0 * tint).max(Vec3::splat(1e-6));
-        let (tint, picture) = self.colored(plugin, "specular_reflectance", 1.0);
-        let at = plugin.place("specular_reflectance");
+        let (tint, picture) = self.color_or_texture(plugin, "specular_reflectance", 1.0);
+        let at = plugin.span("specular_reflectance");
         if let Some(picture) = picture.as_ref().and_then(|name| self.scene.assets.pictures.get(&name.path).cloned()) {
-            let made = self.pictures().remade([&picture, &picture], at, |texel, _| over(tint * texel));
-            if let Some((picture, scale)) = made {
+            let material = self.pictures().joined([&picture, &picture], at, |texel, _| over(tint * texel));
+            if let Some((picture, scale)) = material {
                 m.specular_color_texture = Some(asset(&mut self.scene, picture, at));
                 m.specular_color = Vec3::splat(scale);
             }
@@ -327,11 +335,11 @@ impl Reader<'_> {
     }
 
     fn plastic(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
-        (m.base_color, m.base_color_texture) = self.colored(plugin, "diffuse_reflectance", 0.5);
+        (m.base_color, m.base_color_texture) = self.color_or_texture(plugin, "diffuse_reflectance", 0.5);
         let index = self.relative_index(plugin, 1.49);
         self.tint(plugin, m);
         self.roughness(plugin, m);
-        let nonlinear = plugin.truth(self.report, "nonlinear").unwrap_or(false);
+        let nonlinear = plugin.boolean(self.report, "nonlinear").unwrap_or(false);
         if m.specular_roughness > 0.0 && m.specular_roughness_texture.is_none() {
             let beckmann = plugin.text(self.report, "distribution").is_none_or(|distribution| distribution != "ggx");
             let boundary = Boundary::new(index, m.specular_roughness, beckmann);
@@ -347,22 +355,22 @@ impl Reader<'_> {
             m.coat_roughness_texture = m.specular_roughness_texture.take();
             m.specular_weight = 0.0;
             if m.specular_color != Vec3::ONE || m.specular_color_texture.take().is_some() {
-                self.report.once(
-                    plugin.place("specular_reflectance"),
+                self.report.unsupported_once(
+                    plugin.span("specular_reflectance"),
                     "a coloured reflection of a coat has no counterpart: white is used",
                 );
             }
         } else {
             m.specular_ior = index;
         }
-        if let Texture::Even(color) = self.texture(plugin, "specular_transmittance", Vec3::ONE) {
+        if let Texture::Constant(color) = self.texture(plugin, "specular_transmittance", Vec3::ONE) {
             m.base_color *= color;
         }
     }
 
     /// Returns the scene index of a material with emission and an interior medium; `None` for a
     /// material that is not rendered.
-    pub fn number(
+    pub fn material_index(
         &mut self,
         bsdf: Option<&Rc<Plugin>>,
         emitter: Option<&AreaEmitter>,
@@ -372,30 +380,30 @@ impl Reader<'_> {
         let key =
             [bsdf.map(|bsdf| bsdf.key()), emitter.map(|emitter| emitter.key), inside.as_ref().map(|inside| inside.1)];
         let key = (key, self.inside_out);
-        if let Some(known) = self.numbers.get(&key) {
-            return *known;
+        if let Some(cached) = self.material_indices.get(&key) {
+            return *cached;
         }
         // An emitter without a material does not scatter light.
         let grey = if emitter.is_some() { 0.0 } else { 0.5 };
-        let mut made = bsdf.map_or_else(|| Rc::new(MaterialDef::matte(grey)), |bsdf| self.material(bsdf, 0));
+        let mut material = bsdf.map_or_else(|| Rc::new(MaterialDef::matte(grey)), |bsdf| self.material(bsdf, 0));
         if let Some((medium, _)) = inside {
-            made = Rc::new(filled(&made, &medium));
+            material = Rc::new(with_medium(&material, &medium));
         }
         let at = bsdf.map_or(at, |bsdf| bsdf.at);
-        let number = if self.has_room_for(&made, at) { self.numbered(&made, emitter, at) } else { None };
-        self.numbers.insert(key, number);
+        let number = if self.has_room_for(&material, at) { self.add_material(&material, emitter, at) } else { None };
+        self.material_indices.insert(key, number);
         number
     }
 
-    fn numbered(&mut self, made: &MaterialDef, emitter: Option<&AreaEmitter>, at: Span) -> Option<u32> {
-        let material = match made {
-            MaterialDef::Nothing => return None,
-            MaterialDef::Layers(layers) => {
+    fn add_material(&mut self, def: &MaterialDef, emitter: Option<&AreaEmitter>, at: Span) -> Option<u32> {
+        let material = match def {
+            MaterialDef::Null => return None,
+            MaterialDef::Principled(layers) => {
                 let mut layers = layers.clone();
                 let most = emitter.map_or(0.0, |emitter| emitter.color.max_element());
                 if let Some(emitter) = emitter.filter(|_| most > 0.0) {
                     (layers.emission_luminance, layers.emission_color) = (most, emitter.color / most);
-                    layers.walls = if emitter.both { Walls::Thin } else { layers.walls };
+                    layers.walls = if emitter.two_sided { Walls::Thin } else { layers.walls };
                     if let Some(picture) = &emitter.picture {
                         layers.emission_texture = Some(asset(&mut self.scene, picture.clone(), emitter.at));
                     }
@@ -404,26 +412,29 @@ impl Reader<'_> {
             }
             MaterialDef::Hair(hair) => {
                 if emitter.is_some() {
-                    self.report.once(at, "emission of hair has no counterpart: it is ignored");
+                    self.report.unsupported_once(at, "emission of hair has no counterpart: it is ignored");
                 }
                 Material::Hair(hair.clone())
             }
-            MaterialDef::Sides(front, back) => match (self.numbered(front, emitter, at), self.numbered(back, None, at))
-            {
-                (Some(material1), Some(material2)) => {
-                    Material::Solid(PatternMaterial::from(TwoSided { material1, material2 }), Vec::new())
+            MaterialDef::TwoSided(front, back) => {
+                match (self.add_material(front, emitter, at), self.add_material(back, None, at)) {
+                    (Some(material1), Some(material2)) => {
+                        Material::Solid(PatternMaterial::from(TwoSided { material1, material2 }), Vec::new())
+                    }
+                    (only, other) => return only.or(other),
                 }
-                (only, other) => return only.or(other),
-            },
+            }
             MaterialDef::Mix(a, b, share, picture) => {
-                match (self.numbered(a, emitter, at), self.numbered(b, emitter, at)) {
+                match (self.add_material(a, emitter, at), self.add_material(b, emitter, at)) {
                     (Some(material1), Some(material2)) => {
                         let mix = Mix { material1, material2, share: *share, share_texture: picture.clone() };
                         Material::Solid(PatternMaterial::from(mix), Vec::new())
                     }
                     (Some(only), None) | (None, Some(only)) => {
-                        self.report
-                            .once(at, "a blend with a `null` material has no counterpart: only the other is used");
+                        self.report.unsupported_once(
+                            at,
+                            "a blend with a `null` material has no counterpart: only the other is used",
+                        );
                         return Some(only);
                     }
                     (None, None) => return None,
@@ -436,16 +447,16 @@ impl Reader<'_> {
 }
 
 /// Returns the material with its interior filled by a medium.
-fn filled(made: &MaterialDef, medium: &Medium) -> MaterialDef {
-    match made {
-        MaterialDef::Nothing => {
+fn with_medium(material: &MaterialDef, medium: &Medium) -> MaterialDef {
+    match material {
+        MaterialDef::Null => {
             let mut m =
                 PrincipledMaterial { specular_ior: 1.0, transmission_weight: 1.0, ..PrincipledMaterial::default() };
             medium.fill(&mut m);
-            MaterialDef::Layers(Box::new(m))
+            MaterialDef::Principled(Box::new(m))
         }
         // Light does not enter opaque materials.
-        _ => made.changed(&|m| {
+        _ => material.changed(&|m| {
             if m.transmission_weight > 0.0 && m.walls == Walls::Solid {
                 medium.fill(m);
             }

@@ -48,7 +48,7 @@ const METALS: [(&str, [f32; 3], [f32; 3]); 37] = [
 /// Indices of refraction of transparent materials. Source: *Mitsuba 3 documentation*, "Smooth
 /// dielectric material", table of names.
 #[rustfmt::skip]
-const CLEAR: [(&str, f32); 23] = [
+const DIELECTRICS: [(&str, f32); 23] = [
     ("vacuum", 1.0), ("helium", 1.000036), ("hydrogen", 1.000132), ("air", 1.000277), ("carbon dioxide", 1.00045),
     ("water", 1.333), ("acetone", 1.36), ("ethanol", 1.361), ("carbon tetrachloride", 1.461), ("glycerol", 1.4729),
     ("benzene", 1.501), ("silicone oil", 1.52045), ("bromine", 1.661), ("water ice", 1.31), ("fused quartz", 1.458),
@@ -67,11 +67,11 @@ pub(super) fn metal_names() -> impl Iterator<Item = &'static str> {
 }
 
 /// Returns the index of a transparent material.
-pub(super) fn clear(name: &str) -> Option<f32> {
-    CLEAR.iter().find(|row| row.0.eq_ignore_ascii_case(name)).map(|row| row.1)
+pub(super) fn dielectric_ior(name: &str) -> Option<f32> {
+    DIELECTRICS.iter().find(|row| row.0.eq_ignore_ascii_case(name)).map(|row| row.1)
 }
 
 /// Returns the names of transparent materials, for suggestions.
-pub(super) fn clear_names() -> impl Iterator<Item = &'static str> {
-    CLEAR.iter().map(|row| row.0)
+pub(super) fn dielectric_names() -> impl Iterator<Item = &'static str> {
+    DIELECTRICS.iter().map(|row| row.0)
 }

@@ -19,15 +19,15 @@ mod rough;
 mod serialized;
 mod shape;
 mod sky;
-mod solid;
 mod state;
+mod tessellate;
 mod texture;
 mod transform;
 
 #[cfg(test)]
 mod tests;
 
-use super::model::{Input, SceneFormat};
+use super::model::{ReadInput, SceneFormat};
 use super::shared_report::SharedReport;
 use super::{too_large, xml};
 use durer_diag::{Diagnostic, Diagnostics};
@@ -43,7 +43,7 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     read,
     write: None,
     up: Axis::Y,
-    whole: true,
+    is_complete_scene: true,
     light_hint: Some(
         "write `<emitter type=\"area\"/>` in a shape, or `<emitter type=\"constant\"/>` in the scene: an environment is a light too",
     ),
@@ -51,11 +51,11 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
 
 /// Returns true if a file begins with `<scene>`.
 fn recognise(bytes: &[u8]) -> bool {
-    xml::begins_with(bytes, &["scene"])
+    xml::has_root(bytes, &["scene"])
 }
 
 /// Reads a file; see [`read_model`](super::scene::read_model).
-fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
         diagnostics.push(Diagnostic { message: error.message.replace("mesh file", "scene"), help: None, ..error });
         return None;

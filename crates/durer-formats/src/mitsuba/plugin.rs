@@ -13,14 +13,14 @@ pub(super) type Key = (u32, u32);
 /// Mitsuba plugin: an element with a `type`, such as `<shape type="sphere">`, and its properties.
 pub(super) struct Plugin {
     /// Name of the element, such as `shape`.
-    pub class: String,
+    pub element: String,
     /// Value of `type`; empty for the scene.
     pub kind: String,
     /// Span of the type, or of the tag.
     pub at: Span,
     pub properties: Vec<Property>,
     /// Property names that the reader has asked for; all others are reported as unknown.
-    queried: RefCell<Vec<&'static str>>,
+    known_names: RefCell<Vec<&'static str>>,
 }
 
 /// Property of a Mitsuba plugin: a name and a value. Nested plugins may have no name.
@@ -36,15 +36,15 @@ pub(super) struct Property {
 #[derive(Clone)]
 pub(super) enum Value {
     Number(f64),
-    Truth(bool),
+    Bool(bool),
     Text(String),
     Vector(DVec3),
     Rgb(Vec3),
     /// Spectrum with the same value at all wavelengths.
-    Even(f32),
+    ConstantSpectrum(f32),
     /// Wavelengths in nanometres, in ascending order, with values.
-    Curve(Vec<[f32; 2]>),
-    Map(DAffine3),
+    Spectrum(Vec<[f32; 2]>),
+    Transform(DAffine3),
     Plugin(Rc<Plugin>),
     /// Reference to a plugin by its `id`.
     Ref(String),
@@ -54,12 +54,12 @@ impl Value {
     fn kind(&self) -> &'static str {
         match self {
             Value::Number(_) => "a number",
-            Value::Truth(_) => "`true` or `false`",
+            Value::Bool(_) => "`true` or `false`",
             Value::Text(_) => "a string",
             Value::Vector(_) => "a vector",
             Value::Rgb(_) => "a colour",
-            Value::Even(_) | Value::Curve(_) => "a spectrum",
-            Value::Map(_) => "a transform",
+            Value::ConstantSpectrum(_) | Value::Spectrum(_) => "a spectrum",
+            Value::Transform(_) => "a transform",
             Value::Plugin(_) | Value::Ref(_) => "a plugin",
         }
     }
@@ -67,8 +67,8 @@ impl Value {
 
 impl Plugin {
     pub fn new(class: &str, kind: String, at: Span) -> Plugin {
-        let queried = RefCell::default();
-        Plugin { class: class.into(), kind, at, properties: Vec::new(), queried }
+        let known_names = RefCell::default();
+        Plugin { element: class.into(), kind, at, properties: Vec::new(), known_names }
     }
 
     /// Returns a key that is unique to the plugin.
@@ -77,19 +77,19 @@ impl Plugin {
     }
 
     /// Marks properties as known, so that they are not reported as unknown.
-    pub fn known(&self, names: &[&'static str]) {
-        self.queried.borrow_mut().extend(names);
+    pub fn mark_known(&self, names: &[&'static str]) {
+        self.known_names.borrow_mut().extend(names);
     }
 
     /// Returns a property by name, and marks it as used.
     pub fn get(&self, name: &'static str) -> Option<&Property> {
-        self.known(&[name]);
+        self.mark_known(&[name]);
         let found = self.properties.iter().find(|property| property.name == name);
         found.inspect(|property| property.used.set(true))
     }
 
     /// Returns the span of a property's value, or of the plugin if it has no such property.
-    pub fn place(&self, name: &'static str) -> Span {
+    pub fn span(&self, name: &'static str) -> Span {
         self.get(name).map_or(self.at, |property| property.at)
     }
 
@@ -104,7 +104,7 @@ impl Plugin {
         let property = self.get(name)?;
         let value = get(&property.value);
         if value.is_none() {
-            report.bad(property.at, format!("`{name}` must be {what}, not {}", property.value.kind()));
+            report.error(property.at, format!("`{name}` must be {what}, not {}", property.value.kind()));
         }
         value
     }
@@ -113,7 +113,7 @@ impl Plugin {
     pub fn number(&self, report: &SharedReport, name: &'static str) -> Option<f32> {
         self.typed(report, name, "a number", |value| match value {
             Value::Number(number) => Some(*number as f32),
-            Value::Even(number) => Some(*number),
+            Value::ConstantSpectrum(number) => Some(*number),
             _ => None,
         })
     }
@@ -122,15 +122,15 @@ impl Plugin {
     pub fn positive(&self, report: &SharedReport, name: &'static str) -> Option<f32> {
         let number = self.number(report, name)?;
         if number <= 0.0 {
-            report.bad(self.place(name), format!("`{name}` must be more than 0"));
+            report.error(self.span(name), format!("`{name}` must be more than 0"));
         }
         Some(number).filter(|number| *number > 0.0)
     }
 
     /// Returns a boolean; reports an error for a value of another type.
-    pub fn truth(&self, report: &SharedReport, name: &'static str) -> Option<bool> {
+    pub fn boolean(&self, report: &SharedReport, name: &'static str) -> Option<bool> {
         self.typed(report, name, "`true` or `false`", |value| match value {
-            Value::Truth(truth) => Some(*truth),
+            Value::Bool(truth) => Some(*truth),
             _ => None,
         })
     }
@@ -152,36 +152,36 @@ impl Plugin {
     }
 
     /// Returns a transform; the identity if the property is missing.
-    pub fn map(&self, report: &SharedReport, name: &'static str) -> DAffine3 {
-        let map = self.typed(report, name, "a transform", |value| match value {
-            Value::Map(map) => Some(*map),
+    pub fn transform(&self, report: &SharedReport, name: &'static str) -> DAffine3 {
+        let transform = self.typed(report, name, "a transform", |value| match value {
+            Value::Transform(transform) => Some(*transform),
             _ => None,
         });
-        map.unwrap_or(DAffine3::IDENTITY)
+        transform.unwrap_or(DAffine3::IDENTITY)
     }
 
     /// Warns about properties that have no counterpart in Dürer; `instead` names the substitute.
-    pub fn left_out(&self, report: &SharedReport, names: &[&'static str], instead: &str) {
+    pub fn warn_unsupported(&self, report: &SharedReport, names: &[&'static str], instead: &str) {
         for name in names {
             if let Some(property) = self.get(name) {
-                report.once(property.at, format!("`{name}` has no counterpart: {instead}"));
+                report.unsupported_once(property.at, format!("`{name}` has no counterpart: {instead}"));
             }
         }
     }
 
     /// Warns about properties that are unknown or not used.
-    pub fn finish(&self, report: &SharedReport) {
-        let queried = self.queried.borrow();
+    pub fn warn_unused(&self, report: &SharedReport) {
+        let known_names = self.known_names.borrow();
         for property in &self.properties {
             let nested = matches!(property.value, Value::Plugin(_) | Value::Ref(_));
-            if property.used.get() || queried.contains(&property.name.as_str()) {
+            if property.used.get() || known_names.contains(&property.name.as_str()) {
                 continue;
             }
             let message = match (nested, property.name.as_str()) {
-                (true, "") => format!("the {} `{}` does not use this: it is ignored", self.class, self.kind),
-                (_, name) => format!("the {} `{}` has no property `{name}`: it is ignored", self.class, self.kind),
+                (true, "") => format!("the {} `{}` does not use this: it is ignored", self.element, self.kind),
+                (_, name) => format!("the {} `{}` has no property `{name}`: it is ignored", self.element, self.kind),
             };
-            let help = suggest(&property.name, queried.iter().copied());
+            let help = suggest(&property.name, known_names.iter().copied());
             let warning = durer_diag::Diagnostic::warning(message).code("unknown-property").at(property.at);
             report.push(durer_diag::Diagnostic { help, ..warning });
         }
@@ -191,6 +191,6 @@ impl Plugin {
 /// Returns true if a shape is a sphere with inward normals, by `flip_normals` or by a mirroring
 /// transform.
 pub(super) fn is_inside_out(plugin: &Plugin, report: &SharedReport) -> bool {
-    let flipped = || plugin.truth(report, "flip_normals").unwrap_or(false);
-    plugin.kind == "sphere" && flipped() != (plugin.map(report, "to_world").matrix3.determinant() < 0.0)
+    let flipped = || plugin.boolean(report, "flip_normals").unwrap_or(false);
+    plugin.kind == "sphere" && flipped() != (plugin.transform(report, "to_world").matrix3.determinant() < 0.0)
 }

@@ -5,7 +5,7 @@
 
 use super::plugin::Plugin;
 use super::state::Reader;
-use crate::disney::{self, Matte};
+use crate::disney::{self, DiffuseConverter};
 use durer_scene::bsdf::fresnel::ior_of_reflectance;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::{Surroundings, Switch, Walls};
@@ -15,11 +15,11 @@ impl Reader<'_> {
     /// Converts `principled` and `principledthin`.
     pub fn principled(&mut self, plugin: &Plugin) -> PrincipledMaterial {
         let thin = plugin.kind == "principledthin";
-        let (base_color, base_color_texture) = self.colored(plugin, "base_color", 0.5);
+        let (base_color, base_color_texture) = self.color_or_texture(plugin, "base_color", 0.5);
         let whole = |x: f32| x.clamp(0.0, 1.0);
-        let (roughness, roughness_texture) = self.pictured(plugin, "roughness", 0.5, whole);
-        let (metalness, metalness_texture) = self.pictured(plugin, "metallic", 0.0, whole);
-        let share = |name, usual: f32| self.value(plugin, name, usual).clamp(0.0, 1.0);
+        let (roughness, roughness_texture) = self.number_or_texture(plugin, "roughness", 0.5, whole);
+        let (metalness, metalness_texture) = self.number_or_texture(plugin, "metallic", 0.0, whole);
+        let share = |name, default: f32| self.value(plugin, name, default).clamp(0.0, 1.0);
         // Disney's alpha is the square of the roughness, stretched by the aspect ratio.
         let aspect = (1.0 - 0.9 * share("anisotropic", 0.0)).sqrt();
         let [u, v] = [roughness * roughness / aspect, roughness * roughness * aspect];
@@ -38,12 +38,12 @@ impl Reader<'_> {
         // If the roughness is a picture, assume a medium roughness.
         let rough = if roughness_texture.is_some() { 0.5 } else { roughness };
         let matte = match (thin, &metalness_texture) {
-            (true, _) => disney::matte_mean(rough) * base_color,
+            (true, _) => disney::diffuse_albedo(rough) * base_color,
             (false, Some(_)) => base_color,
-            (false, None) => base_color.lerp(Matte::new(ior, rough).base(base_color), 1.0 - metallic),
+            (false, None) => base_color.lerp(DiffuseConverter::new(ior, rough).base(base_color), 1.0 - metallic),
         };
         let sheen = share("sheen", 0.0);
-        let fuzz_weight = if sheen > 0.0 { sheen * disney::sheen_of_fuzz() } else { 0.0 };
+        let fuzz_weight = if sheen > 0.0 { sheen * disney::fuzz_weight_of_sheen() } else { 0.0 };
         // 0: all diffuse light leaves on the lit side; 2: all of it on the other side.
         let through = if thin { self.value(plugin, "diff_trans", 0.0).clamp(0.0, 2.0) } else { 0.0 };
         let m = PrincipledMaterial {
@@ -57,7 +57,7 @@ impl Reader<'_> {
             base_metalness_texture: metalness_texture.filter(|_| !thin),
             // A thin sheet has specular reflection only with `spec_trans`.
             specular_weight: if thin { 0.0 } else { 1.0 },
-            specular_ior: if thin { one_sided(ior) } else { ior },
+            specular_ior: if thin { thin_pane_index(ior) } else { ior },
             specular_color: tinted(share("spec_tint", 0.0)),
             specular_roughness: (0.5 * (u * u + v * v)).sqrt().min(1.0).sqrt(),
             specular_roughness_texture: roughness_texture,
@@ -79,15 +79,19 @@ impl Reader<'_> {
             ..PrincipledMaterial::default()
         };
         let none = "the base stays diffuse";
-        plugin.left_out(self.report, &["flatness"], none);
-        plugin.known(&["diffuse_reflectance_sampling_rate", "main_specular_sampling_rate", "clearcoat_sampling_rate"]);
+        plugin.warn_unsupported(self.report, &["flatness"], none);
+        plugin.mark_known(&[
+            "diffuse_reflectance_sampling_rate",
+            "main_specular_sampling_rate",
+            "clearcoat_sampling_rate",
+        ]);
         m
     }
 }
 
 /// Returns the index of a thin pane that reflects as much at normal incidence as one surface of
 /// index `ior`, because `principledthin` has no second surface.
-fn one_sided(ior: f32) -> f32 {
+fn thin_pane_index(ior: f32) -> f32 {
     let root = (ior - 1.0) / (ior + 1.0);
     let r0 = root * root;
     ior_of_reflectance(r0 / (2.0 - r0))
@@ -99,7 +103,7 @@ mod tests {
 
     #[test]
     fn one_sided_pane_reflects_like_one_surface() {
-        let root = (one_sided(1.5) - 1.0) / (one_sided(1.5) + 1.0);
+        let root = (thin_pane_index(1.5) - 1.0) / (thin_pane_index(1.5) + 1.0);
         let r = root * root;
         assert!((2.0 * r / (1.0 + r) - 0.04).abs() < 1e-5, "{r}");
     }

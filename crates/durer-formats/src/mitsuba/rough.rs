@@ -1,7 +1,7 @@
 //! Transmittance of Mitsuba's rough boundaries, which lose the light that bounces between
 //! microfacets.
 
-use crate::disney::passing;
+use crate::disney::boundary_transmittance;
 use durer_scene::bsdf::albedo::single_means;
 use durer_scene::bsdf::fresnel;
 use durer_scene::math::{Vec3, fp};
@@ -15,9 +15,9 @@ pub(super) struct Boundary {
     rough: [f32; 2],
     smooth: [f32; 2],
     /// Mean transmittance to the base and back out, in Dürer.
-    passing: f32,
+    transmittance: f32,
     /// Mean reflectance in Dürer minus that in Mitsuba.
-    lost: f32,
+    reflectance_difference: f32,
 }
 
 impl Boundary {
@@ -34,8 +34,8 @@ impl Boundary {
             index,
             rough: [all - reflected, inside],
             smooth: [sum - mirrored, within],
-            passing: passing(ours),
-            lost: ours[0] - reflected,
+            transmittance: boundary_transmittance(ours),
+            reflectance_difference: ours[0] - reflected,
         }
     }
 
@@ -44,7 +44,7 @@ impl Boundary {
     /// boundary.
     pub fn base(&self, color: f32, fades: bool) -> f32 {
         let below = color * self.below(fades.then_some(color));
-        if fades { below } else { (below - self.lost / self.passing).max(0.0) }
+        if fades { below } else { (below - self.reflectance_difference / self.transmittance).max(0.0) }
     }
 
     /// Returns the mean radiance of a diffuse base through the boundary in Mitsuba, divided by that
@@ -56,7 +56,7 @@ impl Boundary {
             through * through / (1.0 - inside * left.unwrap_or(1.0))
         };
         // A smooth coat darkens the base as Mitsuba's coat does.
-        shown(self.rough) / if left.is_some() { shown(self.smooth) } else { self.passing }
+        shown(self.rough) / if left.is_some() { shown(self.smooth) } else { self.transmittance }
     }
 }
 

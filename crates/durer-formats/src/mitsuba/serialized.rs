@@ -6,8 +6,8 @@
 //! vertex indices. The file ends with the offsets of the meshes and their number. Source: Mitsuba
 //! 3's documentation, `serialized`.
 
-use crate::files::named_bytes;
-use crate::model::Input;
+use crate::files::read_named;
+use crate::model::ReadInput;
 use crate::shared_report::SharedReport;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::math::{Vec2, Vec3};
@@ -25,18 +25,23 @@ const UVS: u32 = 0x0002;
 const COLORS: u32 = 0x0008;
 const DOUBLE: u32 = 0x2000;
 
-const LONGEST_NAME: usize = 1 << 12;
+const MAX_NAME_LENGTH: usize = 1 << 12;
 /// Maximum ratio of decompressed bytes to the size of the file, and number of bytes that even the
 /// smallest file may take. Meshes rarely compress to less than a tenth.
-const MAX_TIMES: u64 = 200;
-const FREE: u64 = 1 << 24;
+const MAX_RATIO: u64 = 200;
+const FREE_BYTES: u64 = 1 << 24;
 
 /// Byte offset and message of an error.
 type ParseError = (usize, String);
 
 /// Reads the mesh with a given index from a file.
-pub(super) fn mesh(input: &Input, report: &SharedReport, (path, at): (&str, Span), number: u32) -> Option<MeshData> {
-    let (bytes, file) = named_bytes(input, report, "the mesh", path, at)?;
+pub(super) fn mesh(
+    input: &ReadInput,
+    report: &SharedReport,
+    (path, at): (&str, Span),
+    number: u32,
+) -> Option<MeshData> {
+    let (bytes, file) = read_named(input, report, "the mesh", path, at)?;
     let report_error = |(place, message): ParseError| {
         let place = place.min(bytes.len()) as u32;
         let error = Diagnostic::error(message).code("bad-file").at(Span { file, start: place, end: place });
@@ -50,9 +55,9 @@ pub(super) fn mesh(input: &Input, report: &SharedReport, (path, at): (&str, Span
 }
 
 fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, ParseError> {
-    let (start, version) = found(bytes, number)?;
+    let (start, version) = find_mesh(bytes, number)?;
     let packed = &bytes[start + HEAD..];
-    let budget = memory.min(FREE + MAX_TIMES * packed.len() as u64);
+    let budget = memory.min(FREE_BYTES + MAX_RATIO * packed.len() as u64);
     let mut unpacked = ZlibReader { inner: ZlibDecoder::new(packed), start: start + HEAD };
     let [flags] = unpacked.words::<1>("flags")?;
     if version == 4 {
@@ -67,13 +72,13 @@ fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, ParseError>
     let row = lists.iter().filter(|(there, _)| *there).map(|(_, width)| size * width).sum::<u64>();
     // Indices have 64 bits only if there are more vertices than this.
     if vertices > u64::from(u32::MAX) {
-        return Err((unpacked.place(), format!("{vertices} vertices are more than 32-bit indices allow")));
+        return Err((unpacked.position(), format!("{vertices} vertices are more than 32-bit indices allow")));
     }
     let wanted = triangles.saturating_mul(12).saturating_add(vertices * row);
     if wanted > budget {
         let message =
             format!("{vertices} vertices and {triangles} triangles are more than a file of this size can contain");
-        return Err((unpacked.place(), message));
+        return Err((unpacked.position(), message));
     }
     let mut list = |what: &str, there: bool, width: u64| match there {
         true => unpacked.numbers(what, vertices * width, has(DOUBLE)),
@@ -88,7 +93,7 @@ fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, ParseError>
     let corners: Vec<u32> = corners.as_chunks().0.iter().map(|four| u32::from_le_bytes(*four)).collect();
     if let Some(i) = corners.iter().position(|corner| u64::from(*corner) >= vertices) {
         let message = format!("triangle {} uses vertex {}, but there are only {vertices}", i / 3, corners[i]);
-        return Err((unpacked.place(), message));
+        return Err((unpacked.position(), message));
     }
     let triangles = corners.as_chunks().0.to_vec();
     let of = |there: bool| if there { triangles.clone() } else { Vec::new() };
@@ -105,7 +110,7 @@ fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, ParseError>
 }
 
 /// Finds a mesh by its index; returns its offset and the file's version.
-fn found(bytes: &[u8], number: u32) -> Result<(usize, u16), ParseError> {
+fn find_mesh(bytes: &[u8], number: u32) -> Result<(usize, u16), ParseError> {
     let begins = |at: usize| {
         let found =
             at.checked_add(HEAD).and_then(|end| bytes.get(at..end)).filter(|head| head[..2] == MARK.to_le_bytes());
@@ -148,7 +153,7 @@ struct ZlibReader<'a> {
 
 impl ZlibReader<'_> {
     /// Returns the offset in the file up to which data was read.
-    fn place(&self) -> usize {
+    fn position(&self) -> usize {
         self.start + self.inner.total_in() as usize
     }
 
@@ -159,9 +164,9 @@ impl ZlibReader<'_> {
         match read {
             Ok(_) if bytes.len() as u64 == count => Ok(bytes),
             Err(error) if error.kind() != ErrorKind::UnexpectedEof => {
-                Err((self.place(), format!("the mesh cannot be decompressed: {error}")))
+                Err((self.position(), format!("the mesh cannot be decompressed: {error}")))
             }
-            _ => Err((self.place(), format!("the mesh ends within its {what}"))),
+            _ => Err((self.position(), format!("the mesh ends within its {what}"))),
         }
     }
 
@@ -171,12 +176,12 @@ impl ZlibReader<'_> {
     }
 
     fn pass_name(&mut self) -> Result<(), ParseError> {
-        for _ in 0..LONGEST_NAME {
+        for _ in 0..MAX_NAME_LENGTH {
             if self.bytes("name", 1)? == [0] {
                 return Ok(());
             }
         }
-        Err((self.place(), format!("the name of the mesh is too long: more than {LONGEST_NAME} bytes")))
+        Err((self.position(), format!("the name of the mesh is too long: more than {MAX_NAME_LENGTH} bytes")))
     }
 
     /// Reads `count` finite numbers of 32 or 64 bits.
@@ -187,7 +192,7 @@ impl ZlibReader<'_> {
             false => bytes.as_chunks().0.iter().map(|four| f32::from_le_bytes(*four)).collect(),
         };
         match numbers.iter().position(|number| !number.is_finite()) {
-            Some(i) => Err((self.place(), format!("number {i} of the {what} must be finite"))),
+            Some(i) => Err((self.position(), format!("number {i} of the {what} must be finite"))),
             None => Ok(numbers),
         }
     }

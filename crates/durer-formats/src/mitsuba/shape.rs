@@ -5,8 +5,8 @@
 use super::curve;
 use super::plugin::{Key, Plugin, is_inside_out};
 use super::serialized;
-use super::solid;
 use super::state::Reader;
+use super::tessellate;
 use super::transform::frame;
 use crate::files::mesh_file;
 use crate::medium::Medium;
@@ -21,7 +21,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use std::rc::Rc;
 use std::sync::Arc;
 
-const KNOWN: [&str; 13] = [
+const SHAPES: [&str; 13] = [
     "sphere",
     "disk",
     "rectangle",
@@ -44,92 +44,94 @@ impl Reader<'_> {
             return;
         }
         let (report, at) = (self.report, plugin.at);
-        let map = plugin.map(report, "to_world");
-        let found = match plugin.kind.as_str() {
+        let to_world = plugin.transform(report, "to_world");
+        let shape = match plugin.kind.as_str() {
             // Shape groups are only shown by instances.
             "shapegroup" => return,
-            "instance" => self.instance(plugin, map, objects, depth),
+            "instance" => self.instance(plugin, to_world, objects, depth),
             "merge" => {
-                for (_, part) in self.parts(plugin, Some("shape")) {
+                for (_, part) in self.child_plugins(plugin, Some("shape")) {
                     self.shape(&part, objects, depth + 1);
                 }
                 None
             }
-            "sphere" => self.sphere(plugin, map),
-            "disk" => self.disk(plugin, map),
-            "rectangle" => self.mesh(plugin, "rectangle", map, || Some(solid::with_tangents(solid::rectangle()))),
-            "cube" => self.mesh(plugin, "cube", map, || Some(solid::with_tangents(solid::cube()))),
-            "cylinder" => self.cylinder(plugin, map),
-            "obj" | "ply" | "serialized" => self.file(plugin, map),
-            "bsplinecurve" | "linearcurve" => self.curves(plugin, map),
+            "sphere" => self.sphere(plugin, to_world),
+            "disk" => self.disk(plugin, to_world),
+            "rectangle" => {
+                self.mesh(plugin, "rectangle", to_world, || Some(tessellate::with_tangents(tessellate::rectangle())))
+            }
+            "cube" => self.mesh(plugin, "cube", to_world, || Some(tessellate::with_tangents(tessellate::cube()))),
+            "cylinder" => self.cylinder(plugin, to_world),
+            "obj" | "ply" | "serialized" => self.file(plugin, to_world),
+            "bsplinecurve" | "linearcurve" => self.curves(plugin, to_world),
             other => {
                 let message = format!("the shape `{other}` has no counterpart: it is ignored");
                 let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(at);
-                return report.push(Diagnostic { help: suggest(other, KNOWN), ..warning });
+                return report.push(Diagnostic { help: suggest(other, SHAPES), ..warning });
             }
         };
-        if let Some((node, map)) = found {
-            let inside = self.inside(plugin);
-            let area_emitter = self.parts(plugin, Some("emitter")).into_iter().next();
+        if let Some((node, to_world)) = shape {
+            let inside = self.interior_medium(plugin);
+            let area_emitter = self.child_plugins(plugin, Some("emitter")).into_iter().next();
             let mut area_emitter = area_emitter.and_then(|(_, emitter)| self.area_light(&emitter));
             self.inside_out = is_inside_out(plugin, report);
             if let Some(area_emitter) = area_emitter.as_mut().filter(|_| self.inside_out) {
-                (area_emitter.both, area_emitter.key) = (true, plugin.key());
+                (area_emitter.two_sided, area_emitter.key) = (true, plugin.key());
             }
-            let material = self.parts(plugin, Some("bsdf")).into_iter().next().map(|(_, bsdf)| bsdf);
-            match self.number(material.as_ref(), area_emitter.as_ref(), inside, at) {
+            let material = self.child_plugins(plugin, Some("bsdf")).into_iter().next().map(|(_, bsdf)| bsdf);
+            match self.material_index(material.as_ref(), area_emitter.as_ref(), inside, at) {
                 Some(number) => {
                     let inner = Object { node, material: Some(number), span: at };
-                    self.add(objects, inner.transformed(map));
+                    self.add(objects, inner.transformed(to_world));
                 }
-                None if area_emitter.is_some() => report.once(at, "a `null` surface does not emit light"),
+                None if area_emitter.is_some() => report.unsupported_once(at, "a `null` surface does not emit light"),
                 None => {}
             }
         } else if !matches!(plugin.kind.as_str(), "instance" | "merge") {
             // The shape has been reported, so do not also report its materials as unused.
             for class in ["bsdf", "emitter", "medium"] {
-                self.parts(plugin, Some(class));
+                self.child_plugins(plugin, Some(class));
             }
         }
-        plugin.known(&["flip_normals"]);
-        plugin.finish(report);
+        plugin.mark_known(&["flip_normals"]);
+        plugin.warn_unused(report);
     }
 
     fn instance(
         &mut self,
         plugin: &Rc<Plugin>,
-        map: DAffine3,
+        to_world: DAffine3,
         objects: &mut Vec<Object>,
         depth: u32,
     ) -> Option<(ObjectKind, DAffine3)> {
-        let groups = self.parts(plugin, Some("shape"));
+        let groups = self.child_plugins(plugin, Some("shape"));
         let Some((property, group)) = groups.into_iter().find(|(_, group)| group.kind == "shapegroup") else {
-            self.report.bad(plugin.at, "an `instance` needs a `shapegroup`");
+            self.report.error(plugin.at, "an `instance` needs a `shapegroup`");
             return None;
         };
         let (group, count) = match self.groups.get(&group.key()) {
-            Some(known) => known.clone(),
+            Some(cached) => cached.clone(),
             None => {
-                let (mut inner, before) = (Vec::new(), self.loader.growth.object_count());
-                for (_, part) in self.parts(&group, Some("shape")) {
+                let (mut inner, before) = (Vec::new(), self.loader.limits.object_count());
+                for (_, part) in self.child_plugins(&group, Some("shape")) {
                     self.shape(&part, &mut inner, depth + 1);
                 }
-                let made = (Rc::new(Group { objects: inner }), self.loader.growth.object_count() - before);
-                self.groups.insert(group.key(), made.clone());
-                made
+                let entry = (Rc::new(Group { objects: inner }), self.loader.limits.object_count() - before);
+                self.groups.insert(group.key(), entry.clone());
+                entry
             }
         };
         // Count the instance itself too, since its content may be empty.
-        if self.room_for(count + 1, property.at) {
+        if self.count_objects(count + 1, property.at) {
             let inner = Object { node: ObjectKind::Group((*group).clone()), material: None, span: plugin.at };
-            objects.push(inner.transformed(map));
+            objects.push(inner.transformed(to_world));
         }
         None
     }
 
     /// Reads the medium inside a shape.
-    fn inside(&mut self, plugin: &Plugin) -> Option<(Medium, Key)> {
-        let media = self.parts(plugin, Some("medium"));
+    fn interior_medium(&mut self, plugin: &Plugin) -> Option<(Medium, Key)> {
+        let media = self.child_plugins(plugin, Some("medium"));
         // Ignore `exterior`: it is either the interior of another shape or the medium around the
         // camera.
         let (_, medium) = media.into_iter().find(|(property, _)| property.name == "interior")?;
@@ -137,112 +139,114 @@ impl Reader<'_> {
     }
 
     /// Returns true if a shape has a picture in its material or emitter.
-    fn is_pictured(&self, plugin: &Plugin) -> bool {
+    fn has_picture(&self, plugin: &Plugin) -> bool {
         self.has_texture(plugin, &["bitmap", "checkerboard"])
     }
 
     /// Returns true if a shape has a texture of one of these types.
     fn has_texture(&self, plugin: &Plugin, kinds: &[&str]) -> bool {
         let parts = self.reachable(plugin, &["texture", "bsdf", "emitter"]);
-        parts.iter().any(|part| part.class == "texture" && kinds.contains(&part.kind.as_str()))
+        parts.iter().any(|part| part.element == "texture" && kinds.contains(&part.kind.as_str()))
     }
 
     /// Returns true if a shape has an anisotropic material. If so, the direction of u matters.
-    fn is_brushed(&self, plugin: &Plugin) -> bool {
+    fn is_anisotropic(&self, plugin: &Plugin) -> bool {
         let words = ["alpha_u", "alpha_v", "anisotropic"];
         let parts = self.reachable(plugin, &["bsdf"]);
         parts.iter().flat_map(|part| &part.properties).any(|property| words.contains(&property.name.as_str()))
     }
 
     /// Returns true if a shape has a normal map.
-    fn is_leaning(&self, plugin: &Plugin) -> bool {
+    fn has_normal_map(&self, plugin: &Plugin) -> bool {
         self.reachable(plugin, &["bsdf"]).iter().any(|part| part.kind == "normalmap")
     }
 
     fn is_flipped(&self, plugin: &Plugin) -> bool {
-        plugin.truth(self.report, "flip_normals").unwrap_or(false)
+        plugin.boolean(self.report, "flip_normals").unwrap_or(false)
     }
 
-    fn sphere(&self, plugin: &Plugin, map: DAffine3) -> Option<(ObjectKind, DAffine3)> {
+    fn sphere(&self, plugin: &Plugin, to_world: DAffine3) -> Option<(ObjectKind, DAffine3)> {
         let radius = plugin.positive(self.report, "radius").unwrap_or(1.0);
         let center = plugin.vector(self.report, "center").unwrap_or(DVec3::ZERO);
-        if is_inside_out(plugin, self.report) && !self.parts(plugin, Some("emitter")).is_empty() {
+        if is_inside_out(plugin, self.report) && !self.child_plugins(plugin, Some("emitter")).is_empty() {
             let what = "a sphere that emits inwards has no counterpart: it emits on both sides";
-            self.report.once(plugin.place("flip_normals"), what);
+            self.report.unsupported_once(plugin.span("flip_normals"), what);
         }
-        let map = map * DAffine3::from_translation(center);
-        let (center, map) = match self.is_pictured(plugin) || self.is_brushed(plugin) {
+        let to_world = to_world * DAffine3::from_translation(center);
+        let (center, to_world) = match self.has_picture(plugin) || self.is_anisotropic(plugin) {
             // Mitsuba's poles are on the z axis, and u begins at x. In Dürer the poles are on the y
             // axis, and u = 1/2 is at -z.
             true => {
                 let turned = DMat3::from_cols(DVec3::NEG_Y, DVec3::Z, DVec3::X);
-                (Vec3::ZERO, map * DAffine3::from_mat3(turned))
+                (Vec3::ZERO, to_world * DAffine3::from_mat3(turned))
             }
-            false if map.matrix3 == DMat3::IDENTITY => (map.translation.as_vec3(), DAffine3::IDENTITY),
-            false => (Vec3::ZERO, map),
+            false if to_world.matrix3 == DMat3::IDENTITY => (to_world.translation.as_vec3(), DAffine3::IDENTITY),
+            false => (Vec3::ZERO, to_world),
         };
-        Some((ObjectKind::Primitive(Sphere { center, radius }.into()), map))
+        Some((ObjectKind::Primitive(Sphere { center, radius }.into()), to_world))
     }
 
-    fn disk(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(ObjectKind, DAffine3)> {
+    fn disk(&mut self, plugin: &Plugin, to_world: DAffine3) -> Option<(ObjectKind, DAffine3)> {
         // Discs have different texture coordinates in Dürer.
-        if self.is_pictured(plugin) || self.is_brushed(plugin) || self.is_leaning(plugin) {
-            return self.mesh(plugin, "disk", map, || Some(solid::with_tangents(solid::disk())));
+        if self.has_picture(plugin) || self.is_anisotropic(plugin) || self.has_normal_map(plugin) {
+            return self.mesh(plugin, "disk", to_world, || Some(tessellate::with_tangents(tessellate::disk())));
         }
         let normal = if self.is_flipped(plugin) { Vec3::NEG_Z } else { Vec3::Z };
         let disc = Disc { center: Vec3::ZERO, normal, radius: 1.0, inner_radius: 0.0 };
-        Some((ObjectKind::Primitive(disc.into()), map))
+        Some((ObjectKind::Primitive(disc.into()), to_world))
     }
 
-    fn cylinder(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(ObjectKind, DAffine3)> {
+    fn cylinder(&mut self, plugin: &Plugin, to_world: DAffine3) -> Option<(ObjectKind, DAffine3)> {
         let report = self.report;
-        let end = |name, usual| plugin.vector(report, name).unwrap_or(usual);
+        let end = |name, default| plugin.vector(report, name).unwrap_or(default);
         let ends = [end("p0", DVec3::ZERO), end("p1", DVec3::Z)];
         let radius = plugin.positive(report, "radius").unwrap_or(1.0);
         let along = ends[1] - ends[0];
         if along == DVec3::ZERO {
-            report.bad(plugin.place("p1"), "`p0` and `p1` of a cylinder must differ");
+            report.error(plugin.span("p1"), "`p0` and `p1` of a cylinder must differ");
             return None;
         }
         let axes = frame(along.normalize()) * DMat3::from_diagonal(DVec3::new(1.0, 1.0, along.length()));
-        let map = map * DAffine3 { matrix3: axes, translation: ends[0] };
-        self.mesh(plugin, &format!("cylinder-{radius}"), map, || Some(solid::with_tangents(solid::cylinder(radius))))
+        let to_world = to_world * DAffine3 { matrix3: axes, translation: ends[0] };
+        self.mesh(plugin, &format!("cylinder-{radius}"), to_world, || {
+            Some(tessellate::with_tangents(tessellate::cylinder(radius)))
+        })
     }
 
     /// Returns the path of the shape's file, and its span in the scene.
     fn path(&self, plugin: &Plugin) -> Option<(String, Span)> {
         let Some(name) = plugin.text(self.report, "filename") else {
-            self.report.bad(plugin.at, format!("the shape `{}` needs a `filename`", plugin.kind));
+            self.report.error(plugin.at, format!("the shape `{}` needs a `filename`", plugin.kind));
             return None;
         };
-        Some((self.loader.path(&name), plugin.place("filename")))
+        Some((self.loader.path(&name), plugin.span("filename")))
     }
 
     /// Returns the index of the shape's mesh within its file.
     fn shape_index(&self, plugin: &Plugin) -> Option<u32> {
         let number = plugin.number(self.report, "shape_index").unwrap_or(0.0);
         if !(0.0..=16_777_216.0).contains(&number) || number.fract() != 0.0 {
-            self.report.bad(plugin.place("shape_index"), "`shape_index` must be an integer of 0 or more");
+            self.report.error(plugin.span("shape_index"), "`shape_index` must be an integer of 0 or more");
             return None;
         }
         Some(number as u32)
     }
 
-    fn file(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(ObjectKind, DAffine3)> {
+    fn file(&mut self, plugin: &Plugin, to_world: DAffine3) -> Option<(ObjectKind, DAffine3)> {
         let report = self.report;
         let (path, at) = self.path(plugin)?;
         let number = match plugin.kind.as_str() {
             "serialized" => Some(self.shape_index(plugin)?),
             _ => None,
         };
-        let flat = plugin.truth(report, "face_normals").unwrap_or(false);
+        let flat = plugin.boolean(report, "face_normals").unwrap_or(false);
         let is_obj = plugin.kind == "obj";
         // Mitsuba flips v in OBJ files, where it points up as in Dürer, but not in PLY files.
-        let over = plugin.truth(report, "flip_tex_coords").unwrap_or(is_obj);
-        let mirrored = map.matrix3.determinant() < 0.0;
+        let over = plugin.boolean(report, "flip_tex_coords").unwrap_or(is_obj);
+        let mirrored = to_world.matrix3.determinant() < 0.0;
         let input = self.input;
         let colored = self.has_texture(plugin, &["mesh_attribute"]);
-        let leaning = !is_obj && self.is_leaning(plugin);
+        let leaning = !is_obj && self.has_normal_map(plugin);
         let turns = [
             (flat, "#flat"),
             (mirrored, "#mirrored"),
@@ -252,7 +256,7 @@ impl Reader<'_> {
         ];
         let whole = number.map_or(path.clone(), |number| format!("{path}#{number}"));
         let key = turns.iter().filter(|turn| turn.0).fold(whole, |key, turn| key + turn.1);
-        self.mesh(plugin, &key, map, || {
+        self.mesh(plugin, &key, to_world, || {
             let mut data = match number {
                 Some(number) => serialized::mesh(input, report, (&path, at), number)?,
                 None => mesh_file(input, report, &path, at)?,
@@ -280,19 +284,19 @@ impl Reader<'_> {
             }
             data.flat = flat;
             if leaning && data.triangle_uvs.len() == data.triangles.len() {
-                data = solid::with_tangents(data);
+                data = tessellate::with_tangents(data);
             }
-            Some(if over { solid::turned_over(data) } else { data })
+            Some(if over { tessellate::with_flipped_v(data) } else { data })
         })
     }
 
     /// Builds tubes for a curve file.
-    fn curves(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(ObjectKind, DAffine3)> {
+    fn curves(&mut self, plugin: &Plugin, to_world: DAffine3) -> Option<(ObjectKind, DAffine3)> {
         let report = self.report;
         let (path, at) = self.path(plugin)?;
         let (input, is_spline) = (self.input, plugin.kind == "bsplinecurve");
         let key = if is_spline { path.clone() } else { format!("{path}#linear") };
-        self.mesh(plugin, &key, map, || curve::tubes(input, report, (&path, at), is_spline))
+        self.mesh(plugin, &key, to_world, || curve::tubes(input, report, (&path, at), is_spline))
     }
 
     /// Returns a mesh with v downwards, and its transform.
@@ -300,22 +304,22 @@ impl Reader<'_> {
         &mut self,
         plugin: &Plugin,
         name: &str,
-        map: DAffine3,
+        to_world: DAffine3,
         make: impl FnOnce() -> Option<MeshData>,
     ) -> Option<(ObjectKind, DAffine3)> {
         let flipped = self.is_flipped(plugin);
         let name = format!("{name}{}", if flipped { "#flipped" } else { "" });
         let data = match self.meshes.get(&name) {
-            Some(known) => known.clone(),
+            Some(cached) => cached.clone(),
             None => {
                 let data = make().filter(|data| !data.triangles.is_empty()).map(|data| {
                     let flat = data.flat;
-                    Arc::new(MeshData { flat, ..solid::turned_over(data).oriented(flipped) })
+                    Arc::new(MeshData { flat, ..tessellate::with_flipped_v(data).oriented(flipped) })
                 });
                 self.meshes.insert(name.clone(), data.clone());
                 data
             }
         };
-        Some((self.scene.add_mesh(&name, data?, plugin.at), map))
+        Some((self.scene.add_mesh(&name, data?, plugin.at), to_world))
     }
 }

@@ -33,15 +33,15 @@ const LEVEL: [[f32; 5]; 4] = [
 ];
 
 /// Interpolates the table bilinearly.
-fn level(turbidity: f32, height: f32) -> f32 {
-    let ((i, a), (j, b)) = (place(&TURBIDITIES, turbidity), place(&HEIGHTS, height));
+fn illuminance(turbidity: f32, height: f32) -> f32 {
+    let ((i, a), (j, b)) = (interval(&TURBIDITIES, turbidity), interval(&HEIGHTS, height));
     let row = |i: usize| LEVEL[i][j] + b * (LEVEL[i][j + 1] - LEVEL[i][j]);
     row(i) + a * (row(i + 1) - row(i))
 }
 
 /// Finds the interval of an ascending list that contains `x`; returns its index and the fraction
 /// within it.
-fn place(steps: &[f32], x: f32) -> (usize, f32) {
+fn interval(steps: &[f32], x: f32) -> (usize, f32) {
     let x = x.clamp(steps[0], steps[steps.len() - 1]);
     let i = steps[1..steps.len() - 1].iter().take_while(|step| **step < x).count();
     (i, (x - steps[i]) / (steps[i + 1] - steps[i]))
@@ -51,7 +51,7 @@ impl Reader<'_> {
     /// Adds a clear sky, the sun, or both.
     pub(super) fn daylight(&mut self, plugin: &Plugin, to_world: DAffine3) {
         let report = self.report;
-        let number = |name, usual: f32| plugin.number(report, name).unwrap_or(usual);
+        let number = |name, default: f32| plugin.number(report, name).unwrap_or(default);
         let turbidity = number("turbidity", 3.0);
         let all = number("scale", 1.0);
         let [sky_scale, sun_scale] = ["sky_scale", "sun_scale"].map(|name| (all * number(name, 1.0)).max(0.0));
@@ -63,25 +63,32 @@ impl Reader<'_> {
         };
         let way = match plugin.vector(report, "sun_direction") {
             Some(way) => up * to_world.matrix3.inverse() * way,
-            None => self.way_by_time(plugin).as_dvec3(),
+            None => self.sun_direction_by_time(plugin).as_dvec3(),
         };
-        plugin.known(&["sun_aperture", "sun_radius_scale", "resolution", "stretch", "sampling_weight", "complex_sun"]);
-        plugin.left_out(report, &["albedo"], "the ground's albedo is 0.2");
-        plugin.finish(report);
-        report.once(
+        plugin.mark_known(&[
+            "sun_aperture",
+            "sun_radius_scale",
+            "resolution",
+            "stretch",
+            "sampling_weight",
+            "complex_sun",
+        ]);
+        plugin.warn_unsupported(report, &["albedo"], "the ground's albedo is 0.2");
+        plugin.warn_unused(report);
+        report.unsupported_once(
             plugin.at,
             "the sky of Hosek and Wilkie has no counterpart: Preetham's is used, with the same illuminance",
         );
         let Some(way) = way.try_normalize().filter(|way| way.y > 0.0) else {
-            return report.once(plugin.at, "the sun is below the horizon: this light is left out");
+            return report.unsupported_once(plugin.at, "the sun is below the horizon: this light is left out");
         };
         let sky = Sky::new(way.as_vec3(), turbidity);
         let to_world = to_world * DAffine3::from_mat3(up.transpose());
         if plugin.kind != "sun" && sky_scale > 0.0 {
-            let found = PI * sky.mean_on_horizontal().dot(LUMINANCE);
+            let measured = PI * sky.mean_on_horizontal().dot(LUMINANCE);
             let height = fp::asin_f64(way.y).to_degrees() as f32;
-            let scale = sky_scale * level(turbidity, height) / found.max(1.0) / LUMENS;
-            self.far(InfiniteLight::Sky { sky, at: plugin.at, scale, to_world });
+            let scale = sky_scale * illuminance(turbidity, height) / measured.max(1.0) / LUMENS;
+            self.set_infinite_light(InfiniteLight::Sky { sky, at: plugin.at, scale, to_world });
         }
         if plugin.kind != "sky" && sun_scale > 0.0 {
             let direction = -to_world.transform_vector3(way).normalize_or(DVec3::Y).as_vec3();
@@ -93,13 +100,13 @@ impl Reader<'_> {
     }
 
     /// Returns the direction to the sun from location, date and time.
-    fn way_by_time(&self, plugin: &Plugin) -> Vec3 {
-        let number = |name, usual: f32| f64::from(plugin.number(self.report, name).unwrap_or(usual));
+    fn sun_direction_by_time(&self, plugin: &Plugin) -> Vec3 {
+        let number = |name, default: f32| f64::from(plugin.number(self.report, name).unwrap_or(default));
         let date = [number("year", 2010.0), number("month", 7.0), number("day", 10.0)].map(|x| x as i32);
         let hours = number("hour", 15.0) + number("minute", 0.0) / 60.0 + number("second", 0.0) / 3600.0;
         let moment = Moment { date, hours, zone: number("timezone", 9.0) };
         if !(moment.exists() && (-9999..=9999).contains(&date[0])) {
-            self.report.bad(plugin.at, "this date does not exist");
+            self.report.error(plugin.at, "this date does not exist");
             return Vec3::Y;
         }
         almanac::direction(almanac::sun([number("latitude", 35.689), number("longitude", 139.6917)], &moment))
@@ -112,8 +119,11 @@ mod tests {
 
     #[test]
     fn illuminance_is_linear_between_table_entries() {
-        assert_eq!((level(3.0, 20.0), level(1.0, 0.0), level(10.0, 90.0)), (12653.0, 6175.0, 38652.0));
-        assert_eq!(level(4.0, 40.0), 0.5 * (16295.0 + 23228.0));
-        assert_eq!(level(2.0, 50.0), 0.5 * (14080.0 + 15241.0));
+        assert_eq!(
+            (illuminance(3.0, 20.0), illuminance(1.0, 0.0), illuminance(10.0, 90.0)),
+            (12653.0, 6175.0, 38652.0)
+        );
+        assert_eq!(illuminance(4.0, 40.0), 0.5 * (16295.0 + 23228.0));
+        assert_eq!(illuminance(2.0, 50.0), 0.5 * (14080.0 + 15241.0));
     }
 }

@@ -3,11 +3,11 @@
 use super::defs::{InfiniteLight, MaterialDef};
 use super::load::Loader;
 use super::plugin::{Key, Plugin, Property, Value};
-use crate::bodies::join_bodies;
-use crate::model::Input;
+use crate::emitters_only;
+use crate::glass_bodies::join_bodies;
+use crate::model::ReadInput;
 use crate::pictures::Pictures;
 use crate::shared_report::{SharedReport, suggest};
-use crate::unscattered;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::scene::{Group, Object, Scene};
 use durer_scene::shape::MeshData;
@@ -16,18 +16,18 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 /// Maximum depth of nested plugins, counting references.
-pub(super) const DEEPEST: u32 = 32;
+pub(super) const MAX_DEPTH: u32 = 32;
 
 /// Reader that converts the plugins of a Mitsuba scene to a Dürer scene.
 pub(super) struct Reader<'a> {
-    pub input: &'a Input<'a>,
+    pub input: &'a ReadInput<'a>,
     pub report: &'a SharedReport,
     pub loader: Loader<'a>,
     /// Converted materials by plugin; the flag is true if their shape is turned inside out.
     pub materials: BTreeMap<(Key, bool), Rc<MaterialDef>>,
     /// Material indices in the scene, by the plugins of the material, the light and the interior
     /// medium. The flag is true if the shape is turned inside out.
-    pub numbers: BTreeMap<([Option<Key>; 3], bool), Option<u32>>,
+    pub material_indices: BTreeMap<([Option<Key>; 3], bool), Option<u32>>,
     /// Meshes by file name and by the changes made to them.
     pub meshes: BTreeMap<String, Option<Arc<MeshData>>>,
     /// Contents of shape groups, with their number of objects.
@@ -42,13 +42,13 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    pub fn new(input: &'a Input<'a>, report: &'a SharedReport, loader: Loader<'a>) -> Self {
+    pub fn new(input: &'a ReadInput<'a>, report: &'a SharedReport, loader: Loader<'a>) -> Self {
         Reader {
             input,
             report,
             loader,
             materials: BTreeMap::new(),
-            numbers: BTreeMap::new(),
+            material_indices: BTreeMap::new(),
             meshes: BTreeMap::new(),
             groups: BTreeMap::new(),
             inside_out: false,
@@ -61,12 +61,12 @@ impl<'a> Reader<'a> {
     /// Converts all plugins to a scene.
     pub fn read(mut self, all: &Plugin) -> Scene {
         let mut sensors = Vec::new();
-        for (property, plugin) in self.parts(all, None) {
+        for (property, plugin) in self.child_plugins(all, None) {
             if self.report.is_full() {
                 break;
             }
             property.used.set(true);
-            match plugin.class.as_str() {
+            match plugin.element.as_str() {
                 "shape" => {
                     let mut objects = Vec::new();
                     self.shape(&plugin, &mut objects, 0);
@@ -81,10 +81,10 @@ impl<'a> Reader<'a> {
             }
         }
         self.camera(&sensors);
-        self.surround();
+        self.set_environment();
         join_bodies(&mut self.scene, self.input.name);
         if self.emitters_only {
-            unscattered::blacken(&mut self.scene);
+            emitters_only::blacken(&mut self.scene);
         }
         if self.scene.root.is_none() && !self.report.has_errors() {
             let at = Span { end: all.at.start, ..all.at };
@@ -104,16 +104,16 @@ impl<'a> Reader<'a> {
         };
         let parts = |plugin: &Plugin| -> Vec<Rc<Plugin>> {
             let parts = plugin.properties.iter().filter_map(part);
-            parts.filter(|part| classes.contains(&part.class.as_str())).collect()
+            parts.filter(|part| classes.contains(&part.element.as_str())).collect()
         };
-        let (mut seen, mut found, mut left) = (HashSet::new(), Vec::new(), parts(plugin));
+        let (mut seen, mut plugins, mut left) = (HashSet::new(), Vec::new(), parts(plugin));
         while let Some(part) = left.pop() {
             if seen.insert(part.key()) {
                 left.extend(parts(&part));
-                found.push(part);
+                plugins.push(part);
             }
         }
-        found
+        plugins
     }
 
     /// Returns a reader for pictures that the scene names.
@@ -122,56 +122,56 @@ impl<'a> Reader<'a> {
     }
 
     /// Returns the child plugins in file order; `class` selects one class.
-    pub fn parts<'p>(&self, plugin: &'p Plugin, class: Option<&str>) -> Vec<(&'p Property, Rc<Plugin>)> {
-        let found = plugin.properties.iter().filter_map(|property| {
-            let part = self.part(property)?;
-            class.is_none_or(|class| part.class == class).then_some((property, part))
+    pub fn child_plugins<'p>(&self, plugin: &'p Plugin, class: Option<&str>) -> Vec<(&'p Property, Rc<Plugin>)> {
+        let plugins = plugin.properties.iter().filter_map(|property| {
+            let part = self.child_plugin(property)?;
+            class.is_none_or(|class| part.element == class).then_some((property, part))
         });
-        found.inspect(|(property, _)| property.used.set(true)).collect()
+        plugins.inspect(|(property, _)| property.used.set(true)).collect()
     }
 
     /// Returns the plugin that is the value of a named property.
-    pub fn named_part(&self, plugin: &Plugin, name: &'static str) -> Option<Rc<Plugin>> {
-        plugin.get(name).and_then(|property| self.part(property))
+    pub fn named_plugin(&self, plugin: &Plugin, name: &'static str) -> Option<Rc<Plugin>> {
+        plugin.get(name).and_then(|property| self.child_plugin(property))
     }
 
     /// Returns the plugin that is the value of a property.
-    pub fn part(&self, property: &Property) -> Option<Rc<Plugin>> {
+    pub fn child_plugin(&self, property: &Property) -> Option<Rc<Plugin>> {
         match &property.value {
             Value::Plugin(plugin) => Some(plugin.clone()),
             Value::Ref(id) => {
-                let found = self.loader.plugins.get(id).cloned();
-                if found.is_none() {
+                let plugins = self.loader.plugins.get(id).cloned();
+                if plugins.is_none() {
                     let help = suggest(id, self.loader.plugins.keys().map(String::as_str));
                     let message = format!("no plugin has the id `{id}`");
                     if !property.used.replace(true) {
-                        self.report.bad_with(property.at, message, help);
+                        self.report.error_with_help(property.at, message, help);
                     }
                 }
-                found
+                plugins
             }
             _ => None,
         }
     }
 
-    /// Returns true and reports an error if plugins are nested more than [`DEEPEST`] levels deep,
+    /// Returns true and reports an error if plugins are nested more than [`MAX_DEPTH`] levels deep,
     /// for example because they refer to each other in a cycle.
     pub fn too_deep(&self, depth: u32, at: Span) -> bool {
-        if depth > DEEPEST {
+        if depth > MAX_DEPTH {
             self.report
-                .bad(at, format!("plugins are nested more than {DEEPEST} levels deep: does one refer to itself?"));
+                .error(at, format!("plugins are nested more than {MAX_DEPTH} levels deep: does one refer to itself?"));
         }
-        depth > DEEPEST
+        depth > MAX_DEPTH
     }
 
     /// Counts `more` objects; returns false and reports an error if the limit is exceeded.
-    pub fn room_for(&self, more: usize, at: Span) -> bool {
-        self.loader.growth.has_objects(more, self.report, at)
+    pub fn count_objects(&self, more: usize, at: Span) -> bool {
+        self.loader.limits.count_objects_or_report(more, self.report, at)
     }
 
     /// Adds an object to a list.
     pub fn add(&self, objects: &mut Vec<Object>, object: Object) {
-        if self.room_for(1, object.span) {
+        if self.count_objects(1, object.span) {
             objects.push(object);
         }
     }

@@ -15,53 +15,54 @@ use glam::DAffine3;
 /// Value of a Mitsuba texture plugin: a constant colour or a picture.
 #[derive(Clone)]
 pub(super) enum Texture {
-    Even(Color),
+    Constant(Color),
     /// Picture, the factor on its values, and true if its bytes are linear (`raw`).
     Picture(TextureImage, Color, bool),
 }
 
 impl Reader<'_> {
-    /// Returns the value of a property that may be a texture; `usual` is the default.
-    pub fn texture(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Texture {
-        plugin.get(name).map_or(Texture::Even(usual), |property| self.texture_of(property, usual))
+    /// Returns the value of a property that may be a texture; `default` is used if it is missing.
+    pub fn texture(&self, plugin: &Plugin, name: &'static str, default: Color) -> Texture {
+        plugin.get(name).map_or(Texture::Constant(default), |property| self.texture_of(property, default))
     }
 
     /// Returns the value of a property that may be a picture with values above 1. Such a picture is
     /// divided by its maximum. See [`Reader::texture`].
-    pub fn bright_texture(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Texture {
-        let bitmap = self.named_part(plugin, name).filter(|part| part.kind == "bitmap");
-        let Some(bitmap) = bitmap else { return self.texture(plugin, name, usual) };
-        let raw = bitmap.truth(self.report, "raw").unwrap_or(false);
+    pub fn bright_texture(&self, plugin: &Plugin, name: &'static str, default: Color) -> Texture {
+        let bitmap = self.named_plugin(plugin, name).filter(|part| part.kind == "bitmap");
+        let Some(bitmap) = bitmap else { return self.texture(plugin, name, default) };
+        let raw = bitmap.boolean(self.report, "raw").unwrap_or(false);
         let picture = self.bitmap_as(&bitmap, |name, at| self.pictures().eight_bits_scaled(name, at));
-        bitmap.finish(self.report);
-        picture.map_or(Texture::Even(usual), |(picture, scale)| Texture::Picture(picture, Vec3::splat(scale), raw))
+        bitmap.warn_unused(self.report);
+        picture
+            .map_or(Texture::Constant(default), |(picture, scale)| Texture::Picture(picture, Vec3::splat(scale), raw))
     }
 
     /// Returns the picture with sRGB encoding; converts it if its bytes are linear (`raw`).
-    pub fn without_curve(&self, picture: TextureImage, raw: bool, at: Span) -> TextureImage {
-        if raw { self.pictures().recoded(&picture, at, true, |x| x).unwrap_or(picture) } else { picture }
+    pub fn srgb_encoded(&self, picture: TextureImage, raw: bool, at: Span) -> TextureImage {
+        if raw { self.pictures().reencoded(&picture, at, true, |x| x).unwrap_or(picture) } else { picture }
     }
 
-    fn texture_of(&self, property: &Property, usual: Color) -> Texture {
+    fn texture_of(&self, property: &Property, default: Color) -> Texture {
         if let Some(color) = self.reflectance(property) {
-            return Texture::Even(color);
+            return Texture::Constant(color);
         }
-        let Some(texture) = self.part(property) else {
+        let Some(texture) = self.child_plugin(property) else {
             if !matches!(property.value, super::plugin::Value::Ref(_)) {
-                self.report.bad(property.at, format!("`{}` must be a colour or a texture", property.name));
+                self.report.error(property.at, format!("`{}` must be a colour or a texture", property.name));
             }
-            return Texture::Even(usual);
+            return Texture::Constant(default);
         };
-        let made = match texture.kind.as_str() {
+        let value = match texture.kind.as_str() {
             "bitmap" => {
-                let raw = texture.truth(self.report, "raw").unwrap_or(false);
+                let raw = texture.boolean(self.report, "raw").unwrap_or(false);
                 self.bitmap(&texture).map(|picture| Texture::Picture(picture, Vec3::ONE, raw))
             }
             "checkerboard" => Some(self.checkerboard(&texture, [("color0", 0.4), ("color1", 0.2)])),
             // Vertex colours multiply the material's colour.
             "mesh_attribute" if texture.text(self.report, "name").is_some_and(|name| name == "vertex_color") => {
-                texture.known(&["scale"]);
-                Some(Texture::Even(Vec3::ONE))
+                texture.mark_known(&["scale"]);
+                Some(Texture::Constant(Vec3::ONE))
             }
             other => {
                 let message = format!("the texture `{other}` has no counterpart: the default value is used");
@@ -69,54 +70,58 @@ impl Reader<'_> {
                 let known = known.into_iter().filter(|word| *word != other);
                 let warning = durer_diag::Diagnostic::warning(message).code("NO_COUNTERPART").at(texture.at);
                 self.report.push(durer_diag::Diagnostic { help: suggest(other, known), ..warning });
-                return Texture::Even(usual);
+                return Texture::Constant(default);
             }
         };
-        texture.finish(self.report);
-        made.unwrap_or(Texture::Even(usual))
+        texture.warn_unused(self.report);
+        value.unwrap_or(Texture::Constant(default))
     }
 
     /// Returns the colour of a property, and the picture that it multiplies.
-    pub fn colored(&mut self, plugin: &Plugin, name: &'static str, usual: f32) -> (Color, Option<FileName>) {
-        match self.texture(plugin, name, Vec3::splat(usual)) {
-            Texture::Even(color) => {
+    pub fn color_or_texture(&mut self, plugin: &Plugin, name: &'static str, default: f32) -> (Color, Option<FileName>) {
+        match self.texture(plugin, name, Vec3::splat(default)) {
+            Texture::Constant(color) => {
                 if color.min_element() < 0.0 {
-                    self.report.once(plugin.place(name), format!("a negative `{name}` has no counterpart: 0 is used"));
+                    self.report.unsupported_once(
+                        plugin.span(name),
+                        format!("a negative `{name}` has no counterpart: 0 is used"),
+                    );
                 }
                 (color.max(Vec3::ZERO), None)
             }
             Texture::Picture(picture, scale, raw) => {
-                let picture = self.without_curve(picture, raw, plugin.place(name));
-                (scale, Some(asset(&mut self.scene, picture, plugin.place(name))))
+                let picture = self.srgb_encoded(picture, raw, plugin.span(name));
+                (scale, Some(asset(&mut self.scene, picture, plugin.span(name))))
             }
         }
     }
 
     /// Returns a number that may be a texture: `change` applied to the number, or 1 and the changed
     /// picture.
-    pub fn pictured(
+    pub fn number_or_texture(
         &mut self,
         plugin: &Plugin,
         name: &'static str,
-        usual: f32,
+        default: f32,
         change: impl Fn(f32) -> f32,
     ) -> (f32, Option<FileName>) {
-        match plugin.get(name).and_then(|property| self.numbers(property, &change)) {
+        match plugin.get(name).and_then(|property| self.number_texture(property, &change)) {
             Some(picture) => (1.0, Some(picture)),
-            None => (change(self.value(plugin, name, usual)), None),
+            None => (change(self.value(plugin, name, default)), None),
         }
     }
 
     /// Returns the picture of a property with `change` applied to its luminance; `None` if the
     /// property is not a picture.
-    pub fn numbers(&mut self, property: &Property, change: impl Fn(f32) -> f32) -> Option<FileName> {
-        let fields = self.part(property).filter(|part| part.class == "texture" && part.kind == "checkerboard");
+    pub fn number_texture(&mut self, property: &Property, change: impl Fn(f32) -> f32) -> Option<FileName> {
+        let fields =
+            self.child_plugin(property).filter(|part| part.element == "texture" && part.kind == "checkerboard");
         let texture = match fields {
             // Mitsuba swaps the two colours of a checkerboard when it is used as a number.
             Some(fields) => {
-                let made = self.checkerboard(&fields, [("color1", 0.2), ("color0", 0.4)]);
-                fields.finish(self.report);
-                made
+                let value = self.checkerboard(&fields, [("color1", 0.2), ("color0", 0.4)]);
+                fields.warn_unused(self.report);
+                value
             }
             None => self.texture_of(property, Vec3::ZERO),
         };
@@ -129,19 +134,20 @@ impl Reader<'_> {
     }
 
     /// Returns a number that may be a texture; for a picture, its mean.
-    pub fn value(&self, plugin: &Plugin, name: &'static str, usual: f32) -> f32 {
-        let color = self.color(plugin, name, Vec3::splat(usual));
+    pub fn value(&self, plugin: &Plugin, name: &'static str, default: f32) -> f32 {
+        let color = self.color(plugin, name, Vec3::splat(default));
         color.dot(LUMINANCE)
     }
 
     /// Returns a colour that may be a texture; for a picture, its mean.
-    pub fn color(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Color {
-        match self.texture(plugin, name, usual) {
-            Texture::Even(color) => color,
+    pub fn color(&self, plugin: &Plugin, name: &'static str, default: Color) -> Color {
+        match self.texture(plugin, name, default) {
+            Texture::Constant(color) => color,
             Texture::Picture(picture, scale, _) => {
-                let at = plugin.place(name);
-                self.report.once(at, format!("a picture for `{name}` has no counterpart: its mean is used"));
-                self.pictures().mean(&picture, at).map_or(usual, |mean| mean * scale)
+                let at = plugin.span(name);
+                self.report
+                    .unsupported_once(at, format!("a picture for `{name}` has no counterpart: its mean is used"));
+                self.pictures().mean(&picture, at).map_or(default, |mean| mean * scale)
             }
         }
     }
@@ -160,18 +166,18 @@ impl Reader<'_> {
     ) -> Option<(TextureImage, f32)> {
         let report = self.report;
         let Some(name) = texture.text(report, "filename") else {
-            report.bad(texture.at, "a `bitmap` needs a `filename`");
+            report.error(texture.at, "a `bitmap` needs a `filename`");
             return None;
         };
         let mut mapping = self.mapping(texture);
-        let word = |name, usual: &str| texture.text(report, name).unwrap_or(usual.into());
+        let word = |name, default: &str| texture.text(report, name).unwrap_or(default.into());
         mapping.wrap = match word("wrap_mode", "repeat").as_str() {
             "repeat" => [Wrap::Repeat; 2],
             "mirror" => [Wrap::Mirror; 2],
             "clamp" => [Wrap::Clamp; 2],
             other => {
                 let help = suggest(other, ["repeat", "mirror", "clamp"]);
-                report.bad_with(texture.place("wrap_mode"), format!("unknown wrap mode `{other}`"), help);
+                report.error_with_help(texture.span("wrap_mode"), format!("unknown wrap mode `{other}`"), help);
                 return None;
             }
         };
@@ -181,14 +187,14 @@ impl Reader<'_> {
             "nearest" => true,
             other => {
                 let help = suggest(other, ["bilinear", "nearest"]);
-                report.bad_with(texture.place("filter_type"), format!("unknown filter `{other}`"), help);
+                report.error_with_help(texture.span("filter_type"), format!("unknown filter `{other}`"), help);
                 return None;
             }
         };
-        texture.known(&["raw", "accel", "format"]);
+        texture.mark_known(&["raw", "accel", "format"]);
         // In Mitsuba, a picture's alpha does not cut holes; only `mask` does.
         mapping.cutoff = Some(0.0);
-        let (bytes, scale) = make(&self.loader.path(&name), texture.place("filename"))?;
+        let (bytes, scale) = make(&self.loader.path(&name), texture.span("filename"))?;
         Some((TextureImage { bytes, mapping }, scale))
     }
 
@@ -196,13 +202,14 @@ impl Reader<'_> {
     /// Dürer's pictures.
     fn mapping(&self, texture: &Plugin) -> Mapping {
         let report = self.report;
-        let mut map = texture.map(report, "to_uv");
-        let old = |name, usual: f32| f64::from(texture.number(report, name).unwrap_or(usual));
+        let mut transform = texture.transform(report, "to_uv");
+        let old = |name, default: f32| f64::from(texture.number(report, name).unwrap_or(default));
         // Parameters from Mitsuba 0.6.
         let scale = glam::DVec3::new(old("uscale", 1.0), old("vscale", 1.0), 1.0);
-        map *= DAffine3::from_scale(scale);
-        map.translation += glam::DVec3::new(old("uoffset", 0.0), old("voffset", 0.0), 0.0);
-        let [x, y, t] = [map.matrix3.x_axis, map.matrix3.y_axis, map.translation].map(|v| v.as_vec3());
+        transform *= DAffine3::from_scale(scale);
+        transform.translation += glam::DVec3::new(old("uoffset", 0.0), old("voffset", 0.0), 0.0);
+        let [x, y, t] =
+            [transform.matrix3.x_axis, transform.matrix3.y_axis, transform.translation].map(|v| v.as_vec3());
         Mapping { transform: [[x.x, y.x, t.x], [x.y, y.y, t.y]], ..Mapping::default() }
     }
 
@@ -210,20 +217,20 @@ impl Reader<'_> {
     /// square is at the origin.
     fn checkerboard(&self, texture: &Plugin, fields: [(&'static str, f32); 2]) -> Texture {
         let mapping = Mapping { nearest: true, ..self.mapping(texture) };
-        let [one, other] = fields.map(|(name, usual)| {
-            let made = self.texture(texture, name, Vec3::splat(usual));
-            if matches!(made, Texture::Picture(..)) {
-                let at: Span = texture.place(name);
-                self.report.once(at, "a picture in a field has no counterpart: the default colour is used");
+        let [one, other] = fields.map(|(name, default)| {
+            let field = self.texture(texture, name, Vec3::splat(default));
+            if matches!(field, Texture::Picture(..)) {
+                let at: Span = texture.span(name);
+                self.report.unsupported_once(at, "a picture in a field has no counterpart: the default colour is used");
             }
-            match made {
-                Texture::Even(color) => color,
-                Texture::Picture(..) => Vec3::splat(usual),
+            match field {
+                Texture::Constant(color) => color,
+                Texture::Picture(..) => Vec3::splat(default),
             }
         });
         match checkerboard(one, other) {
             Some((bytes, most)) => Texture::Picture(TextureImage { bytes, mapping }, Vec3::splat(most), false),
-            None => Texture::Even(0.5 * (one + other)),
+            None => Texture::Constant(0.5 * (one + other)),
         }
     }
 }

@@ -7,22 +7,22 @@ use durer_scene::math::fp;
 use durer_scene::scene::MatrixOp;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 
-const KNOWN: [&str; 6] = ["translate", "rotate", "scale", "matrix", "lookat", "lookAt"];
+const TRANSFORMS: [&str; 6] = ["translate", "rotate", "scale", "matrix", "lookat", "lookAt"];
 
 impl Loader<'_> {
     /// Reads a `<transform>` element as one affine matrix.
     pub(super) fn transform(&mut self, xml: &mut Xml) -> Result<DAffine3, ErrorReported> {
-        let mut map = DAffine3::IDENTITY;
+        let mut transform = DAffine3::IDENTITY;
         while let Some(tag) = self.next_leaf(xml)? {
             let Some(step) = step(self, &tag) else { continue };
-            map = step * map;
-            let finite = |map: &DAffine3| map.to_cols_array().iter().all(|x| (*x as f32).is_finite());
-            if !finite(&map) || map.matrix3.determinant() == 0.0 || !finite(&map.inverse()) {
-                self.bad(tag.at, "this makes the transform not invertible", None);
-                map = DAffine3::IDENTITY;
+            transform = step * transform;
+            let finite = |transform: &DAffine3| transform.to_cols_array().iter().all(|x| (*x as f32).is_finite());
+            if !finite(&transform) || transform.matrix3.determinant() == 0.0 || !finite(&transform.inverse()) {
+                self.error(tag.at, "this makes the transform not invertible", None);
+                transform = DAffine3::IDENTITY;
             }
         }
-        Ok(map)
+        Ok(transform)
     }
 }
 
@@ -71,7 +71,7 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
             let [angle] = loader.numbers(&loader.attribute(tag, "angle")?)?;
             let axis = loader.triple(tag, 0.0)?;
             if axis == DVec3::ZERO {
-                loader.bad(tag.at, "a rotation needs an axis, for example `x=\"1\"`", None);
+                loader.error(tag.at, "a rotation needs an axis, for example `x=\"1\"`", None);
                 return None;
             }
             let turned = MatrixOp::Rotate(axis.normalize().as_vec3(), angle as f32).matrix();
@@ -87,13 +87,13 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
                 Some(nine) if nine.len() == 9 => Some(DAffine3::from_mat3(DMat3::from_cols_slice(nine).transpose())),
                 Some(all) if all.len() == 16 => {
                     if all[12..] != [0.0, 0.0, 0.0, 1.0] {
-                        loader.bad(attribute.1, "the last row of a matrix must be 0 0 0 1", None);
+                        loader.error(attribute.1, "the last row of a matrix must be 0 0 0 1", None);
                         return None;
                     }
                     Some(DAffine3::from_mat4(DMat4::from_cols_slice(all).transpose()))
                 }
                 _ => {
-                    loader.bad(attribute.1, "a matrix needs 16 numbers, or 9", None);
+                    loader.error(attribute.1, "a matrix needs 16 numbers, or 9", None);
                     None
                 }
             }
@@ -107,7 +107,7 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
             let up = if up == DVec3::ZERO { frame(forward.unwrap_or(DVec3::Z)).x_axis } else { up };
             let left = forward.and_then(|forward| up.cross(forward).try_normalize());
             let (Some(forward), Some(left)) = (forward, left) else {
-                loader.bad(
+                loader.error(
                     tag.at,
                     "the direction from `origin` to `target` must have a length and not be along `up`",
                     None,
@@ -118,7 +118,7 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
             Some(DAffine3 { matrix3: axes, translation: origin })
         }
         other => {
-            loader.bad(tag.at, format!("a transform has no `<{other}>`"), suggest(other, KNOWN));
+            loader.error(tag.at, format!("a transform has no `<{other}>`"), suggest(other, TRANSFORMS));
             None
         }
     }

@@ -1,9 +1,9 @@
 //! Reads the faces of a Wavefront file after all vertices have been read.
 
-use super::{Counts, Statement, Switches, counts, statement, words::Words};
+use super::{Counts, StateChanges, Statement, counts, statement, words::Words};
 use crate::number::parse_integer;
-use crate::polygon::Cutter;
-use crate::report::{Report, counted, shown};
+use crate::polygon::Triangulator;
+use crate::report::{Report, count_text, quoted};
 use durer_scene::math::Vec3;
 use durer_scene::shape::mesh::{MeshData, NO_INDEX};
 use rayon::prelude::*;
@@ -19,7 +19,7 @@ const KINDS: [(&str, &str, &str); 3] =
 /// Triangles read from one part of a Wavefront file, with the state changes and diagnostics.
 struct Faces {
     mesh: MeshData,
-    switches: Switches,
+    switches: StateChanges,
     /// Byte range of the first face that uses a vertex twice, and the number of such faces.
     degenerate: Option<(Range<usize>, usize)>,
     report: Report,
@@ -32,7 +32,7 @@ pub(super) fn read_faces(
     parts: &[Range<usize>],
     before: &[Counts],
     mesh: &mut MeshData,
-    switches: &mut Switches,
+    switches: &mut StateChanges,
     report: &mut Report,
 ) {
     let read = |(part, so_far): (&Range<usize>, &Counts)| faces(bytes, part.clone(), *so_far, mesh, report.part());
@@ -52,7 +52,7 @@ pub(super) fn read_faces(
                 all.extend(own);
             }
         }
-        let Switches { materials, groups } = part.switches;
+        let StateChanges { materials, groups } = part.switches;
         switches.materials.extend(materials.into_iter().map(|(triangle, at)| (first + triangle, at)));
         switches.groups.extend(groups.into_iter().map(|(triangle, group)| (first + triangle, group)));
         report.join(part.report);
@@ -70,46 +70,46 @@ pub(super) fn read_faces(
     }
     if let Some((first, count)) = degenerate {
         let verb = if count == 1 { "uses" } else { "use" };
-        report.note(first, format!("{} {verb} a vertex twice; the first is here", counted(count, "face", "faces")));
+        report.note(first, format!("{} {verb} a vertex twice; the first is here", count_text(count, "face", "faces")));
     }
 }
 
 /// Reads the faces of one part of the file.
-fn faces(bytes: &[u8], part: Range<usize>, so_far: Counts, whole: &MeshData, report: Report) -> Faces {
+fn faces(bytes: &[u8], part: Range<usize>, before: Counts, whole: &MeshData, report: Report) -> Faces {
     let mut reader = FaceReader {
         bytes,
         total: counts(whole),
-        so_far,
+        before,
         positions: &whole.positions,
         corners: Vec::new(),
-        cutter: Cutter::new(part.len()),
-        found: Faces { mesh: MeshData::default(), switches: Switches::default(), degenerate: None, report },
+        triangulator: Triangulator::new(part.len()),
+        faces: Faces { mesh: MeshData::default(), switches: StateChanges::default(), degenerate: None, report },
     };
     let mut words = Words::within(bytes, part);
     while let Some(keyword) = words.next_statement() {
         match statement(&bytes[keyword.clone()]) {
-            Some(Statement::Position) => reader.so_far[0] += 1,
-            Some(Statement::Uv) => reader.so_far[1] += 1,
-            Some(Statement::Normal) => reader.so_far[2] += 1,
+            Some(Statement::Position) => reader.before[0] += 1,
+            Some(Statement::Uv) => reader.before[1] += 1,
+            Some(Statement::Normal) => reader.before[2] += 1,
             Some(Statement::Face) => reader.face(keyword, &mut words),
             Some(Statement::Material) => {
                 let name = rest_of(&mut words, keyword.end);
-                reader.found.switches.materials.push((reader.found.mesh.triangles.len(), name));
+                reader.faces.switches.materials.push((reader.faces.mesh.triangles.len(), name));
             }
             Some(Statement::Smoothing) => {
                 // `off` does not parse and means group 0.
                 let word = words.next_word().map_or(&[][..], |word| &bytes[word]);
                 let group = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()).unwrap_or(0);
-                reader.found.switches.groups.push((reader.found.mesh.triangles.len(), group));
+                reader.faces.switches.groups.push((reader.faces.mesh.triangles.len(), group));
             }
             Some(Statement::Line | Statement::Point | Statement::Library | Statement::Ignored) | None => {}
         }
         words.skip();
-        if reader.found.report.is_full() {
+        if reader.faces.report.is_full() {
             break;
         }
     }
-    reader.found
+    reader.faces
 }
 
 /// Returns the rest of a statement as one range, since names may contain spaces.
@@ -126,31 +126,31 @@ struct FaceReader<'a> {
     /// Number of vertices, texture coordinates and normals in the whole file.
     total: Counts,
     /// Number of each before the current statement.
-    so_far: Counts,
+    before: Counts,
     positions: &'a [Vec3],
     corners: Vec<Corner>,
-    cutter: Cutter,
-    found: Faces,
+    triangulator: Triangulator,
+    faces: Faces,
 }
 
 impl FaceReader<'_> {
     fn face(&mut self, keyword: Range<usize>, words: &mut Words) {
         self.corners.clear();
         let mut all_good = true;
-        let mut written = 0;
+        let mut count = 0;
         let mut place = keyword;
         while let Some(word) = words.next_word() {
             place.end = word.end;
-            written += 1;
+            count += 1;
             match self.corner(word) {
                 Some(corner) => self.corners.push(corner),
-                None if self.found.report.is_full() => return,
+                None if self.faces.report.is_full() => return,
                 None => all_good = false,
             }
         }
-        if written < 3 {
-            let message = format!("a face needs at least 3 corners, found {written}");
-            self.found.report.error(place, message).help = (written == 2).then(|| "a line is an `l` statement".into());
+        if count < 3 {
+            let message = format!("a face needs at least 3 corners, found {count}");
+            self.faces.report.error(place, message).help = (count == 2).then(|| "a line is an `l` statement".into());
         } else if all_good {
             self.note_degenerate(&place);
             self.cut(place);
@@ -166,16 +166,16 @@ impl FaceReader<'_> {
             let end = start + rest.iter().position(|&byte| byte == b'/').unwrap_or(rest.len());
             // All indices except the position may be empty.
             if end > start || part == 0 {
-                let counts = [self.total[part], self.so_far[part]];
-                *slot = index(self.bytes, start..end, part, counts, &mut self.found.report)?;
+                let counts = [self.total[part], self.before[part]];
+                *slot = index(self.bytes, start..end, part, counts, &mut self.faces.report)?;
             }
             if end == word.end {
                 return Some(corner);
             }
             start = end + 1;
         }
-        let message = format!("a corner has at most 3 indices, found {}", shown(&self.bytes[word.clone()]));
-        self.found.report.error(word, message).help =
+        let message = format!("a corner has at most 3 indices, found {}", quoted(&self.bytes[word.clone()]));
+        self.faces.report.error(word, message).help =
             Some("a corner is `vertex`, `vertex/texture`, `vertex//normal` or `vertex/texture/normal`".into());
         None
     }
@@ -185,15 +185,15 @@ impl FaceReader<'_> {
         let last = self.corners.len() - 1;
         let repeats = |i: usize| self.corners[i][0] == self.corners[if i == last { 0 } else { i + 1 }][0];
         if (0..=last).any(repeats) {
-            self.found.degenerate.get_or_insert((place.clone(), 0)).1 += 1;
+            self.faces.degenerate.get_or_insert((place.clone(), 0)).1 += 1;
         }
     }
 
     fn cut(&mut self, place: Range<usize>) {
-        let MeshData { triangles, triangle_uvs, triangle_normals, .. } = &mut self.found.mesh;
+        let MeshData { triangles, triangle_uvs, triangle_normals, .. } = &mut self.faces.mesh;
         let (positions, corners) = (self.positions, &self.corners);
         let position = |i: usize| positions[corners[i][0] as usize];
-        let cut = self.cutter.cut(corners.len(), position, |triangle| {
+        let cut = self.triangulator.triangulate(corners.len(), position, |triangle| {
             let indices = |part: usize| triangle.map(|i| corners[i][part]);
             let before = triangles.len();
             triangles.push(indices(0));
@@ -201,7 +201,7 @@ impl FaceReader<'_> {
             push_optional(triangle_normals, before, indices(2));
         });
         if cut.is_err() {
-            self.found
+            self.faces
                 .report
                 .error(place, format!("this face is too complex to triangulate ({} vertices)", corners.len()))
                 .help = Some("triangulate it in a modelling program".into());
@@ -222,8 +222,8 @@ pub(super) fn index(
     let (one, many, keyword) = KINDS[kind];
     let text = &bytes[at.clone()];
     let Some(index) = parse_integer(text) else {
-        let found = if text.is_empty() { "nothing".into() } else { shown(text) };
-        report.error(at, format!("expected the number of a {one}, found {found}"));
+        let actual = if text.is_empty() { "nothing".into() } else { quoted(text) };
+        report.error(at, format!("expected the number of a {one}, found {actual}"));
         return None;
     };
     if index > 0 && index <= total as i64 {
@@ -235,11 +235,11 @@ pub(super) fn index(
     if index == 0 {
         report.error(at, format!("{one} 0 does not exist: indices count from 1"));
     } else if index > 0 {
-        let message = format!("{one} {} does not exist: the file has {}", shown(text), counted(total, one, many));
+        let message = format!("{one} {} does not exist: the file has {}", quoted(text), count_text(total, one, many));
         report.error(at, message).help = (total == 0).then(|| format!("add `{keyword}` statements for {many}"));
     } else {
-        let before = counted(so_far, one, many);
-        report.error(at, format!("{} reaches back too far: {before} so far", shown(text)));
+        let before = count_text(so_far, one, many);
+        report.error(at, format!("{} reaches back too far: {before} so far", quoted(text)));
     }
     None
 }

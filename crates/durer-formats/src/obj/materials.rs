@@ -5,9 +5,9 @@
 
 use super::mtl::MtlMaterial;
 use super::words::Words;
-use crate::model::Input;
+use crate::model::ReadInput;
 use crate::number::parse_f32;
-use crate::report::shown;
+use crate::report::quoted;
 use crate::shared_report::NO_COUNTERPART;
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::describe::FileName;
@@ -30,7 +30,7 @@ pub(super) struct Library {
 /// Reads the files of an `mtllib` statement, which names one file with spaces in its name, or
 /// several files.
 pub(super) fn read_files(
-    input: &Input,
+    input: &ReadInput,
     names: &Range<usize>,
     span: Span,
     library: &mut Library,
@@ -38,27 +38,27 @@ pub(super) fn read_files(
 ) {
     let all = String::from_utf8_lossy(&input.bytes[names.clone()]).into_owned();
     let all = unquoted(&all).to_string();
-    let files = match found(input, &all, span) {
+    let files = match find_file(input, &all, span) {
         Some(whole) => vec![(all.clone(), Some(whole))],
         // Some programs escape spaces within a name with a backslash.
         None => {
             let names = all.replace("\\ ", "\0");
             let names = names.split_whitespace().map(|name| name.replace('\0', " "));
-            names.map(|name| (name.clone(), found(input, &name, span))).collect()
+            names.map(|name| (name.clone(), find_file(input, &name, span))).collect()
         }
     };
     for (name, file) in files {
         let bytes = file.and_then(|file| Some((input.source.read(&file.path).ok()?, file.path)));
         let Some((bytes, path)) = bytes else {
             let message =
-                format!("material file {} not found: its materials are shown in grey", shown(name.as_bytes()));
+                format!("material file {} not found: its materials are shown in grey", quoted(name.as_bytes()));
             diagnostics.push(Diagnostic::warning(message).code("missing-file").at(span));
             continue;
         };
         if bytes.len() < u32::MAX as usize {
             let file = input.files.borrow_mut().add_once(&path, &bytes);
-            let left_out = BTreeMap::new();
-            Reader { input, file, path: &path, library, left_out }.read(&bytes, diagnostics);
+            let ignored_keywords = BTreeMap::new();
+            Reader { input, file, path: &path, library, ignored_keywords }.read(&bytes, diagnostics);
         }
     }
 }
@@ -95,14 +95,14 @@ struct Word {
 
 /// Reads the statements of one `.mtl` file into a [`Library`].
 struct Reader<'a, 'i> {
-    input: &'a Input<'i>,
+    input: &'a ReadInput<'i>,
     /// Index of the file.
     file: u32,
     /// Name of the file.
     path: &'a str,
     library: &'a mut Library,
     /// Ignored keywords, with the span of the first use.
-    left_out: BTreeMap<String, Span>,
+    ignored_keywords: BTreeMap<String, Span>,
 }
 
 impl Reader<'_, '_> {
@@ -121,7 +121,7 @@ impl Reader<'_, '_> {
                     _ => String::new(),
                 };
                 let next = MtlMaterial { name, ..MtlMaterial::default() };
-                current.replace(next).into_iter().for_each(|written| self.finish(written));
+                current.replace(next).into_iter().for_each(|finished| self.finish(finished));
                 continue;
             }
             let Some(material) = &mut current else { continue };
@@ -131,9 +131,9 @@ impl Reader<'_, '_> {
                 diagnostics.push(Diagnostic::warning(message).code("bad-value").at(at));
             }
         }
-        current.into_iter().for_each(|written| self.finish(written));
-        if let Some(first) = self.left_out.values().copied().min_by_key(|span| span.start) {
-            let all: Vec<&str> = self.left_out.keys().map(String::as_str).collect();
+        current.into_iter().for_each(|finished| self.finish(finished));
+        if let Some(first) = self.ignored_keywords.values().copied().min_by_key(|span| span.start) {
+            let all: Vec<&str> = self.ignored_keywords.keys().map(String::as_str).collect();
             let message = format!("statements without a counterpart are left out: {}", all.join(", "));
             diagnostics.push(Diagnostic::note(message).code(NO_COUNTERPART).at(first));
         }
@@ -153,7 +153,7 @@ impl Reader<'_, '_> {
             let number = rest.iter().find(|word| word.text != "-halo");
             let number = number.ok_or_else(|| (keyword.at, format!("`{word}` needs a number")))?;
             let text = number.text.as_bytes();
-            let problem = |_| (number.at, format!("`{word}` needs a number, found {}", shown(text)));
+            let problem = |_| (number.at, format!("`{word}` needs a number, found {}", quoted(text)));
             parse_f32(text).map(Some).map_err(problem)
         };
         let color = || -> Result<Option<Vec3>, (Span, String)> {
@@ -186,26 +186,26 @@ impl Reader<'_, '_> {
             "pcr" => m.coat_roughness = number()?,
             "aniso" => m.anisotropy = number()?,
             "map_kd" => {
-                m.pictured = true;
-                m.diffuse_map = self.map(keyword, rest, m, diagnostics);
+                m.has_diffuse_map = true;
+                m.diffuse_map = self.texture_map(keyword, rest, m, diagnostics);
             }
             // The ambient colour and its maps are ignored: indirect light is computed.
             "ka" | "map_ka" | "map_aat" => {}
             lower => match MAPS.iter().find(|row| row.0 == lower) {
                 Some((_, field)) => {
-                    let picture = self.map(keyword, rest, m, diagnostics);
+                    let picture = self.texture_map(keyword, rest, m, diagnostics);
                     let mut field = *field;
                     if lower.ends_with("bump") {
                         let strength =
                             rest.iter().position(|word| word.text == "-bm").map(|at| numbers(&rest[at + 1..]));
                         let strength = strength.and_then(|numbers| numbers.first().copied());
-                        m.pictures.bump_height = BUMP * strength.unwrap_or(1.0);
+                        m.other_textures.bump_height = BUMP * strength.unwrap_or(1.0);
                         // Many programs write normal maps with the statement for bump maps.
                         if names_normals(rest) {
                             field = |m| &mut m.normal_texture;
                         }
                     }
-                    *field(&mut m.pictures) = picture;
+                    *field(&mut m.other_textures) = picture;
                 }
                 None if WITHOUT_EFFECT.iter().any(|row| row.0 == lower && numbers(rest) == [row.1]) => {}
                 None => self.leave_out(word, keyword.at),
@@ -215,11 +215,11 @@ impl Reader<'_, '_> {
     }
 
     fn leave_out(&mut self, word: &str, at: Span) {
-        self.left_out.entry(word.to_string()).or_insert(at);
+        self.ignored_keywords.entry(word.to_string()).or_insert(at);
     }
 
     /// Reads a texture: options that begin with `-`, then a file name, which may contain spaces.
-    fn map(
+    fn texture_map(
         &mut self,
         keyword: &Word,
         rest: &[Word],
@@ -280,8 +280,8 @@ impl Reader<'_, '_> {
         let name = named.iter().map(|word| word.text.as_str()).collect::<Vec<_>>().join(" ");
         let name = unquoted(&name).to_string();
         let word = &keyword.text;
-        let Some(file) = found(self.input, &name, span) else {
-            let message = format!("material `{}`: picture {} not found ({word})", m.name, shown(name.as_bytes()));
+        let Some(file) = find_file(self.input, &name, span) else {
+            let message = format!("material `{}`: picture {} not found ({word})", m.name, quoted(name.as_bytes()));
             diagnostics.push(Diagnostic::warning(message).code("missing-file").at(span));
             return None;
         };
@@ -291,12 +291,12 @@ impl Reader<'_, '_> {
     }
 
     /// Adds a material to the library, unless it already contains one with this name.
-    fn finish(&mut self, mut written: MtlMaterial) {
-        if written.loses_filter() {
-            self.leave_out("Tf", written.filter_at);
+    fn finish(&mut self, mut material: MtlMaterial) {
+        if material.drops_filter() {
+            self.leave_out("Tf", material.filter_at);
         }
-        let name = std::mem::take(&mut written.name);
-        self.library.materials.entry(name).or_insert_with(|| written.layers());
+        let name = std::mem::take(&mut material.name);
+        self.library.materials.entry(name).or_insert_with(|| material.to_principled());
     }
 }
 
@@ -327,7 +327,7 @@ fn names_normals(rest: &[Word]) -> bool {
 }
 
 /// Finds a file of the scene: at the path as written, or by its file name in the scene's folder.
-fn found(input: &Input, path: &str, span: Span) -> Option<FileName> {
+fn find_file(input: &ReadInput, path: &str, span: Span) -> Option<FileName> {
     let portable = path.replace('\\', "/");
     let last = portable.rsplit('/').next().unwrap_or_default();
     let names = [portable.as_str(), last];

@@ -29,16 +29,16 @@ pub(super) struct MtlMaterial {
     pub anisotropy: Option<f32>,
     pub diffuse_map: Option<FileName>,
     /// True if the material has a `map_Kd` statement, even if the file is missing.
-    pub pictured: bool,
+    pub has_diffuse_map: bool,
     /// The other textures and the bump height; all other fields have their defaults.
-    pub pictures: PrincipledMaterial,
+    pub other_textures: PrincipledMaterial,
 }
 
 impl MtlMaterial {
     /// Returns true if the material uses the extension for physically based rendering.
     fn is_physical(&self) -> bool {
         let pictured = |picture: &Option<FileName>| picture.is_some();
-        let pictures = [&self.pictures.specular_roughness_texture, &self.pictures.base_metalness_texture];
+        let pictures = [&self.other_textures.specular_roughness_texture, &self.other_textures.base_metalness_texture];
         self.roughness.is_some() || self.metalness.is_some() || pictures.into_iter().any(pictured)
     }
 
@@ -64,21 +64,21 @@ impl MtlMaterial {
     }
 
     /// Returns true if transmitted light should be tinted but the conversion cannot express it.
-    pub fn loses_filter(&self) -> bool {
+    pub fn drops_filter(&self) -> bool {
         let filters = self.filter.is_some_and(|filter| filter != Vec3::ONE);
         filters && !self.is_physical() && self.transmission() == 0.0 && self.opacity() < 1.0
     }
 
     /// Converts the statements to OpenPBR parameters.
-    pub fn layers(self) -> PrincipledMaterial {
+    pub fn to_principled(self) -> PrincipledMaterial {
         let (physical, model) = (self.is_physical(), self.model());
         let (transmission, opacity) = (self.transmission(), self.opacity());
         // A texture without `Kd` is shown with its full brightness.
-        let usual = if self.diffuse_map.is_some() { Vec3::ONE } else { Vec3::splat(0.8) };
-        let mut m = PrincipledMaterial { base_color: self.diffuse.unwrap_or(usual), ..self.pictures };
+        let default = if self.diffuse_map.is_some() { Vec3::ONE } else { Vec3::splat(0.8) };
+        let mut m = PrincipledMaterial { base_color: self.diffuse.unwrap_or(default), ..self.other_textures };
         m.base_color_texture = self.diffuse_map;
         // Programs that use only the texture often write a black `Kd`.
-        if self.pictured && m.base_color == Vec3::ZERO {
+        if self.has_diffuse_map && m.base_color == Vec3::ZERO {
             m.base_color = Vec3::ONE;
         }
         let pictured = |picture: &Option<FileName>| if picture.is_some() { 1.0 } else { 0.0 };

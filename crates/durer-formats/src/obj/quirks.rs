@@ -8,7 +8,7 @@ use std::borrow::Cow;
 /// overwritten with spaces, so that byte offsets stay valid; a last line is cut off.
 ///
 /// The quirks are [`Quirk::LostLastLine`] and [`Quirk::ThreeCorners`].
-pub fn known(bytes: &[u8], quirks: QuirkSet) -> Cow<'_, [u8]> {
+pub fn apply_quirks(bytes: &[u8], quirks: QuirkSet) -> Cow<'_, [u8]> {
     let has = |compat: Quirk| quirks & compat.bit() != 0;
     let end = match bytes.iter().rposition(|&byte| byte == b'\n') {
         _ if !has(Quirk::LostLastLine) => bytes.len(),
@@ -36,13 +36,13 @@ mod tests {
 
     #[test]
     fn ignored_parts_become_blank_or_are_cut_off() {
-        assert_eq!(known(SQUARE, 0), SQUARE);
-        let last = known(SQUARE, Quirk::LostLastLine.bit());
+        assert_eq!(apply_quirks(SQUARE, 0), SQUARE);
+        let last = apply_quirks(SQUARE, Quirk::LostLastLine.bit());
         assert_eq!(*last, SQUARE[..SQUARE.len() - 7]);
-        assert_eq!(known(&last, Quirk::LostLastLine.bit()), last);
-        let three = known(SQUARE, Quirk::ThreeCorners.bit());
+        assert_eq!(apply_quirks(&last, Quirk::LostLastLine.bit()), last);
+        let three = apply_quirks(SQUARE, Quirk::ThreeCorners.bit());
         assert_eq!(three.len(), SQUARE.len());
         assert!(three.ends_with(b"f 1/1 2/1 3/1     # all\nf 1 2 4"), "{}", String::from_utf8_lossy(&three));
-        assert!(known(b"f 1 2 3", Quirk::LostLastLine.bit()).is_empty());
+        assert!(apply_quirks(b"f 1 2 3", Quirk::LostLastLine.bit()).is_empty());
     }
 }

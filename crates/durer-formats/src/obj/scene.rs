@@ -2,11 +2,11 @@
 
 use super::faces::rest_of;
 use super::materials::{self, Library};
-use super::wires::{WireReader, Wires};
+use super::wires::{LinesAndPoints, WireReader};
 use super::words::Words;
-use super::{Statement, Switch, Switches, read_with, statement};
-use crate::model::{Input, SceneFormat};
-use crate::report::{Report, shown};
+use super::{StateChange, StateChanges, Statement, read_with, statement};
+use crate::model::{ReadInput, SceneFormat};
+use crate::report::{Report, quoted};
 use crate::smooth::smoothed;
 use crate::{sticks, too_large};
 use durer_diag::{Diagnostic, Diagnostics, Span, did_you_mean};
@@ -27,17 +27,17 @@ pub(crate) const FORMAT: SceneFormat = SceneFormat {
     read,
     write: None,
     up: super::FORMAT.up,
-    whole: false,
+    is_complete_scene: false,
     light_hint: None,
 };
 
 /// Reads a file; see [`read_model`](crate::scene::read_model).
-fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
         diagnostics.push(error);
         return None;
     }
-    let mut switches = Switches::default();
+    let mut switches = StateChanges::default();
     let mut data = read_with(input.bytes, input.file, &mut switches, diagnostics)?;
     smooth(&mut data, &switches.groups);
     let span = |at: &Range<usize>| Span { file: input.file, start: at.start as u32, end: at.end as u32 };
@@ -58,19 +58,19 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
         }
         words.skip();
     }
-    wires.found.retain(|wires| !wires.lines.is_empty() || !wires.points.is_empty());
-    let alone = data.triangles.is_empty() && wires.found.is_empty() && !data.positions.is_empty();
+    wires.groups.retain(|wires| !wires.lines.is_empty() || !wires.points.is_empty());
+    let alone = data.triangles.is_empty() && wires.groups.is_empty() && !data.positions.is_empty();
     if alone && !report.has_errors() {
         // A file with only vertices is a point cloud.
         let points = (0..data.positions.len() as u32).collect();
-        wires.found.push(Wires { points, ..Wires::default() });
+        wires.groups.push(LinesAndPoints { points, ..LinesAndPoints::default() });
     }
-    if let [first, ..] = wires.found.as_slice() {
-        let lines = wires.found.iter().map(|wires| wires.lines.len()).sum();
-        let points = wires.found.iter().map(|wires| wires.points.len()).sum();
-        report.note(first.material.clone(), sticks::explained(lines, points)).code = "points-and-lines";
+    if let [first, ..] = wires.groups.as_slice() {
+        let lines = wires.groups.iter().map(|wires| wires.lines.len()).sum();
+        let points = wires.groups.iter().map(|wires| wires.points.len()).sum();
+        report.note(first.material.clone(), sticks::message(lines, points)).code = "points-and-lines";
     }
-    let wires = wires.found;
+    let wires = wires.groups;
     report.finish(diagnostics, ())?;
     let size = Aabb::around(data.positions.iter().copied()).size().length();
     for material in library.materials.values_mut().filter(|material| material.bump_texture.is_some()) {
@@ -83,7 +83,8 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let mut shown_parts =
         if data.triangles.is_empty() { Vec::new() } else { parts(&data, input.bytes, &switches.materials) };
     let vertices = MeshData { positions: data.positions, colors: data.colors, ..MeshData::default() };
-    let thick = |wires: Wires| (sticks::thickened(&vertices, &wires.lines, &wires.points), wires.material);
+    let thick =
+        |wires: LinesAndPoints| (sticks::sticks_and_balls(&vertices, &wires.lines, &wires.points), wires.material);
     shown_parts.extend(wires.into_iter().map(thick));
     for (part, at) in shown_parts {
         let name = String::from_utf8_lossy(&input.bytes[at.clone()]).into_owned();
@@ -93,7 +94,7 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
         if material.is_none() && !name.is_empty() {
             let known = library.materials.keys().map(String::as_str);
             let suggestion = did_you_mean(&name, known).map(|suggestion| format!("did you mean `{suggestion}`?"));
-            let message = format!("no material file has {}: a neutral material is used", shown(name.as_bytes()));
+            let message = format!("no material file has {}: a neutral material is used", quoted(name.as_bytes()));
             diagnostics.push(Diagnostic {
                 help: suggestion,
                 ..Diagnostic::warning(message).code("no-material").at(span(&at))
@@ -109,13 +110,13 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
 
 /// Pairs each switch with the range of triangles that it applies to; the last range ends at
 /// `count`.
-fn runs<T>(switches: &[Switch<T>], count: usize) -> impl Iterator<Item = (Range<usize>, &T)> {
+fn runs<T>(switches: &[StateChange<T>], count: usize) -> impl Iterator<Item = (Range<usize>, &T)> {
     let ends = switches.iter().skip(1).map(|switch| switch.0).chain([count]);
     switches.iter().zip(ends).map(|((start, what), end)| (*start..end, what))
 }
 
 /// Computes normals for triangles of smoothing groups that have none in the file.
-fn smooth(data: &mut MeshData, switches: &[Switch<u32>]) {
+fn smooth(data: &mut MeshData, switches: &[StateChange<u32>]) {
     if switches.iter().all(|&(_, group)| group == 0) {
         return;
     }
@@ -126,7 +127,7 @@ fn smooth(data: &mut MeshData, switches: &[Switch<u32>]) {
 
 /// Splits a mesh by material name, in the order of first use. Each part comes with a byte range
 /// where its name occurs.
-fn parts(data: &MeshData, bytes: &[u8], switches: &[Switch<Range<usize>>]) -> Vec<(MeshData, Range<usize>)> {
+fn parts(data: &MeshData, bytes: &[u8], switches: &[StateChange<Range<usize>>]) -> Vec<(MeshData, Range<usize>)> {
     let runs = runs(switches, data.triangles.len()).map(|(run, at)| (run, at.clone()));
     let before = 0..switches.first().map_or(data.triangles.len(), |switch| switch.0);
     let mut order: Vec<(Vec<Range<usize>>, Range<usize>)> = Vec::new();

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 /// Lines and points of a Wavefront file that share one material.
 #[derive(Default)]
-pub(super) struct Wires {
+pub(super) struct LinesAndPoints {
     /// Byte range where the material's name occurs; empty if there is no material.
     pub(super) material: Range<usize>,
     /// Pairs of vertex indices.
@@ -25,23 +25,23 @@ pub(super) struct WireReader<'a> {
     /// Byte range of the current material's name.
     pub(super) material: Range<usize>,
     /// Lines and points by material, in order of first use.
-    pub(super) found: Vec<Wires>,
+    pub(super) groups: Vec<LinesAndPoints>,
     numbers: BTreeMap<&'a [u8], usize>,
 }
 
 impl<'a> WireReader<'a> {
     /// Creates a reader for a file with this many vertices.
     pub(super) fn new(bytes: &'a [u8], vertices: usize) -> Self {
-        WireReader { bytes, vertices: [vertices, 0], material: 0..0, found: Vec::new(), numbers: BTreeMap::new() }
+        WireReader { bytes, vertices: [vertices, 0], material: 0..0, groups: Vec::new(), numbers: BTreeMap::new() }
     }
 
     /// Reads the vertices of an `l` or `p` statement.
     pub(super) fn read(&mut self, kind: Statement, words: &mut Words, report: &mut Report) {
         let number = *self.numbers.entry(&self.bytes[self.material.clone()]).or_insert_with(|| {
-            self.found.push(Wires { material: self.material.clone(), ..Wires::default() });
-            self.found.len() - 1
+            self.groups.push(LinesAndPoints { material: self.material.clone(), ..LinesAndPoints::default() });
+            self.groups.len() - 1
         });
-        let wires = &mut self.found[number];
+        let wires = &mut self.groups[number];
         let mut last = None;
         while let Some(word) = words.next_word() {
             // Ignore the texture coordinate: a stick has none.

@@ -35,33 +35,33 @@ impl CameraFrame {
 }
 
 /// Part of a film in pixels: first column, first row, number of columns and number of rows.
-type Part = (u32, u32, u32, u32);
+type CropWindow = (u32, u32, u32, u32);
 
 /// Reads the crop window of a film.
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 5.4.2: `pixelbounds` in pixels, or
 /// `cropwindow` in fractions, which are rounded up. Both list the first and last x, then the first
 /// and last y; the last ones are excluded.
-fn crop(params: &Params, (width, height): (u32, u32)) -> Option<Part> {
+fn crop(params: &Params, (width, height): (u32, u32)) -> Option<CropWindow> {
     let sides = [width, width, height, height].map(f64::from);
     let mut part = [0.0, sides[0], 0.0, sides[2]];
-    let mut given = None;
+    let mut size_parameter = None;
     for (name, is_share) in [("pixelbounds", false), ("cropwindow", true)] {
         let Some(all) = params.get(name).map(|param| param.numbers()) else { continue };
         let Ok(all) = <[f64; 4]>::try_from(all) else {
-            params.report.bad(params.place(name), format!("`{name}` needs four numbers: from, to, from, to"));
+            params.report.error(params.span(name), format!("`{name}` needs four numbers: from, to, from, to"));
             return None;
         };
         let pixel = |i: usize| if is_share { (all[i] * sides[i]).ceil() } else { all[i] };
         part = std::array::from_fn(|i| pixel(i).clamp(0.0, sides[i]));
-        given = Some(name);
+        size_parameter = Some(name);
     }
     let [left, right, top, bottom] = part.map(|pixel| pixel as u32);
     if left >= right || top >= bottom {
-        params.report.bad(params.place(given?), "this part of the film has no pixels");
+        params.report.error(params.span(size_parameter?), "this part of the film has no pixels");
         return None;
     }
-    given.map(|_| (left, top, right - left, bottom - top))
+    size_parameter.map(|_| (left, top, right - left, bottom - top))
 }
 
 /// Screen window of a pbrt camera: the visible part of the plane in front of it, with y up.
@@ -72,83 +72,85 @@ struct Window {
 
 impl Reader<'_> {
     /// Creates the scene's camera from the camera and film directives.
-    pub fn frame(&mut self) {
+    pub fn make_camera(&mut self) {
         let ((width, height), crop) = self.film_size();
         let Some(directive) = self.camera.take() else { return };
         self.scene.render_defaults.size = Some((width, height));
         self.scene.render_defaults.crop = crop;
         let params = self.params_of(&directive);
         if directive.transforms.moves() {
-            self.report
-                .once(directive.at, "motion has no counterpart: everything stays where it is when the shutter opens");
+            self.report.unsupported_once(
+                directive.at,
+                "motion has no counterpart: everything stays where it is when the shutter opens",
+            );
         }
         let placed = CameraFrame::new(directive.transforms.maps[0].inverse());
         let [a, b, c] = placed.axes.map(DVec3::normalize_or_zero);
         if a.dot(b).abs().max(a.dot(c).abs()).max(b.dot(c).abs()) > 1e-4 {
-            self.report.other(directive.at, "a sheared camera has no counterpart: perpendicular axes are used");
+            self.report.unsupported(directive.at, "a sheared camera has no counterpart: perpendicular axes are used");
         }
         let camera = match directive.kind.as_str() {
             "perspective" => Some(self.perspective(&placed, &params, (width, height), None)),
             "orthographic" => self.orthographic(&placed, &params, (width, height)),
             "spherical" => Some(self.spherical(&placed, &params)),
-            "environment" if self.language == Language::Third => Some(self.spherical(&placed, &params)),
+            "environment" if self.language == Language::V3 => Some(self.spherical(&placed, &params)),
             "realistic" => {
                 let what = "a realistic camera has no counterpart: a field of view of 38 degrees across the film's \
                             diagonal is used";
-                self.report.other(directive.at, what);
-                params.known(&["lensfile", "aperturediameter", "focusdistance", "aperture", "scale"]);
+                self.report.unsupported(directive.at, what);
+                params.mark_known(&["lensfile", "aperturediameter", "focusdistance", "aperture", "scale"]);
                 let diagonal = DVec2::new(f64::from(width), f64::from(height));
                 let half = fp::tan_f64(19f64.to_radians()) * diagonal.min_element() / diagonal.length();
                 Some(self.perspective(&placed, &params, (width, height), Some(half)))
             }
             other => {
                 let help = suggest(other, ["perspective", "orthographic", "spherical", "realistic"]);
-                self.report.bad_with(directive.at, format!("unknown camera `{other}`"), help);
+                self.report.error_with_help(directive.at, format!("unknown camera `{other}`"), help);
                 None
             }
         };
-        params.known(&["shutteropen", "shutterclose"]);
-        params.finish("this camera");
+        params.mark_known(&["shutteropen", "shutterclose"]);
+        params.warn_unused("this camera");
         self.scene.camera = camera;
         self.scene.camera_span = directive.at;
     }
 
     /// Returns the resolution of the film and its crop window.
-    fn film_size(&self) -> ((u32, u32), Option<Part>) {
-        let third = self.language == Language::Third;
-        let usual = if third { OLD_SIZE } else { SIZE };
-        let Some(film) = &self.film else { return (usual, None) };
+    fn film_size(&self) -> ((u32, u32), Option<CropWindow>) {
+        let third = self.language == Language::V3;
+        let default = if third { OLD_SIZE } else { SIZE };
+        let Some(film) = &self.film else { return (default, None) };
         let params = self.params_of(film);
         let kinds = if third { &["image"][..] } else { &["rgb", "gbuffer", "spectral"][..] };
         if !kinds.contains(&film.kind.as_str()) {
             let help = suggest(&film.kind, kinds.iter().copied());
-            self.report.bad_with(film.at, format!("unknown film `{}`", film.kind), help);
+            self.report.error_with_help(film.at, format!("unknown film `{}`", film.kind), help);
         }
-        let side = |name: &'static str, usual: u32| match params.whole(name) {
+        let side = |name: &'static str, default: u32| match params.integer(name) {
             Some(value) if (1..=1 << 20).contains(&value) => value as u32,
             Some(_) => {
-                params.report.bad(params.place(name), format!("`{name}` must be from 1 to {}", 1 << 20));
-                usual
+                params.report.error(params.span(name), format!("`{name}` must be from 1 to {}", 1 << 20));
+                default
             }
-            None => usual,
+            None => default,
         };
-        let (width, height) = (side("xresolution", usual.0), side("yresolution", usual.1));
+        let (width, height) = (side("xresolution", default.0), side("yresolution", default.1));
         if u64::from(width) * u64::from(height) > MAX_PIXELS {
-            params.report.bad(film.at, format!("too many pixels: {width} x {height}"));
+            params.report.error(film.at, format!("too many pixels: {width} x {height}"));
         }
         if let Some(sensor) = params.text("sensor").filter(|sensor| *sensor != "cie1931") {
             let what = format!("the sensor `{sensor}` has no counterpart: `cie1931` is used");
-            params.report.other(params.place("sensor"), what);
+            params.report.unsupported(params.span("sensor"), what);
         }
-        params.left_out(&["whitebalance"], "colours are not white-balanced");
+        params.warn_unsupported(&["whitebalance"], "colours are not white-balanced");
         let crop = crop(&params, (width, height));
         let unseen = ["filename", "diagonal", "iso", "maxcomponentvalue", "savefp16", "coordinatesystem"];
-        params.known(&unseen);
-        params.known(&["nbuckets", "lambdamin", "lambdamax"]);
+        params.mark_known(&unseen);
+        params.mark_known(&["nbuckets", "lambdamin", "lambdamax"]);
         if third {
-            params.known(&["scale", "maxsampleluminance"]);
+            params.mark_known(&["scale", "maxsampleluminance"]);
         }
-        params.finish("this film");
+        params.warn_unused("this film");
         ((width, height), crop)
     }
 
@@ -158,7 +160,7 @@ impl Reader<'_> {
     /// Source: *Physically Based Rendering*, 4th edition, section 5.4.2, and 3rd edition, section
     /// 7.9.
     pub fn exposure(&self) -> f32 {
-        if self.language == Language::Third {
+        if self.language == Language::V3 {
             let scale = self.film.as_ref().and_then(|film| self.params_of(film).float("scale"));
             return scale.unwrap_or(1.0).max(0.0);
         }
@@ -178,10 +180,10 @@ impl Reader<'_> {
             Some(&[x0, x1, y0, y1]) if x1 > x0 && y1 > y0 => {
                 Window { middle: 0.5 * DVec2::new(x0 + x1, y0 + y1), half: 0.5 * DVec2::new(x1 - x0, y1 - y0) }
             }
-            given => {
-                if given.is_some() {
-                    params.report.bad(
-                        params.place("screenwindow"),
+            size_parameter => {
+                if size_parameter.is_some() {
+                    params.report.error(
+                        params.span("screenwindow"),
                         "`screenwindow` needs four numbers: x from and to, y from and to",
                     );
                 }
@@ -192,10 +194,10 @@ impl Reader<'_> {
 
     /// Returns half the larger side, and the offset of the middle as a fraction of it. Warns if
     /// pixels are not square.
-    fn larger(&self, window: &Window, (width, height): (u32, u32), params: &Params) -> (f64, DVec2) {
+    fn half_larger_side(&self, window: &Window, (width, height): (u32, u32), params: &Params) -> (f64, DVec2) {
         let (x, y) = (window.half.x / f64::from(width), window.half.y / f64::from(height));
         if (x / y - 1.0).abs() > 2e-3 {
-            params.report.other(
+            params.report.unsupported(
                 params.at,
                 "pixels that are not square have no counterpart: the view across the larger side is used",
             );
@@ -208,17 +210,17 @@ impl Reader<'_> {
     /// and replaces the field of view.
     fn perspective(&self, placed: &CameraFrame, params: &Params, size: (u32, u32), half: Option<f64>) -> Camera {
         let [a, b, c] = placed.axes;
-        let (usual, mut window) = (half.map_or(90.0, |_| 90.0), self.window(params, size));
-        let fov = params.float("fov").unwrap_or(usual);
+        let (default, mut window) = (half.map_or(90.0, |_| 90.0), self.window(params, size));
+        let fov = params.float("fov").unwrap_or(default);
         let fov = params.float("halffov").map_or(fov, |half| 2.0 * half);
         if !(fov > 0.0 && fov < 180.0) {
-            params.report.bad(params.place("fov"), "a field of view must be more than 0 and less than 180 degrees");
+            params.report.error(params.span("fov"), "a field of view must be more than 0 and less than 180 degrees");
         }
         let scale = half.unwrap_or_else(|| fp::tan_f64(f64::from(fov.clamp(1e-3, 179.9)).to_radians() / 2.0));
         // A non-uniform scale of camera space widens the view.
         let across = scale * DVec2::new(a.length(), b.length()) / c.length();
         (window.half, window.middle) = (window.half * across, window.middle * across);
-        let (half, shift) = self.larger(&window, size, params);
+        let (half, shift) = self.half_larger_side(&window, size, params);
         let angle = ((2.0 * fp::atan_f64(half)).to_degrees() as f32).clamp(1e-4, 179.99);
         let lens = params.float("lensradius").unwrap_or(0.0).max(0.0);
         let focus = params.float("focaldistance").unwrap_or(1e6).max(f32::MIN_POSITIVE);
@@ -247,9 +249,9 @@ impl Reader<'_> {
         let mut window = self.window(params, size);
         let middle = placed.center + window.middle.x * a + window.middle.y * b;
         window.half *= DVec2::new(a.length(), b.length());
-        let (half, _) = self.larger(&window, size, params);
-        params.left_out(&["lensradius"], "everything is in focus");
-        params.known(&["focaldistance"]);
+        let (half, _) = self.half_larger_side(&window, size, params);
+        params.warn_unsupported(&["lensradius"], "everything is in focus");
+        params.mark_known(&["focaldistance"]);
         let camera = OrthographicCamera {
             center: middle.as_vec3(),
             direction: c.normalize().as_vec3(),
@@ -264,10 +266,12 @@ impl Reader<'_> {
     /// Reads a spherical camera. The middle of the picture is the direction -x.
     fn spherical(&self, placed: &CameraFrame, params: &Params) -> Camera {
         let [a, b, c] = placed.axes;
-        if self.language == Language::Third {
-            params.known(&["frameaspectratio", "screenwindow", "lensradius", "focaldistance"]);
+        if self.language == Language::V3 {
+            params.mark_known(&["frameaspectratio", "screenwindow", "lensradius", "focaldistance"]);
         } else if params.text("mapping").unwrap_or("equalarea") != "equirectangular" {
-            params.report.other(params.at, "the mapping `equalarea` has no counterpart: `equirectangular` is used");
+            params
+                .report
+                .unsupported(params.at, "the mapping `equalarea` has no counterpart: `equirectangular` is used");
         }
         EquirectangularCamera {
             center: placed.center.as_vec3(),
@@ -282,9 +286,9 @@ impl Reader<'_> {
     /// Reads the integrator. `maxdepth` counts the first scattering event too; Dürer's `bounces`
     /// does not.
     pub fn integrator(&mut self, directive: &DeferredDirective) {
-        const OLD: [&str; 9] =
+        const V3_NAMES: [&str; 9] =
             ["path", "volpath", "bdpt", "mlt", "sppm", "ambientocclusion", "ao", "directlighting", "whitted"];
-        const KNOWN: [&str; 11] = [
+        const V4_NAMES: [&str; 11] = [
             "path",
             "volpath",
             "simplepath",
@@ -298,55 +302,63 @@ impl Reader<'_> {
             "function",
         ];
         let params = self.params_of(directive);
-        let known = if self.language == Language::Third { &OLD[..] } else { &KNOWN[..] };
+        let known = if self.language == Language::V3 { &V3_NAMES[..] } else { &V4_NAMES[..] };
         if !known.contains(&directive.kind.as_str()) {
             let help = suggest(&directive.kind, known.iter().copied());
-            self.report.bad_with(directive.at, format!("unknown integrator `{}`", directive.kind), help);
+            self.report.error_with_help(directive.at, format!("unknown integrator `{}`", directive.kind), help);
         } else if !directive.kind.ends_with("path") {
             let what = format!("the integrator `{}` has no counterpart: path tracing is used", directive.kind);
             self.report.push(durer_diag::Diagnostic::note(what).code("NO_COUNTERPART").at(directive.at));
         }
-        match params.whole("maxdepth").unwrap_or(5) {
+        match params.integer("maxdepth").unwrap_or(5) {
             depth @ 1..=1_000_000 => self.scene.render_defaults.bounces = Some(depth as u32 - 1),
             0 => (self.scene.render_defaults.bounces, self.emitters_only) = (Some(0), true),
-            _ => self.report.bad(params.place("maxdepth"), "`maxdepth` must be from 0 to 1000000"),
+            _ => self.report.error(params.span("maxdepth"), "`maxdepth` must be from 0 to 1000000"),
         }
-        params.known(&["regularize", "lightsampler", "sampledirect", "visualizestrategies", "visualizeweights"]);
-        params.known(&["maxdistance", "cossample", "samplelights", "samplebsdf", "skipbad", "function", "filename"]);
-        params.known(&["photonsperiteration", "iterations", "radius", "seed", "bootstrapsamples", "chains"]);
-        params.known(&["mutationsperpixel", "largestepprobability", "sigma"]);
-        if self.language == Language::Third {
-            params.known(&["pixelbounds", "rrthreshold", "lightsamplestrategy", "strategy", "nsamples"]);
-            params.known(&["numiterations", "imagewritefrequency", "lightsamplethreshold"]);
+        params.mark_known(&["regularize", "lightsampler", "sampledirect", "visualizestrategies", "visualizeweights"]);
+        params.mark_known(&[
+            "maxdistance",
+            "cossample",
+            "samplelights",
+            "samplebsdf",
+            "skipbad",
+            "function",
+            "filename",
+        ]);
+        params.mark_known(&["photonsperiteration", "iterations", "radius", "seed", "bootstrapsamples", "chains"]);
+        params.mark_known(&["mutationsperpixel", "largestepprobability", "sigma"]);
+        if self.language == Language::V3 {
+            params.mark_known(&["pixelbounds", "rrthreshold", "lightsamplestrategy", "strategy", "nsamples"]);
+            params.mark_known(&["numiterations", "imagewritefrequency", "lightsamplethreshold"]);
         }
-        params.finish("this integrator");
+        params.warn_unused("this integrator");
     }
 
     /// Reads the sampler, which sets the number of samples per pixel.
     pub fn sampler(&mut self, directive: &DeferredDirective) {
-        const KNOWN: [&str; 8] =
+        const V4_NAMES: [&str; 8] =
             ["halton", "independent", "paddedsobol", "pmj02bn", "sobol", "stratified", "zsobol", "mlt"];
-        const OLD: [&str; 7] =
+        const V3_NAMES: [&str; 7] =
             ["02sequence", "halton", "lowdiscrepancy", "maxmindist", "random", "sobol", "stratified"];
         let params = self.params_of(directive);
-        let known = if self.language == Language::Third { &OLD[..] } else { &KNOWN[..] };
+        let known = if self.language == Language::V3 { &V3_NAMES[..] } else { &V4_NAMES[..] };
         if !known.contains(&directive.kind.as_str()) {
             let help = suggest(&directive.kind, known.iter().copied());
-            self.report.bad_with(directive.at, format!("unknown sampler `{}`", directive.kind), help);
+            self.report.error_with_help(directive.at, format!("unknown sampler `{}`", directive.kind), help);
         }
-        let samples = match (params.whole("xsamples"), params.whole("ysamples")) {
-            (None, None) => params.whole("pixelsamples"),
+        let samples = match (params.integer("xsamples"), params.integer("ysamples")) {
+            (None, None) => params.integer("pixelsamples"),
             (x, y) => x.unwrap_or(4).checked_mul(y.unwrap_or(4)),
         };
         match samples {
             Some(samples @ 1..=1_048_576) => self.scene.render_defaults.samples = Some(samples as u32),
             None => {}
-            Some(_) => self.report.bad(directive.at, "samples per pixel must be from 1 to 1048576"),
+            Some(_) => self.report.error(directive.at, "samples per pixel must be from 1 to 1048576"),
         }
-        params.known(&["pixelsamples", "randomization", "seed", "jitter"]);
-        if self.language == Language::Third {
-            params.known(&["dimensions", "samplepixelcenter"]);
+        params.mark_known(&["pixelsamples", "randomization", "seed", "jitter"]);
+        if self.language == Language::V3 {
+            params.mark_known(&["dimensions", "samplepixelcenter"]);
         }
-        params.finish("this sampler");
+        params.warn_unused("this sampler");
     }
 }

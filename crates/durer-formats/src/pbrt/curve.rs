@@ -16,18 +16,18 @@ const MAX_POINTS: usize = 1 << 14;
 /// Tessellates a curve. It has fewer sides if the scene has `many` triangles already.
 pub(super) fn mesh(params: &Params, reversed: bool, many: bool) -> Option<MeshData> {
     let report = params.report;
-    params.known(&["splitdepth"]);
+    params.mark_known(&["splitdepth"]);
     let kind = params.text("type").unwrap_or("flat");
     if !["flat", "cylinder", "ribbon"].contains(&kind) {
         let help = suggest(kind, ["flat", "cylinder", "ribbon"]);
-        report.bad_with(params.place("type"), format!("unknown type of curve `{kind}`"), help);
+        report.error_with_help(params.span("type"), format!("unknown type of curve `{kind}`"), help);
         return None;
     }
     let pieces = pieces(params)?;
     let width = params.float("width").unwrap_or(1.0);
     let widths = [params.float("width0").unwrap_or(width), params.float("width1").unwrap_or(width)].map(f64::from);
     if widths.iter().any(|width| *width < 0.0) {
-        report.bad(params.at, "the width of a curve must be 0 or more");
+        report.error(params.at, "the width of a curve must be 0 or more");
         return None;
     }
     let normals = params.triples("N").unwrap_or_default();
@@ -38,11 +38,11 @@ pub(super) fn mesh(params: &Params, reversed: bool, many: bool) -> Option<MeshDa
             pieces.len() + 1,
             normals.len()
         );
-        report.bad(params.place("N"), message);
+        report.error(params.span("N"), message);
         return None;
     }
     if kind == "flat" {
-        report.once(params.at, "curves of type `flat` have no counterpart: round tubes are used");
+        report.unsupported_once(params.at, "curves of type `flat` have no counterpart: round tubes are used");
     }
     let places = sample_curve(&with_widths(&pieces, widths), pieces.len());
     if places.len() < 2 {
@@ -63,12 +63,12 @@ pub(super) fn mesh(params: &Params, reversed: bool, many: bool) -> Option<MeshDa
 fn pieces(params: &Params) -> Option<Vec<[DVec3; 4]>> {
     let report = params.report;
     let Some(points) = params.triples("P") else {
-        report.bad(params.at, "a curve needs points, `\"point3 P\"`");
+        report.error(params.at, "a curve needs points, `\"point3 P\"`");
         return None;
     };
-    let (basis, degree) = (params.text("basis").unwrap_or("bezier"), params.whole("degree").unwrap_or(3));
+    let (basis, degree) = (params.text("basis").unwrap_or("bezier"), params.integer("degree").unwrap_or(3));
     if !(degree == 2 || degree == 3) {
-        report.bad(params.place("degree"), "`degree` must be 2 or 3");
+        report.error(params.span("degree"), "`degree` must be 2 or 3");
         return None;
     }
     let degree = degree as usize;
@@ -77,7 +77,7 @@ fn pieces(params: &Params) -> Option<Vec<[DVec3; 4]>> {
         "bspline" => 1,
         other => {
             let help = suggest(other, ["bezier", "bspline"]);
-            report.bad_with(params.place("basis"), format!("unknown basis `{other}`"), help);
+            report.error_with_help(params.span("basis"), format!("unknown basis `{other}`"), help);
             return None;
         }
     };
@@ -91,11 +91,11 @@ fn pieces(params: &Params) -> Option<Vec<[DVec3; 4]>> {
             }
             _ => format!("{} points do not make a curve of degree {degree}: give more than {degree}", points.len()),
         };
-        report.bad(params.place("P"), message);
+        report.error(params.span("P"), message);
         return None;
     }
     if points.len() > MAX_POINTS {
-        report.bad(params.place("P"), format!("too many points: a curve may have at most {MAX_POINTS}"));
+        report.error(params.span("P"), format!("too many points: a curve may have at most {MAX_POINTS}"));
         return None;
     }
     let points: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();

@@ -9,7 +9,7 @@ use glam::DAffine3;
 
 /// Material defined in a pbrt file, before a shape uses it and it gets an index in the scene.
 pub(super) enum MaterialDef {
-    Layers(Box<PrincipledMaterial>, Span),
+    Principled(Box<PrincipledMaterial>, Span),
     Hair(HairMaterial, Span),
     /// Mix of two materials, which are indices into the reader's list; `share` is that of the
     /// first.
@@ -19,11 +19,11 @@ pub(super) enum MaterialDef {
         /// Picture that multiplies the share.
         picture: Option<FileName>,
         depth: u32,
-        pictured: bool,
+        has_picture: bool,
         at: Span,
     },
     /// Material of a surface that is not rendered (`interface`).
-    Nothing,
+    Interface,
 }
 
 /// Opacity of a shape, from its `alpha` parameter: a constant, and a picture that multiplies it.
@@ -36,7 +36,7 @@ pub(super) struct Opacity {
 /// Value of a pbrt texture: a constant colour or a picture.
 #[derive(Clone)]
 pub(super) enum Texture {
-    Even(Color),
+    Constant(Color),
     /// Picture, and the factor on its values.
     Picture(TextureImage, Color),
 }
@@ -56,23 +56,23 @@ pub(super) struct AreaLight {
 
 /// Mapping between directions and positions in an environment map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Map {
+pub(super) enum EnvironmentMapping {
     /// Equal-area square mapping of pbrt-v4.
     EqualArea,
     /// Longitude and latitude (equirectangular) mapping of pbrt-v3, with z up.
-    Longitude,
+    Equirectangular,
 }
 
 /// Infinite light of pbrt: constant, or an environment map.
 pub(super) enum InfiniteLight {
     /// Constant radiance.
-    Even(Color),
+    Constant(Color),
     Picture {
         name: String,
         at: Span,
         /// Factor on the values of the environment map.
         scale: Color,
-        map: Map,
+        map: EnvironmentMapping,
         /// Transform from world space to the axes of the environment map.
         to_light: DAffine3,
         /// Illuminance to which the upper half of the map is scaled.

@@ -4,8 +4,8 @@ use super::language::Language;
 use super::lexer::{Lexer, Token};
 use super::params::read as read_params;
 use super::state::{DeferredDirective, OpenFile, Reader, Scope};
-use super::transform::{look_at, matrix, numbers, rotation, sound};
-use crate::packed::read_unpacked;
+use super::transform::{invertible, look_at, matrix, numbers, rotation};
+use crate::gzip::read_decompressed;
 use crate::shared_report::suggest;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::scene::{Object, ObjectKind, Scene};
@@ -64,7 +64,7 @@ pub(super) const DIRECTIVES: [(&str, bool); 44] = [
 ];
 
 /// Directives allowed only after `WorldBegin`; then those allowed only before it.
-const OF_WORLD: [&str; 10] = [
+const WORLD_DIRECTIVES: [&str; 10] = [
     "AreaLightSource",
     "LightSource",
     "MakeNamedMaterial",
@@ -84,8 +84,8 @@ const TARGETS: [&str; 5] = ["shape", "light", "material", "medium", "texture"];
 
 /// Limits on the number of included files, the depth of includes and the depth of scopes.
 const MAX_FILES: usize = 1 << 16;
-const DEEPEST_FILES: usize = 64;
-const DEEPEST_SCOPES: usize = 1 << 12;
+const MAX_INCLUDE_DEPTH: usize = 64;
+const MAX_SCOPE_DEPTH: usize = 1 << 12;
 
 impl Reader<'_> {
     /// Reads the whole file and returns the scene. Errors are added to the reader's report.
@@ -93,29 +93,29 @@ impl Reader<'_> {
         while !self.report.is_full() {
             let report = self.report;
             let Some(open) = self.texts.last_mut() else { break };
-            let Some(found) = open.text.next(report) else {
+            let Some(token) = open.text.next(report) else {
                 self.end_of_file();
                 continue;
             };
-            if found.token != Token::Word {
-                let message = match found.token {
+            if token.token != Token::Word {
+                let message = match token.token {
                     Token::Open | Token::Close => "unexpected bracket: no parameter comes before it".to_string(),
                     _ => "unexpected string: no directive comes before it".to_string(),
                 };
-                report.bad(found.at, message);
+                report.error(token.at, message);
                 self.skip();
                 continue;
             }
-            let word = open.text.word(found.at).to_string();
+            let word = open.text.word(token.at).to_string();
             if !DIRECTIVES.iter().any(|row| row.0 == word) {
-                let shown = open.text.shown(found.at);
+                let shown = open.text.quoted(token.at);
                 let help = suggest(&word, DIRECTIVES.iter().map(|row| row.0));
-                let error = Diagnostic::error(format!("unknown directive {shown}")).code("unknown-word").at(found.at);
+                let error = Diagnostic::error(format!("unknown directive {shown}")).code("unknown-word").at(token.at);
                 report.push(Diagnostic { help, ..error });
                 self.skip();
                 continue;
             }
-            if self.directive(&word, found.at).is_none() {
+            if self.directive(&word, token.at).is_none() {
                 self.skip();
             }
         }
@@ -135,9 +135,9 @@ impl Reader<'_> {
     fn skip(&mut self) {
         let report = self.report;
         let text = self.text();
-        while let Some(found) = text.peek(report) {
-            let at = found.at;
-            if found.token == Token::Word && DIRECTIVES.iter().any(|row| row.0 == text.word(at)) {
+        while let Some(token) = text.peek(report) {
+            let at = token.at;
+            if token.token == Token::Word && DIRECTIVES.iter().any(|row| row.0 == text.word(at)) {
                 break;
             }
             text.next(report);
@@ -148,15 +148,15 @@ impl Reader<'_> {
     fn name(&mut self, directive: Span) -> Option<(String, Span)> {
         let report = self.report;
         let text = self.text();
-        if let Some(found) = text.peek(report)
-            && let Token::Text(name) = &found.token
+        if let Some(token) = text.peek(report)
+            && let Token::Text(name) = &token.token
         {
-            let named = (name.clone(), found.at);
+            let named = (name.clone(), token.at);
             text.next(report);
             return Some(named);
         }
-        let message = format!("{} needs a string in quotes after it", text.shown(directive));
-        report.bad(directive, message);
+        let message = format!("{} needs a string in quotes after it", text.quoted(directive));
+        report.error(directive, message);
         None
     }
 
@@ -168,11 +168,11 @@ impl Reader<'_> {
     /// Executes a directive; `None` if its arguments cannot be read.
     fn directive(&mut self, word: &str, at: Span) -> Option<()> {
         let report = self.report;
-        if !self.in_world && OF_WORLD.contains(&word) {
-            self.early.get_or_insert(at);
+        if !self.in_world && WORLD_DIRECTIVES.contains(&word) {
+            self.too_early.get_or_insert(at);
         }
         if self.in_world && BEFORE_WORLD.contains(&word) {
-            report.bad(at, format!("`{word}` must come before `WorldBegin`"));
+            report.error(at, format!("`{word}` must come before `WorldBegin`"));
         }
         match word {
             "Identity" => self.state.transforms.change(|_| DAffine3::IDENTITY),
@@ -182,17 +182,17 @@ impl Reader<'_> {
             }
             "Scale" => {
                 let [x, y, z] = self.numbers(at)?;
-                let map = sound(DAffine3::from_scale(DVec3::new(x, y, z)), at, report);
+                let map = invertible(DAffine3::from_scale(DVec3::new(x, y, z)), at, report);
                 map.into_iter().for_each(|map| self.state.transforms.apply(map));
             }
             "Rotate" => match rotation(self.numbers(at)?) {
                 Some(map) => self.state.transforms.apply(map),
-                None => report.bad(at, "the axis of a rotation must not be 0 0 0"),
+                None => report.error(at, "the axis of a rotation must not be 0 0 0"),
             },
             "LookAt" => match look_at(self.numbers(at)?) {
                 Some(map) => self.state.transforms.apply(map),
                 None => report
-                    .bad(at, "the eye and the target of `LookAt` must differ, and `up` must not be along the view"),
+                    .error(at, "the eye and the target of `LookAt` must differ, and `up` must not be along the view"),
             },
             "Transform" | "ConcatTransform" => {
                 let map = matrix(self.numbers(at)?, at, report);
@@ -210,8 +210,8 @@ impl Reader<'_> {
             "TransformTimes" => _ = self.numbers::<2>(at)?,
             "ReverseOrientation" => self.state.reversed = !self.state.reversed,
             "WorldBegin" => self.world_begin(at),
-            "WorldEnd" if self.language == Language::Third => {}
-            "WorldEnd" => report.once(at, "`WorldEnd` belongs to pbrt-v3 and is ignored"),
+            "WorldEnd" if self.language == Language::V3 => {}
+            "WorldEnd" => report.unsupported_once(at, "`WorldEnd` belongs to pbrt-v3 and is ignored"),
             "ObjectEnd" => self.close(Scope::Object, at),
             _ => return self.named(word, at),
         }
@@ -223,19 +223,19 @@ impl Reader<'_> {
         let (report, language) = (self.report, self.language);
         let (name, name_at) = self.name(at)?;
         match word {
-            "CoordinateSystem" => _ = self.systems.insert(name, self.state.transforms.maps),
-            "CoordSysTransform" => match self.systems.get(&name) {
+            "CoordinateSystem" => _ = self.coordinate_systems.insert(name, self.state.transforms.maps),
+            "CoordSysTransform" => match self.coordinate_systems.get(&name) {
                 Some(maps) => self.state.transforms.maps = *maps,
                 None => {
-                    let help = suggest(&name, self.systems.keys().map(String::as_str));
-                    report.bad_with(name_at, format!("unknown coordinate system `{name}`"), help);
+                    let help = suggest(&name, self.coordinate_systems.keys().map(String::as_str));
+                    report.error_with_help(name_at, format!("unknown coordinate system `{name}`"), help);
                 }
             },
             "ColorSpace" => match RgbSpace::named(&name) {
                 Some(space) => self.state.space = space,
                 None => {
                     let help = suggest(&name, RgbSpace::names());
-                    report.bad_with(name_at, format!("unknown colour space `{name}`"), help);
+                    report.error_with_help(name_at, format!("unknown colour space `{name}`"), help);
                 }
             },
             "Include" | "Import" => self.include(name, name_at, word == "Import"),
@@ -278,12 +278,12 @@ impl Reader<'_> {
                 }
                 None => {
                     let help = suggest(&name, TARGETS);
-                    self.report.bad_with(at, format!("unknown target `{name}` of `Attribute`"), help);
+                    self.report.error_with_help(at, format!("unknown target `{name}` of `Attribute`"), help);
                 }
             },
             "Camera" => {
                 let maps = self.state.transforms.maps.map(|map| map.inverse());
-                self.systems.insert("camera".into(), maps);
+                self.coordinate_systems.insert("camera".into(), maps);
                 self.camera = Some(keep(self, list));
                 self.fog(at);
             }
@@ -306,23 +306,23 @@ impl Reader<'_> {
     fn skip_value(&mut self) {
         let report = self.report;
         let text = self.text();
-        if text.next(report).is_some_and(|found| found.token == Token::Open) {
-            while text.next(report).is_some_and(|found| found.token != Token::Close) {}
+        if text.next(report).is_some_and(|token| token.token == Token::Open) {
+            while text.next(report).is_some_and(|token| token.token != Token::Close) {}
         }
     }
 
     fn active(&mut self, at: Span) -> Option<()> {
         let report = self.report;
         let text = self.text();
-        let found = text.peek(report).filter(|found| found.token == Token::Word).cloned();
-        let active = found.as_ref().and_then(|found| match text.word(found.at) {
+        let token = text.peek(report).filter(|token| token.token == Token::Word).cloned();
+        let active = token.as_ref().and_then(|token| match text.word(token.at) {
             "All" => Some([true, true]),
             "StartTime" => Some([true, false]),
             "EndTime" => Some([false, true]),
             _ => None,
         });
         if active.is_none() {
-            report.bad(at, "`ActiveTransform` needs `All`, `StartTime` or `EndTime` after it");
+            report.error(at, "`ActiveTransform` needs `All`, `StartTime` or `EndTime` after it");
             return None;
         }
         text.next(report);
@@ -332,20 +332,20 @@ impl Reader<'_> {
 
     fn world_begin(&mut self, at: Span) {
         if self.in_world {
-            self.report.bad(at, "`WorldBegin` is given twice");
+            self.report.error(at, "`WorldBegin` is given twice");
         }
-        if let Some(early) = self.early {
+        if let Some(early) = self.too_early {
             let error = Diagnostic::error("this must come after `WorldBegin`").code("bad-place").at(early);
             self.report.push(error.related(at, "`WorldBegin` is here"));
         }
         self.in_world = true;
         self.state.transforms = super::transform::Transforms::default();
-        self.systems.insert("world".into(), self.state.transforms.maps);
+        self.coordinate_systems.insert("world".into(), self.state.transforms.maps);
     }
 
     fn open(&mut self, scope: Scope, at: Span) {
-        if self.stack.len() >= DEEPEST_SCOPES {
-            self.report.bad(at, format!("scopes are nested more than {DEEPEST_SCOPES} levels deep"));
+        if self.stack.len() >= MAX_SCOPE_DEPTH {
+            self.report.error(at, format!("scopes are nested more than {MAX_SCOPE_DEPTH} levels deep"));
             return;
         }
         self.stack.push((scope, self.state.clone(), at));
@@ -383,7 +383,7 @@ impl Reader<'_> {
 
     fn object_begin(&mut self, name: String, at: Span) {
         if self.defining.is_some() {
-            return self.report.bad(at, "objects cannot be defined inside objects");
+            return self.report.error(at, "objects cannot be defined inside objects");
         }
         self.open(Scope::Object, at);
         self.defining = Some((name, Default::default()));
@@ -391,13 +391,13 @@ impl Reader<'_> {
 
     fn instance(&mut self, name: &str, at: Span) {
         if self.defining.is_some() {
-            return self.report.bad(at, "objects cannot be instanced inside objects: add an `ObjectEnd` before");
+            return self.report.error(at, "objects cannot be instanced inside objects: add an `ObjectEnd` before");
         }
         let Some(group) = self.objects.get(name).cloned() else {
             let help = suggest(name, self.objects.keys().map(String::as_str));
-            return self.report.bad_with(at, format!("unknown object `{name}`"), help);
+            return self.report.error_with_help(at, format!("unknown object `{name}`"), help);
         };
-        if !self.growth.has_objects(group.objects.len() + 1, self.report, at) {
+        if !self.limits.count_objects_or_report(group.objects.len() + 1, self.report, at) {
             return;
         }
         let inner = Object { node: ObjectKind::Group((*group).clone()), material: None, span: at };
@@ -414,12 +414,12 @@ impl Reader<'_> {
         }
         self.included += 1;
         if self.included > MAX_FILES {
-            return self.report.bad(at, format!("too many files: more than {MAX_FILES} are included"));
+            return self.report.error(at, format!("too many files: more than {MAX_FILES} are included"));
         }
-        if self.texts.len() >= DEEPEST_FILES {
-            return self.report.bad(at, format!("includes are nested more than {DEEPEST_FILES} levels deep"));
+        if self.texts.len() >= MAX_INCLUDE_DEPTH {
+            return self.report.error(at, format!("includes are nested more than {MAX_INCLUDE_DEPTH} levels deep"));
         }
-        let bytes = match read_unpacked(self.input.source, &name) {
+        let bytes = match read_decompressed(self.input.source, &name) {
             Ok(bytes) => bytes,
             Err(error) => {
                 let near = match &error {
@@ -431,7 +431,7 @@ impl Reader<'_> {
             }
         };
         if bytes.len() >= u32::MAX as usize {
-            return self.report.bad(at, format!("`{name}` is too large"));
+            return self.report.error(at, format!("`{name}` is too large"));
         }
         let file = self.input.files.borrow_mut().add(name.clone(), bytes.clone());
         if imported {
@@ -465,12 +465,12 @@ impl Reader<'_> {
             let error = Diagnostic::error("this is not closed").code("unclosed").at(at);
             self.report.push(error.help(format!("a `{end}` is missing")));
         }
-        crate::bodies::join_bodies(&mut self.scene, self.input.name);
+        crate::glass_bodies::join_bodies(&mut self.scene, self.input.name);
         if self.emitters_only {
-            crate::unscattered::blacken(&mut self.scene);
+            crate::emitters_only::blacken(&mut self.scene);
         }
-        self.frame();
-        self.surround();
+        self.make_camera();
+        self.set_environment();
         if self.scene.root.is_none() && !self.report.has_errors() {
             let warning = Diagnostic::warning("the file has no visible shapes");
             self.report.push(warning.code("no-objects"));

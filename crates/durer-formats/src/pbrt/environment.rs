@@ -1,10 +1,10 @@
 //! Infinite lights: constant, or environment maps. They are merged into one equirectangular
 //! environment map.
 
-use super::defs::{InfiniteLight, Map};
+use super::defs::{EnvironmentMapping, InfiniteLight};
 use super::state::Reader;
-use crate::panorama::{self, between};
-use crate::pictures::unusable;
+use crate::panorama::{self, bilinear};
+use crate::pictures::picture_error;
 use durer_diag::{Diagnostic, Span};
 use durer_image::{self as image, Encoded, Image};
 use durer_scene::math::{Color, LUMINANCE, Vec2, Vec3, fp};
@@ -20,21 +20,23 @@ struct Source {
     image: Image,
     to_light: DAffine3,
     scale: Color,
-    map: Map,
+    map: EnvironmentMapping,
 }
 
 impl Reader<'_> {
     /// Merges all infinite lights into the scene's environment map.
-    pub fn surround(&mut self) {
+    pub fn set_environment(&mut self) {
         let mut even = Color::ZERO;
         let mut sources = Vec::new();
         let mut first = None;
         for infinite in std::mem::take(&mut self.infinite) {
             match infinite {
-                InfiniteLight::Even(color) => even += color,
+                InfiniteLight::Constant(color) => even += color,
                 InfiniteLight::Picture { name, at, scale, map, to_light, illuminance } => {
-                    let memory =
-                        panorama::beside(sources.iter().map(|source: &Source| &source.image), self.input.memory);
+                    let memory = panorama::remaining_memory(
+                        sources.iter().map(|source: &Source| &source.image),
+                        self.input.memory,
+                    );
                     let Some((image, map)) = self.environment(&name, at, map, memory) else { continue };
                     let bright = |wanted: f32| wanted / upper_illuminance(&image, map);
                     let scale = scale * illuminance.map_or(1.0, bright);
@@ -48,17 +50,25 @@ impl Reader<'_> {
         let Some((name, at)) = first else { return };
         // Double the rows for an equirectangular source: its fine detail near the poles is at other
         // directions in the result.
-        let finer = |source: &Source| source.image.height * if source.map == Map::Longitude { 2 } else { 1 };
+        let finer = |source: &Source| {
+            source.image.height * if source.map == EnvironmentMapping::Equirectangular { 2 } else { 1 }
+        };
         let rows = sources.iter().map(finer).max().unwrap_or(1).min(MAX_ROWS);
         let light = |dir: DVec3| even + sources.iter().map(|source| source.at(dir)).sum::<Color>();
-        let memory = panorama::beside(sources.iter().map(|source| &source.image), self.input.memory);
-        if let Err(error) = panorama::surround(&mut self.scene, (&name, at), rows, memory, light) {
-            self.report.push(unusable(&name, &error).at(at));
+        let memory = panorama::remaining_memory(sources.iter().map(|source| &source.image), self.input.memory);
+        if let Err(error) = panorama::set_environment(&mut self.scene, (&name, at), rows, memory, light) {
+            self.report.push(picture_error(&name, &error).at(at));
         }
     }
 
     /// Reads an environment map and determines its mapping.
-    fn environment(&self, name: &str, at: Span, map: Map, memory: u64) -> Option<(Image, Map)> {
+    fn environment(
+        &self,
+        name: &str,
+        at: Span,
+        map: EnvironmentMapping,
+        memory: u64,
+    ) -> Option<(Image, EnvironmentMapping)> {
         let bytes = match self.input.source.read(name) {
             Ok(bytes) => bytes,
             Err(error) => {
@@ -67,24 +77,28 @@ impl Reader<'_> {
             }
         };
         // pbrt-v3 reads the bytes of an environment map as linear values.
-        let decode = if map == Map::Longitude { image::decode_linear } else { image::decode_srgb };
+        let decode = if map == EnvironmentMapping::Equirectangular { image::decode_linear } else { image::decode_srgb };
         let read = Encoded::open(&bytes, name).and_then(|encoded| encoded.read(memory, decode));
         match read {
-            Ok(picture) if map == Map::Longitude => Some((picture, map)),
+            Ok(picture) if map == EnvironmentMapping::Equirectangular => Some((picture, map)),
             Ok(picture) if picture.width == picture.height => Some((picture, map)),
             Ok(picture) if picture.width == 2 * picture.height => {
                 let what = "this picture is twice as wide as high: it is read as longitude and latitude, as in pbrt-v3, \
                             with z up";
-                self.report.other(at, what);
-                Some((picture, Map::Longitude))
+                self.report.unsupported(at, what);
+                Some((picture, EnvironmentMapping::Equirectangular))
             }
             Ok(Image { width, height, .. }) => {
                 let message = format!("an environment picture must be square, found {width} x {height} pixels");
-                self.report.bad_with(at, message, Some("pbrt's `imgtool makeequiarea` makes such a picture".into()));
+                self.report.error_with_help(
+                    at,
+                    message,
+                    Some("pbrt's `imgtool makeequiarea` makes such a picture".into()),
+                );
                 None
             }
             Err(error) => {
-                self.report.push(unusable(name, &error).at(at));
+                self.report.push(picture_error(name, &error).at(at));
                 None
             }
         }
@@ -98,16 +112,18 @@ impl Source {
         let dir = self.to_light.transform_vector3(dir).normalize_or(DVec3::Z).as_vec3();
         let (width, height) = (self.image.width, self.image.height);
         let place = match self.map {
-            Map::EqualArea => equal_area(dir),
-            Map::Longitude => {
+            EnvironmentMapping::EqualArea => equal_area(dir),
+            EnvironmentMapping::Equirectangular => {
                 let u = fp::atan2(dir.y, dir.x) / TAU;
                 Vec2::new(u - u.floor(), fp::atan2((dir.x * dir.x + dir.y * dir.y).sqrt(), dir.z) / PI)
             }
         };
         let texel = |share: f32, count: u32| ((share * count as f32) as u32).min(count - 1);
         let light = match self.map {
-            Map::EqualArea => self.image.get(texel(place.x, width), texel(place.y, height)).unwrap_or_default(),
-            Map::Longitude => between(&self.image, place),
+            EnvironmentMapping::EqualArea => {
+                self.image.get(texel(place.x, width), texel(place.y, height)).unwrap_or_default()
+            }
+            EnvironmentMapping::Equirectangular => bilinear(&self.image, place),
         };
         let light = if light.is_finite() { light.max(Color::ZERO) } else { Color::ZERO };
         self.scale * light
@@ -129,7 +145,7 @@ pub(super) fn equal_area(dir: Vec3) -> Vec2 {
 }
 
 /// Returns the unit vector for a position in the square of the equal-area mapping.
-pub(super) fn of_equal_area(place: Vec2) -> Vec3 {
+pub(super) fn equal_area_direction(place: Vec2) -> Vec3 {
     let place = 2.0 * place - 1.0;
     let across = place.abs();
     let distance = 1.0 - (across.x + across.y);
@@ -142,15 +158,15 @@ pub(super) fn of_equal_area(place: Vec2) -> Vec3 {
 
 /// Returns the illuminance of a surface facing +z, lit by the upper half (z > 0) of an environment
 /// map.
-fn upper_illuminance(image: &Image, map: Map) -> f32 {
+fn upper_illuminance(image: &Image, map: EnvironmentMapping) -> f32 {
     let mut sum = 0.0_f64;
     let (width, height) = (image.width, image.height);
     for (i, light) in image.pixels.iter().enumerate() {
         let (x, y) = ((i as u32 % width) as f32 + 0.5, (i as u32 / width) as f32 + 0.5);
         let place = Vec2::new(x / width as f32, y / height as f32);
         let (cosine, size) = match map {
-            Map::EqualArea => (of_equal_area(place).z, 4.0 * PI),
-            Map::Longitude => (fp::cos(PI * place.y), 2.0 * PI * PI * fp::sin(PI * place.y)),
+            EnvironmentMapping::EqualArea => (equal_area_direction(place).z, 4.0 * PI),
+            EnvironmentMapping::Equirectangular => (fp::cos(PI * place.y), 2.0 * PI * PI * fp::sin(PI * place.y)),
         };
         let luminance = light.dot(LUMINANCE);
         sum += f64::from(luminance * cosine.max(0.0) * size);

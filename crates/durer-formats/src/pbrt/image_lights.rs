@@ -8,9 +8,9 @@ use super::environment::equal_area;
 use super::language::Language;
 use super::params::Params;
 use super::state::Reader;
-use crate::panorama::between;
-use crate::pictures::{Pictures, unusable};
-use crate::profile_lights::{Axes, ProfileLights, steps};
+use crate::panorama::bilinear;
+use crate::pictures::{Pictures, picture_error};
+use crate::profile_lights::{Axes, ProfileLight, steps};
 use durer_image::{self as image, Encoded, Image};
 use durer_scene::math::{Color, Vec2, Vec3, fp};
 use glam::DAffine3;
@@ -24,7 +24,7 @@ const PROJECTED: [u32; 2] = [360, 720];
 
 /// Directional distribution of a goniometric or projection light, with the vertical and horizontal
 /// angles in degrees at which it is sampled.
-struct Pattern {
+struct DirectionalPattern {
     axes: Axes,
     angles: [Vec<f32>; 2],
     light: Box<dyn Fn(Vec3) -> Color>,
@@ -34,25 +34,26 @@ impl Reader<'_> {
     /// Adds a light at the origin of the current space; `color` is its intensity where the picture
     /// has the value 1.
     pub fn pictured_light(&mut self, kind: &str, params: &Params, map: DAffine3, (color, power): (Color, Option<f32>)) {
-        let third = self.language == Language::Third;
+        let third = self.language == Language::V3;
         let fov = if kind == "projection" { Some(self.fov(params, third)) } else { None };
         let Some(image) = self.light_picture(kind, params, third) else { return };
-        let Pattern { axes, angles: [vertical, horizontal], light } = match fov {
+        let DirectionalPattern { axes, angles: [vertical, horizontal], light } = match fov {
             Some(fov) => {
                 let screen = Screen::new(&image, fov);
                 let axes = Axes::about_z(&map);
                 let angles = [steps(screen.widest(), PROJECTED[0]), steps(360.0, PROJECTED[1])];
-                Pattern { axes, angles, light: Box::new(move |dir| screen.at(&image, dir)) }
+                DirectionalPattern { axes, angles, light: Box::new(move |dir| screen.at(&image, dir)) }
             }
             None => {
                 let axes = Axes::about_y(&map);
                 let count = |texels: u32| (2 * texels).clamp(90, STEPS);
                 let angles = [steps(180.0, count(image.height)), steps(360.0, count(image.width))];
-                let light = move |dir| if third { of_angles(&image, dir) } else { of_areas(&image, dir) };
-                Pattern { axes, angles, light: Box::new(light) }
+                let light =
+                    move |dir| if third { lookup_equirectangular(&image, dir) } else { lookup_equal_area(&image, dir) };
+                DirectionalPattern { axes, angles, light: Box::new(light) }
             }
         };
-        let lights = ProfileLights::new([vertical, horizontal], &axes, light);
+        let lights = ProfileLight::new([vertical, horizontal], &axes, light);
         let strength = power.map_or(1.0, |power| {
             let flux = lights.flux();
             if flux > 0.0 { power / flux } else { 0.0 }
@@ -64,7 +65,7 @@ impl Reader<'_> {
     fn fov(&self, params: &Params, third: bool) -> f32 {
         let fov = params.float("fov").unwrap_or(if third { 45.0 } else { 90.0 });
         if !(fov > 0.0 && fov < 180.0) {
-            params.report.bad(params.place("fov"), "a field of view must be more than 0 and less than 180 degrees");
+            params.report.error(params.span("fov"), "a field of view must be more than 0 and less than 180 degrees");
         }
         fov.clamp(1e-2, 179.0)
     }
@@ -76,7 +77,7 @@ impl Reader<'_> {
             if third {
                 return Image::from_pixels(1, 1, vec![Color::ONE]).ok();
             }
-            self.report.bad(params.at, format!("a light of type `{kind}` needs a `filename`"));
+            self.report.error(params.at, format!("a light of type `{kind}` needs a `filename`"));
             return None;
         };
         let at = params.get(name).map_or(params.at, |param| param.values_at);
@@ -86,7 +87,7 @@ impl Reader<'_> {
         let image = match Encoded::open(&bytes, &file).and_then(|encoded| encoded.read(self.input.memory, decode)) {
             Ok(image) => image,
             Err(error) => {
-                self.report.push(unusable(&file, &error).at(at));
+                self.report.push(picture_error(&file, &error).at(at));
                 return None;
             }
         };
@@ -95,7 +96,7 @@ impl Reader<'_> {
                 "the picture of a `goniometric` light must be square, found {} x {} pixels",
                 image.width, image.height
             );
-            self.report.bad_with(at, message, Some("pbrt's `imgtool makeequiarea` makes such a picture".into()));
+            self.report.error_with_help(at, message, Some("pbrt's `imgtool makeequiarea` makes such a picture".into()));
             return None;
         }
         Some(image)
@@ -126,20 +127,20 @@ impl Screen {
         if dir.z <= 0.0 || place.abs().max_element() > 1.0 {
             return Color::ZERO;
         }
-        between(image, 0.5 * (place + 1.0))
+        bilinear(image, 0.5 * (place + 1.0))
     }
 }
 
 /// Returns the value in a direction of a picture whose columns are longitudes, from x towards z,
 /// and whose rows are polar angles from y.
-fn of_angles(image: &Image, dir: Vec3) -> Color {
+fn lookup_equirectangular(image: &Image, dir: Vec3) -> Color {
     let turn = fp::atan2(dir.z, dir.x) / TAU;
     let down = fp::atan2((dir.x * dir.x + dir.z * dir.z).sqrt(), dir.y) / PI;
-    between(image, Vec2::new(turn - turn.floor(), down))
+    bilinear(image, Vec2::new(turn - turn.floor(), down))
 }
 
 /// Returns the grey value in a direction of a square equal-area picture: the mean of its channels.
-fn of_areas(image: &Image, dir: Vec3) -> Color {
+fn lookup_equal_area(image: &Image, dir: Vec3) -> Color {
     let place = equal_area(dir);
     let texel = |share: f32, count: u32| ((share * count as f32) as u32).min(count - 1);
     let value = image.get(texel(place.x, image.width), texel(place.y, image.height)).unwrap_or_default();

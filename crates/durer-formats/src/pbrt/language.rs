@@ -4,16 +4,16 @@
 //! pbrt.org/fileformat-v4.
 
 use super::lexer::{Lexer, Token};
-use crate::model::Input;
-use crate::packed::read_unpacked;
+use crate::gzip::read_decompressed;
+use crate::model::ReadInput;
 use crate::shared_report::SharedReport;
 use durer_diag::Span;
 
 /// Version of pbrt that a scene file is written for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Language {
-    Third,
-    Fourth,
+    V3,
+    V4,
 }
 
 /// Result of detecting the pbrt version, with the word that decided it. `by` is `None` if no word
@@ -85,35 +85,35 @@ const OLD_TYPES: [&str; 2] = ["color", "xyz"];
 
 /// Maximum number of included files that are searched, and maximum depth of includes.
 const MAX_FILES: usize = 64;
-const DEEPEST: usize = 8;
+const MAX_INCLUDE_DEPTH: usize = 8;
 
 /// Detects the version by the first word that only one of the two languages has; without one, it is
 /// pbrt-v4.
-pub(super) fn decide(input: &Input) -> DetectedLanguage {
+pub(super) fn decide(input: &ReadInput) -> DetectedLanguage {
     let mut left = MAX_FILES;
-    let found = search(Lexer::new(input.bytes.clone(), input.file), input, &mut left, 0);
-    let (language, by) = found.unwrap_or((Language::Fourth, None));
+    let token = search(Lexer::new(input.bytes.clone(), input.file), input, &mut left, 0);
+    let (language, by) = token.unwrap_or((Language::V4, None));
     DetectedLanguage { language, by }
 }
 
 /// Finds the deciding word, and its span if it is in the first file. Included files have no file
 /// index yet.
-fn search(mut text: Lexer, input: &Input, left: &mut usize, depth: usize) -> Option<(Language, Option<Span>)> {
+fn search(mut text: Lexer, input: &ReadInput, left: &mut usize, depth: usize) -> Option<(Language, Option<Span>)> {
     // Ignore errors here: they are reported when the file is read.
     let report = SharedReport::default();
     // Current directive, number of strings after it, and the last string that is the type and name
     // of a parameter.
     let (mut directive, mut names, mut head) = (String::new(), 0, String::new());
-    while let Some(found) = text.next(&report) {
-        let here = (depth == 0).then_some(found.at);
-        match found.token {
+    while let Some(token) = text.next(&report) {
+        let here = (depth == 0).then_some(token.at);
+        match token.token {
             Token::Word => {
-                let word = text.word(found.at);
+                let word = text.word(token.at);
                 if OLD_DIRECTIVES.contains(&word) {
-                    return Some((Language::Third, here));
+                    return Some((Language::V3, here));
                 }
                 if NEW_DIRECTIVES.contains(&word) {
-                    return Some((Language::Fourth, here));
+                    return Some((Language::V4, here));
                 }
                 // Numbers do not begin with a letter.
                 if word.starts_with(|first: char| first.is_ascii_uppercase()) {
@@ -128,9 +128,9 @@ fn search(mut text: Lexer, input: &Input, left: &mut usize, depth: usize) -> Opt
                 if name.contains(' ') {
                     head.clone_from(&name);
                 }
-                if directive == "Include" && names == 1 && *left > 0 && depth < DEEPEST {
+                if directive == "Include" && names == 1 && *left > 0 && depth < MAX_INCLUDE_DEPTH {
                     *left -= 1;
-                    let file = read_unpacked(input.source, &name).ok();
+                    let file = read_decompressed(input.source, &name).ok();
                     let file = file.filter(|bytes| bytes.len() < u32::MAX as usize);
                     let inner = file.and_then(|bytes| search(Lexer::new(bytes, input.file), input, left, depth + 1));
                     if inner.is_some() {
@@ -155,15 +155,15 @@ fn language_of(directive: &str, number: usize, head: &str, text: &str) -> Option
         let light = matches!(directive, "LightSource" | "AreaLightSource");
         let colored = matches!(kind, "rgb" | "spectrum" | "color");
         return match (kind, name) {
-            _ if OLD_TYPES.contains(&kind) || OLD_PARAMETERS.contains(&name) => Some(Language::Third),
-            (_, "scale") if light && colored => Some(Language::Third),
-            (_, "nsamples") if light => Some(Language::Third),
-            ("float", "scale" | "power" | "illuminance") | ("string", "filename") if light => Some(Language::Fourth),
+            _ if OLD_TYPES.contains(&kind) || OLD_PARAMETERS.contains(&name) => Some(Language::V3),
+            (_, "scale") if light && colored => Some(Language::V3),
+            (_, "nsamples") if light => Some(Language::V3),
+            ("float", "scale" | "power" | "illuminance") | ("string", "filename") if light => Some(Language::V4),
             _ => None,
         };
     }
     if directive == "Texture" && number == 2 && text == "color" {
-        return Some(Language::Third);
+        return Some(Language::V3);
     }
     let is_name = match directive {
         "MakeNamedMaterial" | "MakeNamedMedium" => head == "string type",
@@ -171,8 +171,8 @@ fn language_of(directive: &str, number: usize, head: &str, text: &str) -> Option
     };
     let (_, old, new) = NAMES.iter().find(|row| is_name && row.0.contains(&directive))?;
     match (old.contains(&text), new.contains(&text)) {
-        (true, _) => Some(Language::Third),
-        (_, true) => Some(Language::Fourth),
+        (true, _) => Some(Language::V3),
+        (_, true) => Some(Language::V4),
         _ => None,
     }
 }

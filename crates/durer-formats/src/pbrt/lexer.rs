@@ -1,7 +1,7 @@
 //! Lexer for pbrt files: words (directives and numbers), quoted strings and brackets. `#` begins a
 //! comment.
 
-use crate::report::shown;
+use crate::report::quoted;
 use crate::shared_report::SharedReport;
 use durer_diag::{Diagnostic, Span};
 use std::sync::Arc;
@@ -52,8 +52,8 @@ impl Lexer {
     }
 
     /// Returns the text of a token, quoted for messages.
-    pub fn shown(&self, at: Span) -> String {
-        shown(self.bytes(at))
+    pub fn quoted(&self, at: Span) -> String {
+        quoted(self.bytes(at))
     }
 
     fn span(&self, start: usize, end: usize) -> Span {
@@ -114,7 +114,7 @@ impl Lexer {
                         Some(letter @ (b'"' | b'\\' | b'\'')) => letter,
                         _ => {
                             let at = self.span(self.at, (self.at + 2).min(self.bytes.len()));
-                            report.bad(
+                            report.error(
                                 at,
                                 "unknown escape: `\\` must be followed by b, f, n, r, t, a quote or another `\\`",
                             );

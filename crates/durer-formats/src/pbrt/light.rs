@@ -5,7 +5,7 @@
 //! `scale`; `power` is luminous flux. In pbrt-v3 (3rd edition, chapter 12) values are absolute and
 //! `scale` is a colour.
 
-use super::defs::{AreaLight, InfiniteLight, Map};
+use super::defs::{AreaLight, EnvironmentMapping, InfiniteLight};
 use super::language::Language;
 use super::params::{Kind, Param, Params};
 use super::state::{LIGHT, Reader};
@@ -20,7 +20,7 @@ use std::rc::Rc;
 
 /// Returns the colour of a light: the parameter `name` times `scale`.
 fn color(params: &Params, name: &'static str) -> Color {
-    if params.language == Language::Third {
+    if params.language == Language::V3 {
         return params.spectrum(name).map_or(Vec3::ONE, |spectrum| spectrum.pbrt_v3_color()) * colored_scale(params);
     }
     let color = params.spectrum(name).map_or(Vec3::ONE, |spectrum| spectrum.light());
@@ -31,7 +31,9 @@ fn color(params: &Params, name: &'static str) -> Color {
 fn colored_scale(params: &Params) -> Color {
     match params.get("scale") {
         Some(param) if param.kind == Kind::Float => {
-            params.report.once(param.at, "`scale` of a light is a colour in pbrt-v3: this number is ignored");
+            params
+                .report
+                .unsupported_once(param.at, "`scale` of a light is a colour in pbrt-v3: this number is ignored");
             Vec3::ONE
         }
         _ => params.spectrum("scale").map_or(Vec3::ONE, |spectrum| spectrum.pbrt_v3_color()),
@@ -42,19 +44,19 @@ impl Reader<'_> {
     /// Executes a `LightSource` directive.
     pub fn light(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
         let params = self.params(list, Some(LIGHT), at);
-        let (map, exposure) = (self.map(at), self.exposure());
-        let end = |name: &'static str, usual: DVec3| params.triple(name).map_or(usual, |p| p.as_dvec3());
+        let (transform, exposure) = (self.map(at), self.exposure());
+        let end = |name: &'static str, default: DVec3| params.triple(name).map_or(default, |p| p.as_dvec3());
         let (from, to) = (end("from", DVec3::ZERO), end("to", DVec3::Z));
-        let place = map.transform_point3(from).as_vec3();
-        let direction = map.transform_vector3(to - from);
+        let place = transform.transform_point3(from).as_vec3();
+        let direction = transform.transform_vector3(to - from);
         let aimed = || {
             let direction = direction.try_normalize();
             if direction.is_none() {
-                params.report.bad(params.place("to"), "`to` of a light must differ from `from`");
+                params.report.error(params.span("to"), "`to` of a light must differ from `from`");
             }
             direction.unwrap_or(DVec3::Z).as_vec3()
         };
-        let third = self.language == Language::Third;
+        let third = self.language == Language::V3;
         let flux = || params.float("power").filter(|power| *power > 0.0);
         let power = if third { None } else { flux() };
         // A light's colour in Dürer is the radiance of a white diffuse surface that it illuminates:
@@ -62,9 +64,9 @@ impl Reader<'_> {
         let value: Light = match kind {
             "goniometric" | "projection" => {
                 let color = color(&params, "I") * exposure;
-                self.pictured_light(kind, &params, map, (color, power));
-                params.known(&["scale", "power"]);
-                return params.finish("this light");
+                self.pictured_light(kind, &params, transform, (color, power));
+                params.mark_known(&["scale", "power"]);
+                return params.warn_unused("this light");
             }
             "point" => {
                 let strength = power.map_or(1.0, |power| power / (4.0 * PI));
@@ -75,7 +77,7 @@ impl Reader<'_> {
                 let cone = [params.float("coneangle").unwrap_or(30.0), params.float("conedeltaangle").unwrap_or(5.0)];
                 if !(cone[0] > 0.0 && cone[0] <= 180.0) {
                     self.report
-                        .bad(params.place("coneangle"), "`coneangle` must be more than 0 and at most 180 degrees");
+                        .error(params.span("coneangle"), "`coneangle` must be more than 0 and at most 180 degrees");
                 }
                 let [outer, inner] = [cone[0], (cone[0] - cone[1]).max(0.0)];
                 let cosine = |degrees: f32| fp::sin_cos_degrees(f64::from(degrees)).1 as f32;
@@ -101,84 +103,88 @@ impl Reader<'_> {
             }
             "infinite" | "exinfinite" => {
                 self.infinite_light(&params, exposure);
-                return params.finish("this light");
+                return params.warn_unused("this light");
             }
             other => {
                 let known = ["point", "distant", "spot", "goniometric", "projection", "infinite"];
-                return self.report.bad_with(at, format!("unknown light `{other}`"), suggest(other, known));
+                return self.report.error_with_help(at, format!("unknown light `{other}`"), suggest(other, known));
             }
         };
-        params.known(&["from", "to", "scale"]);
+        params.mark_known(&["from", "to", "scale"]);
         if !third {
-            params.known(&["power"]);
+            params.mark_known(&["power"]);
         }
-        params.finish("this light");
+        params.warn_unused("this light");
         self.scene.lights.get_or_insert_default().push(Spanned { value, span: at });
     }
 
     fn infinite_light(&mut self, params: &Params, exposure: f32) {
-        if self.language == Language::Third {
+        if self.language == Language::V3 {
             let color = color(params, "L") * exposure;
-            params.known(&["samples", "nsamples"]);
+            params.mark_known(&["samples", "nsamples"]);
             let infinite = match params.text("mapname").filter(|name| !name.is_empty()) {
                 Some(name) => {
                     let at = params.get("mapname").map_or(params.at, |param| param.values_at);
                     let to_light = self.map(params.at).inverse();
-                    let map = Map::Longitude;
+                    let transform = EnvironmentMapping::Equirectangular;
                     InfiniteLight::Picture {
                         name: name.to_string(),
                         at,
                         scale: color,
-                        map,
+                        map: transform,
                         to_light,
                         illuminance: None,
                     }
                 }
-                None => InfiniteLight::Even(color),
+                None => InfiniteLight::Constant(color),
             };
             return self.infinite.push(infinite);
         }
         let illuminance = params.float("illuminance").filter(|e| *e > 0.0);
-        params.left_out(&["portal"], "the whole environment is sampled");
+        params.warn_unsupported(&["portal"], "the whole environment is sampled");
         let infinite = match params.text("filename") {
             Some(name) => {
                 let at = params.get("filename").map_or(params.at, |param| param.values_at);
                 let scale = params.float("scale").unwrap_or(1.0).max(0.0) * exposure;
                 let to_light = self.map(params.at).inverse();
-                let (scale, map) = (Vec3::splat(scale), Map::EqualArea);
-                InfiniteLight::Picture { name: name.to_string(), at, scale, map, to_light, illuminance }
+                let (scale, transform) = (Vec3::splat(scale), EnvironmentMapping::EqualArea);
+                InfiniteLight::Picture { name: name.to_string(), at, scale, map: transform, to_light, illuminance }
             }
-            None => InfiniteLight::Even(color(params, "L") * (exposure * illuminance.map_or(1.0, |e| e / PI))),
+            None => InfiniteLight::Constant(color(params, "L") * (exposure * illuminance.map_or(1.0, |e| e / PI))),
         };
-        params.known(&["from", "to", "power", "scale"]);
+        params.mark_known(&["from", "to", "power", "scale"]);
         self.infinite.push(infinite);
     }
 
     /// Executes an `AreaLightSource` directive.
     pub fn area_light(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
-        let third = self.language == Language::Third;
+        let third = self.language == Language::V3;
         if kind != "diffuse" && !(third && kind == "area") {
-            return self.report.bad_with(at, format!("unknown area light `{kind}`"), Some("write `diffuse`".into()));
+            return self.report.error_with_help(
+                at,
+                format!("unknown area light `{kind}`"),
+                Some("write `diffuse`".into()),
+            );
         }
         let params = self.params(list, Some(LIGHT), at);
         let picture = if third { None } else { params.text("filename").map(str::to_string) };
         if picture.is_some() && params.get("L").is_some() {
-            self.report.bad(params.place("filename"), "a light takes either `L` or `filename`");
+            self.report.error(params.span("filename"), "a light takes either `L` or `filename`");
         }
         let light = AreaLight {
             radiance: color(&params, "L") * self.exposure(),
             power: if third { None } else { params.float("power").filter(|power| *power > 0.0) },
-            two_sided: params.truth("twosided").unwrap_or(false),
+            two_sided: params.boolean("twosided").unwrap_or(false),
             picture,
             at,
         };
         if third {
-            params.known(&["samples", "nsamples"]);
+            params.mark_known(&["samples", "nsamples"]);
         }
-        params.finish("this light");
+        params.warn_unused("this light");
         if light.radiance == Vec3::ZERO {
             self.report.push(durer_diag::Diagnostic::note("this light is black").code("black-light").at(at));
         }
-        self.state.area = Some(Rc::new(light));
+        self.state.area_light = Some(Rc::new(light));
     }
 }

@@ -23,7 +23,7 @@ use std::sync::Arc;
 ///
 /// Source: Jensen, Marschner, Levoy and Hanrahan, *A Practical Model for Subsurface Light
 /// Transport*, SIGGRAPH 2001, table 5.
-const MEASURED: [(&str, [f32; 3], [f32; 3]); 12] = [
+const MEASURED_MEDIA: [(&str, [f32; 3], [f32; 3]); 12] = [
     ("Apple", [2.29, 2.39, 1.97], [0.003, 0.0034, 0.046]),
     ("Chicken1", [0.15, 0.21, 0.38], [0.015, 0.077, 0.19]),
     ("Chicken2", [0.19, 0.25, 0.32], [0.018, 0.088, 0.2]),
@@ -39,35 +39,35 @@ const MEASURED: [(&str, [f32; 3], [f32; 3]); 12] = [
 ];
 
 /// Default absorption and scattering coefficients.
-const USUAL: [[f32; 3]; 2] = [[0.0011, 0.0024, 0.014], [2.55, 3.21, 3.77]];
+const DEFAULT_COEFFICIENTS: [[f32; 3]; 2] = [[0.0011, 0.0024, 0.014], [2.55, 3.21, 3.77]];
 
 /// Returns the medium defined by `sigma_a`, `sigma_s`, `g` and `scale`, or a measured medium named
 /// by the parameter `preset`.
 pub(super) fn medium_of(params: &Params, preset: &'static str) -> Medium {
-    with(params, preset, USUAL)
+    with_preset(params, preset, DEFAULT_COEFFICIENTS)
 }
 
 /// Returns the medium for the given default absorption and scattering. See [`medium_of`].
-fn with(params: &Params, preset: &'static str, [usual_a, usual_s]: [[f32; 3]; 2]) -> Medium {
+fn with_preset(params: &Params, preset: &'static str, [usual_a, usual_s]: [[f32; 3]; 2]) -> Medium {
     let scale = params.float("scale").unwrap_or(1.0).max(0.0);
     if let Some(name) = params.text(preset).filter(|name| !name.is_empty()) {
-        match MEASURED.iter().find(|row| row.0 == name) {
+        match MEASURED_MEDIA.iter().find(|row| row.0 == name) {
             Some((_, scattering, absorption)) => {
-                params.known(&["sigma_a", "sigma_s", "g"]);
+                params.mark_known(&["sigma_a", "sigma_s", "g"]);
                 let [scattering, absorption] = [scattering, absorption].map(|row| scale * Vec3::from_array(*row));
                 return Medium { absorption, scattering, anisotropy: 0.0, density: None };
             }
             None => {
                 let message = format!("the medium `{name}` is unknown: its coefficients are used");
-                params.report.once(params.place(preset), message);
+                params.report.unsupported_once(params.span(preset), message);
             }
         }
     }
-    let coefficient = |name, usual: [f32; 3]| {
-        let given = params.spectrum(name).map(|spectrum| spectrum.coefficient());
-        scale * given.unwrap_or(Vec3::from_array(usual))
+    let coefficient = |name, default: [f32; 3]| {
+        let value = params.spectrum(name).map(|spectrum| spectrum.coefficient());
+        scale * value.unwrap_or(Vec3::from_array(default))
     };
-    params.left_out(&["Le", "Lescale", "Le_scale"], "the medium emits no light");
+    params.warn_unsupported(&["Le", "Lescale", "Le_scale"], "the medium emits no light");
     Medium {
         absorption: coefficient("sigma_a", usual_a),
         scattering: coefficient("sigma_s", usual_s),
@@ -84,53 +84,55 @@ impl Reader<'_> {
         let medium = match kind.as_str() {
             "homogeneous" => {
                 let medium = medium_of(&params, "preset");
-                params.finish(&format!("the medium `{name}`"));
+                params.warn_unused(&format!("the medium `{name}`"));
                 Some(medium)
             }
             "uniformgrid" | "heterogeneous" => self.grid(&name, &params),
             "rgbgrid" | "cloud" | "nanovdb" => {
                 let what = format!("media of type `{kind}` have no counterpart: they are ignored");
-                self.report.once(at, what);
+                self.report.unsupported_once(at, what);
                 None
             }
             other => {
                 let help = suggest(other, ["homogeneous", "uniformgrid", "rgbgrid", "cloud", "nanovdb"]);
-                return self.report.bad_with(at, format!("unknown type of medium `{other}`"), help);
+                return self.report.error_with_help(at, format!("unknown type of medium `{other}`"), help);
             }
         };
         if self.media.insert(name.clone(), medium).is_some() {
-            self.report.bad(at, format!("the medium `{name}` is already defined"));
+            self.report.error(at, format!("the medium `{name}` is already defined"));
         }
     }
 
     /// Reads a medium whose density is a grid of values at cell centres.
     fn grid(&mut self, name: &str, params: &Params) -> Option<Medium> {
-        let usual = match params.language {
-            Language::Third => USUAL,
-            Language::Fourth => [[1.0; 3]; 2],
+        let default = match params.language {
+            Language::V3 => DEFAULT_COEFFICIENTS,
+            Language::V4 => [[1.0; 3]; 2],
         };
-        let medium = with(params, "preset", usual);
-        params.left_out(&["temperature", "temperaturescale", "temperatureoffset"], "the medium emits no light");
-        let counts = ["nx", "ny", "nz"].map(|name| params.whole(name).unwrap_or(1));
-        let corner = |name, usual| params.triple(name).unwrap_or(usual).as_dvec3();
+        let medium = with_preset(params, "preset", default);
+        params.warn_unsupported(&["temperature", "temperaturescale", "temperatureoffset"], "the medium emits no light");
+        let counts = ["nx", "ny", "nz"].map(|name| params.integer(name).unwrap_or(1));
+        let corner = |name, default| params.triple(name).unwrap_or(default).as_dvec3();
         let (low, high) = (corner("p0", Vec3::ZERO), corner("p1", Vec3::ONE));
         let densities = params.floats("density").map(<[f64]>::to_vec);
-        params.finish(&format!("the medium `{name}`"));
+        params.warn_unused(&format!("the medium `{name}`"));
         let Some(densities) = densities else {
-            self.report.bad(params.at, "this medium needs a `density`");
+            self.report.error(params.at, "this medium needs a `density`");
             return None;
         };
-        let place = params.place("density");
+        let place = params.span("density");
         let wanted = counts.iter().try_fold(1_i64, |product, &n| product.checked_mul(n.max(0)));
         if wanted != Some(densities.len() as i64) {
             let [x, y, z] = counts;
-            let given = densities.len();
-            self.report
-                .bad(place, format!("`density` needs {x} x {y} x {z} numbers, by `nx`, `ny` and `nz`: found {given}"));
+            let count = densities.len();
+            self.report.error(
+                place,
+                format!("`density` needs {x} x {y} x {z} numbers, by `nx`, `ny` and `nz`: found {count}"),
+            );
             return None;
         }
         if let Some(bad) = densities.iter().position(|density| *density < 0.0) {
-            self.report.bad(place, format!("density {} is {}: it must be 0 or more", bad + 1, densities[bad]));
+            self.report.error(place, format!("density {} is {}: it must be 0 or more", bad + 1, densities[bad]));
             return None;
         }
         // Surround the grid with zeros, since the density outside is 0.
@@ -145,47 +147,47 @@ impl Reader<'_> {
         let bounds = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
         self.scene.assets.densities.insert(path.clone(), (bounds, Arc::new(grid)));
         let cell = (high - low) / DVec3::from_array(counts.map(|n| n as f64));
-        let map = DAffine3::from_scale_rotation_translation(high - low + 2.0 * cell, DQuat::IDENTITY, low - cell);
-        let placed = Some(self.state.transforms.maps[0] * map);
-        Some(Medium { density: Some(Density { name: FileName { path, span: place }, placed }), ..medium })
+        let transform = DAffine3::from_scale_rotation_translation(high - low + 2.0 * cell, DQuat::IDENTITY, low - cell);
+        let to_world = Some(self.state.transforms.maps[0] * transform);
+        Some(Medium { density: Some(Density { name: FileName { path, span: place }, to_world }), ..medium })
     }
 
     /// Sets the media inside and outside of shapes, which must be defined.
     pub fn medium_interface(&mut self, names: &[String; 2], at: Span) {
         for name in names.iter().filter(|name| !name.is_empty() && !self.media.contains_key(*name)) {
             let help = suggest(name, self.media.keys().map(String::as_str));
-            self.report.bad_with(at, format!("unknown medium `{name}`"), help);
+            self.report.error_with_help(at, format!("unknown medium `{name}`"), help);
         }
         let [inside, outside] = names.clone().map(|name| (!name.is_empty()).then_some(name));
         (self.state.inside, self.state.outside) = (inside, outside);
     }
 
     /// Returns the index of the current material filled with the medium inside the shape.
-    pub fn filled(&mut self) -> usize {
+    pub fn material_with_medium(&mut self) -> usize {
         let plain = self.state.material;
         let Some(name) = self.state.inside.clone() else { return plain };
         let Some(Some(medium)) = self.media.get(&name).cloned() else { return plain };
-        if let Some(known) = self.filled.get(&(plain, name.clone())) {
-            return *known;
+        if let Some(cached) = self.materials_with_medium.get(&(plain, name.clone())) {
+            return *cached;
         }
-        let made = match &self.materials[plain] {
-            MaterialDef::Nothing => {
+        let material = match &self.materials[plain] {
+            MaterialDef::Interface => {
                 let mut m =
                     PrincipledMaterial { specular_ior: 1.0, transmission_weight: 1.0, ..PrincipledMaterial::default() };
                 medium.fill(&mut m);
-                MaterialDef::Layers(Box::new(m), Span::default())
+                MaterialDef::Principled(Box::new(m), Span::default())
             }
-            MaterialDef::Layers(layers, at) if layers.transmission_weight > 0.0 && layers.walls == Walls::Solid => {
+            MaterialDef::Principled(layers, at) if layers.transmission_weight > 0.0 && layers.walls == Walls::Solid => {
                 let mut m = layers.clone();
                 medium.fill(&mut m);
-                MaterialDef::Layers(m, *at)
+                MaterialDef::Principled(m, *at)
             }
             // Light does not enter other materials.
             _ => return plain,
         };
-        self.materials.push(made);
+        self.materials.push(material);
         let number = self.materials.len() - 1;
-        self.filled.insert((plain, name), number);
+        self.materials_with_medium.insert((plain, name), number);
         number
     }
 

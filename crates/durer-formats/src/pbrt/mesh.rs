@@ -20,18 +20,18 @@ struct MeshArrays {
 }
 
 /// Reads vertices and faces with `size` corners each. If `indices` is missing, there is one face,
-/// whose corners are `usual`.
-fn written(params: &Params, size: usize, usual: &[u32]) -> Option<MeshArrays> {
+/// whose corners are `default`.
+fn read_arrays(params: &Params, size: usize, default: &[u32]) -> Option<MeshArrays> {
     let report = params.report;
     let Some(positions) = params.triples("P") else {
-        report.bad(params.at, "a mesh needs points, `\"point3 P\"`");
+        report.error(params.at, "a mesh needs points, `\"point3 P\"`");
         return None;
     };
     let count = positions.len();
     let mut sound = true;
     let mut check = |name: &'static str, found: usize| {
         if found != count {
-            report.bad(params.place(name), format!("`{name}` has {found} values for {count} points"));
+            report.error(params.span(name), format!("`{name}` has {found} values for {count} points"));
             sound = false;
         }
     };
@@ -43,22 +43,22 @@ fn written(params: &Params, size: usize, usual: &[u32]) -> Option<MeshArrays> {
     if !uvs.is_empty() {
         check("uv", uvs.len());
     }
-    params.known(&["S", "faceIndices"]);
-    let indices = match params.wholes("indices") {
+    params.mark_known(&["S", "faceIndices"]);
+    let indices = match params.integers("indices") {
         Some(indices) => indices,
-        None if count == usual.len() => usual.iter().map(|&i| i64::from(i)).collect(),
+        None if count == default.len() => default.iter().map(|&i| i64::from(i)).collect(),
         None => {
-            report.bad(params.at, "a mesh of several faces needs `\"integer indices\"`");
+            report.error(params.at, "a mesh of several faces needs `\"integer indices\"`");
             return None;
         }
     };
     let place = params.get("indices").map_or(params.at, |param| param.values_at);
     if indices.len() % size != 0 {
-        report.bad(place, format!("`indices` has {} numbers: it must be a multiple of {size}", indices.len()));
+        report.error(place, format!("`indices` has {} numbers: it must be a multiple of {size}", indices.len()));
         sound = false;
     }
     if let Some(wrong) = indices.iter().find(|&&i| i < 0 || i >= count as i64) {
-        report.bad(place, format!("`indices` has {wrong}, but points are numbered 0 to {}", count as i64 - 1));
+        report.error(place, format!("`indices` has {wrong}, but points are numbered 0 to {}", count as i64 - 1));
         sound = false;
     }
     let faces = indices.chunks_exact(size).map(|face| face.iter().map(|&i| i as u32).collect()).collect();
@@ -67,7 +67,7 @@ fn written(params: &Params, size: usize, usual: &[u32]) -> Option<MeshArrays> {
 
 /// Reads a `trianglemesh`.
 pub(super) fn triangles(params: &Params, reversed: bool) -> Option<MeshData> {
-    let MeshArrays { positions, normals, uvs, faces } = written(params, 3, &[0, 1, 2])?;
+    let MeshArrays { positions, normals, uvs, faces } = read_arrays(params, 3, &[0, 1, 2])?;
     let triangles: Vec<[u32; 3]> = faces.iter().map(|face| [face[0], face[1], face[2]]).collect();
     let of = |there: bool| if there { triangles.clone() } else { Vec::new() };
     let (triangle_uvs, triangle_normals) = (of(!uvs.is_empty()), of(!normals.is_empty()));
@@ -78,18 +78,18 @@ pub(super) fn triangles(params: &Params, reversed: bool) -> Option<MeshData> {
 /// Reads a `bilinearmesh`, whose patches have corners at (u, v) = (0, 0), (1, 0), (0, 1) and (1,
 /// 1).
 pub(super) fn bilinear(params: &Params, reversed: bool) -> Option<MeshData> {
-    params.left_out(&["emissionfilename"], "the patch emits evenly");
-    let MeshArrays { positions, normals, uvs, faces } = written(params, 4, &[0, 1, 2, 3])?;
+    params.warn_unsupported(&["emissionfilename"], "the patch emits evenly");
+    let MeshArrays { positions, normals, uvs, faces } = read_arrays(params, 4, &[0, 1, 2, 3])?;
     let faces = faces.iter().map(|face| [face[0], face[1], face[2], face[3]]).collect();
     Some(net::bilinear(&Patches { positions, normals, uvs, faces }).oriented(reversed))
 }
 
 /// Reads a `loopsubdiv`, and subdivides it into at most `left` triangles.
 pub(super) fn subdivided(params: &Params, reversed: bool, left: usize) -> Option<MeshData> {
-    params.known(&["scheme"]);
-    let levels = params.whole("levels").or_else(|| params.whole("nlevels")).unwrap_or(3);
+    params.mark_known(&["scheme"]);
+    let levels = params.integer("levels").or_else(|| params.integer("nlevels")).unwrap_or(3);
     if !(0..=16).contains(&levels) {
-        params.report.bad(params.place("levels"), "`levels` must be from 0 to 16");
+        params.report.error(params.span("levels"), "`levels` must be from 0 to 16");
         return None;
     }
     let control = triangles(params, false)?;
@@ -97,7 +97,7 @@ pub(super) fn subdivided(params: &Params, reversed: bool, left: usize) -> Option
     let (data, done) = loop_surface(&control, levels as u32, most);
     if i64::from(done) < levels {
         let what = format!("more than {most} triangles: the surface is subdivided only {done} times");
-        params.report.once(params.place("levels"), what);
+        params.report.unsupported_once(params.span("levels"), what);
     }
     Some(data.oriented(reversed))
 }

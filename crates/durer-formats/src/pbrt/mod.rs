@@ -18,19 +18,19 @@ mod material;
 pub(super) mod medium;
 pub(super) mod mesh;
 mod named;
-mod net;
 mod params;
-mod round;
+mod quadrics;
 pub(super) mod shape;
 mod spectra;
 pub(super) mod state;
+mod surfaces;
 mod texture;
 mod transform;
 
 #[cfg(test)]
 mod tests;
 
-use super::model::{Input, SceneFormat};
+use super::model::{ReadInput, SceneFormat};
 use super::shared_report::SharedReport;
 use super::too_large;
 use directives::DIRECTIVES;
@@ -47,7 +47,7 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     read,
     write: None,
     up: Axis::Y,
-    whole: true,
+    is_complete_scene: true,
     light_hint: Some(
         "write `AreaLightSource \"diffuse\"` before a shape, or `LightSource \"infinite\"`: an environment is a light too",
     ),
@@ -59,17 +59,17 @@ fn recognise(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 12)];
     let (mut text, report) = (Lexer::new(head.into(), 0), SharedReport::default());
     let is_text = |token: Option<&Token>| matches!(token, Some(Token::Text(_)));
-    let Some(first) = text.next(&report).filter(|found| found.token == Token::Word) else { return false };
+    let Some(first) = text.next(&report).filter(|next| next.token == Token::Word) else { return false };
     let word = text.word(first.at).to_string();
     match DIRECTIVES.iter().find(|row| row.0 == word) {
-        Some((_, true)) => is_text(text.peek(&report).map(|found| &found.token)),
+        Some((_, true)) => is_text(text.peek(&report).map(|next| &next.token)),
         Some(_) => matches!(word.as_str(), "LookAt" | "WorldBegin" | "AttributeBegin" | "ReverseOrientation"),
         None => false,
     }
 }
 
 /// Reads a file; see [`read_model`](super::scene::read_model).
-fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
         diagnostics.push(Diagnostic { message: error.message.replace("mesh file", "scene"), help: None, ..error });
         return None;

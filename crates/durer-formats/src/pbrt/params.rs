@@ -2,8 +2,8 @@
 
 use super::language::Language;
 use super::lexer::{Lexer, SpannedToken, Token};
-use crate::model::Input;
-use crate::report::counted;
+use crate::model::ReadInput;
+use crate::report::count_text;
 use crate::shared_report::{SharedReport, suggest};
 use durer_diag::{Diagnostic, Span};
 use durer_scene::math::{Vec2, Vec3};
@@ -20,9 +20,9 @@ pub(super) enum Kind {
     Text,
     Texture,
     /// Rows of two numbers.
-    Pair,
+    Vec2,
     /// Rows of three numbers.
-    Triple,
+    Vec3,
     Rgb,
     Xyz,
     Blackbody,
@@ -36,14 +36,14 @@ const KINDS: [(&str, Kind); 18] = [
     ("bool", Kind::Bool),
     ("string", Kind::Text),
     ("texture", Kind::Texture),
-    ("point2", Kind::Pair),
-    ("vector2", Kind::Pair),
-    ("point3", Kind::Triple),
-    ("vector3", Kind::Triple),
-    ("normal3", Kind::Triple),
-    ("point", Kind::Triple),
-    ("vector", Kind::Triple),
-    ("normal", Kind::Triple),
+    ("point2", Kind::Vec2),
+    ("vector2", Kind::Vec2),
+    ("point3", Kind::Vec3),
+    ("vector3", Kind::Vec3),
+    ("normal3", Kind::Vec3),
+    ("point", Kind::Vec3),
+    ("vector", Kind::Vec3),
+    ("normal", Kind::Vec3),
     ("rgb", Kind::Rgb),
     ("blackbody", Kind::Blackbody),
     ("spectrum", Kind::Spectrum),
@@ -67,7 +67,7 @@ impl Values {
             Values::Texts(_) => ("string", "strings"),
             Values::Bools(_) => ("boolean", "booleans"),
         };
-        counted(self.len(), one, many)
+        count_text(self.len(), one, many)
     }
 
     fn len(&self) -> usize {
@@ -124,15 +124,15 @@ impl Param {
 pub(super) struct Params<'s> {
     list: Vec<Rc<Param>>,
     /// Number of the directive's own parameters.
-    own: usize,
+    own_count: usize,
     /// Span of the directive's word, or of the string after it.
     pub at: Span,
     pub report: &'s SharedReport,
-    pub input: &'s Input<'s>,
+    pub input: &'s ReadInput<'s>,
     /// Colour space of RGB parameters.
     pub space: RgbSpace,
     pub language: Language,
-    queried: RefCell<Vec<&'static str>>,
+    known_names: RefCell<Vec<&'static str>>,
 }
 
 /// Reads parameters as long as strings follow.
@@ -142,7 +142,7 @@ pub(super) fn read(text: &mut Lexer, language: Language, report: &SharedReport) 
         let Some(SpannedToken { token: Token::Text(_), .. }) = text.peek(report) else { break };
         let Some(SpannedToken { token: Token::Text(head), at }) = text.next(report) else { break };
         let Some((values, values_at)) = values(text, at, report) else { continue };
-        let Some((kind, name)) = declared(&head, at, language, report) else { continue };
+        let Some((kind, name)) = parse_declaration(&head, at, language, report) else { continue };
         if let Some(first) = list.iter().find(|param| param.name == name) {
             let error = Diagnostic::error(format!("`{name}` is given twice")).code("bad-value").at(at);
             report.push(error.related(first.at, "first here"));
@@ -156,46 +156,46 @@ pub(super) fn read(text: &mut Lexer, language: Language, report: &SharedReport) 
 }
 
 /// Parses the type and name of a parameter, such as `"float radius"`.
-fn declared(head: &str, at: Span, language: Language, report: &SharedReport) -> Option<(Kind, String)> {
+fn parse_declaration(head: &str, at: Span, language: Language, report: &SharedReport) -> Option<(Kind, String)> {
     let mut words = head.split_ascii_whitespace();
     let (Some(kind), Some(name), None) = (words.next(), words.next(), words.next()) else {
-        report.bad_with(
+        report.error_with_help(
             at,
             "expected the type and the name of a parameter",
             Some("for example `\"float radius\" [ 2 ]`".into()),
         );
         return None;
     };
-    let found = KINDS.iter().find(|row| row.0 == kind);
-    if found.is_none() {
+    let row = KINDS.iter().find(|row| row.0 == kind);
+    if row.is_none() {
         let help = suggest(kind, KINDS.iter().map(|row| row.0));
-        report.bad_with(at, format!("`{kind}` is not a parameter type"), help);
+        report.error_with_help(at, format!("`{kind}` is not a parameter type"), help);
     }
-    if kind == "xyz" && language == Language::Fourth {
-        report.bad_with(at, "only pbrt-v3 has `xyz` colours", Some("write `rgb`".into()));
+    if kind == "xyz" && language == Language::V4 {
+        report.error_with_help(at, "only pbrt-v3 has `xyz` colours", Some("write `rgb`".into()));
         return None;
     }
-    Some((found?.1, name.to_string()))
+    Some((row?.1, name.to_string()))
 }
 
 /// Reads the values after a parameter's name: one value, or several in brackets.
 fn values(text: &mut Lexer, head: Span, report: &SharedReport) -> Option<(Values, Span)> {
     let Some(first) = text.peek(report).cloned() else {
-        report.bad(head, "this parameter has no value");
+        report.error(head, "this parameter has no value");
         return None;
     };
     let (mut numbers, mut texts, mut bools) = (Vec::new(), Vec::new(), Vec::new());
     let (mut sound, mut kinds) = (true, 0);
-    let mut add = |found: SpannedToken, text: &Lexer| match found.token {
+    let mut add = |next: SpannedToken, text: &Lexer| match next.token {
         Token::Text(value) => {
             texts.push(value);
             true
         }
-        Token::Word if matches!(text.bytes(found.at), b"true" | b"false") => {
-            bools.push(text.bytes(found.at) == b"true");
+        Token::Word if matches!(text.bytes(next.at), b"true" | b"false") => {
+            bools.push(text.bytes(next.at) == b"true");
             true
         }
-        Token::Word => match number(text, found.at, report) {
+        Token::Word => match number(text, next.at, report) {
             Some(value) => {
                 numbers.push(value);
                 true
@@ -208,19 +208,19 @@ fn values(text: &mut Lexer, head: Span, report: &SharedReport) -> Option<(Values
     if first.token == Token::Open {
         text.next(report);
         loop {
-            let Some(found) = text.next(report) else {
+            let Some(next) = text.next(report) else {
                 let error = Diagnostic::error("these brackets are not closed").code("unclosed").at(first.at);
                 report.push(error.help("a `]` is missing"));
                 return None;
             };
-            end = found.at;
-            match found.token {
+            end = next.at;
+            match next.token {
                 Token::Close => break,
                 Token::Open => {
-                    report.bad(found.at, "brackets cannot be nested: a `]` is missing before this");
+                    report.error(next.at, "brackets cannot be nested: a `]` is missing before this");
                     sound = false;
                 }
-                _ => sound &= add(found, text),
+                _ => sound &= add(next, text),
             }
             if report.is_full() {
                 return None;
@@ -228,7 +228,7 @@ fn values(text: &mut Lexer, head: Span, report: &SharedReport) -> Option<(Values
         }
     } else {
         if first.token == Token::Close {
-            report.bad(first.at, "this `]` has no value before it");
+            report.error(first.at, "this `]` has no value before it");
             text.next(report);
             return None;
         }
@@ -240,7 +240,7 @@ fn values(text: &mut Lexer, head: Span, report: &SharedReport) -> Option<(Values
         kinds += u32::from(filled);
     }
     if kinds > 1 {
-        report.bad(at, "numbers, strings and booleans cannot be mixed");
+        report.error(at, "numbers, strings and booleans cannot be mixed");
         return None;
     }
     sound.then_some(match (texts.is_empty(), bools.is_empty()) {
@@ -255,16 +255,16 @@ pub(super) fn number(text: &Lexer, at: Span, report: &SharedReport) -> Option<f6
     let word = text.word(at);
     match word.parse::<f64>() {
         Ok(value) if value.abs() <= f64::from(f32::MAX) => return Some(value),
-        Ok(_) => report.bad_with(
+        Ok(_) => report.error_with_help(
             at,
-            format!("expected a finite number, found {}", text.shown(at)),
+            format!("expected a finite number, found {}", text.quoted(at)),
             Some("numbers must lie within the range of 32-bit floating point, about ±3.4e38".into()),
         ),
         Err(_) => {
             let point = word.replace(',', ".");
             let help = (point != word && point.parse::<f32>().is_ok())
                 .then(|| format!("decimals are written with a point: `{point}`"));
-            report.bad_with(at, format!("expected a number, found {}", text.shown(at)), help);
+            report.error_with_help(at, format!("expected a number, found {}", text.quoted(at)), help);
         }
     }
     None
@@ -273,11 +273,11 @@ pub(super) fn number(text: &Lexer, at: Span, report: &SharedReport) -> Option<f6
 /// Checks that the values fit the type.
 fn fits(kind: Kind, name: &str, values: &Values, at: Span, report: &SharedReport) -> bool {
     let complain = |wanted: &str| {
-        let found = match values.len() {
+        let actual = match values.len() {
             0 => "nothing".to_string(),
             _ => values.counted(),
         };
-        report.bad(at, format!("`{name}` needs {wanted}, found {found}"));
+        report.error(at, format!("`{name}` needs {wanted}, found {actual}"));
         false
     };
     let rows = |size: usize| match values {
@@ -294,8 +294,8 @@ fn fits(kind: Kind, name: &str, values: &Values, at: Span, report: &SharedReport
         (Kind::Spectrum, Values::Texts(_)) => true,
         (Kind::Spectrum, Values::Numbers(all)) if all.len() % 2 == 0 && !all.is_empty() => true,
         (Kind::Spectrum, _) => complain("pairs of wavelength and value, or a name"),
-        (Kind::Pair, _) if !rows(2) => complain("a multiple of two numbers"),
-        (Kind::Triple, _) if !rows(3) => complain("a multiple of three numbers"),
+        (Kind::Vec2, _) if !rows(2) => complain("a multiple of two numbers"),
+        (Kind::Vec3, _) if !rows(3) => complain("a multiple of three numbers"),
         (Kind::Rgb | Kind::Xyz, _) if !rows(3) || values.len() == 0 => complain("three numbers"),
         (Kind::Integer, Values::Numbers(all)) => {
             let whole = all.iter().all(|x| x.fract() == 0.0 && x.abs() < f64::from(i32::MAX));
@@ -312,17 +312,17 @@ impl<'s> Params<'s> {
         own: Vec<Rc<Param>>,
         others: &[Rc<Param>],
         at: Span,
-        (input, report): (&'s Input<'s>, &'s SharedReport),
+        (input, report): (&'s ReadInput<'s>, &'s SharedReport),
         (language, space): (Language, RgbSpace),
     ) -> Self {
         let count = own.len();
         let list = own.into_iter().chain(others.iter().cloned()).collect();
-        Params { list, own: count, at, report, input, space, language, queried: RefCell::default() }
+        Params { list, own_count: count, at, report, input, space, language, known_names: RefCell::default() }
     }
 
     /// Returns a parameter by name, and marks it as used.
     pub fn get(&self, name: &'static str) -> Option<&Param> {
-        self.queried.borrow_mut().push(name);
+        self.known_names.borrow_mut().push(name);
         let found = self.list.iter().find(|param| param.name == name)?;
         found.used.set(true);
         Some(found)
@@ -330,58 +330,58 @@ impl<'s> Params<'s> {
 
     /// Returns a parameter that has at least one value; reports an error if its type is not in
     /// `kinds`.
-    pub(super) fn of(&self, name: &'static str, kinds: &[Kind], wanted: &str) -> Option<&Param> {
-        let found = self.get(name)?;
-        if !kinds.contains(&found.kind) {
-            self.report.bad(found.at, format!("`{name}` must be {wanted}"));
+    pub(super) fn typed(&self, name: &'static str, kinds: &[Kind], wanted: &str) -> Option<&Param> {
+        let param = self.get(name)?;
+        if !kinds.contains(&param.kind) {
+            self.report.error(param.at, format!("`{name}` must be {wanted}"));
             return None;
         }
-        if found.values.len() == 0 {
-            self.report.bad(found.values_at, format!("`{name}` has no value"));
+        if param.values.len() == 0 {
+            self.report.error(param.values_at, format!("`{name}` has no value"));
             return None;
         }
-        Some(found)
+        Some(param)
     }
 
     /// Returns the span of a parameter, or of the directive if it has no such parameter.
-    pub fn place(&self, name: &'static str) -> Span {
+    pub fn span(&self, name: &'static str) -> Span {
         self.get(name).map_or(self.at, |param| param.at)
     }
 
     /// Returns a `float` parameter.
     pub fn float(&self, name: &'static str) -> Option<f32> {
-        self.of(name, &[Kind::Float, Kind::Integer], "a float").map(Param::number)
+        self.typed(name, &[Kind::Float, Kind::Integer], "a float").map(Param::number)
     }
 
     /// Returns a `float` parameter, which must be more than 0.
     pub fn positive(&self, name: &'static str) -> Option<f32> {
         let value = self.float(name)?;
         if value <= 0.0 {
-            self.report.bad(self.place(name), format!("`{name}` must be more than 0"));
+            self.report.error(self.span(name), format!("`{name}` must be more than 0"));
             return None;
         }
         Some(value)
     }
 
     /// Returns an `integer` parameter.
-    pub fn whole(&self, name: &'static str) -> Option<i64> {
-        self.of(name, &[Kind::Integer], "an integer").map(|param| param.numbers()[0] as i64)
+    pub fn integer(&self, name: &'static str) -> Option<i64> {
+        self.typed(name, &[Kind::Integer], "an integer").map(|param| param.numbers()[0] as i64)
     }
 
     /// Returns all values of an `integer` parameter.
-    pub fn wholes(&self, name: &'static str) -> Option<Vec<i64>> {
-        let param = self.of(name, &[Kind::Integer], "integers")?;
+    pub fn integers(&self, name: &'static str) -> Option<Vec<i64>> {
+        let param = self.typed(name, &[Kind::Integer], "integers")?;
         Some(param.numbers().iter().map(|&x| x as i64).collect())
     }
 
     /// Returns all values of a `float` parameter.
     pub fn floats(&self, name: &'static str) -> Option<&[f64]> {
-        self.of(name, &[Kind::Float, Kind::Integer], "floats").map(Param::numbers)
+        self.typed(name, &[Kind::Float, Kind::Integer], "floats").map(Param::numbers)
     }
 
     /// Returns a `bool` parameter.
-    pub fn truth(&self, name: &'static str) -> Option<bool> {
-        self.of(name, &[Kind::Bool], "`true` or `false`").map(|param| match &param.values {
+    pub fn boolean(&self, name: &'static str) -> Option<bool> {
+        self.typed(name, &[Kind::Bool], "`true` or `false`").map(|param| match &param.values {
             Values::Bools(all) => all[0],
             _ => param.text() == "true",
         })
@@ -389,18 +389,18 @@ impl<'s> Params<'s> {
 
     /// Returns a `string` parameter.
     pub fn text(&self, name: &'static str) -> Option<&str> {
-        self.of(name, &[Kind::Text], "a string").map(Param::text)
+        self.typed(name, &[Kind::Text], "a string").map(Param::text)
     }
 
     /// Returns a parameter with rows of two numbers.
     pub fn pairs(&self, name: &'static str) -> Option<Vec<Vec2>> {
-        let param = self.of(name, &[Kind::Pair, Kind::Float], "rows of two numbers")?;
+        let param = self.typed(name, &[Kind::Vec2, Kind::Float], "rows of two numbers")?;
         Some(param.numbers().chunks_exact(2).map(|p| Vec2::new(p[0] as f32, p[1] as f32)).collect())
     }
 
     /// Returns a parameter with rows of three numbers.
     pub fn triples(&self, name: &'static str) -> Option<Vec<Vec3>> {
-        self.of(name, &[Kind::Triple], "rows of three numbers").map(Param::triples)
+        self.typed(name, &[Kind::Vec3], "rows of three numbers").map(Param::triples)
     }
 
     /// Returns the first three numbers of a parameter.
@@ -409,25 +409,25 @@ impl<'s> Params<'s> {
     }
 
     /// Marks parameters that have no counterpart in Dürer as known, so that they are not reported.
-    pub fn known(&self, names: &[&'static str]) {
+    pub fn mark_known(&self, names: &[&'static str]) {
         names.iter().for_each(|name| _ = self.get(name));
     }
 
     /// Marks parameters as known, and warns about those that are present; `what` names the
     /// substitute.
-    pub fn left_out(&self, names: &[&'static str], what: &str) {
+    pub fn warn_unsupported(&self, names: &[&'static str], what: &str) {
         for name in names {
             if let Some(param) = self.get(name) {
-                self.report.once(param.at, format!("`{name}` has no counterpart: {what}"));
+                self.report.unsupported_once(param.at, format!("`{name}` has no counterpart: {what}"));
             }
         }
     }
 
     /// Warns about unknown parameters. `what` names the directive.
-    pub fn finish(&self, what: &str) {
-        for param in self.list[..self.own].iter().filter(|param| !param.used.get()) {
+    pub fn warn_unused(&self, what: &str) {
+        for param in self.list[..self.own_count].iter().filter(|param| !param.used.get()) {
             let warning = Diagnostic::warning(format!("{what} has no parameter `{}`: it is ignored", param.name));
-            let help = suggest(&param.name, self.queried.borrow().iter().copied());
+            let help = suggest(&param.name, self.known_names.borrow().iter().copied());
             self.report.push(Diagnostic { help, ..warning.code("unknown-word").at(param.at) });
         }
     }

@@ -4,7 +4,7 @@ use super::defs::{AreaLight, Opacity};
 use super::language::Language;
 use super::params::{Kind, Param, Params};
 use super::state::{Reader, SHAPE};
-use super::{curve, mesh, net, round};
+use super::{curve, mesh, quadrics, surfaces};
 use crate::files::mesh_file;
 use crate::shared_report::suggest;
 use durer_diag::Span;
@@ -18,17 +18,17 @@ use std::sync::Arc;
 
 /// Maximum number of triangles of all tessellated shapes together, and the number from which curves
 /// have fewer sides. The maximum is low in tests, which build all of them.
-const MAX_GROWN: usize = if cfg!(test) { 1 << 18 } else { 1 << 24 };
+const MAX_TRIANGLES: usize = if cfg!(test) { 1 << 18 } else { 1 << 24 };
 const MANY: usize = 1 << 20;
 
 /// Geometry of a pbrt shape, before it gets a material and is added to the scene.
-struct MaterialDef {
+struct ShapeDef {
     node: ObjectKind,
     /// Total area in world space, and the number of area lights that it counts as.
     area: f32,
     lights: usize,
     /// Transform from object space to world space.
-    map: DAffine3,
+    to_world: DAffine3,
     /// True if normals point inwards in pbrt but outwards in Dürer.
     inside_out: bool,
 }
@@ -39,47 +39,47 @@ impl Reader<'_> {
     pub fn shape(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
         let params = self.params(list, Some(SHAPE), at);
         let opacity = self.opacity(&params);
-        let map = self.map(at);
+        let to_world = self.map(at);
         // The orientation of a quadric is defined in object space, that of a triangle in world
         // space.
-        let flipped = self.state.reversed != (map.matrix3.determinant() < 0.0);
-        let third = self.language == Language::Third;
-        let made = match kind {
-            "sphere" => self.sphere(&params, map, flipped),
-            "disk" => self.disk(&params, map, flipped),
+        let flipped = self.state.reversed != (to_world.matrix3.determinant() < 0.0);
+        let third = self.language == Language::V3;
+        let shape = match kind {
+            "sphere" => self.sphere(&params, to_world, flipped),
+            "disk" => self.disk(&params, to_world, flipped),
             "cylinder" => {
                 let data = mesh::cylinder(&params, flipped);
-                data.and_then(|data| self.grown(data, map, at))
+                data.and_then(|data| self.tessellated(data, to_world, at))
             }
             "trianglemesh" => {
                 let data = mesh::triangles(&params, self.state.reversed);
-                data.and_then(|data| self.mesh(None, Arc::new(data), map, at))
+                data.and_then(|data| self.mesh(None, Arc::new(data), to_world, at))
             }
             "bilinearmesh" => {
                 let data = mesh::bilinear(&params, self.state.reversed);
-                data.and_then(|data| self.grown(data, map, at))
+                data.and_then(|data| self.tessellated(data, to_world, at))
             }
             "loopsubdiv" => {
-                let data = mesh::subdivided(&params, self.state.reversed, MAX_GROWN - self.grown);
-                data.and_then(|data| self.grown(data, map, at))
+                let data = mesh::subdivided(&params, self.state.reversed, MAX_TRIANGLES - self.tessellated_triangles);
+                data.and_then(|data| self.tessellated(data, to_world, at))
             }
-            "plymesh" => self.ply(&params, map, at),
+            "plymesh" => self.ply(&params, to_world, at),
             "curve" => {
-                let data = curve::mesh(&params, self.state.reversed, self.grown > MANY);
-                data.and_then(|data| self.grown(data, map, at))
+                let data = curve::mesh(&params, self.state.reversed, self.tessellated_triangles > MANY);
+                data.and_then(|data| self.tessellated(data, to_world, at))
             }
             "cone" | "paraboloid" | "hyperboloid" | "heightfield" | "nurbs" if third => {
                 let data = match kind {
-                    "cone" => Some(round::cone(&params, flipped)),
-                    "paraboloid" => round::paraboloid(&params, flipped),
-                    "hyperboloid" => round::hyperboloid(&params, flipped),
-                    "heightfield" => net::heights(&params, self.state.reversed),
-                    _ => net::nurbs(&params, self.state.reversed),
+                    "cone" => Some(quadrics::cone(&params, flipped)),
+                    "paraboloid" => quadrics::paraboloid(&params, flipped),
+                    "hyperboloid" => quadrics::hyperboloid(&params, flipped),
+                    "heightfield" => surfaces::heights(&params, self.state.reversed),
+                    _ => surfaces::nurbs(&params, self.state.reversed),
                 };
-                data.and_then(|data| self.grown(data, map, at))
+                data.and_then(|data| self.tessellated(data, to_world, at))
             }
             other => {
-                let mut known = vec![
+                let mut cached = vec![
                     "sphere",
                     "disk",
                     "cylinder",
@@ -90,141 +90,142 @@ impl Reader<'_> {
                     "curve",
                 ];
                 if third {
-                    known.extend(["cone", "hyperboloid", "paraboloid", "heightfield", "nurbs"]);
+                    cached.extend(["cone", "hyperboloid", "paraboloid", "heightfield", "nurbs"]);
                 }
-                let mut help = suggest(other, known);
+                let mut help = suggest(other, cached);
                 if ["cone", "hyperboloid", "paraboloid", "heightfield", "nurbs"].contains(&other) {
                     help = Some("this shape belongs to pbrt-v3, not to pbrt-v4".into());
                 }
-                return self.report.bad_with(at, format!("unknown shape `{other}`"), help);
+                return self.report.error_with_help(at, format!("unknown shape `{other}`"), help);
             }
         };
-        params.known(&["alpha"]);
+        params.mark_known(&["alpha"]);
         if third {
-            params.left_out(&["shadowalpha"], "shadows use `alpha`");
+            params.warn_unsupported(&["shadowalpha"], "shadows use `alpha`");
         }
-        params.finish(&format!("the shape `{kind}`"));
-        if let Some(made) = made {
-            self.show(made, &opacity, at);
+        params.warn_unused(&format!("the shape `{kind}`"));
+        if let Some(shape) = shape {
+            self.add_shape(shape, &opacity, at);
         }
     }
 
     /// Adds a shape with its material and light to the scene.
-    fn show(&mut self, made: MaterialDef, opacity: &Opacity, at: Span) {
-        let light = self.state.area.clone();
+    fn add_shape(&mut self, shape: ShapeDef, opacity: &Opacity, at: Span) {
+        let light = self.state.area_light.clone();
         let light = light.filter(|light| {
             let inside = self.defining.is_some();
             if inside {
-                self.report.once(light.at, "instanced objects do not emit light, as in pbrt");
+                self.report.unsupported_once(light.at, "instanced objects do not emit light, as in pbrt");
             }
             !inside
         });
-        let material = self.filled();
-        let mut light = light.map(|light| (light.clone(), radiance(&light, &made)));
-        if let Some((light, _)) = light.as_mut().filter(|_| made.inside_out) {
+        let material = self.material_with_medium();
+        let mut light = light.map(|light| (light.clone(), radiance(&light, &shape)));
+        if let Some((light, _)) = light.as_mut().filter(|_| shape.inside_out) {
             *light = Rc::new(AreaLight { two_sided: true, ..(**light).clone() });
         }
         let radiance = light.as_ref().map(|(light, radiance)| (&**light, *radiance));
-        let Some(material) = self.number(material, radiance, opacity) else {
+        let Some(material) = self.material_index(material, radiance, opacity) else {
             if light.is_some() {
-                self.report.once(at, "an `interface` surface does not emit light");
+                self.report.unsupported_once(at, "an `interface` surface does not emit light");
             }
             return;
         };
-        if self.growth.has_objects(1, self.report, at) {
-            let inner = Object { node: made.node, material: Some(material), span: at };
-            self.add(inner.transformed(made.map));
+        if self.limits.count_objects_or_report(1, self.report, at) {
+            let inner = Object { node: shape.node, material: Some(material), span: at };
+            self.add(inner.transformed(shape.to_world));
         }
     }
 
     fn opacity(&mut self, params: &Params) -> Opacity {
-        let (share, picture) = self.pictured(params, "alpha", 1.0, |share| share);
+        let (share, picture) = self.number_or_texture(params, "alpha", 1.0, |share| share);
         Opacity { share, picture }
     }
 
-    fn sphere(&mut self, params: &Params, map: DAffine3, flipped: bool) -> Option<MaterialDef> {
+    fn sphere(&mut self, params: &Params, to_world: DAffine3, flipped: bool) -> Option<ShapeDef> {
         let radius = params.positive("radius").unwrap_or(1.0);
-        let ends = round::ends(params, [-radius, radius]);
-        if round::turn(params) < 360.0 || ends[0] > -radius || ends[1] < radius {
-            let data = round::sphere(params, radius, ends, flipped)?;
-            return self.grown(data, map, params.at);
+        let ends = quadrics::z_range(params, [-radius, radius]);
+        if quadrics::sweep_degrees(params) < 360.0 || ends[0] > -radius || ends[1] < radius {
+            let data = quadrics::sphere(params, radius, ends, flipped)?;
+            return self.tessellated(data, to_world, params.at);
         }
-        if flipped && self.state.area.as_ref().is_some_and(|light| !light.two_sided) {
-            self.report.once(params.at, "a sphere that emits inwards has no counterpart: it emits on both sides");
+        if flipped && self.state.area_light.as_ref().is_some_and(|light| !light.two_sided) {
+            self.report
+                .unsupported_once(params.at, "a sphere that emits inwards has no counterpart: it emits on both sides");
         }
-        let world = radius * map.transform_vector3(DVec3::X).length() as f32;
-        let (center, map) = match map.matrix3 == DAffine3::IDENTITY.matrix3 {
+        let world = radius * to_world.transform_vector3(DVec3::X).length() as f32;
+        let (center, to_world) = match to_world.matrix3 == DAffine3::IDENTITY.matrix3 {
             // In pbrt, the poles are on the z axis and u begins at x. In Dürer, the poles are on
             // the y axis and u = 1/2 is at -z.
             _ if self.is_pictured() || params.get("alpha").is_some_and(|param| param.kind == Kind::Texture) => {
                 let turned = DMat3::from_cols(DVec3::NEG_Y, DVec3::Z, DVec3::X);
-                (Vec3::ZERO, map * DAffine3::from_mat3(turned))
+                (Vec3::ZERO, to_world * DAffine3::from_mat3(turned))
             }
-            true => (map.translation.as_vec3(), DAffine3::IDENTITY),
-            false => (Vec3::ZERO, map),
+            true => (to_world.translation.as_vec3(), DAffine3::IDENTITY),
+            false => (Vec3::ZERO, to_world),
         };
         let node = ObjectKind::Primitive(Sphere { center, radius }.into());
-        Some(MaterialDef { node, area: 4.0 * PI * world * world, lights: 1, map, inside_out: flipped })
+        Some(ShapeDef { node, area: 4.0 * PI * world * world, lights: 1, to_world, inside_out: flipped })
     }
 
-    fn disk(&mut self, params: &Params, map: DAffine3, flipped: bool) -> Option<MaterialDef> {
+    fn disk(&mut self, params: &Params, to_world: DAffine3, flipped: bool) -> Option<ShapeDef> {
         let radius = params.positive("radius").unwrap_or(1.0);
         let inner_radius = params.float("innerradius").unwrap_or(0.0).max(0.0);
         let height = params.float("height").unwrap_or(0.0);
         if inner_radius >= radius {
-            self.report.bad(params.place("innerradius"), "`innerradius` must be less than `radius`");
+            self.report.error(params.span("innerradius"), "`innerradius` must be less than `radius`");
             return None;
         }
-        if round::turn(params) < 360.0 {
-            let data = round::disk(params, [inner_radius, radius], height, flipped);
-            return self.grown(data, map, params.at);
+        if quadrics::sweep_degrees(params) < 360.0 {
+            let data = quadrics::disk(params, [inner_radius, radius], height, flipped);
+            return self.tessellated(data, to_world, params.at);
         }
         let normal = if flipped { Vec3::NEG_Z } else { Vec3::Z };
-        let stretch = map.transform_vector3(DVec3::X).cross(map.transform_vector3(DVec3::Y)).length() as f32;
+        let stretch = to_world.transform_vector3(DVec3::X).cross(to_world.transform_vector3(DVec3::Y)).length() as f32;
         let area = PI * (radius * radius - inner_radius * inner_radius) * stretch;
         let node = ObjectKind::Primitive(Disc { center: height * Vec3::Z, normal, radius, inner_radius }.into());
-        Some(MaterialDef { node, area, lights: 1, map, inside_out: false })
+        Some(ShapeDef { node, area, lights: 1, to_world, inside_out: false })
     }
 
-    /// Returns a tessellated shape. Together, they may have at most `MAX_GROWN` triangles.
-    fn grown(&mut self, data: MeshData, map: DAffine3, at: Span) -> Option<MaterialDef> {
-        self.grown = self.grown.saturating_add(data.triangles.len());
-        if self.grown > MAX_GROWN {
-            self.grown = MAX_GROWN;
-            let what = format!("tessellated shapes beyond {MAX_GROWN} triangles are left out");
-            self.report.once(at, what);
+    /// Returns a tessellated shape. Together, they may have at most `MAX_TRIANGLES` triangles.
+    fn tessellated(&mut self, data: MeshData, to_world: DAffine3, at: Span) -> Option<ShapeDef> {
+        self.tessellated_triangles = self.tessellated_triangles.saturating_add(data.triangles.len());
+        if self.tessellated_triangles > MAX_TRIANGLES {
+            self.tessellated_triangles = MAX_TRIANGLES;
+            let what = format!("tessellated shapes beyond {MAX_TRIANGLES} triangles are left out");
+            self.report.unsupported_once(at, what);
             return None;
         }
-        self.mesh(None, Arc::new(data), map, at)
+        self.mesh(None, Arc::new(data), to_world, at)
     }
 
     /// Returns a mesh with a name shared by several shapes, or with a new name.
-    fn mesh(&mut self, name: Option<String>, data: Arc<MeshData>, map: DAffine3, at: Span) -> Option<MaterialDef> {
+    fn mesh(&mut self, name: Option<String>, data: Arc<MeshData>, to_world: DAffine3, at: Span) -> Option<ShapeDef> {
         if data.triangles.is_empty() {
             return None;
         }
-        let corner = |i: u32| map.transform_point3(data.positions[i as usize].as_dvec3());
+        let corner = |i: u32| to_world.transform_point3(data.positions[i as usize].as_dvec3());
         let twice = |[a, b, c]: &[u32; 3]| (corner(*b) - corner(*a)).cross(corner(*c) - corner(*a)).length();
         // The area is needed only for a light with a power.
-        let has_power = self.state.area.as_ref().is_some_and(|light| light.power.is_some());
+        let has_power = self.state.area_light.as_ref().is_some_and(|light| light.power.is_some());
         let area = if has_power { 0.5 * data.triangles.iter().map(twice).sum::<f64>() as f32 } else { 1.0 };
         let name = name.unwrap_or_else(|| format!("{}#{}", self.input.name, self.scene.assets.meshes.len()));
         let lights = data.triangles.len();
         let node = self.scene.add_mesh(&name, data, at);
-        Some(MaterialDef { node, area, lights, map, inside_out: false })
+        Some(ShapeDef { node, area, lights, to_world, inside_out: false })
     }
 
-    fn ply(&mut self, params: &Params, map: DAffine3, at: Span) -> Option<MaterialDef> {
-        params.left_out(&["displacement"], "the surface is not displaced");
-        params.known(&["edgelength"]);
+    fn ply(&mut self, params: &Params, to_world: DAffine3, at: Span) -> Option<ShapeDef> {
+        params.warn_unsupported(&["displacement"], "the surface is not displaced");
+        params.mark_known(&["edgelength"]);
         let Some(name) = params.text("filename").map(str::to_string) else {
-            self.report.bad(at, "a `plymesh` needs a `filename`");
+            self.report.error(at, "a `plymesh` needs a `filename`");
             return None;
         };
         let reversed = self.state.reversed;
         let key = (name.clone(), reversed);
         let data = match self.meshes.get(&key) {
-            Some(known) => known.clone(),
+            Some(cached) => cached.clone(),
             None => {
                 let place = params.get("filename").map_or(at, |param| param.values_at);
                 let data = Arc::new(mesh_file(self.input, self.report, &name, place)?.oriented(reversed));
@@ -233,15 +234,15 @@ impl Reader<'_> {
             }
         };
         let asset = if reversed { format!("{name}#reversed") } else { name };
-        self.mesh(Some(asset), data, map, at)
+        self.mesh(Some(asset), data, to_world, at)
     }
 }
 
 /// Returns the radiance of an area light. Its power is divided among the shape's lights; a mesh has
 /// one for each triangle.
-fn radiance(light: &AreaLight, made: &MaterialDef) -> Color {
+fn radiance(light: &AreaLight, shape: &ShapeDef) -> Color {
     let Some(power) = light.power else { return light.radiance };
     let sides = if light.two_sided { 2.0 } else { 1.0 };
-    let strength = power / (sides * PI * made.area / made.lights as f32);
+    let strength = power / (sides * PI * shape.area / shape.lights as f32);
     if strength.is_finite() { light.radiance * strength } else { Color::ZERO }
 }

@@ -3,8 +3,8 @@
 use super::language::Language;
 use super::named;
 use super::params::{Kind, Param, Params, Values};
+use crate::gzip::read_decompressed;
 use crate::number::parse_f32;
-use crate::packed::read_unpacked;
 use crate::shared_report::suggest;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::math::Vec3;
@@ -15,14 +15,14 @@ impl Params<'_> {
     /// Returns the spectrum of a parameter that is not a texture.
     pub fn spectrum(&self, name: &'static str) -> Option<SpectrumSource> {
         let kinds = [Kind::Rgb, Kind::Xyz, Kind::Blackbody, Kind::Spectrum];
-        spectrum_of(self.of(name, &kinds, "rgb, a spectrum or a blackbody")?, self)
+        spectrum_of(self.typed(name, &kinds, "rgb, a spectrum or a blackbody")?, self)
     }
 }
 
 /// Returns the spectrum of a parameter; in pbrt-v3, as RGB.
 fn spectrum_of(param: &Param, params: &Params) -> Option<SpectrumSource> {
-    let found = written(param, params)?;
-    if params.language == Language::Fourth {
+    let found = spectrum_value(param, params)?;
+    if params.language == Language::V4 {
         return Some(found);
     }
     // A blackbody of pbrt-v3 has a scale after the temperature.
@@ -33,7 +33,7 @@ fn spectrum_of(param: &Param, params: &Params) -> Option<SpectrumSource> {
     Some(SpectrumSource::Rgb(factor.max(0.0) * found.pbrt_v3_color()))
 }
 
-fn written(param: &Param, params: &Params) -> Option<SpectrumSource> {
+fn spectrum_value(param: &Param, params: &Params) -> Option<SpectrumSource> {
     let report = params.report;
     match (param.kind, &param.values) {
         (Kind::Xyz, _) => {
@@ -44,7 +44,7 @@ fn written(param: &Param, params: &Params) -> Option<SpectrumSource> {
         (Kind::Blackbody, _) => {
             let kelvin = param.number();
             if !(kelvin > 0.0 && kelvin < 1e6) {
-                report.bad(
+                report.error(
                     param.values_at,
                     "the temperature of a blackbody must be more than 0 and less than 1000000 kelvin",
                 );
@@ -56,40 +56,40 @@ fn written(param: &Param, params: &Params) -> Option<SpectrumSource> {
             let curve = all.chunks_exact(2).map(|pair| [pair[0] as f32, pair[1] as f32]).collect();
             rising(curve, param.values_at, params)
         }
-        _ => named(param.text(), param.values_at, params),
+        _ => named_spectrum(param.text(), param.values_at, params),
     }
 }
 
 fn rising(mut curve: Vec<[f32; 2]>, at: Span, params: &Params) -> Option<SpectrumSource> {
-    if params.language == Language::Third {
+    if params.language == Language::V3 {
         curve.sort_by(|a, b| a[0].total_cmp(&b[0]));
         curve.dedup_by_key(|row| row[0]);
     }
     if let Some(pair) = curve.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
         let message = format!("the wavelengths of a spectrum must increase: {} comes after {}", pair[1][0], pair[0][0]);
-        params.report.bad(at, message);
+        params.report.error(at, message);
         return None;
     }
     Some(SpectrumSource::Curve(curve))
 }
 
 /// Returns a spectrum by name: a named spectrum of pbrt-v4, or a file of wavelengths and values.
-fn named(name: &str, at: Span, params: &Params) -> Option<SpectrumSource> {
-    if params.language == Language::Fourth
-        && let Some(known) = named::spectrum(name)
+fn named_spectrum(name: &str, at: Span, params: &Params) -> Option<SpectrumSource> {
+    if params.language == Language::V4
+        && let Some(spectrum) = named::spectrum(name)
     {
-        return Some(known);
+        return Some(spectrum);
     }
-    let bytes = match read_unpacked(params.input.source, name) {
+    let bytes = match read_decompressed(params.input.source, name) {
         Ok(bytes) if bytes.len() < u32::MAX as usize => bytes,
         Ok(_) => {
-            params.report.bad(at, format!("`{name}` is too large for a spectrum"));
+            params.report.error(at, format!("`{name}` is too large for a spectrum"));
             return None;
         }
         Err(error) => {
             let (help, message) = match params.language {
-                Language::Third => (error.help(), format!("cannot read the spectrum: {error}")),
-                Language::Fourth => {
+                Language::V3 => (error.help(), format!("cannot read the spectrum: {error}")),
+                Language::V4 => {
                     (suggest(name, named::names()), format!("pbrt has no spectrum of that name, and {error}"))
                 }
             };
@@ -107,7 +107,7 @@ fn named(name: &str, at: Span, params: &Params) -> Option<SpectrumSource> {
                 Ok(value) => numbers.push(value),
                 Err(_) => {
                     let word_at = Span { file, start: place as u32, end: (place + word.len()) as u32 };
-                    let found = crate::report::shown(word);
+                    let found = crate::report::quoted(word);
                     let error = Diagnostic::error(format!("expected a number, found {found}"));
                     params.report.push(error.code("bad-file").at(word_at).related(at, "used here"));
                     return None;
@@ -117,7 +117,7 @@ fn named(name: &str, at: Span, params: &Params) -> Option<SpectrumSource> {
         start += line.len();
     }
     if numbers.is_empty() || numbers.len() % 2 != 0 {
-        params.report.bad(at, format!("`{name}` must contain pairs of wavelength and value"));
+        params.report.error(at, format!("`{name}` must contain pairs of wavelength and value"));
         return None;
     }
     rising(numbers.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect(), at, params)

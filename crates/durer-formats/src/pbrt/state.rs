@@ -5,9 +5,9 @@ use super::language::{DetectedLanguage, Language};
 use super::lexer::Lexer;
 use super::params::{Param, Params};
 use super::transform::Transforms;
-use crate::growth::Growth;
+use crate::growth::ResourceLimits;
 use crate::medium::Medium;
-use crate::model::Input;
+use crate::model::ReadInput;
 use crate::shared_report::SharedReport;
 use durer_diag::Span;
 use durer_scene::scene::{Group, Object, Scene};
@@ -33,7 +33,7 @@ pub(super) struct State {
     pub reversed: bool,
     /// Index of the current material.
     pub material: usize,
-    pub area: Option<Rc<AreaLight>>,
+    pub area_light: Option<Rc<AreaLight>>,
     /// Names of the media inside and outside of shapes.
     pub inside: Option<String>,
     pub outside: Option<String>,
@@ -74,7 +74,7 @@ pub(super) struct OpenFile {
 
 /// Reader that executes the directives of a pbrt scene file and builds the scene.
 pub(super) struct Reader<'a> {
-    pub input: &'a Input<'a>,
+    pub input: &'a ReadInput<'a>,
     pub report: &'a SharedReport,
     pub language: Language,
     /// Span of the word that decided the language.
@@ -82,28 +82,28 @@ pub(super) struct Reader<'a> {
     pub texts: Vec<OpenFile>,
     pub state: State,
     pub stack: Vec<(Scope, State, Span)>,
-    pub systems: BTreeMap<String, [DAffine3; 2]>,
+    pub coordinate_systems: BTreeMap<String, [DAffine3; 2]>,
     pub materials: Vec<MaterialDef>,
     pub named_materials: BTreeMap<String, usize>,
     /// Material indices in the scene, by material, emission and opacity as used by shapes.
-    pub numbers: BTreeMap<(usize, String), Option<u32>>,
+    pub material_indices: BTreeMap<(usize, String), Option<u32>>,
     pub textures: BTreeMap<(bool, String), Texture>,
     /// Media by name; `None` for a medium without a counterpart.
     pub media: BTreeMap<String, Option<Medium>>,
     /// Indices of materials filled with a medium, by material and medium.
-    pub filled: BTreeMap<(usize, String), usize>,
+    pub materials_with_medium: BTreeMap<(usize, String), usize>,
     pub objects: BTreeMap<String, Rc<Group>>,
     /// Name and content of the object being defined.
     pub defining: Option<(String, Group)>,
-    pub growth: Growth,
+    pub limits: ResourceLimits,
     /// Number of triangles so far that were tessellated from compact shapes.
-    pub grown: usize,
+    pub tessellated_triangles: usize,
     /// Number of files included so far.
     pub included: usize,
     pub camera: Option<DeferredDirective>,
     pub film: Option<DeferredDirective>,
     /// First directive before `WorldBegin` that is allowed only after it.
-    pub early: Option<Span>,
+    pub too_early: Option<Span>,
     pub in_world: bool,
     pub infinite: Vec<InfiniteLight>,
     /// True if scattered light is not rendered (`maxdepth` 0).
@@ -113,7 +113,7 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    pub fn new(input: &'a Input<'a>, decided: DetectedLanguage, report: &'a SharedReport) -> Self {
+    pub fn new(input: &'a ReadInput<'a>, decided: DetectedLanguage, report: &'a SharedReport) -> Self {
         let text = Lexer::new(input.bytes.clone(), input.file);
         let at = Span { file: input.file, start: 0, end: 0 };
         Reader {
@@ -124,21 +124,21 @@ impl<'a> Reader<'a> {
             texts: vec![OpenFile { text, name: input.name.to_string(), at, imported: false }],
             state: State::default(),
             stack: Vec::new(),
-            systems: BTreeMap::new(),
-            materials: vec![MaterialDef::usual()],
+            coordinate_systems: BTreeMap::new(),
+            materials: vec![MaterialDef::default_material()],
             named_materials: BTreeMap::new(),
-            numbers: BTreeMap::new(),
+            material_indices: BTreeMap::new(),
             textures: BTreeMap::new(),
             media: BTreeMap::new(),
-            filled: BTreeMap::new(),
+            materials_with_medium: BTreeMap::new(),
             objects: BTreeMap::new(),
             defining: None,
-            growth: Growth::within(input.memory),
-            grown: 0,
+            limits: ResourceLimits::with_memory(input.memory),
+            tessellated_triangles: 0,
             included: 0,
             camera: None,
             film: None,
-            early: None,
+            too_early: None,
             in_world: false,
             infinite: Vec::new(),
             emitters_only: false,
@@ -167,7 +167,8 @@ impl<'a> Reader<'a> {
     /// Returns the map from the current space to world space at shutter open; warns about motion.
     pub fn map(&self, at: Span) -> DAffine3 {
         if self.state.transforms.moves() {
-            self.report.once(at, "motion has no counterpart: everything stays where it is when the shutter opens");
+            self.report
+                .unsupported_once(at, "motion has no counterpart: everything stays where it is when the shutter opens");
         }
         self.state.transforms.maps[0]
     }

@@ -17,14 +17,14 @@ use std::rc::Rc;
 impl Texture {
     fn scaled(self, by: Color) -> Texture {
         match self {
-            Texture::Even(color) => Texture::Even(color * by),
+            Texture::Constant(color) => Texture::Constant(color * by),
             Texture::Picture(picture, scale) => Texture::Picture(picture, scale * by),
         }
     }
 
     /// Returns the colour if the texture is constant.
-    pub fn even(&self) -> Option<Color> {
-        if let Texture::Even(color) = self { Some(*color) } else { None }
+    pub fn constant(&self) -> Option<Color> {
+        if let Texture::Constant(color) = self { Some(*color) } else { None }
     }
 }
 
@@ -37,34 +37,39 @@ impl Reader<'_> {
         (class, at): (&str, Span),
         list: Vec<Rc<Param>>,
     ) {
-        let third = self.language == Language::Third;
+        let third = self.language == Language::V3;
         if kind != "float" && kind != "spectrum" && !(third && kind == "color") {
             let help = suggest(kind, ["float", "spectrum"]);
-            return self.report.bad_with(kind_at, format!("textures are `float` or `spectrum`, not `{kind}`"), help);
+            return self.report.error_with_help(
+                kind_at,
+                format!("textures are `float` or `spectrum`, not `{kind}`"),
+                help,
+            );
         }
         let params = self.params(list, Some(TEXTURE), at);
         let (is_color, report) = (kind != "float", self.report);
-        let instead = |what: &str| report.once(at, format!("the texture `{class}` has no counterpart: {what}"));
-        let of = |name: &'static str, usual: f32| self.pattern(&params, name, is_color, Vec3::splat(usual));
-        let both = |texture: &Texture, other: &Texture, share: f32| match (texture.even(), other.even()) {
-            (Some(a), Some(b)) => Some(Texture::Even(a.lerp(b, share))),
+        let instead =
+            |what: &str| report.unsupported_once(at, format!("the texture `{class}` has no counterpart: {what}"));
+        let of = |name: &'static str, default: f32| self.texture_value(&params, name, is_color, Vec3::splat(default));
+        let both = |texture: &Texture, other: &Texture, share: f32| match (texture.constant(), other.constant()) {
+            (Some(a), Some(b)) => Some(Texture::Constant(a.lerp(b, share))),
             _ => None,
         };
-        let made = match class {
+        let value = match class {
             "constant" => of("value", 1.0),
             "scale" if third => match (of("tex1", 1.0), of("tex2", 1.0)) {
-                (texture, Texture::Even(by)) | (Texture::Even(by), texture) => texture.scaled(by),
-                (texture, other) => self.together([&texture, &other], at, |a, b| a * b).unwrap_or_else(|| {
+                (texture, Texture::Constant(by)) | (Texture::Constant(by), texture) => texture.scaled(by),
+                (texture, other) => self.combine([&texture, &other], at, |a, b| a * b).unwrap_or_else(|| {
                     instead("pictures with different mappings cannot be combined, the first is used");
                     texture
                 }),
             },
             "uv" if third => self.corners([Vec3::ZERO, Vec3::Y, Vec3::X, Vec3::new(1.0, 1.0, 0.0)], &params),
             "scale" => {
-                let scale = self.pattern(&params, "scale", false, Vec3::ONE);
+                let scale = self.texture_value(&params, "scale", false, Vec3::ONE);
                 match (of("tex", 1.0), scale) {
-                    (texture, Texture::Even(by)) => texture.scaled(by),
-                    (Texture::Even(by), texture) => texture.scaled(by),
+                    (texture, Texture::Constant(by)) => texture.scaled(by),
+                    (Texture::Constant(by), texture) => texture.scaled(by),
                     (texture, _) => {
                         instead("two pictures cannot be combined, the first is used");
                         texture
@@ -73,22 +78,22 @@ impl Reader<'_> {
             }
             "mix" | "directionmix" => {
                 let (first, second) = (of("tex1", 0.0), of("tex2", 1.0));
-                let amount = self.pattern(&params, "amount", false, Vec3::splat(0.5)).even().map(|c| c.x);
-                params.known(&["dir"]);
+                let amount = self.texture_value(&params, "amount", false, Vec3::splat(0.5)).constant().map(|c| c.x);
+                params.mark_known(&["dir"]);
                 let share = amount.unwrap_or_else(|| {
                     instead("its `amount` cannot be a picture, 0.5 is used");
                     0.5
                 });
-                let mixed = || self.together([&first, &second], at, |a, b| a.lerp(b, share));
+                let mixed = || self.combine([&first, &second], at, |a, b| a.lerp(b, share));
                 both(&first, &second, share).or_else(mixed).unwrap_or_else(|| {
                     instead("pictures with different mappings cannot be mixed, the first is used");
-                    if first.even().is_some() { second } else { first }
+                    if first.constant().is_some() { second } else { first }
                 })
             }
-            "imagemap" => self.imagemap(&params, is_color).unwrap_or(Texture::Even(Vec3::splat(0.5))),
+            "imagemap" => self.imagemap(&params, is_color).unwrap_or(Texture::Constant(Vec3::splat(0.5))),
             "checkerboard" => {
                 let (odd, even) = (of("tex2", 0.0), of("tex1", 1.0));
-                match (even.even(), odd.even(), params.whole("dimension").unwrap_or(2)) {
+                match (even.constant(), odd.constant(), params.integer("dimension").unwrap_or(2)) {
                     (Some(a), Some(b), 2) => self.checkerboard(a, b, &params),
                     _ => {
                         instead("the mean of its two textures is used");
@@ -98,23 +103,23 @@ impl Reader<'_> {
             }
             "bilerp" => {
                 let corners = [of("v00", 0.0), of("v01", 1.0), of("v10", 0.0), of("v11", 1.0)];
-                match corners.each_ref().map(Texture::even) {
+                match corners.each_ref().map(Texture::constant) {
                     [Some(a), Some(b), Some(c), Some(d)] => self.corners([a, b, c, d], &params),
                     all => {
                         instead("the mean of its corners is used");
-                        Texture::Even(all.into_iter().flatten().sum::<Color>() / 4.0)
+                        Texture::Constant(all.into_iter().flatten().sum::<Color>() / 4.0)
                     }
                 }
             }
             "dots" => {
                 instead("`outside` is used");
-                params.known(&["inside"]);
+                params.mark_known(&["inside"]);
                 of("outside", 0.0)
             }
             "fbm" | "wrinkled" | "windy" | "marble" | "ptex" => {
                 instead("0.5 is used");
-                params.known(&["octaves", "roughness", "scale", "variation", "filename", "encoding"]);
-                Texture::Even(Vec3::splat(0.5))
+                params.mark_known(&["octaves", "roughness", "scale", "variation", "filename", "encoding"]);
+                Texture::Constant(Vec3::splat(0.5))
             }
             other => {
                 let known = [
@@ -132,20 +137,20 @@ impl Reader<'_> {
                     "windy",
                     "wrinkled",
                 ];
-                return self.report.bad_with(at, format!("unknown texture `{other}`"), suggest(other, known));
+                return self.report.error_with_help(at, format!("unknown texture `{other}`"), suggest(other, known));
             }
         };
         if third {
-            params.known(&["aamode", "dimension"]);
+            params.mark_known(&["aamode", "dimension"]);
         }
-        params.known(&["mapping", "uscale", "vscale", "udelta", "vdelta", "v1", "v2"]);
-        params.finish("this texture");
-        self.textures.insert((is_color, name), made);
+        params.mark_known(&["mapping", "uscale", "vscale", "udelta", "vdelta", "v1", "v2"]);
+        params.warn_unused("this texture");
+        self.textures.insert((is_color, name), value);
     }
 
-    /// Returns the value of a parameter that may be a texture; `usual` is the default.
-    pub fn pattern(&self, params: &Params, name: &'static str, is_color: bool, usual: Color) -> Texture {
-        let Some(param) = params.get(name) else { return Texture::Even(usual) };
+    /// Returns the value of a parameter that may be a texture; `default` is used if it is missing.
+    pub fn texture_value(&self, params: &Params, name: &'static str, is_color: bool, default: Color) -> Texture {
+        let Some(param) = params.get(name) else { return Texture::Constant(default) };
         if param.kind == Kind::Texture {
             if let Some(texture) = self.textures.get(&(is_color, param.text().to_string())) {
                 return texture.clone();
@@ -153,43 +158,45 @@ impl Reader<'_> {
             let known = self.textures.keys().filter(|key| key.0 == is_color).map(|key| key.1.as_str());
             let what = if is_color { "spectrum" } else { "float" };
             let message = format!("unknown texture `{}` of type `{what}`", param.text());
-            self.report.bad_with(param.values_at, message, suggest(param.text(), known));
-            return Texture::Even(usual);
+            self.report.error_with_help(param.values_at, message, suggest(param.text(), known));
+            return Texture::Constant(default);
         }
-        Texture::Even(match is_color {
-            true => params.spectrum(name).map_or(usual, |spectrum| spectrum.albedo()),
-            false => params.float(name).map_or(usual, Vec3::splat),
+        Texture::Constant(match is_color {
+            true => params.spectrum(name).map_or(default, |spectrum| spectrum.albedo()),
+            false => params.float(name).map_or(default, Vec3::splat),
         })
     }
 
     /// Returns a float parameter that may be a texture; for a picture, its mean.
-    pub fn value(&self, params: &Params, name: &'static str, usual: f32) -> f32 {
-        match self.pattern(params, name, false, Vec3::splat(usual)) {
-            Texture::Even(color) => color.x,
+    pub fn value(&self, params: &Params, name: &'static str, default: f32) -> f32 {
+        match self.texture_value(params, name, false, Vec3::splat(default)) {
+            Texture::Constant(color) => color.x,
             Texture::Picture(picture, scale) => {
-                self.mean_of(params, name, &picture).map_or(usual, |mean| mean * scale.x)
+                self.mean_of(params, name, &picture).map_or(default, |mean| mean * scale.x)
             }
         }
     }
 
     /// Returns the mean of a picture, for a parameter that can only be a number in Dürer.
     pub fn mean_of(&self, params: &Params, name: &'static str, picture: &TextureImage) -> Option<f32> {
-        let at = params.place(name);
-        self.report.once(at, format!("a picture for `{name}` has no counterpart: its mean is used"));
+        let at = params.span(name);
+        self.report.unsupported_once(at, format!("a picture for `{name}` has no counterpart: its mean is used"));
         self.pictures().mean(picture, at)
     }
 
     /// Returns the picture of a parameter with `change` applied to its values; `None` if the
     /// parameter is not a picture.
-    pub fn changed(
+    pub fn mapped_picture(
         &mut self,
         params: &Params,
         name: &'static str,
         is_color: bool,
         change: impl Fn(f32) -> f32,
     ) -> Option<FileName> {
-        let Texture::Picture(picture, scale) = self.pattern(params, name, is_color, Vec3::ZERO) else { return None };
-        let at = params.place(name);
+        let Texture::Picture(picture, scale) = self.texture_value(params, name, is_color, Vec3::ZERO) else {
+            return None;
+        };
+        let at = params.span(name);
         let mean = |p: Color| (p.x + p.y + p.z) / 3.0;
         let picture = self.pictures().changed(&picture, at, decode_srgb, |p| change(scale.x * mean(p)))?;
         Some(self.asset(picture, at))
@@ -197,25 +204,25 @@ impl Reader<'_> {
 
     /// Returns a float parameter that may be a picture: `change` applied to the value, or 1 and the
     /// changed picture.
-    pub fn pictured(
+    pub fn number_or_texture(
         &mut self,
         params: &Params,
         name: &'static str,
-        usual: f32,
+        default: f32,
         change: impl Fn(f32) -> f32,
     ) -> (f32, Option<FileName>) {
-        match self.changed(params, name, false, &change) {
+        match self.mapped_picture(params, name, false, &change) {
             Some(picture) => (1.0, Some(picture)),
-            None => (change(self.value(params, name, usual)), None),
+            None => (change(self.value(params, name, default)), None),
         }
     }
 
     /// Returns a colour parameter that may be a picture: the colour, or a factor and the picture's
     /// name.
-    pub fn colored(&mut self, params: &Params, name: &'static str, usual: f32) -> (Color, Option<FileName>) {
-        match self.pattern(params, name, true, Vec3::splat(usual)) {
-            Texture::Even(color) => (color, None),
-            Texture::Picture(picture, scale) => (scale, Some(self.asset(picture, params.place(name)))),
+    pub fn color_or_texture(&mut self, params: &Params, name: &'static str, default: f32) -> (Color, Option<FileName>) {
+        match self.texture_value(params, name, true, Vec3::splat(default)) {
+            Texture::Constant(color) => (color, None),
+            Texture::Picture(picture, scale) => (scale, Some(self.asset(picture, params.span(name)))),
         }
     }
 
@@ -235,7 +242,7 @@ impl Reader<'_> {
 
     fn imagemap(&self, params: &Params, is_color: bool) -> Option<Texture> {
         let Some(name) = params.text("filename") else {
-            self.report.bad(params.at, "an `imagemap` needs a `filename`");
+            self.report.error(params.at, "an `imagemap` needs a `filename`");
             return None;
         };
         let at = params.get("filename").map_or(params.at, |param| param.values_at);
@@ -244,29 +251,30 @@ impl Reader<'_> {
             "repeat" => {}
             "clamp" => mapping.wrap = [Wrap::Clamp; 2],
             "black" => {
-                self.report.once(params.place("wrap"), "the wrap mode `black` has no counterpart: `clamp` is used");
+                self.report
+                    .unsupported_once(params.span("wrap"), "the wrap mode `black` has no counterpart: `clamp` is used");
                 mapping.wrap = [Wrap::Clamp; 2];
             }
             other => {
                 let help = suggest(other, ["repeat", "clamp", "black"]);
-                self.report.bad_with(params.place("wrap"), format!("unknown wrap mode `{other}`"), help);
+                self.report.error_with_help(params.span("wrap"), format!("unknown wrap mode `{other}`"), help);
             }
         }
         mapping.nearest = params.text("filter") == Some("point");
         mapping.mipmaps = matches!(params.text("filter"), Some("trilinear" | "ewa" | "EWA"));
-        if self.language == Language::Third {
+        if self.language == Language::V3 {
             // Ignore pbrt-v3's mipmap settings: sampling needs no mipmaps.
-            params.known(&["trilinear", "maxanisotropy"]);
+            params.mark_known(&["trilinear", "maxanisotropy"]);
             let scale = Vec3::splat(params.float("scale").unwrap_or(1.0));
-            let plain = params.truth("gamma") == Some(false);
+            let plain = params.boolean("gamma") == Some(false);
             let bytes = self.eight_bits(name, at)?;
             let picture = TextureImage { bytes, mapping };
-            let curved = if plain { self.pictures().recoded(&picture, at, true, |x| x) } else { None };
+            let curved = if plain { self.pictures().reencoded(&picture, at, true, |x| x) } else { None };
             return Some(Texture::Picture(curved.unwrap_or(picture), scale));
         }
         let gamma = self.encoding(params);
-        let inverted = params.truth("invert") == Some(true);
-        params.known(&["maxanisotropy", "trilinear"]);
+        let inverted = params.boolean("invert") == Some(true);
+        params.mark_known(&["maxanisotropy", "trilinear"]);
         let scale = Vec3::splat(params.float("scale").unwrap_or(1.0));
         let picture = TextureImage { bytes: self.eight_bits(name, at)?, mapping };
         if gamma.is_none() && !inverted {
@@ -276,7 +284,7 @@ impl Reader<'_> {
             let decoded = gamma.map_or_else(|| linear_from_srgb(x), |gamma| fp::pow(x, gamma));
             if inverted { (1.0 - decoded).max(0.0) } else { decoded }
         };
-        let recoded = self.pictures().recoded(&picture, at, is_color, decode);
+        let recoded = self.pictures().reencoded(&picture, at, is_color, decode);
         Some(Texture::Picture(recoded.unwrap_or(picture), scale))
     }
 
@@ -291,7 +299,7 @@ impl Reader<'_> {
         let gamma = if let ["gamma", x] = words[..] { x.parse::<f32>().ok().filter(|x| *x > 0.0) } else { None };
         if gamma.is_none() {
             let message = format!("unknown encoding `{text}`: use `sRGB`, `linear`, or `gamma` with a number");
-            self.report.bad(params.place("encoding"), message);
+            self.report.error(params.span("encoding"), message);
         }
         gamma
     }
@@ -299,9 +307,9 @@ impl Reader<'_> {
     fn mapping(&self, params: &Params) -> Mapping {
         if let Some(other) = params.text("mapping").filter(|mapping| *mapping != "uv") {
             let what = format!("the mapping `{other}` has no counterpart: the surface's uv coordinates are used");
-            self.report.once(params.place("mapping"), what);
+            self.report.unsupported_once(params.span("mapping"), what);
         }
-        let number = |name: &'static str, usual: f32| params.float(name).unwrap_or(usual);
+        let number = |name: &'static str, default: f32| params.float(name).unwrap_or(default);
         let (su, sv) = (number("uscale", 1.0), number("vscale", 1.0));
         let (du, dv) = (number("udelta", 0.0), number("vdelta", 0.0));
         // v grows upwards in pbrt and in Dürer, but a picture's rows go down.
@@ -316,20 +324,20 @@ impl Reader<'_> {
         let [[su, _, du], [_, sv, dv]] = mapping.transform;
         mapping.transform = [[0.5 * su, 0.0, 0.25 + 0.5 * du], [0.0, 0.5 * sv, 0.25 + 0.5 * dv]];
         mapping.wrap = [Wrap::Clamp; 2];
-        match pictures::four([v01, v11, v00, v10]) {
+        match pictures::from_four_texels([v01, v11, v00, v10]) {
             Some((bytes, most)) => Texture::Picture(TextureImage { bytes, mapping }, Vec3::splat(most)),
-            None => Texture::Even(0.25 * (v00 + v01 + v10 + v11)),
+            None => Texture::Constant(0.25 * (v00 + v01 + v10 + v11)),
         }
     }
 
     /// Combines two textures texel by texel; `None` if their pictures have different mappings.
-    fn together(&self, textures: [&Texture; 2], at: Span, join: impl Fn(Color, Color) -> Color) -> Option<Texture> {
+    fn combine(&self, textures: [&Texture; 2], at: Span, join: impl Fn(Color, Color) -> Color) -> Option<Texture> {
         let pictures = self.pictures();
         let (picture, most) = match textures {
-            [Texture::Picture(a, by), Texture::Even(b)] => pictures.remade([a, a], at, |a, _| join(*by * a, *b)),
-            [Texture::Even(a), Texture::Picture(b, by)] => pictures.remade([b, b], at, |b, _| join(*a, *by * b)),
+            [Texture::Picture(a, by), Texture::Constant(b)] => pictures.joined([a, a], at, |a, _| join(*by * a, *b)),
+            [Texture::Constant(a), Texture::Picture(b, by)] => pictures.joined([b, b], at, |b, _| join(*a, *by * b)),
             [Texture::Picture(a, by), Texture::Picture(b, other)] => {
-                pictures.remade([a, b], at, |a, b| join(*by * a, *other * b))
+                pictures.joined([a, b], at, |a, b| join(*by * a, *other * b))
             }
             _ => None,
         }?;
@@ -346,7 +354,7 @@ impl Reader<'_> {
         mapping.nearest = true;
         match pictures::checkerboard(odd, even) {
             Some((bytes, most)) => Texture::Picture(TextureImage { bytes, mapping }, Vec3::splat(most)),
-            None => Texture::Even(0.5 * (even + odd)),
+            None => Texture::Constant(0.5 * (even + odd)),
         }
     }
 }

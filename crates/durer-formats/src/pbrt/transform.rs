@@ -23,16 +23,16 @@ impl Default for Transforms {
 }
 
 impl Transforms {
-    /// Multiplies by `map` from the right, so that the last directive in the file is applied first.
-    pub fn apply(&mut self, map: DAffine3) {
-        self.change(|now| now * map);
+    /// Multiplies by `transform` from the right, so that the last directive in the file is applied first.
+    pub fn apply(&mut self, transform: DAffine3) {
+        self.change(|now| now * transform);
     }
 
     /// Changes the active maps.
     pub fn change(&mut self, change: impl Fn(DAffine3) -> DAffine3) {
-        for (map, active) in self.maps.iter_mut().zip(self.active) {
+        for (transform, active) in self.maps.iter_mut().zip(self.active) {
             if active {
-                *map = change(*map);
+                *transform = change(*transform);
             }
         }
     }
@@ -45,22 +45,22 @@ impl Transforms {
 
 /// Reads `N` numbers after a directive, with or without brackets.
 pub(super) fn numbers<const N: usize>(text: &mut Lexer, directive: Span, report: &SharedReport) -> Option<[f64; N]> {
-    let open = text.peek(report).filter(|found| found.token == Token::Open).map(|found| found.at);
+    let open = text.peek(report).filter(|token| token.token == Token::Open).map(|token| token.at);
     if open.is_some() {
         text.next(report);
     }
     let mut all = [0.0; N];
     for (i, value) in all.iter_mut().enumerate() {
-        let Some(found) = text.peek(report).filter(|found| found.token == Token::Word).cloned() else {
-            let message = format!("{} needs {N} numbers, found {i}", text.shown(directive));
+        let Some(token) = text.peek(report).filter(|token| token.token == Token::Word).cloned() else {
+            let message = format!("{} needs {N} numbers, found {i}", text.quoted(directive));
             report.push(Diagnostic::error(message).code("bad-value").at(directive));
             return None;
         };
         text.next(report);
-        *value = number(text, found.at, report)?;
+        *value = number(text, token.at, report)?;
     }
     if let Some(open) = open
-        && text.next(report).is_none_or(|found| found.token != Token::Close)
+        && text.next(report).is_none_or(|token| token.token != Token::Close)
     {
         let message = format!("these brackets must hold {N} numbers and be closed");
         report.push(Diagnostic::error(message).code("unclosed").at(open));
@@ -74,17 +74,17 @@ pub(super) fn matrix(m: [f64; 16], at: Span, report: &SharedReport) -> Option<DA
     let matrix = DMat4::from_cols_array(&m);
     let [a, b, c, d] = [m[3], m[7], m[11], m[15]];
     if d == 0.0 || [a, b, c].iter().any(|x| (x / d).abs() > 1e-9) {
-        report.bad(at, "this matrix is not affine: its columns must end in 0 0 0 1");
+        report.error(at, "this matrix is not affine: its columns must end in 0 0 0 1");
         return None;
     }
-    let map = DAffine3::from_mat4(matrix * (1.0 / d));
-    sound(map, at, report)
+    let transform = DAffine3::from_mat4(matrix * (1.0 / d));
+    invertible(transform, at, report)
 }
 
 /// Returns a map if it is invertible; reports an error if it is singular.
-pub(super) fn sound(map: DAffine3, at: Span, report: &SharedReport) -> Option<DAffine3> {
-    let determinant = map.matrix3.determinant();
-    if determinant == 0.0 || !determinant.is_finite() || !map.inverse().is_finite() {
+pub(super) fn invertible(transform: DAffine3, at: Span, report: &SharedReport) -> Option<DAffine3> {
+    let determinant = transform.matrix3.determinant();
+    if determinant == 0.0 || !determinant.is_finite() || !transform.inverse().is_finite() {
         report.push(
             Diagnostic::error("this transform flattens space, or leaves the range of numbers")
                 .code("flat-transform")
@@ -92,7 +92,7 @@ pub(super) fn sound(map: DAffine3, at: Span, report: &SharedReport) -> Option<DA
         );
         return None;
     }
-    Some(map)
+    Some(transform)
 }
 
 /// Returns the rotation by an angle in degrees about an axis of any length.
@@ -111,6 +111,6 @@ pub(super) fn look_at([ex, ey, ez, lx, ly, lz, ux, uy, uz]: [f64; 9]) -> Option<
     let (eye, at, up) = (DVec3::new(ex, ey, ez), DVec3::new(lx, ly, lz), DVec3::new(ux, uy, uz));
     let forward = (at - eye).try_normalize()?;
     let right = up.try_normalize()?.cross(forward).try_normalize()?;
-    let map = DAffine3 { matrix3: DMat3::from_cols(right, forward.cross(right), forward), translation: eye };
-    Some(map.inverse())
+    let transform = DAffine3 { matrix3: DMat3::from_cols(right, forward.cross(right), forward), translation: eye };
+    Some(transform.inverse())
 }

@@ -71,7 +71,7 @@ impl<'t> Lines<'t> {
         }
     }
 
-    fn whole(&mut self, what: &str, from: usize, to: usize) -> LdtResult<usize> {
+    fn integer(&mut self, what: &str, from: usize, to: usize) -> LdtResult<usize> {
         let (number, start, end) = self.number(what)?;
         match number.fract() == 0.0 && (from as f64..=to as f64).contains(&number) {
             true => Ok(number as usize),
@@ -120,23 +120,23 @@ pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<Phot
 fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<PhotometricProfile> {
     let mut lines = Lines { text, at: 0, file };
     lines.skip(2, "manufacturer and file type")?;
-    let symmetry = match lines.whole("symmetry", 0, 4)? {
+    let symmetry = match lines.integer("symmetry", 0, 4)? {
         0 => Symmetry::None,
         1 => Symmetry::Axis,
         2 => Symmetry::C0,
         3 => Symmetry::C90,
         _ => Symmetry::Both,
     };
-    let count = lines.whole("number of C planes", 1, MAX_PLANES)?;
+    let count = lines.integer("number of C planes", 1, MAX_PLANES)?;
     lines.skip(1, "distance between C planes")?;
-    let verticals = lines.whole("number of intensities in each plane", 1, MAX_ANGLES)?;
+    let verticals = lines.integer("number of intensities in each plane", 1, MAX_ANGLES)?;
     lines.skip(1, "distance between intensities")?;
     lines.skip(5, "luminaire names and date")?;
     lines.skip(9, "size of the luminaire")?;
     lines.skip(2, "downward flux and light output ratio")?;
     let factor = lines.not_negative("conversion factor")?;
     lines.skip(1, "tilt")?;
-    let sets = lines.whole("number of sets of light sources", 1, 20)?;
+    let sets = lines.integer("number of sets of light sources", 1, 20)?;
     // The sets are alternatives; use the first one.
     lines.skip(2, "number and type of the light sources")?;
     let flux = lines.not_negative("flux of the light sources")?;
@@ -146,7 +146,7 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<Phot
     let planes = lines.angles(count, "C angle", 360.0)?;
     let angles = around..lines.at;
     let vertical = lines.angles(verticals, "gamma angle", 180.0)?;
-    let horizontal = lines.kept(symmetry, planes, angles.clone())?;
+    let horizontal = lines.select_planes(symmetry, planes, angles.clone())?;
     let scale = factor * flux / 1000.0;
     let all = horizontal.len() * verticals;
     let mut candela = Vec::with_capacity(all);
@@ -171,7 +171,7 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<Phot
         }
         // EULUMDAT lists half-planes from C = 270 over 0 to 90 degrees; profiles list 90 to 270, as
         // IES files do.
-        Symmetry::C90 => turned(&mut profile),
+        Symmetry::C90 => mirror_half(&mut profile),
         _ => {}
     }
     if profile.candela.iter().all(|candela| *candela == 0.0) {
@@ -184,7 +184,7 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<Phot
 
 impl Lines<'_> {
     /// Selects the half-planes for which the file has intensities.
-    fn kept(&self, symmetry: Symmetry, planes: Vec<f32>, at: std::ops::Range<usize>) -> LdtResult<Vec<f32>> {
+    fn select_planes(&self, symmetry: Symmetry, planes: Vec<f32>, at: std::ops::Range<usize>) -> LdtResult<Vec<f32>> {
         let within = |from: f32, to: f32| planes.iter().copied().filter(|c| (from..=to).contains(c)).collect();
         let (kept, ends): (Vec<f32>, _) = match symmetry {
             Symmetry::Axis => return Ok(planes[..1].to_vec()),
@@ -210,7 +210,7 @@ impl Lines<'_> {
 }
 
 /// Replaces the half-planes from -90 to 90 degrees by their mirror images, from 90 to 270 degrees.
-fn turned(profile: &mut PhotometricProfile) {
+fn mirror_half(profile: &mut PhotometricProfile) {
     let verticals = profile.vertical.len();
     profile.horizontal = profile.horizontal.iter().rev().map(|c| 180.0 - c).collect();
     profile.candela = profile.candela.chunks(verticals).rev().flatten().copied().collect();

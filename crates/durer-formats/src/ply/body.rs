@@ -1,10 +1,10 @@
 //! Reads the rows of a PLY file; decides which elements to read, and in which order.
 
 use super::header::{Element, Property};
-use super::values::{ValueError, Values};
+use super::values::{ValueError, ValueReader};
 use crate::number::{NumberError, report_number};
-use crate::polygon::Cutter;
-use crate::report::{Report, counted, shown};
+use crate::polygon::Triangulator;
+use crate::report::{Report, count_text, quoted};
 use durer_scene::shape::mesh::MeshData;
 use std::ops::Range;
 
@@ -12,20 +12,20 @@ use std::ops::Range;
 pub(super) struct ErrorReported;
 
 /// Reader that converts the rows of all elements of a PLY file to a mesh.
-pub(super) struct Body<'a, 'r, V> {
+pub(super) struct RowReader<'a, 'r, V> {
     pub bytes: &'a [u8],
     pub report: &'r mut Report,
     pub values: V,
     pub mesh: MeshData,
-    pub cutter: Cutter,
+    pub triangulator: Triangulator,
     /// Corners of the current face or strip.
     pub corners: Vec<u32>,
 }
 
-impl<'a, 'r, V: Values> Body<'a, 'r, V> {
+impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
     pub fn new(bytes: &'a [u8], values: V, report: &'r mut Report) -> Self {
-        let cutter = Cutter::new(bytes.len());
-        Body { bytes, report, values, mesh: MeshData::default(), cutter, corners: Vec::new() }
+        let triangulator = Triangulator::new(bytes.len());
+        RowReader { bytes, report, values, mesh: MeshData::default(), triangulator, corners: Vec::new() }
     }
 
     /// Reads all elements: the vertices first, wherever they are in the file.
@@ -81,11 +81,11 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
 
     /// Reports an element that has more rows than the rest of the file can contain.
     fn check_rows(&mut self, element: &Element) -> Result<(), ErrorReported> {
-        let sizes = element.properties.iter().map(|p| p.count.map_or(V::fixed_size(p.scalar), |_| None));
+        let sizes = element.properties.iter().map(|p| p.length_type.map_or(V::fixed_size(p.number_type), |_| None));
         let Some(size) = sizes.sum::<Option<usize>>() else { return Ok(()) };
         let left = self.values.remainder().len();
         if (left as u64) < element.rows.saturating_mul(size as u64) {
-            let what = shown(&self.bytes[element.name.clone()]);
+            let what = quoted(&self.bytes[element.name.clone()]);
             let message = format!(
                 "the header promises {} {what} rows of {size} bytes, but only {left} bytes follow",
                 element.rows
@@ -102,7 +102,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
     /// memory.
     pub fn likely_rows(&self, element: &Element) -> usize {
         // Even an empty list has a length, and a text value takes at least one digit and one space.
-        let smallest = |p: &Property| V::fixed_size(p.count.unwrap_or(p.scalar)).unwrap_or(2);
+        let smallest = |p: &Property| V::fixed_size(p.length_type.unwrap_or(p.number_type)).unwrap_or(2);
         let row = element.properties.iter().map(smallest).sum::<usize>().max(1);
         element.rows.min((self.values.remainder().len() / row + 1) as u64) as usize
     }
@@ -122,19 +122,19 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
 
     /// Skips the value or list of a property in one row.
     pub fn skip_property(&mut self, element: &Element, row: u64, property: &Property) -> Result<(), ErrorReported> {
-        let count = match property.count {
+        let count = match property.length_type {
             Some(_) => self.list_length(element, row, property)?,
             None => 1,
         };
-        self.values.skip(property.scalar, count).map_err(|error| self.fail(error, element, row))
+        self.values.skip(property.number_type, count).map_err(|error| self.fail(error, element, row))
     }
 
     /// Reads the length of a list, and checks that the rest of the file can contain that many
     /// values.
     pub fn list_length(&mut self, element: &Element, row: u64, property: &Property) -> Result<usize, ErrorReported> {
-        let Some(scalar) = property.count else { return Ok(1) };
+        let Some(scalar) = property.length_type else { return Ok(1) };
         let length = self.values.integer(scalar).map_err(|error| self.fail(error, element, row))?;
-        let most = self.values.most_left(property.scalar);
+        let most = self.values.most_left(property.number_type);
         match usize::try_from(length) {
             Ok(length) if length <= most => Ok(length),
             Ok(_) => {
@@ -154,8 +154,8 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         let at = self.values.last();
         match error {
             ValueError::End => {
-                let name = shown(&self.bytes[element.name.clone()]);
-                let rows = counted(element.rows as usize, "row", "rows");
+                let name = quoted(&self.bytes[element.name.clone()]);
+                let rows = count_text(element.rows as usize, "row", "rows");
                 let message = format!("the file ends in row {} of {name}, which should have {rows}", row + 1);
                 let promised = self.report.span(element.name.clone());
                 self.report.error(at, message).related = Some((promised, "promised here".into()));
@@ -166,7 +166,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
     }
 
     /// Reports an invalid value and continues, unless the file has ended or the report is full.
-    pub fn tolerate(&mut self, error: ValueError, element: &Element, row: u64) -> Result<(), ErrorReported> {
+    pub fn report_and_continue(&mut self, error: ValueError, element: &Element, row: u64) -> Result<(), ErrorReported> {
         let stop = self.fail(error, element, row);
         if error == ValueError::End || self.report.is_full() { Err(stop) } else { Ok(()) }
     }
@@ -174,7 +174,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
     fn wrong_number(&mut self, error: NumberError, at: Range<usize>) {
         let value = &self.bytes[at.clone()];
         // The raw bytes of a binary value would not help the reader of the message.
-        if V::fixed_size(super::header::Scalar::U8).is_some() {
+        if V::fixed_size(super::header::NumberType::U8).is_some() {
             self.report.error(at, "expected a finite number, found an infinite value or NaN").help =
                 Some("numbers must lie within the range of 32-bit floating point, about ±3.4e38".into());
         } else {
@@ -185,7 +185,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
     fn check_remainder(&mut self) {
         let rest = self.values.remainder();
         if !rest.is_empty() {
-            let bytes = counted(rest.len(), "byte", "bytes");
+            let bytes = count_text(rest.len(), "byte", "bytes");
             self.report.warning(rest.start..rest.start + 1, format!("ignored {bytes} after the last row")).help =
                 Some("the header may promise too few rows or properties".into());
         }

@@ -3,10 +3,10 @@
 //! Rows that are invalid or vary in size are left to the reader of single rows, which reports
 //! errors.
 
-use super::body::Body;
-use super::header::{Element, Scalar};
+use super::body::RowReader;
+use super::header::{Element, NumberType};
 use super::rows::COLUMNS;
-use super::values::Values;
+use super::values::ValueReader;
 use durer_scene::math::{Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -37,7 +37,7 @@ macro_rules! column {
 }
 
 /// Type of a number and its byte offset in a row.
-type NumberLayout = (Scalar, usize);
+type NumberLayout = (NumberType, usize);
 
 impl Rows<'_> {
     /// Reads `N` numbers of each row; `None` if one is not finite.
@@ -72,56 +72,56 @@ impl Rows<'_> {
             };
         }
         match scalar {
-            Scalar::I8 => read!(i8),
-            Scalar::U8 => read!(u8),
-            Scalar::I16 => read!(i16),
-            Scalar::U16 => read!(u16),
-            Scalar::I32 => read!(i32),
-            Scalar::U32 => read!(u32),
-            Scalar::F32 => read!(f32),
-            Scalar::F64 => read!(f64),
+            NumberType::I8 => read!(i8),
+            NumberType::U8 => read!(u8),
+            NumberType::I16 => read!(i16),
+            NumberType::U16 => read!(u16),
+            NumberType::I32 => read!(i32),
+            NumberType::U32 => read!(u32),
+            NumberType::F32 => read!(f32),
+            NumberType::F64 => read!(f64),
         }
     }
 
     /// Reads three vertex indices of each row from the list at the given position; `None` if a list
     /// has another length or an index is not below `vertices`.
-    fn triangles(&self, count: NumberLayout, corners: Scalar, vertices: usize) -> Option<Vec<[u32; 3]>> {
+    fn triangles(&self, count: NumberLayout, corners: NumberType, vertices: usize) -> Option<Vec<[u32; 3]>> {
         let mut all = vec![[0; 3]; self.bytes.len() / self.size];
         let first = count.1 + count.0.size();
         let blocks = all.par_chunks_mut(BLOCK).zip(self.bytes.par_chunks(BLOCK * self.size));
         let sound = blocks.map(|(block, bytes)| {
             let rows = Rows { bytes, ..*self };
             let mut corner = |k: usize| {
-                rows.whole((corners, first + k * corners.size()), |i, corner| {
+                rows.all_integers((corners, first + k * corners.size()), |i, corner| {
                     block[i][k] = corner as u32;
                     (0..vertices as i64).contains(&corner)
                 })
             };
-            rows.whole(count, |_, length| length == 3) && (0..3).all(&mut corner)
+            rows.all_integers(count, |_, length| length == 3) && (0..3).all(&mut corner)
         });
         sound.all(|sound| sound).then_some(all)
     }
 
     /// Passes one integer of each row to `is_good`; returns true if all are accepted.
-    fn whole(&self, (scalar, at): NumberLayout, mut is_good: impl FnMut(usize, i64) -> bool) -> bool {
+    fn all_integers(&self, (scalar, at): NumberLayout, mut is_good: impl FnMut(usize, i64) -> bool) -> bool {
         macro_rules! read {
             ($number:ty) => {
                 column!(self, at, $number, |i, number| is_good(i, number.into()))
             };
         }
         match scalar {
-            Scalar::I8 => read!(i8),
-            Scalar::U8 => read!(u8),
-            Scalar::I16 => read!(i16),
-            Scalar::U16 => read!(u16),
-            Scalar::I32 => read!(i32),
-            Scalar::U32 => read!(u32),
-            Scalar::F32 | Scalar::F64 => false,
+            NumberType::I8 => read!(i8),
+            NumberType::U8 => read!(u8),
+            NumberType::I16 => read!(i16),
+            NumberType::U16 => read!(u16),
+            NumberType::I32 => read!(i32),
+            NumberType::U32 => read!(u32),
+            NumberType::F32 | NumberType::F64 => false,
         }
     }
 }
 
-impl<V: Values> Body<'_, '_, V> {
+impl<V: ValueReader> RowReader<'_, '_, V> {
     /// Returns the rows of an element, of `size` bytes each, if the file contains all of them.
     fn rows(&self, element: &Element, size: usize) -> Option<Rows<'_>> {
         let big_endian = V::BIG_ENDIAN?;
@@ -135,13 +135,13 @@ impl<V: Values> Body<'_, '_, V> {
         let mut places = [None; COLUMNS.len()];
         let mut size = 0;
         for (property, column) in element.properties.iter().zip(columns) {
-            if property.count.is_some() {
+            if property.length_type.is_some() {
                 return None;
             }
             if let Some(column) = column {
-                places[*column] = Some((property.scalar, size));
+                places[*column] = Some((property.number_type, size));
             }
-            size += property.scalar.size();
+            size += property.number_type.size();
         }
         // Colours need decoding and clamping; the reader of single rows does this.
         if places[8..12].iter().any(Option::is_some) {
@@ -159,7 +159,7 @@ impl<V: Values> Body<'_, '_, V> {
         self.mesh.uvs = uvs.into_iter().map(Vec2::from_array).collect();
         self.mesh.second_uvs = second_uvs.into_iter().map(Vec2::from_array).collect();
         (self.mesh.colors, self.mesh.tangents) = (colors, tangents);
-        self.values.skip(Scalar::U8, length).ok()
+        self.values.skip(NumberType::U8, length).ok()
     }
 
     /// Reads all faces at once if they are triangles; `None` if they must be read row by row.
@@ -167,13 +167,13 @@ impl<V: Values> Body<'_, '_, V> {
         let mut size = 0;
         let mut found = None;
         for (i, property) in element.properties.iter().enumerate() {
-            match property.count {
+            match property.length_type {
                 Some(count) if i == list => {
-                    found = Some(((count, size), property.scalar));
-                    size += count.size() + 3 * property.scalar.size();
+                    found = Some(((count, size), property.number_type));
+                    size += count.size() + 3 * property.number_type.size();
                 }
                 Some(_) => return None,
-                None => size += property.scalar.size(),
+                None => size += property.number_type.size(),
             }
         }
         let (count, corners) = found?;
@@ -184,6 +184,6 @@ impl<V: Values> Body<'_, '_, V> {
             true => self.mesh.triangles = triangles,
             false => self.mesh.triangles.extend(triangles),
         }
-        self.values.skip(Scalar::U8, length).ok()
+        self.values.skip(NumberType::U8, length).ok()
     }
 }

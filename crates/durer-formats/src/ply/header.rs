@@ -1,7 +1,7 @@
 //! Header of a PLY file, which describes the rows after it.
 
 use crate::number::parse_integer;
-use crate::report::{Report, shown};
+use crate::report::{Report, quoted};
 use durer_diag::did_you_mean;
 use std::ops::Range;
 
@@ -21,7 +21,7 @@ const ENCODINGS: [(&str, Encoding); 3] = [
 
 /// Number type of a single value in a PLY file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Scalar {
+pub(super) enum NumberType {
     I8,
     U8,
     I16,
@@ -33,45 +33,45 @@ pub(super) enum Scalar {
 }
 
 /// Old and new name of each number type.
-const SCALARS: [(&str, &str, Scalar); 8] = [
-    ("char", "int8", Scalar::I8),
-    ("uchar", "uint8", Scalar::U8),
-    ("short", "int16", Scalar::I16),
-    ("ushort", "uint16", Scalar::U16),
-    ("int", "int32", Scalar::I32),
-    ("uint", "uint32", Scalar::U32),
-    ("float", "float32", Scalar::F32),
-    ("double", "float64", Scalar::F64),
+const SCALARS: [(&str, &str, NumberType); 8] = [
+    ("char", "int8", NumberType::I8),
+    ("uchar", "uint8", NumberType::U8),
+    ("short", "int16", NumberType::I16),
+    ("ushort", "uint16", NumberType::U16),
+    ("int", "int32", NumberType::I32),
+    ("uint", "uint32", NumberType::U32),
+    ("float", "float32", NumberType::F32),
+    ("double", "float64", NumberType::F64),
 ];
 
-impl Scalar {
+impl NumberType {
     /// Size in bytes in a binary file.
     pub fn size(self) -> usize {
         match self {
-            Scalar::I8 | Scalar::U8 => 1,
-            Scalar::I16 | Scalar::U16 => 2,
-            Scalar::I32 | Scalar::U32 | Scalar::F32 => 4,
-            Scalar::F64 => 8,
+            NumberType::I8 | NumberType::U8 => 1,
+            NumberType::I16 | NumberType::U16 => 2,
+            NumberType::I32 | NumberType::U32 | NumberType::F32 => 4,
+            NumberType::F64 => 8,
         }
     }
 
     /// Value that stands for full intensity in a colour of this type: the maximum of an integer
     /// type, or 1 for floats.
-    pub fn greatest(self) -> f32 {
+    pub fn full_intensity(self) -> f32 {
         match self {
-            Scalar::I8 => 127.0,
-            Scalar::U8 => 255.0,
-            Scalar::I16 => 32767.0,
-            Scalar::U16 => 65535.0,
-            Scalar::I32 => i32::MAX as f32,
-            Scalar::U32 => u32::MAX as f32,
-            Scalar::F32 | Scalar::F64 => 1.0,
+            NumberType::I8 => 127.0,
+            NumberType::U8 => 255.0,
+            NumberType::I16 => 32767.0,
+            NumberType::U16 => 65535.0,
+            NumberType::I32 => i32::MAX as f32,
+            NumberType::U32 => u32::MAX as f32,
+            NumberType::F32 | NumberType::F64 => 1.0,
         }
     }
 
     /// Returns true if the type is an integer type.
     pub fn is_integer(self) -> bool {
-        !matches!(self, Scalar::F32 | Scalar::F64)
+        !matches!(self, NumberType::F32 | NumberType::F64)
     }
 }
 
@@ -80,9 +80,9 @@ pub(super) struct Property {
     /// Byte range of the name.
     pub name: Range<usize>,
     /// Type of the value, or of the values in a list.
-    pub scalar: Scalar,
+    pub number_type: NumberType,
     /// Type of the length, if the property is a list.
-    pub count: Option<Scalar>,
+    pub length_type: Option<NumberType>,
 }
 
 /// Element declared in a PLY header, such as `vertex` or `face`: a table with a number of rows.
@@ -115,7 +115,7 @@ pub(super) fn read_header(bytes: &[u8], report: &mut Report) -> Option<Header> {
     let mut lines = Lines { bytes, at: 0 };
     let first = lines.next_line().unwrap_or(0..0);
     if &bytes[first.clone()] != b"ply" {
-        let message = format!("expected `ply` in the first line, found {}", shown(&bytes[first.clone()]));
+        let message = format!("expected `ply` in the first line, found {}", quoted(&bytes[first.clone()]));
         report.error(first, message);
         return None;
     }
@@ -156,7 +156,7 @@ impl<'a> HeaderReader<'a, '_> {
 
     fn unknown<'c>(&mut self, what: &str, at: Range<usize>, known: impl IntoIterator<Item = &'c str>) {
         let help = did_you_mean(self.text(&at), known).map(|suggestion| format!("did you mean `{suggestion}`?"));
-        self.report.error(at.clone(), format!("expected {what}, found {}", shown(&self.bytes[at]))).help = help;
+        self.report.error(at.clone(), format!("expected {what}, found {}", quoted(&self.bytes[at]))).help = help;
     }
 
     /// Reports a line with missing or extra words.
@@ -179,7 +179,7 @@ impl<'a> HeaderReader<'a, '_> {
             }
         }
         if self.text(version) != "1.0" {
-            let message = format!("expected version 1.0, found {}", shown(&self.bytes[version.clone()]));
+            let message = format!("expected version 1.0, found {}", quoted(&self.bytes[version.clone()]));
             self.report.error(version.clone(), message);
         }
     }
@@ -190,40 +190,41 @@ impl<'a> HeaderReader<'a, '_> {
             // Keep the element, so that its properties are checked too.
             return self.elements.push(Element { name: words[0].clone(), rows: 0, properties: Vec::new() });
         };
-        let found = parse_integer(&self.bytes[rows.clone()]).filter(|&rows| rows >= 0);
-        if found.is_none() {
-            let message = format!("expected a number of rows, found {}", shown(&self.bytes[rows.clone()]));
+        let number_type = parse_integer(&self.bytes[rows.clone()]).filter(|&rows| rows >= 0);
+        if number_type.is_none() {
+            let message = format!("expected a number of rows, found {}", quoted(&self.bytes[rows.clone()]));
             self.report.error(rows.clone(), message);
         }
-        let rows = found.unwrap_or(0) as u64;
+        let rows = number_type.unwrap_or(0) as u64;
         self.elements.push(Element { name: name.clone(), rows, properties: Vec::new() });
     }
 
     fn property(&mut self, words: &[Range<usize>]) {
-        let (count, scalar, name) = match words {
-            [_, list, count, scalar, name] if self.text(list) == "list" => (Some(count), scalar, name),
-            [_, scalar, name] if self.text(scalar) != "list" => (None, scalar, name),
+        let (count, number_type, name) = match words {
+            [_, list, count, number_type, name] if self.text(list) == "list" => (Some(count), number_type, name),
+            [_, number_type, name] if self.text(number_type) != "list" => (None, number_type, name),
             _ => return self.incomplete(words, "property <type> <name>` or `property list <type> <type> <name>"),
         };
-        let (count, scalar) = (count.map(|count| self.scalar(count)), self.scalar(scalar));
-        let (Some(scalar), Some(count)) = (scalar, count.map_or(Some(None), |c| c.map(Some))) else { return };
+        let (count, number_type) = (count.map(|count| self.scalar(count)), self.scalar(number_type));
+        let (Some(number_type), Some(count)) = (number_type, count.map_or(Some(None), |c| c.map(Some))) else { return };
         if count.is_some_and(|count| !count.is_integer()) {
             self.report.error(words[2].clone(), "the length of a list must be of an integer type");
         }
         match self.elements.last_mut() {
-            Some(element) => element.properties.push(Property { name: name.clone(), scalar, count }),
+            Some(element) => element.properties.push(Property { name: name.clone(), number_type, length_type: count }),
             None => _ = self.report.error(words[0].clone(), "a property before the first `element`"),
         }
     }
 
-    fn scalar(&mut self, at: &Range<usize>) -> Option<Scalar> {
+    fn scalar(&mut self, at: &Range<usize>) -> Option<NumberType> {
         let text = self.text(at);
-        let found = SCALARS.iter().find(|(old, new, _)| *old == text || *new == text).map(|&(_, _, scalar)| scalar);
-        if found.is_none() {
+        let number_type =
+            SCALARS.iter().find(|(old, new, _)| *old == text || *new == text).map(|&(_, _, scalar)| scalar);
+        if number_type.is_none() {
             let names = SCALARS.iter().flat_map(|&(old, new, _)| [old, new]);
             self.unknown("a type such as `float` or `int`", at.clone(), names);
         }
-        found
+        number_type
     }
 
     fn finish(self, end: Range<usize>, body: usize) -> Option<Header> {

@@ -1,10 +1,10 @@
 //! Reads vertices, faces and triangle strips of a PLY file.
 
-use super::body::{Body, ErrorReported};
+use super::body::{ErrorReported, RowReader};
 use super::header::{Element, Property};
-use super::values::{ValueError, Values};
+use super::values::{ValueError, ValueReader};
 use crate::number::NumberError;
-use crate::report::{counted, shown};
+use crate::report::{count_text, quoted};
 use durer_diag::did_you_mean;
 use durer_image::decode_srgb;
 use durer_scene::math::{Vec2, Vec3};
@@ -44,7 +44,7 @@ type Row = [f32; COLUMNS.len()];
 
 const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
-impl<V: Values> Body<'_, '_, V> {
+impl<V: ValueReader> RowReader<'_, '_, V> {
     /// Returns the column of a [`Row`] for each property; `None` if the property is not read.
     fn columns(&mut self, element: &Element) -> Result<Vec<Option<usize>>, ErrorReported> {
         let mut columns = vec![None; element.properties.len()];
@@ -55,18 +55,18 @@ impl<V: Values> Body<'_, '_, V> {
                 continue;
             };
             // A list with the name of a colour has another meaning.
-            if property.count.is_some() && column >= 8 {
+            if property.length_type.is_some() && column >= 8 {
                 continue;
             }
-            if property.count.is_some() {
-                self.report.error(property.name.clone(), format!("{} must be a number, not a list", shown(name)));
+            if property.length_type.is_some() {
+                self.report.error(property.name.clone(), format!("{} must be a number, not a list", quoted(name)));
             }
             match found[column] {
                 // Some files have two sets of texture coordinates; use the first.
                 Some(_) if column >= 6 => continue,
                 Some(first) => {
                     let first = self.report.span(element.properties[first].name.clone());
-                    let message = format!("a second property {}", shown(name));
+                    let message = format!("a second property {}", quoted(name));
                     self.report.error(property.name.clone(), message).related = Some((first, "the first".into()));
                 }
                 None => found[column] = Some(i),
@@ -91,7 +91,7 @@ impl<V: Values> Body<'_, '_, V> {
         // Integer colours are fractions of the type's maximum.
         let most = |column: usize| {
             let at = columns.iter().position(|found| *found == Some(column));
-            at.map_or(1.0, |at| element.properties[at].scalar.greatest())
+            at.map_or(1.0, |at| element.properties[at].number_type.full_intensity())
         };
         let most: [f32; 4] = std::array::from_fn(|i| most(8 + i));
         let rows = self.likely_rows(element);
@@ -106,12 +106,12 @@ impl<V: Values> Body<'_, '_, V> {
                     self.skip_property(element, row, property)?;
                     continue;
                 };
-                match self.values.float(property.scalar) {
+                match self.values.float(property.number_type) {
                     Ok(value) => values[column] = value,
                     Err(ValueError::Number(NumberError::NotFinite)) if (8..12).contains(&column) => {
                         values[column] = 1.0
                     }
-                    Err(error) => self.tolerate(error, element, row)?,
+                    Err(error) => self.report_and_continue(error, element, row)?,
                 }
             }
             let [x, y, z, nx, ny, nz, u, v, color @ ..] = values;
@@ -163,7 +163,7 @@ impl<V: Values> Body<'_, '_, V> {
                 }
                 // An invalid vertex index has been reported; skip the face.
                 match self.read_corners(element, row, list, strips)? {
-                    true if strips => self.cut_strip(),
+                    true if strips => self.split_strip(),
                     true => self.cut_face()?,
                     false => {}
                 }
@@ -181,14 +181,14 @@ impl<V: Values> Body<'_, '_, V> {
             // Suggest a list with a similar name.
             let text = |p: &Property| String::from_utf8_lossy(&self.bytes[p.name.clone()]);
             let near = element.properties.iter().find(|p| did_you_mean(&text(p), CORNER_LISTS).is_some());
-            let help = near.map(|p| format!("rename {} to `vertex_indices`", shown(&self.bytes[p.name.clone()])));
+            let help = near.map(|p| format!("rename {} to `vertex_indices`", quoted(&self.bytes[p.name.clone()])));
             let message =
-                format!("the element {} has no list `vertex_indices`", shown(&self.bytes[element.name.clone()]));
+                format!("the element {} has no list `vertex_indices`", quoted(&self.bytes[element.name.clone()]));
             self.report.error(near.map_or(element.name.clone(), |p| p.name.clone()), message).help = help;
             return Err(ErrorReported);
         };
         let property = &element.properties[list];
-        if property.count.is_none() || !property.scalar.is_integer() {
+        if property.length_type.is_none() || !property.number_type.is_integer() {
             self.report.error(property.name.clone(), "the corners must be a list of an integer type");
             return Err(ErrorReported);
         }
@@ -205,12 +205,12 @@ impl<V: Values> Body<'_, '_, V> {
         let vertices = self.mesh.positions.len();
         let mut all_good = true;
         for _ in 0..length {
-            match self.values.integer(property.scalar) {
+            match self.values.integer(property.number_type) {
                 Ok(index) if (0..vertices as i64).contains(&index) => self.corners.push(index as u32),
                 Ok(-1) if strips => self.corners.push(NO_INDEX),
                 Ok(index) => {
                     all_good = false;
-                    let has = counted(vertices, "vertex", "vertices");
+                    let has = count_text(vertices, "vertex", "vertices");
                     let message = format!("vertex {index} does not exist: the file has {has}, counted from 0");
                     self.report.error(self.values.last(), message);
                     if self.report.is_full() {
@@ -219,7 +219,7 @@ impl<V: Values> Body<'_, '_, V> {
                 }
                 Err(error) => {
                     all_good = false;
-                    self.tolerate(error, element, row)?;
+                    self.report_and_continue(error, element, row)?;
                 }
             }
         }
@@ -233,7 +233,9 @@ impl<V: Values> Body<'_, '_, V> {
     fn cut_face(&mut self) -> Result<(), ErrorReported> {
         let (corners, positions, triangles) = (&self.corners, &self.mesh.positions, &mut self.mesh.triangles);
         let position = |i: usize| positions[corners[i] as usize];
-        let cut = self.cutter.cut(corners.len(), position, |triangle| triangles.push(triangle.map(|i| corners[i])));
+        let cut = self
+            .triangulator
+            .triangulate(corners.len(), position, |triangle| triangles.push(triangle.map(|i| corners[i])));
         cut.map_err(|_| {
             let message = format!("this face is too complex to triangulate ({} vertices)", self.corners.len());
             self.report.error(self.values.last(), message).help = Some("triangulate it in a modelling program".into());
@@ -243,7 +245,7 @@ impl<V: Values> Body<'_, '_, V> {
 
     /// Splits a strip into triangles: each corner forms a triangle with the two before it, and
     /// every other triangle has the opposite winding.
-    fn cut_strip(&mut self) {
+    fn split_strip(&mut self) {
         for strip in self.corners.split(|&corner| corner == NO_INDEX) {
             for (i, window) in strip.windows(3).enumerate() {
                 let [a, b, c] = [window[0], window[1], window[2]];

@@ -227,7 +227,7 @@ fn all_mesh_attributes_round_trip() {
         tangents: vec![[1.0, 0.0, 0.0, -1.0]; 4],
         ..MeshData::default()
     };
-    let again = read_clean(&super::write_whole(&mesh), "m.ply");
+    let again = read_clean(&super::write_all_attributes(&mesh), "m.ply");
     assert_eq!((again.triangles.len(), &again.triangle_uvs), (2, &again.triangles));
     for (i, corners) in again.triangles.iter().enumerate() {
         for (k, &corner) in corners.iter().enumerate() {
@@ -244,7 +244,7 @@ fn all_mesh_attributes_round_trip() {
         }
     }
     let plain = MeshData { positions: mesh.positions, triangles: mesh.triangles, flat: true, ..MeshData::default() };
-    assert_eq!(read_clean(&super::write_whole(&plain), "m.ply"), plain);
+    assert_eq!(read_clean(&super::write_all_attributes(&plain), "m.ply"), plain);
 }
 
 #[test]

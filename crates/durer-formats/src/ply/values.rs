@@ -1,6 +1,6 @@
 //! Sequential reading of the values of a PLY file, as text or binary.
 
-use super::header::Scalar;
+use super::header::NumberType;
 use crate::number::{NumberError, parse_f32, parse_integer};
 use std::ops::Range;
 
@@ -15,23 +15,23 @@ pub(super) enum ValueError {
 
 /// Cursor that reads the values of PLY rows one after the other; implemented for text and binary
 /// files.
-pub(super) trait Values: Clone {
+pub(super) trait ValueReader: Clone {
     /// `Some(true)` for big-endian, `Some(false)` for little-endian binary values; `None` for text.
     const BIG_ENDIAN: Option<bool>;
     /// Byte range of the last value that was read; empty at the end of the file.
     fn last(&self) -> Range<usize>;
     /// Upper bound on the number of values of this type that can still follow.
-    fn most_left(&self, scalar: Scalar) -> usize;
+    fn most_left(&self, scalar: NumberType) -> usize;
     /// Reads a finite number.
-    fn float(&mut self, scalar: Scalar) -> Result<f32, ValueError>;
+    fn float(&mut self, scalar: NumberType) -> Result<f32, ValueError>;
     /// Reads an integer.
-    fn integer(&mut self, scalar: Scalar) -> Result<i64, ValueError>;
+    fn integer(&mut self, scalar: NumberType) -> Result<i64, ValueError>;
     /// Skips `count` values of a type, which need not be valid numbers.
-    fn skip(&mut self, scalar: Scalar, count: usize) -> Result<(), ValueError>;
+    fn skip(&mut self, scalar: NumberType, count: usize) -> Result<(), ValueError>;
     /// Byte range of the unread rest, without leading whitespace.
     fn remainder(&self) -> Range<usize>;
     /// Size in bytes of a value of this type; `None` if it varies.
-    fn fixed_size(scalar: Scalar) -> Option<usize>;
+    fn fixed_size(scalar: NumberType) -> Option<usize>;
 }
 
 /// Cursor over the values of a text PLY file, which are separated by whitespace.
@@ -57,27 +57,27 @@ impl<'a> AsciiValues<'a> {
     }
 }
 
-impl Values for AsciiValues<'_> {
+impl ValueReader for AsciiValues<'_> {
     const BIG_ENDIAN: Option<bool> = None;
 
     fn last(&self) -> Range<usize> {
         self.start..self.end
     }
 
-    fn most_left(&self, _: Scalar) -> usize {
+    fn most_left(&self, _: NumberType) -> usize {
         // A value takes at least one digit and one space.
         (self.bytes.len() - self.end).div_ceil(2)
     }
 
-    fn float(&mut self, _: Scalar) -> Result<f32, ValueError> {
+    fn float(&mut self, _: NumberType) -> Result<f32, ValueError> {
         parse_f32(self.word()?).map_err(ValueError::Number)
     }
 
-    fn integer(&mut self, _: Scalar) -> Result<i64, ValueError> {
+    fn integer(&mut self, _: NumberType) -> Result<i64, ValueError> {
         parse_integer(self.word()?).ok_or(ValueError::Number(NumberError::NotWhole))
     }
 
-    fn skip(&mut self, _: Scalar, count: usize) -> Result<(), ValueError> {
+    fn skip(&mut self, _: NumberType, count: usize) -> Result<(), ValueError> {
         (0..count).try_for_each(|_| self.word().map(|_| ()))
     }
 
@@ -88,7 +88,7 @@ impl Values for AsciiValues<'_> {
         rest.start..self.bytes.len()
     }
 
-    fn fixed_size(_: Scalar) -> Option<usize> {
+    fn fixed_size(_: NumberType) -> Option<usize> {
         None
     }
 }
@@ -120,47 +120,47 @@ impl<'a, const BIG_ENDIAN: bool> BinaryValues<'a, BIG_ENDIAN> {
         Ok(taken)
     }
 
-    fn real(&mut self, scalar: Scalar) -> Result<f64, ValueError> {
+    fn real(&mut self, scalar: NumberType) -> Result<f64, ValueError> {
         match scalar {
-            Scalar::F32 => Ok(f32::from_le_bytes(self.take()?) as f64),
-            Scalar::F64 => Ok(f64::from_le_bytes(self.take()?)),
+            NumberType::F32 => Ok(f32::from_le_bytes(self.take()?) as f64),
+            NumberType::F64 => Ok(f64::from_le_bytes(self.take()?)),
             integer => Ok(self.integer(integer)? as f64),
         }
     }
 }
 
-impl<const BIG_ENDIAN: bool> Values for BinaryValues<'_, BIG_ENDIAN> {
+impl<const BIG_ENDIAN: bool> ValueReader for BinaryValues<'_, BIG_ENDIAN> {
     const BIG_ENDIAN: Option<bool> = Some(BIG_ENDIAN);
 
     fn last(&self) -> Range<usize> {
         self.start..self.end
     }
 
-    fn most_left(&self, scalar: Scalar) -> usize {
+    fn most_left(&self, scalar: NumberType) -> usize {
         (self.bytes.len() - self.end) / scalar.size()
     }
 
-    fn float(&mut self, scalar: Scalar) -> Result<f32, ValueError> {
+    fn float(&mut self, scalar: NumberType) -> Result<f32, ValueError> {
         let value = self.real(scalar)? as f32;
         if value.is_finite() { Ok(value) } else { Err(ValueError::Number(NumberError::NotFinite)) }
     }
 
-    fn integer(&mut self, scalar: Scalar) -> Result<i64, ValueError> {
+    fn integer(&mut self, scalar: NumberType) -> Result<i64, ValueError> {
         Ok(match scalar {
-            Scalar::I8 => i8::from_le_bytes(self.take()?) as i64,
-            Scalar::U8 => u8::from_le_bytes(self.take()?) as i64,
-            Scalar::I16 => i16::from_le_bytes(self.take()?) as i64,
-            Scalar::U16 => u16::from_le_bytes(self.take()?) as i64,
-            Scalar::I32 => i32::from_le_bytes(self.take()?) as i64,
-            Scalar::U32 => u32::from_le_bytes(self.take()?) as i64,
-            Scalar::F32 | Scalar::F64 => {
+            NumberType::I8 => i8::from_le_bytes(self.take()?) as i64,
+            NumberType::U8 => u8::from_le_bytes(self.take()?) as i64,
+            NumberType::I16 => i16::from_le_bytes(self.take()?) as i64,
+            NumberType::U16 => u16::from_le_bytes(self.take()?) as i64,
+            NumberType::I32 => i32::from_le_bytes(self.take()?) as i64,
+            NumberType::U32 => u32::from_le_bytes(self.take()?) as i64,
+            NumberType::F32 | NumberType::F64 => {
                 self.real(scalar)?;
                 return Err(ValueError::Number(NumberError::NotWhole));
             }
         })
     }
 
-    fn skip(&mut self, scalar: Scalar, count: usize) -> Result<(), ValueError> {
+    fn skip(&mut self, scalar: NumberType, count: usize) -> Result<(), ValueError> {
         self.start = self.end;
         if count > self.most_left(scalar) {
             (self.start, self.end) = (self.bytes.len(), self.bytes.len());
@@ -174,7 +174,7 @@ impl<const BIG_ENDIAN: bool> Values for BinaryValues<'_, BIG_ENDIAN> {
         self.end..self.bytes.len()
     }
 
-    fn fixed_size(scalar: Scalar) -> Option<usize> {
+    fn fixed_size(scalar: NumberType) -> Option<usize> {
         Some(scalar.size())
     }
 }

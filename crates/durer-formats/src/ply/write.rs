@@ -1,5 +1,5 @@
 //! Writer of meshes as binary PLY. `write` outputs positions, colours and triangles for any
-//! program; `write_whole` outputs all attributes for Dürer's own reader.
+//! program; `write_all_attributes` outputs all attributes for Dürer's own reader.
 
 use super::rows::COLUMNS;
 use durer_image::Transfer;
@@ -35,8 +35,8 @@ pub(crate) fn write(mesh: &MeshData) -> Vec<u8> {
 /// Encodes all attributes of a mesh: normals, both sets of texture coordinates, linear colours and
 /// tangents. A corner without a normal or texture coordinates, while others have them, gets the
 /// face normal or 0.
-pub(crate) fn write_whole(mesh: &MeshData) -> Vec<u8> {
-    let Corners { vertices, triangles, normals } = Corners::of(mesh);
+pub(crate) fn write_all_attributes(mesh: &MeshData) -> Vec<u8> {
+    let VertexList { vertices, triangles, normals } = VertexList::of(mesh);
     let (has_normals, has_uvs) = (!mesh.triangle_normals.is_empty(), !mesh.triangle_uvs.is_empty());
     let mut head = "ply\nformat binary_little_endian 1.0\n".to_string();
     if mesh.flat {
@@ -78,21 +78,21 @@ pub(crate) fn write_whole(mesh: &MeshData) -> Vec<u8> {
 
 /// Vertices of a PLY file to be written: unique triples of indices of a position, texture
 /// coordinates and a normal.
-struct Corners {
+struct VertexList {
     vertices: Vec<[u32; 3]>,
     triangles: Vec<[u32; 3]>,
     /// The mesh's normals, followed by face normals for triangles that lack normals.
     normals: Vec<Vec3>,
 }
 
-impl Corners {
-    fn of(mesh: &MeshData) -> Corners {
+impl VertexList {
+    fn of(mesh: &MeshData) -> VertexList {
         let alike = |list: &[[u32; 3]]| list.is_empty() || list == mesh.triangles;
         let mut normals = mesh.normals.clone();
         if alike(&mesh.triangle_uvs) && alike(&mesh.triangle_normals) {
             let vertices = (0..mesh.positions.len() as u32).map(|i| [i; 3]).collect();
             normals.resize(mesh.positions.len(), Vec3::ZERO);
-            return Corners { vertices, triangles: mesh.triangles.clone(), normals };
+            return VertexList { vertices, triangles: mesh.triangles.clone(), normals };
         }
         let (mut vertices, mut known) = (Vec::new(), HashMap::new());
         let none = [NO_INDEX; 3];
@@ -111,6 +111,6 @@ impl Corners {
                 })
             })
         });
-        Corners { triangles: triangles.collect(), vertices, normals }
+        VertexList { triangles: triangles.collect(), vertices, normals }
     }
 }

@@ -36,7 +36,7 @@ impl RadPrimitive {
         let texts = (0..next()?.count(report)?).map(|_| next()).collect::<Option<_>>()?;
         let wholes = next()?;
         if wholes.count(report)? != 0 {
-            report.bad(wholes.at, "primitives have no integer arguments: this must be 0");
+            report.error(wholes.at, "primitives have no integer arguments: this must be 0");
             return None;
         }
         let count = next()?.count(report)?;
@@ -59,7 +59,7 @@ impl RadPrimitive {
             let counts = counts.iter().map(usize::to_string).collect::<Vec<_>>().join(" or ");
             let message =
                 format!("a {} needs {counts} numbers, but this one has {}", self.kind.text, self.numbers.len());
-            report.bad(self.at(), message);
+            report.error(self.at(), message);
         }
         right
     }

@@ -16,18 +16,18 @@ const SIDES: u32 = 128;
 
 /// Mesh of all surfaces that share a material, to which the reader adds one surface after the
 /// other.
-pub(super) struct Body {
+pub(super) struct MaterialMesh {
     data: MeshData,
     pub at: Span,
 }
 
-impl Body {
+impl MaterialMesh {
     pub fn new(at: Span) -> Self {
-        Body { data: MeshData { flat: true, ..MeshData::default() }, at }
+        MaterialMesh { data: MeshData { flat: true, ..MeshData::default() }, at }
     }
 
     /// Adds a flat face that is already triangulated.
-    pub fn facet(&mut self, corners: &[Vec3], triangles: &[[usize; 3]]) {
+    pub fn add_face(&mut self, corners: &[Vec3], triangles: &[[usize; 3]]) {
         let first = self.data.positions.len() as u32;
         self.data.positions.extend(corners);
         for triangle in triangles {
@@ -38,7 +38,7 @@ impl Body {
 
     /// Adds the lateral surface of a cone or cylinder without caps, between two points with a
     /// radius at each. Normals point outwards, or inwards if `inverted`.
-    pub fn round(&mut self, [base, top]: [DVec3; 2], radii: [f64; 2], map: DAffine3, inverted: bool) {
+    pub fn add_side(&mut self, [base, top]: [DVec3; 2], radii: [f64; 2], map: DAffine3, inverted: bool) {
         let along = top - base;
         let axis = along.normalize_or(DVec3::Z);
         let (x, y) = axis.any_orthonormal_pair();
@@ -72,7 +72,7 @@ impl Body {
     }
 
     /// Adds a flat ring in world space.
-    pub fn ring(&mut self, center: DVec3, normal: DVec3, [inner, outer]: [f64; 2]) {
+    pub fn add_ring(&mut self, center: DVec3, normal: DVec3, [inner, outer]: [f64; 2]) {
         let (x, y) = normal.any_orthonormal_pair();
         let first = self.data.positions.len() as u32;
         for i in 0..SIDES {

@@ -7,44 +7,44 @@ use std::rc::Rc;
 
 impl Reader<'_> {
     /// Converts the modifier with an index.
-    pub fn made(&mut self, number: usize) -> Rc<ConvertedModifier> {
-        self.below(number, &PatternEffect::default())
+    pub fn convert(&mut self, number: usize) -> Rc<ConvertedModifier> {
+        self.convert_below(number, &PatternEffect::default())
     }
 
     /// Converts a modifier that is modified by `patterns`, which a surface or another pattern
     /// applies first.
-    pub fn below(&mut self, number: usize, patterns: &PatternEffect) -> Rc<ConvertedModifier> {
+    pub fn convert_below(&mut self, number: usize, patterns: &PatternEffect) -> Rc<ConvertedModifier> {
         // Modifiers under skies and directional distributions are rare, so they are not cached.
         let plain = patterns.sky.is_none() && patterns.spread.is_none();
         let key = plain.then(|| (number, patterns.tint.to_array().map(f32::to_bits)));
-        if let Some(made) = key.as_ref().and_then(|key| self.made.get(key)) {
-            return made.clone();
+        if let Some(converted) = key.as_ref().and_then(|key| self.converted.get(key)) {
+            return converted.clone();
         }
-        let made = self.make(number, patterns);
-        self.made.extend(key.map(|key| (key, made.clone())));
-        made
+        let converted = self.convert_uncached(number, patterns);
+        self.converted.extend(key.map(|key| (key, converted.clone())));
+        converted
     }
 
-    fn make(&mut self, number: usize, patterns: &PatternEffect) -> Rc<ConvertedModifier> {
+    fn convert_uncached(&mut self, number: usize, patterns: &PatternEffect) -> Rc<ConvertedModifier> {
         let Modifier { primitive, parent, map, .. } = &self.modifiers[number];
         let (primitive, parent, map) = (primitive.clone(), *parent, *map);
         if self.is_full(primitive.at()) {
-            return Rc::new(ConvertedModifier::nothing());
+            return Rc::new(ConvertedModifier::void());
         }
-        self.missing(&primitive);
+        self.warn_missing_files(&primitive);
         let kind = primitive.kind.text.as_str();
         if PATTERNS.contains(&kind) {
             let all = patterns.with(&self.pattern(number, &primitive, &map));
             return match parent {
-                Some(parent) => self.below(parent, &all),
-                None => ConvertedModifier { patterns: all, ..ConvertedModifier::nothing() }.into(),
+                Some(parent) => self.convert_below(parent, &all),
+                None => ConvertedModifier { patterns: all, ..ConvertedModifier::void() }.into(),
             };
         }
         if MIXTURES.contains(&kind) {
             let patterns = PatternEffect { sky: None, spread: None, ..*patterns };
             return self.mixture(number, &primitive, &patterns).into();
         }
-        let above = parent.map_or(Rc::new(ConvertedModifier::nothing()), |parent| self.made(parent));
+        let above = parent.map_or(Rc::new(ConvertedModifier::void()), |parent| self.convert(parent));
         self.material(number, &primitive, &patterns.with(&above.patterns)).into()
     }
 }

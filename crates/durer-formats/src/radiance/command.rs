@@ -2,12 +2,12 @@
 //! into `xform`. No program is run; the reader generates the output itself.
 
 use super::body::Facets;
+use super::context::PrimitiveContext;
 use super::gensky;
-use super::place::PrimitiveContext;
 use super::state::Reader;
 use super::words::{Word, Words};
-use super::xform::Transform;
-use crate::report::shown;
+use super::xform::TransformSequence;
+use crate::report::quoted;
 use durer_diag::Diagnostic;
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
@@ -29,7 +29,7 @@ impl Reader<'_> {
             let what =
                 if stages.len() == 1 { "a command is missing after `!`" } else { "a command is missing beside `|`" };
             let at = stages.iter().skip(empty).flatten().next().map_or(words.end(), |word| word.at);
-            return self.report.bad(at, what);
+            return self.report.error(at, what);
         }
         // The output passes through the last stage last, so the transform of that stage is the
         // outermost.
@@ -40,7 +40,7 @@ impl Reader<'_> {
             }
             let Some((next, files, _)) = xform(self, &stage[1..], &places) else { return };
             if let Some(file) = files.first() {
-                return self.report.bad(file.at, "`xform` after a `|` reads the piped text and takes no files");
+                return self.report.error(file.at, "`xform` after a `|` reads the piped text and takes no files");
             }
             places = next;
         }
@@ -49,7 +49,7 @@ impl Reader<'_> {
             "xform" => {
                 let Some((places, files, beside)) = xform(self, args, &places) else { return };
                 if files.is_empty() {
-                    self.report.bad(name.at, "`xform` needs a file here");
+                    self.report.error(name.at, "`xform` needs a file here");
                 }
                 places.iter().for_each(|place| files.iter().for_each(|file| self.file(file, place, beside)));
             }
@@ -80,14 +80,14 @@ fn refuse(reader: &Reader, name: &Word) {
          file beside the scene, and write `!cat FILE` here",
         name.text
     );
-    let error = Diagnostic::error(format!("the command {} is not supported", name.shown())).code("no-command");
+    let error = Diagnostic::error(format!("the command {} is not supported", name.quoted())).code("no-command");
     reader.report.push(Diagnostic { help: Some(help), ..error.at(name.at) });
 }
 
 /// Applies an `xform` to the contexts that contain it. Returns the new contexts, the files that it
 /// names, and whether commands in these files run in the files' own folders.
 fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[PrimitiveContext]) -> Option<(Places, &'w [Word], bool)> {
-    let (mut transform, mut modifier, mut inverted) = (Transform::default(), None, false);
+    let (mut transform, mut modifier, mut inverted) = (TransformSequence::default(), None, false);
     let mut beside = true;
     let mut rest = words;
     while let Some(option) = rest.first().filter(|word| word.text.starts_with('-')) {
@@ -106,13 +106,13 @@ fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[PrimitiveContext]) -> 
                 0
             }
             _ => {
-                reader.report.bad(option.at, format!("`xform` has no option {}", option.shown()));
+                reader.report.error(option.at, format!("`xform` has no option {}", option.quoted()));
                 return None;
             }
         };
         if rest.len() <= takes {
             let needs = if takes == 1 { "needs a name" } else { "needs a file after it" };
-            reader.report.bad(option.at, format!("{} {needs}", option.shown()));
+            reader.report.error(option.at, format!("{} {needs}", option.quoted()));
             return None;
         }
         if option.text == "-m" {
@@ -120,8 +120,8 @@ fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[PrimitiveContext]) -> 
         }
         rest = &rest[1 + takes..];
     }
-    let Some(maps) = transform.places().filter(|maps| maps.len().saturating_mul(outer.len()) <= 1 << 20) else {
-        reader.report.bad(words[0].at, "these arrays make too many copies");
+    let Some(maps) = transform.copies().filter(|maps| maps.len().saturating_mul(outer.len()) <= 1 << 20) else {
+        reader.report.error(words[0].at, "these arrays make too many copies");
         return None;
     };
     let place = |outer: &PrimitiveContext, map: &DAffine3| PrimitiveContext {
@@ -151,7 +151,7 @@ fn numbers(reader: &Reader, args: &[Word], count: usize) -> Option<Vec<f64>> {
 
 fn genbox(reader: &Reader, name: &Word, args: &[Word]) -> Option<Facets> {
     if args.len() < 5 {
-        reader.report.bad(name.at, "`genbox` needs a material, a name and three sizes");
+        reader.report.error(name.at, "`genbox` needs a material, a name and three sizes");
         return None;
     }
     let size = numbers(reader, &args[2..], 3)?;
@@ -163,14 +163,15 @@ fn genbox(reader: &Reader, name: &Word, args: &[Word]) -> Option<Facets> {
             "-i" => inward = true,
             "-o" => {}
             "-b" | "-r" | "-n" => {
-                reader
-                    .report
-                    .once(option.at, "bevelled and rounded edges of `genbox` have no counterpart: they are sharp");
+                reader.report.unsupported_once(
+                    option.at,
+                    "bevelled and rounded edges of `genbox` have no counterpart: they are sharp",
+                );
                 rest = rest.get(1..).unwrap_or_default();
             }
             "-s" => {}
             _ => {
-                reader.report.bad(option.at, format!("`genbox` has no option {}", option.shown()));
+                reader.report.error(option.at, format!("`genbox` has no option {}", option.quoted()));
                 return None;
             }
         }
@@ -184,11 +185,11 @@ fn genbox(reader: &Reader, name: &Word, args: &[Word]) -> Option<Facets> {
     };
     const SIDES: [[usize; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let negative = size.iter().filter(|x| **x < 0.0).count() % 2 == 1;
-    Some(SIDES.iter().map(|side| turned(side.map(corner).to_vec(), inward != negative)).collect())
+    Some(SIDES.iter().map(|side| reversed_if(side.map(corner).to_vec(), inward != negative)).collect())
 }
 
 /// Returns the corners, in reverse order if `other`.
-fn turned(mut corners: Vec<DVec3>, other: bool) -> Vec<DVec3> {
+fn reversed_if(mut corners: Vec<DVec3>, other: bool) -> Vec<DVec3> {
     if other {
         corners.reverse();
     }
@@ -197,7 +198,7 @@ fn turned(mut corners: Vec<DVec3>, other: bool) -> Vec<DVec3> {
 
 fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &PrimitiveContext) -> Option<Facets> {
     if args.len() < 3 {
-        reader.report.bad(name.at, "`genprism` needs a material, a name and the corners of its base");
+        reader.report.error(name.at, "`genprism` needs a material, a name and the corners of its base");
         return None;
     }
     let (corners, mut rest) = match args[2].text.parse::<usize>() {
@@ -205,19 +206,19 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &PrimitiveCo
             (numbers(reader, &args[3..], 2 * count)?, &args[3 + 2 * count..])
         }
         Ok(_) => {
-            reader.report.bad(args[2].at, "the base needs at least 3 corners, with two numbers each");
+            reader.report.error(args[2].at, "the base needs at least 3 corners, with two numbers each");
             return None;
         }
         Err(_) => {
-            let (bytes, file) = reader.open(&place.seen(&args[2]))?;
+            let (bytes, file) = reader.open(&place.resolved(&args[2]))?;
             let mut words = Words::new(&bytes, file, 0..bytes.len());
             let mut list = Vec::new();
             while let Some(word) = words.next() {
                 list.push(word.number(reader.report)?);
             }
             if list.len() < 6 || list.len() % 2 != 0 {
-                let messages = shown(args[2].text.as_bytes());
-                reader.report.bad(args[2].at, format!("{messages} needs pairs of numbers for at least 3 corners")); // prose: keep
+                let messages = quoted(args[2].text.as_bytes());
+                reader.report.error(args[2].at, format!("{messages} needs pairs of numbers for at least 3 corners")); // prose: keep
                 return None;
             }
             (list, &args[3..])
@@ -234,13 +235,15 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &PrimitiveCo
             "-c" => closed = false,
             "-e" => ends = false,
             "-r" if !more.is_empty() => {
-                reader.report.once(option.at, "rounded edges of `genprism` have no counterpart: they are sharp");
+                reader
+                    .report
+                    .unsupported_once(option.at, "rounded edges of `genprism` have no counterpart: they are sharp");
                 rest = &more[1..];
             }
             _ => {
-                reader.report.bad(
+                reader.report.error(
                     option.at,
-                    format!("`genprism` has no option {}, or its arguments are missing", option.shown()),
+                    format!("`genprism` has no option {}, or its arguments are missing", option.quoted()),
                 );
                 return None;
             }
@@ -254,10 +257,10 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &PrimitiveCo
     let inward = (area > 0.0) == (along.z > 0.0);
     let mut facets = Facets::new();
     if ends {
-        facets.push(turned(base.clone(), inward));
-        facets.push(turned(base.iter().map(|p| *p + along).collect(), !inward));
+        facets.push(reversed_if(base.clone(), inward));
+        facets.push(reversed_if(base.iter().map(|p| *p + along).collect(), !inward));
     }
     let sides = base.iter().zip(base.iter().cycle().skip(1)).take(base.len() - usize::from(!closed));
-    facets.extend(sides.map(|(&a, &b)| turned(vec![a, a + along, b + along, b], inward)));
+    facets.extend(sides.map(|(&a, &b)| reversed_if(vec![a, a + along, b + along, b], inward)));
     Some(facets)
 }

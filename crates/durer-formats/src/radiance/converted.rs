@@ -1,7 +1,7 @@
 //! Results of converting modifiers and sources.
 
+use super::distribution::DirectionalDistribution;
 use super::sky::Sky;
-use super::spread::Spread;
 use durer_diag::Span;
 use durer_scene::math::{Color, Vec3};
 use glam::DVec3;
@@ -12,20 +12,20 @@ use std::rc::Rc;
 pub(super) struct ConvertedModifier {
     /// Index of the material in the scene; `None` for `void`.
     pub number: Option<u32>,
-    pub kind: Kind,
+    pub kind: MaterialKind,
     /// Combined patterns that modify the material.
     pub patterns: PatternEffect,
 }
 
 impl ConvertedModifier {
     /// Returns the result for the modifier `void`.
-    pub fn nothing() -> ConvertedModifier {
-        ConvertedModifier { number: None, kind: Kind::Plain, patterns: PatternEffect::default() }
+    pub fn void() -> ConvertedModifier {
+        ConvertedModifier { number: None, kind: MaterialKind::Plain, patterns: PatternEffect::default() }
     }
 
     /// Returns true if surfaces with this modifier bound a glass body.
     pub fn is_glass(&self) -> bool {
-        matches!(self.kind, Kind::Glass { .. })
+        matches!(self.kind, MaterialKind::Glass { .. })
     }
 }
 
@@ -37,7 +37,7 @@ pub(super) struct PatternEffect {
     pub tint: Color,
     pub sky: Option<Sky>,
     /// Factor that depends on the direction of emission.
-    pub spread: Option<Rc<Spread>>,
+    pub spread: Option<Rc<DirectionalDistribution>>,
 }
 
 impl Default for PatternEffect {
@@ -59,26 +59,26 @@ impl PatternEffect {
 }
 
 /// Kind of a converted material, as far as it affects the conversion of surfaces and sources.
-pub(super) enum Kind {
+pub(super) enum MaterialKind {
     Plain,
     /// Boundary of a dielectric. `outside` is the material to use for inverted surfaces.
     Glass {
         outside: Option<u32>,
     },
-    Shining {
+    Emitter {
         radiance: Color,
     },
     /// Emitter with a directional distribution.
-    Aimed {
+    DirectionalEmitter {
         radiance: Color,
-        spread: Rc<Spread>,
+        spread: Rc<DirectionalDistribution>,
         at: Span,
     },
 }
 
 /// Radiance `source` that becomes part of the environment map: a cone of directions, and the
 /// radiance from them.
-pub(super) struct Distant {
+pub(super) struct DistantSource {
     pub direction: DVec3,
     pub cosine: f64,
     pub radiance: Color,

@@ -1,10 +1,10 @@
 //! Reader of data files, which contain tables of numbers over one or more coordinates.
 
-use super::words::{Start, Words};
+use super::words::{PrimitiveStart, Words};
 use crate::shared_report::SharedReport;
 
 /// Maximum number of coordinates of a table.
-const MOST_DIMENSIONS: usize = 8;
+const MAX_DIMENSIONS: usize = 8;
 
 /// Table of numbers over one or more coordinates, read from a Radiance data file. The last
 /// coordinate varies fastest.
@@ -22,18 +22,18 @@ impl Table {
         let end = words.end();
         let mut next = || {
             let word = match words.start() {
-                Some(Start::Word(word)) => Some(word),
+                Some(PrimitiveStart::Word(word)) => Some(word),
                 _ => None,
             };
             if word.is_none() {
-                report.bad(end, "the table ends before its last number");
+                report.error(end, "the table ends before its last number");
             }
             word
         };
         let first = next()?;
         let dimensions = first.count(report)?;
-        if !(1..=MOST_DIMENSIONS).contains(&dimensions) {
-            report.bad(first.at, "a table has 1 to 8 coordinates");
+        if !(1..=MAX_DIMENSIONS).contains(&dimensions) {
+            report.error(first.at, "a table has 1 to 8 coordinates");
             return None;
         }
         let mut axes = Vec::new();
@@ -43,7 +43,7 @@ impl Table {
             let places = count.count(report)?;
             total = total.saturating_mul(places);
             if places == 0 || total > bytes.len() {
-                report.bad(count.at, format!("the file is too short for {places} values of this coordinate"));
+                report.error(count.at, format!("the file is too short for {places} values of this coordinate"));
                 return None;
             }
             axes.push(match from == to {
@@ -73,7 +73,7 @@ impl Table {
         const SLACK: f64 = 1e-4;
         // For each coordinate: the index of the sample below the position, and the fraction of the
         // way to the next sample.
-        let mut cells = [(0, 0.0); MOST_DIMENSIONS];
+        let mut cells = [(0, 0.0); MAX_DIMENSIONS];
         for ((axis, &x), cell) in self.axes.iter().zip(coordinates).zip(&mut cells) {
             let (first, last) = (axis[0].min(axis[axis.len() - 1]), axis[0].max(axis[axis.len() - 1]));
             if x < first - SLACK || x > last + SLACK {

@@ -1,8 +1,8 @@
 //! Converts surfaces with a directional distribution to point lights.
 
-use super::converted::{ConvertedModifier, Kind};
-use super::outline::Outline;
-use super::spread::Spread;
+use super::converted::{ConvertedModifier, MaterialKind};
+use super::distribution::DirectionalDistribution;
+use super::outline::EmitterShape;
 use super::state::Reader;
 use durer_diag::Span;
 use durer_scene::describe::FileName;
@@ -14,18 +14,18 @@ use std::rc::Rc;
 const POINTS: u32 = 16;
 
 /// Maximum number of different light profiles.
-const MOST_PROFILES: usize = 256;
+const MAX_PROFILES: usize = 256;
 
 impl Reader<'_> {
     /// Replaces a surface with point lights spread over it, since area lights in Dürer have no
     /// directional distribution.
-    pub fn point_lights(&mut self, made: &ConvertedModifier, outline: &Outline, span: Span) {
-        let Kind::Aimed { radiance, spread, at } = &made.kind else { return };
+    pub fn point_lights(&mut self, converted: &ConvertedModifier, outline: &EmitterShape, span: Span) {
+        let MaterialKind::DirectionalEmitter { radiance, spread, at } = &converted.kind else { return };
         let [down, front] = spread.axes();
         let Some(file) = self.profile(spread, outline, span) else { return };
-        let places = outline.places(POINTS);
+        let places = outline.points(POINTS);
         let what = "an emitter with a directional distribution becomes point lights and is not visible";
-        self.report.once(*at, what);
+        self.report.unsupported_once(*at, what);
         let color = *radiance * (outline.area() / places.len() as f64) as f32;
         for place in places {
             let light = PhotometricLight {
@@ -43,19 +43,24 @@ impl Reader<'_> {
 
     /// Returns the name of the light profile for a distribution on a surface. Surfaces with the
     /// same orientation share a profile.
-    fn profile(&mut self, spread: &Rc<Spread>, outline: &Outline, span: Span) -> Option<FileName> {
-        let facing = outline.facing();
-        let known = self.profiles.iter().position(|(own, axis)| Rc::ptr_eq(own, spread) && *axis == facing);
-        let number = known.unwrap_or(self.profiles.len());
+    fn profile(
+        &mut self,
+        spread: &Rc<DirectionalDistribution>,
+        outline: &EmitterShape,
+        span: Span,
+    ) -> Option<FileName> {
+        let facing = outline.orientation();
+        let existing = self.profiles.iter().position(|(own, axis)| Rc::ptr_eq(own, spread) && *axis == facing);
+        let number = existing.unwrap_or(self.profiles.len());
         let path = format!("lamp-{}.ies", number + 1);
-        if known.is_none() {
-            if self.profiles.len() >= MOST_PROFILES {
+        if existing.is_none() {
+            if self.profiles.len() >= MAX_PROFILES {
                 let message =
-                    format!("more than {MOST_PROFILES} directional distributions of emitters: the rest are left out");
+                    format!("more than {MAX_PROFILES} directional distributions of emitters: the rest are left out");
                 self.report.warn_once("too-many-lamps", span, message);
                 return None;
             }
-            let profile = spread.profile(|dir: DVec3| facing.shows(dir));
+            let profile = spread.profile(|dir: DVec3| facing.projected_area(dir));
             self.scene.assets.profiles.insert(path.clone(), profile.into());
             self.profiles.push((spread.clone(), facing));
         }

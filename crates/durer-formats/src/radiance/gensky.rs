@@ -82,7 +82,7 @@ pub(super) fn text(report: &SharedReport, name: &Word, args: &[Word]) -> Option<
     let by_angles = args.first().is_some_and(|word| word.text == "-ang");
     let fixed = 3;
     if args.len() < fixed {
-        report.bad(name.at, "`gensky` needs month, day and hour, or `-ang` with altitude and azimuth");
+        report.error(name.at, "`gensky` needs month, day and hour, or `-ang` with altitude and azimuth");
         return None;
     }
     let mut sky = SkyArgs {
@@ -118,7 +118,7 @@ impl SkyArgs {
                 "-u" => (self.kind, self.sunny) = (Kind::Uniform, false),
                 "-y" | "-g" | "-t" | "-b" | "-B" | "-r" | "-R" | "-a" | "-o" | "-m" => {
                     let Some((value, more)) = more.split_first() else {
-                        report.bad(option.at, format!("{} needs a number", option.shown()));
+                        report.error(option.at, format!("{} needs a number", option.quoted()));
                         return None;
                     };
                     let number = value.number(report)?;
@@ -137,7 +137,7 @@ impl SkyArgs {
                     }
                 }
                 _ => {
-                    report.bad(option.at, format!("`gensky` has no option {}", option.shown()));
+                    report.error(option.at, format!("`gensky` has no option {}", option.quoted()));
                     return None;
                 }
             }
@@ -151,7 +151,7 @@ impl SkyArgs {
         let whole = |word: &Word, most: f64, what: &str| {
             let number = word.number(report)?;
             if !(1.0..=most).contains(&number) {
-                report.bad(word.at, format!("the {what} must be from 1 to {most}"));
+                report.error(word.at, format!("the {what} must be from 1 to {most}"));
                 return None;
             }
             Some(number as i32)
@@ -182,7 +182,7 @@ impl SkyArgs {
     fn hour(&mut self, report: &SharedReport, word: &Word) -> Option<(f64, bool)> {
         let wrong = || {
             let what = "the hour must be of the form 14.5, 14:30, 14:30EST or, in solar time, +14.5";
-            report.bad(word.at, what);
+            report.error(word.at, what);
         };
         let (solar, text) = match word.text.strip_prefix('+') {
             Some(text) => (true, text),
@@ -193,7 +193,7 @@ impl SkyArgs {
         if !zone.is_empty() {
             let Some((_, meridian)) = ZONES.iter().find(|(name, _)| *name == zone) else {
                 let known = ZONES.map(|(name, _)| name).join(" ");
-                report.bad(word.at, format!("unknown time zone in {}: known zones are {known}", word.shown()));
+                report.error(word.at, format!("unknown time zone in {}: known zones are {known}", word.quoted()));
                 return None;
             };
             self.meridian = *meridian;

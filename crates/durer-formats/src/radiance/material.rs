@@ -5,8 +5,8 @@
 //! Reflection*, SIGGRAPH 1992.
 
 use super::args::RadPrimitive;
-use super::converted::{ConvertedModifier, Kind, PatternEffect};
-use super::spread::Spread;
+use super::converted::{ConvertedModifier, MaterialKind, PatternEffect};
+use super::distribution::DirectionalDistribution;
 use super::state::Reader;
 use durer_diag::Span;
 use durer_scene::bsdf::fresnel::schlick_82;
@@ -17,7 +17,7 @@ use durer_scene::math::{Color, LUMINANCE, Vec3, fp};
 use durer_scene::medium::Fog;
 use durer_scene::scene::{Material, Spanned};
 
-const TURNED: &str = "anisotropic highlights follow the surface's own tangents, not the given direction";
+const OWN_TANGENTS: &str = "anisotropic highlights follow the surface's own tangents, not the given direction";
 
 /// Returns a matte material without a specular layer.
 fn matte(base_color: Color) -> PrincipledMaterial {
@@ -135,16 +135,16 @@ impl Reader<'_> {
             _ => &[],
         };
         if !counts.is_empty() && !primitive.has(counts, report) {
-            return ConvertedModifier::nothing();
+            return ConvertedModifier::void();
         }
         let value = |i: usize| primitive.number(i).unwrap_or(0.0).max(0.0);
         let both = |i: usize| [value(i); 2];
         let color = primitive.color(0) * above.tint;
-        let instead = |what: &str| report.once(at, format!("`{kind}` has no counterpart: {what}"));
+        let instead = |what: &str| report.unsupported_once(at, format!("`{kind}` has no counterpart: {what}"));
         if matches!(kind, "plastic" | "plastic2") && value(3) > 0.0 {
             let roughness = if kind == "plastic" { both(4) } else { [value(4), value(5)] };
             if roughness[0] != roughness[1] {
-                report.once(at, TURNED);
+                report.unsupported_once(at, OWN_TANGENTS);
             }
             if roughness != [0.0; 2] {
                 return self.rough_plastic(color, value(3).min(1.0), roughness, at);
@@ -192,14 +192,14 @@ impl Reader<'_> {
             "glass" => sheet(color, primitive.number(3).unwrap_or(1.52)),
             "dielectric" => {
                 if primitive.number(4) != Some(0.0) {
-                    report.once(at, "Hartmann's constant has no counterpart: dispersion is left out");
+                    report.unsupported_once(at, "Hartmann's constant has no counterpart: dispersion is left out");
                 }
                 let inside = self.add_material(body(color, value(3)), at);
                 let bubble = self.add_material(body(Vec3::ONE, 1.0), at);
                 return ConvertedModifier {
                     number: Some(inside),
-                    kind: Kind::Glass { outside: Some(bubble) },
-                    ..ConvertedModifier::nothing()
+                    kind: MaterialKind::Glass { outside: Some(bubble) },
+                    ..ConvertedModifier::void()
                 };
             }
             "interface" => {
@@ -207,14 +207,14 @@ impl Reader<'_> {
                 let outside = self.add_material(body(primitive.color(4), value(7)), at);
                 return ConvertedModifier {
                     number: Some(inside),
-                    kind: Kind::Glass { outside: Some(outside) },
-                    ..ConvertedModifier::nothing()
+                    kind: MaterialKind::Glass { outside: Some(outside) },
+                    ..ConvertedModifier::void()
                 };
             }
             "mist" => return self.mist(primitive),
             "antimatter" => {
                 instead("it is left out and removes nothing");
-                return ConvertedModifier::nothing();
+                return ConvertedModifier::void();
             }
             "illum" | "mirror"
                 if primitive.texts.first().is_some_and(|name| kind == "mirror" || name.text != "void") =>
@@ -226,10 +226,10 @@ impl Reader<'_> {
                 let other = self.modifiers[number].others[0];
                 return match other {
                     Some(other) => {
-                        let made = self.made(other);
-                        ConvertedModifier { number: made.number, ..ConvertedModifier::nothing() }
+                        let converted = self.convert(other);
+                        ConvertedModifier { number: converted.number, ..ConvertedModifier::void() }
                     }
-                    None => ConvertedModifier::nothing(),
+                    None => ConvertedModifier::void(),
                 };
             }
             "light" | "glow" | "illum" => {
@@ -237,40 +237,40 @@ impl Reader<'_> {
                     instead("it becomes a visible emitter");
                 }
                 if kind == "glow" && primitive.number(3).is_some_and(|reach| reach != 0.0) {
-                    report.once(
+                    report.unsupported_once(
                         at,
                         "the maximum radius of a `glow` has no counterpart: it illuminates surfaces at any distance",
                     );
                 }
                 if let Some(spread) = above.spread.clone() {
                     return ConvertedModifier {
-                        kind: Kind::Aimed { radiance: color, spread, at },
-                        ..ConvertedModifier::nothing()
+                        kind: MaterialKind::DirectionalEmitter { radiance: color, spread, at },
+                        ..ConvertedModifier::void()
                     };
                 }
                 let number = Some(self.add_material(emissive(color), at));
                 let patterns = PatternEffect { sky: above.sky.clone(), ..PatternEffect::default() };
-                return ConvertedModifier { number, kind: Kind::Shining { radiance: color }, patterns };
+                return ConvertedModifier { number, kind: MaterialKind::Emitter { radiance: color }, patterns };
             }
             "spotlight" => {
                 let focus = self.modifiers[number].map.transform_vector3(primitive.point(4));
                 let direction = focus.normalize_or_zero();
                 if direction == glam::DVec3::ZERO {
-                    report.bad(at, "a spotlight needs a direction");
+                    report.error(at, "a spotlight needs a direction");
                 }
                 let degrees = f64::from(0.5 * value(3).clamp(0.01, 360.0));
-                let spread = Spread::Cone { aim: direction, degrees, focus: focus.length() }.into();
+                let spread = DirectionalDistribution::Cone { aim: direction, degrees, focus: focus.length() }.into();
                 return ConvertedModifier {
-                    kind: Kind::Aimed { radiance: color, spread, at },
-                    ..ConvertedModifier::nothing()
+                    kind: MaterialKind::DirectionalEmitter { radiance: color, spread, at },
+                    ..ConvertedModifier::void()
                 };
             }
             _ => matte(color),
         };
         if matches!(kind, "plastic2" | "metal2" | "trans2" | "ashik2") && m.specular_anisotropy > 0.0 {
-            report.once(at, TURNED);
+            report.unsupported_once(at, OWN_TANGENTS);
         }
-        ConvertedModifier { number: Some(self.add_material(m, at)), ..ConvertedModifier::nothing() }
+        ConvertedModifier { number: Some(self.add_material(m, at)), ..ConvertedModifier::void() }
     }
 
     /// Converts rough plastic to a mix: a white highlight that has the same reflectance at all
@@ -280,7 +280,7 @@ impl Reader<'_> {
         let material2 = self.add_material(matte(color), at);
         let mix = Material::Solid(Mix { material1, material2, share, share_texture: None }.into(), Vec::new());
         self.scene.materials.push(Spanned { value: mix, span: at });
-        ConvertedModifier { number: Some((self.scene.materials.len() - 1) as u32), ..ConvertedModifier::nothing() }
+        ConvertedModifier { number: Some((self.scene.materials.len() - 1) as u32), ..ConvertedModifier::void() }
     }
 
     /// Converts `mist`, which fills a body without refraction.
@@ -288,7 +288,7 @@ impl Reader<'_> {
         let extinction = primitive.color(0);
         let most = extinction.max_element();
         if primitive.numbers.is_empty() || most <= 0.0 {
-            return ConvertedModifier::nothing();
+            return ConvertedModifier::void();
         }
         let albedo = if primitive.numbers.len() >= 6 { primitive.color(3).min(Vec3::ONE) } else { Vec3::ZERO };
         let anisotropy = primitive.number(6).unwrap_or(0.0).clamp(-0.99, 0.99);
@@ -304,9 +304,9 @@ impl Reader<'_> {
         // Fog attenuates all colours equally, so use the luminance.
         let mean = extinction.dot(LUMINANCE);
         let color = (albedo * extinction / mean).min(Vec3::ONE);
-        self.mists.insert(number, Fog { extinction: mean, color, anisotropy, ..Fog::default() });
+        self.mist_fog.insert(number, Fog { extinction: mean, color, anisotropy, ..Fog::default() });
         let number = Some(number);
-        ConvertedModifier { number, kind: Kind::Glass { outside: None }, ..ConvertedModifier::nothing() }
+        ConvertedModifier { number, kind: MaterialKind::Glass { outside: None }, ..ConvertedModifier::void() }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Converts mixtures of two materials.
 
 use super::args::RadPrimitive;
-use super::converted::{ConvertedModifier, Kind, PatternEffect};
+use super::converted::{ConvertedModifier, MaterialKind, PatternEffect};
 use super::state::Reader;
 use crate::number::parse_f32;
 use durer_scene::material::PatternMaterial;
@@ -14,30 +14,35 @@ impl Reader<'_> {
     pub fn mixture(&mut self, number: usize, primitive: &RadPrimitive, patterns: &PatternEffect) -> ConvertedModifier {
         let (at, kind) = (primitive.at(), primitive.kind.text.as_str());
         if primitive.texts.len() < 4 {
-            self.report.bad(at, format!("a `{kind}` needs two modifiers and a mixing function"));
-            return ConvertedModifier::nothing();
+            self.report.error(at, format!("a `{kind}` needs two modifiers and a mixing function"));
+            return ConvertedModifier::void();
         }
         let constant = parse_f32(primitive.texts[2].text.as_bytes()).ok().filter(|_| kind == "mixfunc");
         let share = match (kind, constant) {
             (_, Some(share)) => share.clamp(0.0, 1.0),
             // Letters cover only a small part of the surface.
             ("mixtext", _) => {
-                self.report.once(at, "text has no counterpart: the modifier around it is used");
+                self.report.unsupported_once(at, "text has no counterpart: the modifier around it is used");
                 0.0
             }
             _ => {
-                self.report.once(at, format!("`{kind}` has no counterpart: both modifiers are mixed in equal parts"));
+                self.report.unsupported_once(
+                    at,
+                    format!("`{kind}` has no counterpart: both modifiers are mixed in equal parts"),
+                );
                 0.5
             }
         };
-        let [first, second] = self.modifiers[number].others.map(|other| other.map(|other| self.below(other, patterns)));
-        let numbers = [&first, &second].map(|made| made.as_ref().and_then(|made| made.number));
-        let glass = [&first, &second].iter().any(|made| made.as_ref().is_some_and(|made| made.is_glass()));
+        let [first, second] =
+            self.modifiers[number].others.map(|other| other.map(|other| self.convert_below(other, patterns)));
+        let numbers = [&first, &second].map(|converted| converted.as_ref().and_then(|converted| converted.number));
+        let glass =
+            [&first, &second].iter().any(|converted| converted.as_ref().is_some_and(|converted| converted.is_glass()));
         let number = match numbers {
             [_, second] if share == 0.0 => second,
             [first, _] if share == 1.0 => first,
             [Some(_), Some(_)] if glass => {
-                self.report.once(at, "glass bodies cannot be mixed: the first modifier is used");
+                self.report.unsupported_once(at, "glass bodies cannot be mixed: the first modifier is used");
                 numbers[0]
             }
             [Some(material1), Some(material2)] => {
@@ -46,23 +51,23 @@ impl Reader<'_> {
                 Some((self.scene.materials.len() - 1) as u32)
             }
             [first, second] if glass => {
-                self.report.once(at, "glass bodies cannot be partly transparent: they are shown in full");
+                self.report.unsupported_once(at, "glass bodies cannot be partly transparent: they are shown in full");
                 first.or(second)
             }
             // If one part is missing, the material is partly transparent.
             [first, second] => {
                 let share = if first.is_some() { share } else { 1.0 - share };
-                first.or(second).map(|number| self.there_in_part(number, share, &mut BTreeMap::new()))
+                first.or(second).map(|number| self.with_scaled_opacity(number, share, &mut BTreeMap::new()))
             }
         };
-        let kind = if glass { Kind::Glass { outside: None } } else { Kind::Plain };
-        ConvertedModifier { number, kind, ..ConvertedModifier::nothing() }
+        let kind = if glass { MaterialKind::Glass { outside: None } } else { MaterialKind::Plain };
+        ConvertedModifier { number, kind, ..ConvertedModifier::void() }
     }
 
     /// Returns a copy of a material, with its opacity multiplied by `share`.
-    fn there_in_part(&mut self, number: u32, share: f32, made: &mut BTreeMap<u32, u32>) -> u32 {
-        if let Some(made) = made.get(&number) {
-            return *made;
+    fn with_scaled_opacity(&mut self, number: u32, share: f32, scaled: &mut BTreeMap<u32, u32>) -> u32 {
+        if let Some(scaled) = scaled.get(&number) {
+            return *scaled;
         }
         if self.is_full(self.scene.materials[number as usize].span) {
             return number;
@@ -71,14 +76,14 @@ impl Reader<'_> {
         match &mut value {
             Material::Principled(layers) => layers.opacity *= share,
             Material::Solid(PatternMaterial::Mix(mix), _) => {
-                mix.material1 = self.there_in_part(mix.material1, share, made);
-                mix.material2 = self.there_in_part(mix.material2, share, made);
+                mix.material1 = self.with_scaled_opacity(mix.material1, share, scaled);
+                mix.material2 = self.with_scaled_opacity(mix.material2, share, scaled);
             }
             _ => {}
         }
         self.scene.materials.push(Spanned { value, span });
         let faded = (self.scene.materials.len() - 1) as u32;
-        made.insert(number, faded);
+        scaled.insert(number, faded);
         faded
     }
 }

@@ -9,23 +9,23 @@ mod args;
 mod body;
 mod chain;
 mod command;
+mod context;
 mod converted;
 mod data;
 mod directional;
+mod distribution;
 mod gensky;
 mod material;
 mod mixture;
 mod outline;
 mod pattern;
-mod place;
 mod rif;
 mod sky;
 mod source;
-mod spread;
 mod standard;
 mod state;
 mod surface;
-mod used;
+mod unused_materials;
 mod view;
 mod words;
 mod xform;
@@ -33,13 +33,13 @@ mod xform;
 #[cfg(test)]
 mod tests;
 
-use super::model::{Input, SceneFormat};
+use super::model::{ReadInput, SceneFormat};
 use super::shared_report::SharedReport;
 use super::too_large;
+use context::PrimitiveContext;
 use durer_diag::{Diagnostic, Diagnostics};
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Axis, Scene};
-use place::PrimitiveContext;
 use state::Reader;
 
 /// Scene format entry for Radiance.
@@ -51,12 +51,12 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     read,
     write: None,
     up: Axis::Z,
-    whole: true,
+    is_complete_scene: true,
     light_hint: Some("give a surface the material `light`, or a `source` with `glow`"),
 };
 
 /// Reads a file; see [`read_model`](super::scene::read_model).
-fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
         diagnostics.push(Diagnostic { message: error.message.replace("mesh file", "scene"), help: None, ..error });
         return None;
@@ -76,11 +76,15 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
 }
 
 /// Sets a scene's camera to the last view in a file.
-pub(super) fn look(scene: &mut Scene, input: &Input, (name, bytes): (&str, &std::sync::Arc<[u8]>)) -> Diagnostics {
+pub(super) fn set_view(
+    scene: &mut Scene,
+    input: &ReadInput,
+    (name, bytes): (&str, &std::sync::Arc<[u8]>),
+) -> Diagnostics {
     let report = SharedReport::default();
     let file = input.files.borrow_mut().add(name, bytes.clone());
-    if let Some(view) = view::of_file(bytes, file, &report) {
-        view.place(scene, view::USUAL_SIZE, &report);
+    if let Some(view) = view::last_view(bytes, file, &report) {
+        view.apply(scene, view::DEFAULT_SIZE, &report);
     }
     report.finish()
 }

@@ -5,7 +5,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 /// Shape of a surface that may emit light, for replacing it with point lights.
-pub(super) enum Outline<'a> {
+pub(super) enum EmitterShape<'a> {
     /// A flat polygon, by its corners.
     Polygon(&'a [DVec3]),
     Ring {
@@ -26,36 +26,36 @@ pub(super) enum Outline<'a> {
 
 /// Orientation of an emitting surface, which determines its projected area in each direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Facing {
+pub(super) enum Orientation {
     /// Flat surface, with a unit normal.
-    To(DVec3),
+    Flat(DVec3),
     /// Round surface about an axis. A cone is treated as a cylinder.
-    Around(DVec3),
-    All,
+    Round(DVec3),
+    Spherical,
 }
 
-impl Facing {
+impl Orientation {
     /// Returns the projected area in a direction, as a fraction of the area, and the cosine to the
     /// normal, which is 1 for round surfaces.
-    pub fn shows(self, dir: DVec3) -> (f64, f64) {
+    pub fn projected_area(self, dir: DVec3) -> (f64, f64) {
         match self {
             // The tolerance excludes directions in the plane of the surface.
-            Facing::To(normal) if normal.dot(dir) > 1e-6 => (normal.dot(dir), normal.dot(dir)),
-            Facing::To(_) => (0.0, 1.0),
-            Facing::Around(axis) => ((1.0 - axis.dot(dir) * axis.dot(dir)).max(0.0).sqrt() / PI, 1.0),
-            Facing::All => (0.25, 1.0),
+            Orientation::Flat(normal) if normal.dot(dir) > 1e-6 => (normal.dot(dir), normal.dot(dir)),
+            Orientation::Flat(_) => (0.0, 1.0),
+            Orientation::Round(axis) => ((1.0 - axis.dot(dir) * axis.dot(dir)).max(0.0).sqrt() / PI, 1.0),
+            Orientation::Spherical => (0.25, 1.0),
         }
     }
 }
 
-impl Outline<'_> {
+impl EmitterShape<'_> {
     /// Returns the area of the surface.
     pub fn area(&self) -> f64 {
         match self {
-            Outline::Polygon(corners) => 0.5 * twice(corners).length(),
-            Outline::Ring { radii: [inner, outer], .. } => PI * (outer * outer - inner * inner),
-            Outline::Ball { radius, .. } => 4.0 * PI * radius * radius,
-            Outline::Side { ends, radii: [a, b] } => {
+            EmitterShape::Polygon(corners) => 0.5 * double_area_normal(corners).length(),
+            EmitterShape::Ring { radii: [inner, outer], .. } => PI * (outer * outer - inner * inner),
+            EmitterShape::Ball { radius, .. } => 4.0 * PI * radius * radius,
+            EmitterShape::Side { ends, radii: [a, b] } => {
                 let length = ends[0].distance(ends[1]);
                 PI * (a + b) * (length * length + (a - b) * (a - b)).sqrt()
             }
@@ -63,22 +63,22 @@ impl Outline<'_> {
     }
 
     /// Returns the orientation of the surface.
-    pub fn facing(&self) -> Facing {
+    pub fn orientation(&self) -> Orientation {
         match self {
-            Outline::Polygon(corners) => Facing::To(twice(corners).normalize_or_zero()),
-            Outline::Ring { normal, .. } => Facing::To(*normal),
-            Outline::Ball { .. } => Facing::All,
-            Outline::Side { ends, .. } => Facing::Around((ends[1] - ends[0]).normalize_or_zero()),
+            EmitterShape::Polygon(corners) => Orientation::Flat(double_area_normal(corners).normalize_or_zero()),
+            EmitterShape::Ring { normal, .. } => Orientation::Flat(*normal),
+            EmitterShape::Ball { .. } => Orientation::Spherical,
+            EmitterShape::Side { ends, .. } => Orientation::Round((ends[1] - ends[0]).normalize_or_zero()),
         }
     }
 
     /// Returns points spread over the surface, each standing for an equal area. For round surfaces,
     /// they are at the centre or on the axis.
-    pub fn places(&self, count: u32) -> Vec<DVec3> {
+    pub fn points(&self, count: u32) -> Vec<DVec3> {
         let share = |i: u32| (f64::from(i) + 0.5) / f64::from(count);
         match *self {
-            Outline::Polygon(corners) => polygon(corners, count),
-            Outline::Ring { center, normal, radii: [inner, outer] } => {
+            EmitterShape::Polygon(corners) => polygon(corners, count),
+            EmitterShape::Ring { center, normal, radii: [inner, outer] } => {
                 let (x, y) = normal.any_orthonormal_pair();
                 let place = |i: u32| {
                     // Vogel's spiral: equal areas contain equal numbers of points.
@@ -89,14 +89,14 @@ impl Outline<'_> {
                 // Pairs of opposite points keep the mean at the centre of the ring.
                 (0..count / 2).map(|i| place(2 * i)).flat_map(|offset| [center + offset, center - offset]).collect()
             }
-            Outline::Ball { center, .. } => vec![center],
-            Outline::Side { ends, .. } => (0..count).map(|i| ends[0].lerp(ends[1], share(i))).collect(),
+            EmitterShape::Ball { center, .. } => vec![center],
+            EmitterShape::Side { ends, .. } => (0..count).map(|i| ends[0].lerp(ends[1], share(i))).collect(),
         }
     }
 }
 
 /// Returns the normal of a polygon; its length is twice the area.
-fn twice(corners: &[DVec3]) -> DVec3 {
+fn double_area_normal(corners: &[DVec3]) -> DVec3 {
     corners.windows(2).skip(1).map(|pair| (pair[0] - corners[0]).cross(pair[1] - corners[0])).sum()
 }
 

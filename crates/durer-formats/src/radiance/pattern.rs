@@ -4,36 +4,36 @@
 use super::args::RadPrimitive;
 use super::converted::PatternEffect;
 use super::data::Table;
+use super::distribution::{self, DirectionalDistribution, IntensityTable};
 use super::sky::Sky;
-use super::spread::{self, IntensityTable, Spread};
 use super::state::Reader;
 use super::words::Word;
-use super::xform::Transform;
+use super::xform::TransformSequence;
 use crate::number::parse_f32;
-use crate::pictures::unusable;
+use crate::pictures::picture_error;
 use durer_image::{self as image, Encoded};
 use durer_scene::math::{Color, Vec3};
 use glam::{DAffine3, DMat3};
 use std::rc::Rc;
 
 impl Reader<'_> {
-    /// Evaluates the pattern with index `number` as a factor on the emission or reflectance. `map`
-    /// is the transform of the text that contains it.
-    pub fn pattern(&mut self, number: usize, primitive: &RadPrimitive, map: &DAffine3) -> PatternEffect {
+    /// Evaluates the pattern with index `number` as a factor on the emission or reflectance.
+    /// `transform` is that of the text that contains it.
+    pub fn pattern(&mut self, number: usize, primitive: &RadPrimitive, transform: &DAffine3) -> PatternEffect {
         let (at, kind, report) = (primitive.at(), primitive.kind.text.as_str(), self.report);
         let text = |i: usize| primitive.texts.get(i).map_or("", |word| word.text.as_str());
         let literal = |i: usize| parse_f32(text(i).as_bytes()).ok().map(|x| x.max(0.0));
         let tint = match kind {
             "texfunc" | "texdata" => {
-                report.once(at, "textures (bumps) have no counterpart: the surface stays unchanged");
+                report.unsupported_once(at, "textures (bumps) have no counterpart: the surface stays unchanged");
                 Vec3::ONE
             }
             "brightfunc" if text(0) == "skybr" => {
-                let sky = Sky::of(primitive, map.matrix3 * self.own_turn(primitive, 2), report);
+                let sky = Sky::of(primitive, transform.matrix3 * self.trailing_rotation(primitive, 2), report);
                 return PatternEffect { sky, ..PatternEffect::default() };
             }
             "brightfunc" if text(0) == "skybright" && text(1).ends_with("perezlum.cal") => {
-                let sky = Sky::perez(primitive, map.matrix3 * self.own_turn(primitive, 2), report);
+                let sky = Sky::perez(primitive, transform.matrix3 * self.trailing_rotation(primitive, 2), report);
                 return PatternEffect { sky, ..PatternEffect::default() };
             }
             "brightfunc" if literal(0).is_some() => Vec3::splat(literal(0).unwrap_or(1.0)),
@@ -41,22 +41,25 @@ impl Reader<'_> {
                 Vec3::from_array([0, 1, 2].map(|i| literal(i).unwrap_or(1.0)))
             }
             "brightfunc" | "colorfunc" | "spectrum" => {
-                report.once(at, format!("function patterns (`{kind}`) have no counterpart: the pattern is left out"));
+                report.unsupported_once(
+                    at,
+                    format!("function patterns (`{kind}`) have no counterpart: the pattern is left out"),
+                );
                 Vec3::ONE
             }
             "brighttext" | "colortext" => {
-                report.once(at, "text has no counterpart: its background is used");
+                report.unsupported_once(at, "text has no counterpart: its background is used");
                 background(primitive)
             }
             "colorpict" => match primitive.texts.get(3).and_then(|name| self.mean_of_picture(name)) {
                 Some(mean) => {
-                    report.once(at, "picture patterns have no counterpart: the mean colour is used");
+                    report.unsupported_once(at, "picture patterns have no counterpart: the mean colour is used");
                     mean
                 }
                 None => Vec3::ONE,
             },
-            "brightdata" if spread::coordinates(primitive) > 0 => {
-                if let Some(spread) = self.spread(number, primitive, map) {
+            "brightdata" if distribution::coordinates(primitive) > 0 => {
+                if let Some(spread) = self.distribution_table(number, primitive, transform) {
                     return PatternEffect { spread: Some(spread), ..PatternEffect::default() };
                 }
                 Vec3::splat(self.mean_of_data(primitive, primitive.texts.get(1)))
@@ -72,28 +75,34 @@ impl Reader<'_> {
 
     /// Returns the rotation that `xform` appended after the first `names` words of a function's
     /// arguments.
-    fn own_turn(&self, primitive: &RadPrimitive, names: usize) -> DMat3 {
-        let (mut rest, mut transform) = (primitive.texts.get(names..).unwrap_or_default(), Transform::default());
+    fn trailing_rotation(&self, primitive: &RadPrimitive, names: usize) -> DMat3 {
+        let (mut rest, mut transform) =
+            (primitive.texts.get(names..).unwrap_or_default(), TransformSequence::default());
         while transform.option(&mut rest, self.report) {}
-        transform.places().and_then(|places| places.first().map(|map| map.matrix3)).unwrap_or(DMat3::IDENTITY)
+        transform.copies().and_then(|places| places.first().map(|map| map.matrix3)).unwrap_or(DMat3::IDENTITY)
     }
 
     /// Returns the table of a light's directional distribution, which is read only once.
-    fn spread(&mut self, number: usize, primitive: &RadPrimitive, map: &DAffine3) -> Option<Rc<Spread>> {
-        if let Some(known) = self.spreads.get(&number) {
-            return Some(known.clone());
+    fn distribution_table(
+        &mut self,
+        number: usize,
+        primitive: &RadPrimitive,
+        transform: &DAffine3,
+    ) -> Option<Rc<DirectionalDistribution>> {
+        if let Some(cached) = self.distributions.get(&number) {
+            return Some(cached.clone());
         }
         let table = self.table(primitive, primitive.texts.get(1))?;
-        let turn = map.matrix3 * self.own_turn(primitive, 3 + spread::coordinates(primitive));
+        let turn = transform.matrix3 * self.trailing_rotation(primitive, 3 + distribution::coordinates(primitive));
         let turn = (turn * (1.0 / turn.x_axis.length())).transpose();
-        let spread = Rc::new(Spread::Table(IntensityTable::new(primitive, table, turn)?));
-        self.spreads.insert(number, spread.clone());
+        let spread = Rc::new(DirectionalDistribution::Table(IntensityTable::new(primitive, table, turn)?));
+        self.distributions.insert(number, spread.clone());
         Some(spread)
     }
 
     fn table(&self, primitive: &RadPrimitive, name: Option<&Word>) -> Option<Table> {
         let Some(name) = name else {
-            self.report.bad(primitive.at(), "a data pattern needs a function, a file and coordinates");
+            self.report.error(primitive.at(), "a data pattern needs a function, a file and coordinates");
             return None;
         };
         let (bytes, file) = self.open(name)?;
@@ -103,7 +112,7 @@ impl Reader<'_> {
     /// Returns the mean of a data file.
     fn mean_of_data(&self, primitive: &RadPrimitive, name: Option<&Word>) -> f32 {
         let Some(table) = self.table(primitive, name) else { return 1.0 };
-        self.report.once(primitive.at(), "data patterns have no counterpart: the mean is used");
+        self.report.unsupported_once(primitive.at(), "data patterns have no counterpart: the mean is used");
         table.mean()
     }
 
@@ -120,7 +129,7 @@ impl Reader<'_> {
                 Some((sum / picture.pixels.len().max(1) as f64).as_vec3())
             }
             Err(error) => {
-                self.report.push(unusable(&name.text, &error).at(name.at));
+                self.report.push(picture_error(&name.text, &error).at(name.at));
                 None
             }
         }

@@ -1,9 +1,9 @@
 //! Reader of `rad` input files, which list the files and views of a scene.
 
-use super::place::PrimitiveContext;
-use super::standard::{Zone, standard};
+use super::context::PrimitiveContext;
+use super::standard::{ViewBox, standard};
 use super::state::Reader;
-use super::view::{USUAL_SIZE, View, of_file};
+use super::view::{DEFAULT_SIZE, View, last_view};
 use super::words::{Word, Words};
 use crate::shared_report::suggest;
 use durer_diag::Diagnostic;
@@ -39,7 +39,7 @@ const VARIABLES: [&str; 26] = [
     "rpict",
 ];
 /// Variables that do not affect lighting.
-const MORE: [&str; 8] = ["PGMAP", "PCMAP", "mkpmap", "rvu", "rtrace", "rpiece", "EYESEP", "MATERIAL"];
+const IGNORED_VARIABLES: [&str; 8] = ["PGMAP", "PCMAP", "mkpmap", "rvu", "rtrace", "rpiece", "EYESEP", "MATERIAL"];
 
 /// Line of a `rad` input file: the full name of a variable, and its values.
 struct Setting {
@@ -67,25 +67,25 @@ impl Reader<'_> {
         if !settings.iter().any(|setting| matches!(setting.name, "scene" | "illum")) {
             let at = durer_diag::Span { file, start: 0, end: bytes.len().min(1) as u32 };
             let help = "octrees are not supported: name their source with `scene = FILE.rad`";
-            self.report.bad_with(at, "this file names no scene", Some(help.into()));
+            self.report.error_with_help(at, "this file names no scene", Some(help.into()));
         }
         let options = settings.iter().filter(|setting| setting.name == "render").flat_map(|setting| &setting.values);
         for option in options.filter(|option| option.text == "-bv-") {
             let what = "back-face culling (-bv-) has no counterpart: surfaces are visible from both sides";
-            self.report.once(option.at, what);
+            self.report.unsupported_once(option.at, what);
         }
         let last = |name: &str| settings.iter().rfind(|setting| setting.name == name).and_then(|s| s.values.first());
         let larger = last("RESOLUTION").and_then(|word| word.text.parse().ok()).filter(|r| (1..=1 << 16).contains(r));
         let exposure = last("EXPOSURE").cloned();
         let views: Vec<&Setting> = settings.iter().filter(|setting| setting.name == "view").collect();
         let of = |name: &str| settings.iter().rfind(|setting| setting.name == name).map(|s| s.values.as_slice());
-        let zone = Zone::of(of("ZONE"), of("UP"), self);
-        self.view(&views, &zone, larger.unwrap_or(USUAL_SIZE));
+        let zone = ViewBox::of(of("ZONE"), of("UP"), self);
+        self.view(&views, &zone, larger.unwrap_or(DEFAULT_SIZE));
         self.exposure(exposure);
     }
 
     /// Selects a view by name or number; the default is the first view.
-    fn view(&mut self, views: &[&Setting], zone: &Zone, larger: u32) {
+    fn view(&mut self, views: &[&Setting], zone: &ViewBox, larger: u32) {
         let name = |i: usize| views[i].values.first().filter(|word| !word.text.starts_with('-'));
         let wanted = match &self.input.scene_defaults.camera {
             None => (!views.is_empty()).then_some(0),
@@ -93,7 +93,7 @@ impl Reader<'_> {
                 let named = (0..views.len()).find(|&i| name(i).is_some_and(|word| word.text == *wanted));
                 let found = named.or_else(|| wanted.parse().ok().filter(|i| *i < views.len()));
                 if let (None, Some(seen)) = (found, standard(wanted)) {
-                    return zone.view(seen, Default::default()).place(&mut self.scene, larger, self.report);
+                    return zone.view(seen, Default::default()).apply(&mut self.scene, larger, self.report);
                 }
                 if found.is_none() {
                     let known: Vec<&str> =
@@ -118,10 +118,10 @@ impl Reader<'_> {
         let mut view = seen.map_or_else(|| View::new(at), |seen| zone.view(seen, at));
         if let Some(i) = words.iter().position(|word| word.text == "-vf") {
             let Some(path) = words.get(i + 1) else {
-                return self.report.bad(words[i].at, "`-vf` needs a file");
+                return self.report.error(words[i].at, "`-vf` needs a file");
             };
             let Some((bytes, file)) = self.open(path) else { return };
-            let Some(found) = of_file(&bytes, file, self.report) else { return };
+            let Some(found) = last_view(&bytes, file, self.report) else { return };
             view = found;
         }
         let own: Vec<Word> = words
@@ -131,7 +131,7 @@ impl Reader<'_> {
             .map(|(_, word)| word.clone())
             .collect();
         view.options(&own, false, self.report);
-        view.place(&mut self.scene, larger, self.report);
+        view.apply(&mut self.scene, larger, self.report);
     }
 
     /// Adds a note about the exposure: a number of stops if it has a sign, otherwise a factor.
@@ -171,12 +171,13 @@ impl Reader<'_> {
             }
             let all = Words::new(bytes, file, line.clone());
             let Some(equals) = bytes[line.clone()].iter().position(|byte| *byte == b'=') else {
-                self.report.bad(all.span(line.start, line.end), "a line must have the form `VARIABLE = values`");
+                self.report.error(all.span(line.start, line.end), "a line must have the form `VARIABLE = values`");
                 continue;
             };
             let mut words = Words::new(bytes, file, line.start..line.start + equals);
             let Some(name) = words.next() else {
-                self.report.bad(all.span(line.start, line.start + equals + 1), "a variable is missing before this `=`");
+                self.report
+                    .error(all.span(line.start, line.start + equals + 1), "a variable is missing before this `=`");
                 continue;
             };
             let mut words = Words::new(bytes, file, line.start + equals + 1..line.end);
@@ -186,11 +187,11 @@ impl Reader<'_> {
                 let full = full.to_lowercase();
                 full == short || (short.len() >= 3 && (full.starts_with(&short) || short.starts_with(&full)))
             };
-            match VARIABLES.iter().chain(&MORE).find(is) {
+            match VARIABLES.iter().chain(&IGNORED_VARIABLES).find(is) {
                 Some(full) => settings.push(Setting { name: full, values }),
                 None => {
                     let help = suggest(&name.text, VARIABLES);
-                    self.report.bad_with(name.at, format!("`rad` has no variable {}", name.shown()), help);
+                    self.report.error_with_help(name.at, format!("`rad` has no variable {}", name.quoted()), help);
                 }
             }
         }

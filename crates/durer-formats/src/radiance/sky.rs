@@ -16,18 +16,18 @@ use std::f32::consts::FRAC_PI_2;
 /// formula.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sky {
-    kind: Cover,
+    kind: SkyKind,
     zenith: f32,
     ground: f32,
     factor: f32,
     sun: DVec3,
     /// Rotation from world space to the sky's axes.
-    turn: DMat3,
+    to_sky: DMat3,
 }
 
 /// Type of sky, which determines its radiance formula.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Cover {
+enum SkyKind {
     Clear,
     Overcast,
     Uniform,
@@ -38,16 +38,16 @@ enum Cover {
 
 impl Sky {
     /// Creates a CIE sky from its arguments: type, zenith, ground, factor, and direction to the
-    /// sun. `map` is a similarity transform from the sky's axes to world space.
-    pub fn of(primitive: &RadPrimitive, map: DMat3, report: &SharedReport) -> Option<Sky> {
+    /// sun. `transform` is a similarity transform from the sky's axes to world space.
+    pub fn of(primitive: &RadPrimitive, transform: DMat3, report: &SharedReport) -> Option<Sky> {
         let number = |i: usize| primitive.number(i).unwrap_or(0.0);
         let kind = match number(0).round() as i32 {
-            1 => Cover::Clear,
-            2 => Cover::Overcast,
-            3 => Cover::Uniform,
-            4 => Cover::Intermediate,
+            1 => SkyKind::Clear,
+            2 => SkyKind::Overcast,
+            3 => SkyKind::Uniform,
+            4 => SkyKind::Intermediate,
             _ => {
-                report.bad(
+                report.error(
                     primitive.at(),
                     "the first number of a sky must be 1 (clear), 2 (overcast), 3 (uniform) or 4 (intermediate)",
                 );
@@ -58,54 +58,54 @@ impl Sky {
             return None;
         }
         let sun = primitive.point(4).normalize_or_zero();
-        if matches!(kind, Cover::Clear | Cover::Intermediate) && (sun == DVec3::ZERO || number(3) <= 0.0) {
-            report.bad(primitive.at(), "a sky with a sun needs a factor above 0 and the direction to the sun");
+        if matches!(kind, SkyKind::Clear | SkyKind::Intermediate) && (sun == DVec3::ZERO || number(3) <= 0.0) {
+            report.error(primitive.at(), "a sky with a sun needs a factor above 0 and the direction to the sun");
             return None;
         }
         let factor = if number(3) > 0.0 { number(3) } else { 1.0 };
-        let turn = map.inverse() * map.x_axis.length();
-        Some(Sky { kind, zenith: number(1).max(0.0), ground: number(2).max(0.0), factor, sun, turn })
+        let to_sky = transform.inverse() * transform.x_axis.length();
+        Some(Sky { kind, zenith: number(1).max(0.0), ground: number(2).max(0.0), factor, sun, to_sky })
     }
 
     /// Creates a Perez sky from its arguments: brightness, ground, five coefficients, and direction
-    /// to the sun. `map` is a similarity transform from the sky's axes to world space.
-    pub fn perez(primitive: &RadPrimitive, map: DMat3, report: &SharedReport) -> Option<Sky> {
+    /// to the sun. `transform` is a similarity transform from the sky's axes to world space.
+    pub fn perez(primitive: &RadPrimitive, transform: DMat3, report: &SharedReport) -> Option<Sky> {
         if !primitive.has(&[10], report) {
             return None;
         }
         let number = |i: usize| primitive.number(i).unwrap_or(0.0);
-        let kind = Cover::Perez(std::array::from_fn(|i| number(2 + i)));
-        let turn = map.inverse() * map.x_axis.length();
+        let kind = SkyKind::Perez(std::array::from_fn(|i| number(2 + i)));
+        let to_sky = transform.inverse() * transform.x_axis.length();
         let (zenith, ground) = (number(0).max(0.0), number(1).max(0.0));
-        Some(Sky { kind, zenith, ground, factor: 1.0, sun: primitive.point(7).normalize_or_zero(), turn })
+        Some(Sky { kind, zenith, ground, factor: 1.0, sun: primitive.point(7).normalize_or_zero(), to_sky })
     }
 
     /// Returns the radiance in a unit direction in world space.
     pub fn at(&self, dir: DVec3) -> f32 {
-        let dir = self.turn * dir;
+        let dir = self.to_sky * dir;
         let height = (dir.z as f32).clamp(-1.0, 1.0);
         // Blend the sky into the ground within about ten degrees of the horizon.
         let above = fp::pow(height + 1.01, 10.0);
         let below = 1.0 / above;
-        ((self.bare(dir, height) * above + self.ground * below) / (above + below)).max(0.0)
+        ((self.without_ground(dir, height) * above + self.ground * below) / (above + below)).max(0.0)
     }
 
     /// Returns the radiance of the sky without the ground. Its formulas extend below the horizon.
-    fn bare(&self, dir: DVec3, height: f32) -> f32 {
+    fn without_ground(&self, dir: DVec3, height: f32) -> f32 {
         let cosine = (dir.dot(self.sun) as f32).clamp(-1.0, 1.0);
         let angle = fp::atan2((1.0 - cosine * cosine).sqrt(), cosine);
         match self.kind {
-            Cover::Uniform => self.zenith,
-            Cover::Overcast => self.zenith * (1.0 + 2.0 * height) / 3.0,
-            Cover::Clear => {
+            SkyKind::Uniform => self.zenith,
+            SkyKind::Overcast => self.zenith * (1.0 + 2.0 * height) / 3.0,
+            SkyKind::Clear => {
                 let haze = if height > 0.01 { 1.0 - fp::exp(-0.32 / height) } else { 1.0 };
                 self.zenith / self.factor * (0.91 + 10.0 * fp::exp(-3.0 * angle) + 0.45 * cosine * cosine) * haze
             }
-            Cover::Perez([a, b, c, d, e]) => {
+            SkyKind::Perez([a, b, c, d, e]) => {
                 let by_height = 1.0 + a * fp::exp(b / height.max(0.01));
                 self.zenith * by_height * (1.0 + c * fp::exp(d * angle) + e * cosine * cosine)
             }
-            Cover::Intermediate => {
+            SkyKind::Intermediate => {
                 // Angle from the zenith.
                 let eta = FRAC_PI_2 - fp::asin(height);
                 let sun = (self.sun.z as f32).clamp(-1.0, 1.0);

@@ -1,11 +1,11 @@
 //! Sources: light from infinitely far away.
 
 use super::args::RadPrimitive;
-use super::converted::{Distant, Kind};
-use super::place::PrimitiveContext;
+use super::context::PrimitiveContext;
+use super::converted::{DistantSource, MaterialKind};
 use super::state::Reader;
 use crate::panorama;
-use crate::pictures::unusable;
+use crate::pictures::picture_error;
 use durer_diag::Span;
 use durer_scene::light::{DirectionalLight, Light};
 use durer_scene::math::{Vec3, fp};
@@ -14,7 +14,7 @@ use glam::DVec3;
 
 /// Maximum angular diameter in degrees of a source that becomes a directional light, as the sun
 /// does.
-const SMALL: f32 = 5.0;
+const MAX_SUN_ANGLE: f32 = 5.0;
 /// Height in pixels of the environment map.
 const ROWS: u32 = 256;
 
@@ -30,17 +30,19 @@ impl Reader<'_> {
         if direction == DVec3::ZERO || degrees == 0.0 || degrees > 360.0 {
             return self
                 .report
-                .bad(at, "a source needs a direction and an angle of more than 0 and at most 360 degrees");
+                .error(at, "a source needs a direction and an angle of more than 0 and at most 360 degrees");
         }
-        let Some(made) = modifier.map(|modifier| self.made(modifier)) else { return };
-        let (radiance, sky) = match &made.kind {
-            Kind::Shining { radiance } => (*radiance, made.patterns.sky.clone()),
+        let Some(converted) = modifier.map(|modifier| self.convert(modifier)) else { return };
+        let (radiance, sky) = match &converted.kind {
+            MaterialKind::Emitter { radiance } => (*radiance, converted.patterns.sky.clone()),
             // All of its light comes from one direction.
-            Kind::Aimed { radiance, spread, .. } => (*radiance * spread.at(-direction, 1.0) as f32, None),
-            _ => return self.report.once(at, "a source without emission is left out"),
+            MaterialKind::DirectionalEmitter { radiance, spread, .. } => {
+                (*radiance * spread.at(-direction, 1.0) as f32, None)
+            }
+            _ => return self.report.unsupported_once(at, "a source without emission is left out"),
         };
         let cosine = fp::sin_cos_degrees(0.5 * f64::from(degrees)).1;
-        if degrees <= SMALL && sky.is_none() {
+        if degrees <= MAX_SUN_ANGLE && sky.is_none() {
             // Radiance reflected by a white matte surface that faces the source.
             let color = radiance * (2.0 * (1.0 - cosine)) as f32;
             let spread = Some(0.5 * degrees);
@@ -49,7 +51,7 @@ impl Reader<'_> {
             self.light(light.into(), at);
             return;
         }
-        self.distant.push(Distant { direction, cosine, radiance, sky, at });
+        self.distant.push(DistantSource { direction, cosine, radiance, sky, at });
     }
 
     /// Adds a light to the scene.
@@ -63,12 +65,12 @@ impl Reader<'_> {
         let Some(at) = self.distant.first().map(|distant| distant.at) else { return };
         let distant = std::mem::take(&mut self.distant);
         let light = |dir: DVec3| {
-            let seen = distant.iter().find(|distant| dir.dot(distant.direction) >= distant.cosine);
-            seen.map_or(Vec3::ZERO, |seen| seen.radiance * seen.sky.as_ref().map_or(1.0, |sky| sky.at(dir)))
+            let source = distant.iter().find(|distant| dir.dot(distant.direction) >= distant.cosine);
+            source.map_or(Vec3::ZERO, |source| source.radiance * source.sky.as_ref().map_or(1.0, |sky| sky.at(dir)))
         };
         let (name, memory) = (self.input.name, self.input.memory);
-        if let Err(error) = panorama::surround(&mut self.scene, (name, at), ROWS, memory, light) {
-            self.report.push(unusable(name, &error).at(at));
+        if let Err(error) = panorama::set_environment(&mut self.scene, (name, at), ROWS, memory, light) {
+            self.report.push(picture_error(name, &error).at(at));
         }
     }
 }

@@ -13,7 +13,7 @@ use glam::DVec3;
 
 /// `ZONE` and `UP` settings of a `rad` input file: the box that standard views show, and the up
 /// axis.
-pub(super) struct Zone {
+pub(super) struct ViewBox {
     min: DVec3,
     size: DVec3,
     /// True if the cameras are inside the box.
@@ -27,11 +27,11 @@ const AXES: [char; 3] = ['X', 'Y', 'Z'];
 
 /// Returns the direction from the centre to the camera, and the view type, of a standard view.
 pub(super) fn standard(name: &str) -> Option<(DVec3, char)> {
-    let (mut rest, mut way) = (name, DVec3::ZERO);
+    let (mut rest, mut direction) = (name, DVec3::ZERO);
     for (axis, letter) in AXES.into_iter().enumerate() {
         for (letter, side) in [(letter, 1.0), (letter.to_ascii_lowercase(), -1.0)] {
-            if let (true, Some(more)) = (way[axis] == 0.0, rest.strip_prefix(letter)) {
-                (rest, way[axis]) = (more, side);
+            if let (true, Some(more)) = (direction[axis] == 0.0, rest.strip_prefix(letter)) {
+                (rest, direction[axis]) = (more, side);
             }
         }
     }
@@ -40,13 +40,13 @@ pub(super) fn standard(name: &str) -> Option<(DVec3, char)> {
         "v" | "l" | "a" | "h" | "s" | "c" => rest.chars().next()?,
         _ => return None,
     };
-    (way != DVec3::ZERO).then_some((way, kind))
+    (direction != DVec3::ZERO).then_some((direction, kind))
 }
 
-impl Zone {
+impl ViewBox {
     /// Reads the values of `ZONE` and `UP`. The defaults are the bounding cube of all surfaces,
     /// seen from outside, and the z axis.
-    pub fn of(zone: Option<&[Word]>, up: Option<&[Word]>, reader: &Reader) -> Zone {
+    pub fn of(zone: Option<&[Word]>, up: Option<&[Word]>, reader: &Reader) -> ViewBox {
         let up = up.and_then(|words| words.first()).map_or("", |word| word.text.as_str());
         let letter = up.trim_start_matches(['+', '-']).chars().next().map(|letter| letter.to_ascii_uppercase());
         let axis = AXES.iter().position(|axis| Some(*axis) == letter).unwrap_or(2);
@@ -58,16 +58,16 @@ impl Zone {
             Some(v) => [DVec3::new(v[0], v[2], v[4]), DVec3::new(v[1], v[3], v[5])],
             None => reader.cube(),
         };
-        Zone { min, size: max - min, interior, up }
+        ViewBox { min, size: max - min, interior, up }
     }
 
     /// Returns a standard view of the box, given by a result of [`standard`].
-    pub fn view(&self, (way, kind): (DVec3, char), at: Span) -> View {
+    pub fn view(&self, (direction, kind): (DVec3, char), at: Span) -> View {
         let middle = self.min + 0.5 * self.size;
-        let point = middle + if self.interior { 0.45 } else { 2.0 } * way * self.size;
+        let point = middle + if self.interior { 0.45 } else { 2.0 } * direction * self.size;
         let (axis, side) = self.up;
         // Use the preceding axis if the view direction is parallel to the up axis.
-        let up = match (0..3).map(|i| (axis + 3 - i) % 3).find(|up| (0..3).any(|i| i != *up && way[i] != 0.0)) {
+        let up = match (0..3).map(|i| (axis + 3 - i) % 3).find(|up| (0..3).any(|i| i != *up && direction[i] != 0.0)) {
             Some(up) if up == axis => side * DVec3::AXES[up],
             Some(up) => DVec3::AXES[up],
             None => DVec3::Z,
@@ -79,7 +79,7 @@ impl Zone {
             _ => [180.0; 2],
         };
         let mut view = View::new(at);
-        (view.kind, view.point, view.direction, view.up) = (kind, point, -way * self.size, up);
+        (view.kind, view.point, view.direction, view.up) = (kind, point, -direction * self.size, up);
         view.size = size;
         view
     }

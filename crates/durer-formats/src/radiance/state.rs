@@ -1,14 +1,14 @@
 //! State of the Radiance reader.
 
 use super::args::RadPrimitive;
-use super::body::Body;
-use super::converted::{ConvertedModifier, Distant};
-use super::outline::Facing;
-use super::place::PrimitiveContext;
-use super::spread::Spread;
-use super::words::{Start, Word, Words};
-use crate::model::Input;
-use crate::polygon::Cutter;
+use super::body::MaterialMesh;
+use super::context::PrimitiveContext;
+use super::converted::{ConvertedModifier, DistantSource};
+use super::distribution::DirectionalDistribution;
+use super::outline::Orientation;
+use super::words::{PrimitiveStart, Word, Words};
+use crate::model::ReadInput;
+use crate::polygon::Triangulator;
 use crate::shared_report::{SharedReport, suggest};
 use durer_diag::{Diagnostic, Span};
 use durer_scene::camera::Projection;
@@ -20,12 +20,12 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 /// Maximum depth of nested files, and maximum number of files.
-const DEEPEST: u32 = 32;
+const MAX_DEPTH: u32 = 32;
 const MAX_FILES: usize = 4096;
 /// Maximum number of materials that can result from patterns and mixtures.
-const MOST_COPIES: usize = 1 << 16;
+const MAX_MATERIALS: usize = 1 << 16;
 /// Maximum number of corners and shapes in a scene.
-const MAX_THINGS: usize = 1 << 26;
+const MAX_SHAPES: usize = 1 << 26;
 
 /// Radiance modifier, such as a material or pattern, as stored in the file, with the indices of the
 /// modifiers that it refers to.
@@ -71,7 +71,7 @@ pub(super) const MATERIALS: [&str; 27] = [
     "ashik2",
 ];
 /// Types of materials that are newer than the manual or have no counterpart.
-pub(super) const OTHERS: [&str; 2] = ["aBSDF", "WGMDfunc"];
+pub(super) const UNSUPPORTED_MATERIALS: [&str; 2] = ["aBSDF", "WGMDfunc"];
 pub(super) const PATTERNS: [&str; 10] = [
     "colorfunc",
     "brightfunc",
@@ -90,45 +90,45 @@ pub(super) const SURFACES: [&str; 11] =
 
 /// Reader that converts the primitives of a Radiance scene to objects, materials and lights.
 pub(super) struct Reader<'a> {
-    pub input: &'a Input<'a>,
+    pub input: &'a ReadInput<'a>,
     pub report: &'a SharedReport,
     pub modifiers: Vec<Modifier>,
     pub names: BTreeMap<String, usize>,
     /// Converted modifiers, by index and by the bits of the colour with which preceding patterns
     /// multiply them.
-    pub made: BTreeMap<(usize, [u32; 3]), Rc<ConvertedModifier>>,
+    pub converted: BTreeMap<(usize, [u32; 3]), Rc<ConvertedModifier>>,
     /// True after the limit of materials was reached.
-    full: bool,
+    material_limit_reached: bool,
     /// Merged surfaces, by material.
-    pub bodies: BTreeMap<u32, Body>,
+    pub bodies: BTreeMap<u32, MaterialMesh>,
     /// Fog that corresponds to each mist material.
-    pub mists: BTreeMap<u32, Fog>,
-    pub distant: Vec<Distant>,
+    pub mist_fog: BTreeMap<u32, Fog>,
+    pub distant: Vec<DistantSource>,
     /// Directional distributions, by the index of their modifier. After them, the light profiles
     /// made from them, by distribution and orientation of the surface.
-    pub spreads: BTreeMap<usize, Rc<Spread>>,
-    pub profiles: Vec<(Rc<Spread>, Facing)>,
-    pub cutter: Cutter,
+    pub distributions: BTreeMap<usize, Rc<DirectionalDistribution>>,
+    pub profiles: Vec<(Rc<DirectionalDistribution>, Orientation)>,
+    pub triangulator: Triangulator,
     pub scene: Scene,
     pub count: usize,
     files: usize,
 }
 
 impl<'a> Reader<'a> {
-    pub fn new(input: &'a Input<'a>, report: &'a SharedReport) -> Self {
+    pub fn new(input: &'a ReadInput<'a>, report: &'a SharedReport) -> Self {
         Reader {
             input,
             report,
             modifiers: Vec::new(),
             names: BTreeMap::new(),
-            made: BTreeMap::new(),
-            full: false,
+            converted: BTreeMap::new(),
+            material_limit_reached: false,
             bodies: BTreeMap::new(),
-            mists: BTreeMap::new(),
+            mist_fog: BTreeMap::new(),
             distant: Vec::new(),
-            spreads: BTreeMap::new(),
+            distributions: BTreeMap::new(),
             profiles: Vec::new(),
-            cutter: Cutter::new(input.bytes.len()),
+            triangulator: Triangulator::new(input.bytes.len()),
             scene: Scene { root: Some(Group::default()), ..Scene::default() },
             count: 0,
             files: 0,
@@ -143,8 +143,8 @@ impl<'a> Reader<'a> {
                 return;
             }
             match start {
-                Start::Command(range) => self.command(Words::new(bytes, file, range), place),
-                Start::Word(modifier) => {
+                PrimitiveStart::Command(range) => self.command(Words::new(bytes, file, range), place),
+                PrimitiveStart::Word(modifier) => {
                     let Some(primitive) = RadPrimitive::read(modifier, &mut words, self.report) else { return };
                     self.primitive(primitive, place);
                 }
@@ -155,27 +155,29 @@ impl<'a> Reader<'a> {
     /// Returns true if the limit of materials is reached. If many patterns apply to mixtures with
     /// `void`, the number of materials can be the product of their counts.
     pub fn is_full(&mut self, at: Span) -> bool {
-        if !self.full && self.scene.materials.len() > 3 * self.modifiers.len() + MOST_COPIES {
-            self.full = true;
-            self.report
-                .bad(at, format!("more than {MOST_COPIES} materials result from patterns and mixtures with `void`"));
+        if !self.material_limit_reached && self.scene.materials.len() > 3 * self.modifiers.len() + MAX_MATERIALS {
+            self.material_limit_reached = true;
+            self.report.error(
+                at,
+                format!("more than {MAX_MATERIALS} materials result from patterns and mixtures with `void`"),
+            );
         }
-        self.full
+        self.material_limit_reached
     }
 
     /// Reads a file named by a command. If `beside`, commands in the file run in its folder;
     /// otherwise they run in the current folder, as they do for piped output.
     pub fn file(&mut self, name: &Word, place: &PrimitiveContext, beside: bool) {
         self.files += 1;
-        if place.depth >= DEEPEST || self.files > MAX_FILES {
-            let message = match place.depth >= DEEPEST {
-                true => format!("files are nested more than {DEEPEST} levels deep: does one include itself?"),
+        if place.depth >= MAX_DEPTH || self.files > MAX_FILES {
+            let message = match place.depth >= MAX_DEPTH {
+                true => format!("files are nested more than {MAX_DEPTH} levels deep: does one include itself?"),
                 false => format!("more than {MAX_FILES} files are included"),
             };
-            return self.report.bad(name.at, message);
+            return self.report.error(name.at, message);
         }
-        let Some((bytes, file)) = self.open(&place.seen(name)) else { return };
-        let place = if beside { place.beside(name) } else { place.clone() };
+        let Some((bytes, file)) = self.open(&place.resolved(name)) else { return };
+        let place = if beside { place.in_folder_of(name) } else { place.clone() };
         self.text(&bytes, file, &PrimitiveContext { depth: place.depth + 1, ..place });
     }
 
@@ -204,7 +206,10 @@ impl<'a> Reader<'a> {
             }
         } else if kind == "alias" {
             self.alias(primitive);
-        } else if [&MATERIALS[..], &OTHERS, &PATTERNS, &MIXTURES].iter().any(|kinds| kinds.contains(&kind)) {
+        } else if [&MATERIALS[..], &UNSUPPORTED_MATERIALS, &PATTERNS, &MIXTURES]
+            .iter()
+            .any(|kinds| kinds.contains(&kind))
+        {
             let Some(parent) = self.find(&primitive.modifier) else { return };
             let mut others = [None; 2];
             let named = match kind {
@@ -213,23 +218,23 @@ impl<'a> Reader<'a> {
                 _ => 0,
             };
             for (other, name) in others.iter_mut().zip(primitive.texts.iter().take(named)) {
-                let Some(found) = self.find(name) else { return };
-                *other = found;
+                let Some(number) = self.find(name) else { return };
+                *other = number;
             }
             let modifier = Modifier { primitive: primitive.into(), parent, others, map: place.map, depth: 0 };
             self.define(modifier.primitive.name.clone(), modifier);
         } else {
             let known = SURFACES.into_iter().chain(MATERIALS).chain(PATTERNS).chain(MIXTURES);
             let help = suggest(kind, known);
-            self.report.bad_with(primitive.kind.at, format!("unknown type {}", primitive.kind.shown()), help);
+            self.report.error_with_help(primitive.kind.at, format!("unknown type {}", primitive.kind.quoted()), help);
         }
     }
 
     fn define(&mut self, name: Word, mut modifier: Modifier) {
         let below = [modifier.parent, modifier.others[0], modifier.others[1]].into_iter().flatten();
         modifier.depth = below.map(|other| 1 + self.modifiers[other].depth).max().unwrap_or(0);
-        if modifier.depth > DEEPEST {
-            return self.report.bad(name.at, format!("modifiers are nested more than {DEEPEST} levels deep"));
+        if modifier.depth > MAX_DEPTH {
+            return self.report.error(name.at, format!("modifiers are nested more than {MAX_DEPTH} levels deep"));
         }
         self.modifiers.push(modifier);
         self.names.insert(name.text, self.modifiers.len() - 1);
@@ -257,23 +262,23 @@ impl<'a> Reader<'a> {
         if name.text == "void" {
             return Some(None);
         }
-        let found = self.names.get(&name.text).copied();
-        if found.is_none() {
+        let number = self.names.get(&name.text).copied();
+        if number.is_none() {
             let help = suggest(&name.text, self.names.keys().map(String::as_str));
             let help = help.or_else(|| Some("files with materials must precede the files that use them".into()));
-            self.report.bad_with(name.at, format!("no modifier {} is defined before this", name.shown()), help);
+            self.report.error_with_help(name.at, format!("no modifier {} is defined before this", name.quoted()), help);
         }
-        found.map(Some)
+        number.map(Some)
     }
 
     /// Counts `more` corners or shapes; returns false if the limit is exceeded.
-    pub fn room_for(&mut self, more: usize, at: Span) -> bool {
+    pub fn count_shapes(&mut self, more: usize, at: Span) -> bool {
         let before = self.count;
         self.count = self.count.saturating_add(more);
-        if before <= MAX_THINGS && self.count > MAX_THINGS {
-            self.report.bad(at, format!("the scene has more than {MAX_THINGS} corners and shapes, including arrays"));
+        if before <= MAX_SHAPES && self.count > MAX_SHAPES {
+            self.report.error(at, format!("the scene has more than {MAX_SHAPES} corners and shapes, including arrays"));
         }
-        self.count <= MAX_THINGS
+        self.count <= MAX_SHAPES
     }
 
     /// Adds an object to the scene.
@@ -284,17 +289,19 @@ impl<'a> Reader<'a> {
 
     /// Converts the mist around the camera to fog, because camera rays do not know that they start
     /// inside a body.
-    fn step_into_mist(&mut self) {
+    fn mist_to_fog(&mut self) {
         let Some(eye) = self.scene.camera.as_ref().map(|camera| camera.pose().center) else { return };
-        for (number, fog) in std::mem::take(&mut self.mists) {
+        for (number, fog) in std::mem::take(&mut self.mist_fog) {
             let Some(body) = self.bodies.get(&number) else { continue };
             let [min, max] = body.bounds();
             if self.scene.fog.is_some() || eye.cmplt(min).any() || eye.cmpgt(max).any() {
                 continue;
             }
             let span = body.at;
-            self.report
-                .once(span, "the mist around the camera fills its bounding box, and attenuates all colours equally");
+            self.report.unsupported_once(
+                span,
+                "the mist around the camera fills its bounding box, and attenuates all colours equally",
+            );
             self.bodies.remove(&number);
             self.scene.fog = Some(Spanned { value: Fog { min: Some(min), max: Some(max), ..fog }, span });
         }
@@ -302,14 +309,14 @@ impl<'a> Reader<'a> {
 
     /// Completes the scene and returns it.
     pub fn finish(mut self) -> Scene {
-        self.step_into_mist();
+        self.mist_to_fog();
         for (material, body) in std::mem::take(&mut self.bodies) {
             let (name, span) = (format!("{}#{material}", self.input.name), body.at);
             let node = self.scene.add_mesh(&name, Arc::new(body.finish()), span);
             self.add(node, material, span);
         }
         self.surround();
-        super::used::keep_used(&mut self.scene);
+        super::unused_materials::remove_unused(&mut self.scene);
         self.scene
     }
 }

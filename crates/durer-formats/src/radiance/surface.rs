@@ -1,10 +1,10 @@
 //! Converts surfaces.
 
 use super::args::RadPrimitive;
-use super::body::Body;
-use super::converted::{ConvertedModifier, Kind};
-use super::outline::Outline;
-use super::place::PrimitiveContext;
+use super::body::MaterialMesh;
+use super::context::PrimitiveContext;
+use super::converted::{ConvertedModifier, MaterialKind};
+use super::outline::EmitterShape;
 use super::state::Reader;
 use super::words::Word;
 use durer_diag::Span;
@@ -17,7 +17,7 @@ impl Reader<'_> {
     /// Converts a surface primitive.
     pub fn surface(&mut self, primitive: &RadPrimitive, modifier: Option<usize>, place: &PrimitiveContext) {
         let at = primitive.at();
-        if !self.room_for(1, at) {
+        if !self.count_shapes(1, at) {
             return;
         }
         let map = place.map;
@@ -25,14 +25,14 @@ impl Reader<'_> {
         let scale = map.matrix3.x_axis.length();
         match primitive.kind.text.as_str() {
             "instance" | "mesh" => {
-                let name = primitive.texts.first().map_or(String::new(), Word::shown);
+                let name = primitive.texts.first().map_or(String::new(), Word::quoted);
                 let help = match primitive.kind.text.as_str() {
                     "mesh" => "Radiance meshes are not supported: convert the original OBJ to polygons with `obj2rad`",
                     _ => "octrees are not supported: write `!xform OPTIONS FILE.rad` with the octree's source file",
                 };
-                self.missing(primitive);
+                self.warn_missing_files(primitive);
                 let message = format!("{name} is left out: {help}");
-                self.report.once(at, message);
+                self.report.unsupported_once(at, message);
             }
             "source" => self.source(primitive, modifier, place),
             "sphere" | "bubble" => {
@@ -45,11 +45,16 @@ impl Reader<'_> {
                 if radius == 0.0 {
                     return self.report.warn_once("bad-value", at, "a sphere of radius 0 is left out");
                 }
-                let Some((made, number)) = self.shown(modifier, &Outline::Ball { center, radius }, at) else { return };
-                let number = match &made.kind {
-                    Kind::Glass { outside: Some(outside), .. } if inward => *outside,
-                    Kind::Shining { .. } if inward => {
-                        self.report.once(at, "a sphere that emits inwards has no counterpart: it emits outwards");
+                let Some((converted, number)) =
+                    self.surface_material(modifier, &EmitterShape::Ball { center, radius }, at)
+                else {
+                    return;
+                };
+                let number = match &converted.kind {
+                    MaterialKind::Glass { outside: Some(outside), .. } if inward => *outside,
+                    MaterialKind::Emitter { .. } if inward => {
+                        self.report
+                            .unsupported_once(at, "a sphere that emits inwards has no counterpart: it emits outwards");
                         number
                     }
                     _ => number,
@@ -63,7 +68,7 @@ impl Reader<'_> {
                         "a polygon needs three numbers for each of at least 3 corners, but this one has {} numbers",
                         primitive.numbers.len()
                     );
-                    return self.report.bad(at, message);
+                    return self.report.error(at, message);
                 }
                 let corners: Vec<DVec3> = (0..primitive.numbers.len() / 3).map(|i| primitive.point(3 * i)).collect();
                 self.polygon(modifier, &corners, place, at);
@@ -85,10 +90,10 @@ impl Reader<'_> {
                     );
                 };
                 let center = map.transform_point3(primitive.point(0));
-                let outline = Outline::Ring { center, normal, radii: [inner, outer] };
-                let Some((made, number)) = self.shown(modifier, &outline, at) else { return };
-                if made.is_glass() {
-                    return self.body(number, at).ring(center, normal, [inner, outer]);
+                let outline = EmitterShape::Ring { center, normal, radii: [inner, outer] };
+                let Some((converted, number)) = self.surface_material(modifier, &outline, at) else { return };
+                if converted.is_glass() {
+                    return self.body(number, at).add_ring(center, normal, [inner, outer]);
                 }
                 let [center, normal] = [center, normal].map(|v| v.as_vec3());
                 if inner < outer {
@@ -98,7 +103,7 @@ impl Reader<'_> {
             }
             kind @ ("cone" | "cup" | "cylinder" | "tube") => {
                 let straight = matches!(kind, "cylinder" | "tube");
-                if !primitive.has(if straight { &[7] } else { &[8] }, self.report) || !self.room_for(256, at) {
+                if !primitive.has(if straight { &[7] } else { &[8] }, self.report) || !self.count_shapes(256, at) {
                     return;
                 }
                 let radii = [primitive.numbers[6], primitive.numbers[if straight { 6 } else { 7 }]];
@@ -110,12 +115,12 @@ impl Reader<'_> {
                 }
                 let inward = (matches!(kind, "cup" | "tube") != (radii[0] + radii[1] < 0.0)) != place.inverted;
                 let radii = radii.map(f64::abs);
-                let outline = Outline::Side {
+                let outline = EmitterShape::Side {
                     ends: ends.map(|end| map.transform_point3(end)),
                     radii: radii.map(|radius| scale * radius),
                 };
-                let Some((_, number)) = self.shown(modifier, &outline, at) else { return };
-                self.body(number, at).round(ends, radii, map, inward);
+                let Some((_, number)) = self.surface_material(modifier, &outline, at) else { return };
+                self.body(number, at).add_side(ends, radii, map, inward);
             }
             _ => {}
         }
@@ -134,43 +139,43 @@ impl Reader<'_> {
     }
 
     fn polygon(&mut self, modifier: Option<usize>, corners: &[DVec3], place: &PrimitiveContext, at: Span) {
-        if !self.room_for(corners.len(), at) {
+        if !self.count_shapes(corners.len(), at) {
             return;
         }
         let mut corners: Vec<DVec3> = corners.iter().map(|p| place.map.transform_point3(*p)).collect();
         if place.inverted != (place.map.matrix3.determinant() < 0.0) {
             corners.reverse();
         }
-        let Some((_, number)) = self.shown(modifier, &Outline::Polygon(&corners), at) else { return };
+        let Some((_, number)) = self.surface_material(modifier, &EmitterShape::Polygon(&corners), at) else { return };
         let corners: Vec<Vec3> = corners.iter().map(|p| p.as_vec3()).collect();
         let mut triangles = Vec::with_capacity(corners.len() - 2);
-        if self.cutter.cut(corners.len(), |i| corners[i], |triangle| triangles.push(triangle)).is_err() {
-            return self.report.bad(at, "this polygon is too complex to triangulate");
+        if self.triangulator.triangulate(corners.len(), |i| corners[i], |triangle| triangles.push(triangle)).is_err() {
+            return self.report.error(at, "this polygon is too complex to triangulate");
         }
-        self.body(number, at).facet(&corners, &triangles);
+        self.body(number, at).add_face(&corners, &triangles);
     }
 
     /// Returns the mesh for all surfaces with a material.
-    fn body(&mut self, number: u32, at: Span) -> &mut Body {
-        self.bodies.entry(number).or_insert_with(|| Body::new(at))
+    fn body(&mut self, number: u32, at: Span) -> &mut MaterialMesh {
+        self.bodies.entry(number).or_insert_with(|| MaterialMesh::new(at))
     }
 
     /// Returns the converted material of a surface and its number; `None` if the surface is not
     /// shown. If the material has a directional distribution, adds point lights instead.
-    fn shown(
+    fn surface_material(
         &mut self,
         modifier: Option<usize>,
-        outline: &Outline,
+        outline: &EmitterShape,
         at: Span,
     ) -> Option<(std::rc::Rc<ConvertedModifier>, u32)> {
         // Surfaces whose modifier is `void` are meant for other programs.
-        let made = self.made(modifier?);
-        match made.kind {
-            Kind::Aimed { .. } => {
-                self.point_lights(&made, outline, at);
+        let converted = self.convert(modifier?);
+        match converted.kind {
+            MaterialKind::DirectionalEmitter { .. } => {
+                self.point_lights(&converted, outline, at);
                 None
             }
-            _ => made.number.map(|number| (made, number)),
+            _ => converted.number.map(|number| (converted, number)),
         }
     }
 }

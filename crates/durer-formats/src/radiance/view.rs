@@ -11,7 +11,7 @@ use durer_scene::scene::Scene;
 use glam::DVec3;
 
 /// Default length in pixels of the picture's larger side.
-pub(super) const USUAL_SIZE: u32 = 512;
+pub(super) const DEFAULT_SIZE: u32 = 512;
 /// Program names that can begin a view in a file.
 const PROGRAMS: [&str; 7] = ["VIEW=", "rpict", "rview", "rvu", "rpiece", "pinterp", "rad"];
 
@@ -27,7 +27,7 @@ pub(super) struct View {
     /// Shift of the picture, as a fraction of its width and of its height.
     shift: [f64; 2],
     /// Distance of the near clipping plane from the view point.
-    fore: f64,
+    near: f64,
     at: Span,
 }
 
@@ -40,7 +40,7 @@ impl Default for View {
             up: DVec3::Z,
             size: [45.0; 2],
             shift: [0.0; 2],
-            fore: 0.0,
+            near: 0.0,
             at: Span::default(),
         }
     }
@@ -48,7 +48,7 @@ impl Default for View {
 
 /// Returns the last view in a file. A view is a line that begins with `VIEW=` or the name of a
 /// program. In a picture, only the header is searched; lines there can contain other options too.
-pub(super) fn of_file(bytes: &[u8], file: u32, report: &SharedReport) -> Option<View> {
+pub(super) fn last_view(bytes: &[u8], file: u32, report: &SharedReport) -> Option<View> {
     let (mut view, mut start) = (None, 0);
     let picture = bytes.starts_with(b"#?");
     for line in bytes.split_inclusive(|byte| *byte == b'\n') {
@@ -65,14 +65,14 @@ pub(super) fn of_file(bytes: &[u8], file: u32, report: &SharedReport) -> Option<
         }
         let program = first.text.rsplit('/').next().unwrap_or_default();
         if PROGRAMS.contains(&program) {
-            let mut found = View { at: first.at, ..view.unwrap_or_default() };
-            found.options(&own, true, report);
-            view = Some(found);
+            let mut new_view = View { at: first.at, ..view.unwrap_or_default() };
+            new_view.options(&own, true, report);
+            view = Some(new_view);
         }
     }
     if view.is_none() {
         let at = Span { file, start: 0, end: bytes.len().min(1) as u32 };
-        report.bad_with(at, "the file has no view", Some("add a line that begins with `VIEW=`".into()));
+        report.error_with_help(at, "the file has no view", Some("add a line that begins with `VIEW=`".into()));
     }
     view
 }
@@ -91,7 +91,7 @@ impl View {
             let Some(name) = option.text.strip_prefix("-v") else { continue };
             let mut numbers = |count: usize| -> Option<Vec<f64>> {
                 if rest.len() < count {
-                    report.bad(option.at, format!("{} needs {count} numbers", option.shown()));
+                    report.error(option.at, format!("{} needs {count} numbers", option.quoted()));
                     return None;
                 }
                 let list = rest[..count].iter().map(|word| word.number(report)).collect();
@@ -107,7 +107,7 @@ impl View {
                         _ => self.up = v,
                     }
                     if name != "p" && v.try_normalize().is_none() {
-                        report.bad(option.at, "a direction must not be 0");
+                        report.error(option.at, "a direction must not be 0");
                     }
                 }
                 "h" | "v" | "s" | "l" | "o" | "a" => {
@@ -117,24 +117,25 @@ impl View {
                         "v" => self.size[1] = value,
                         "s" => self.shift[0] = value,
                         "l" => self.shift[1] = value,
-                        "o" => self.fore = value,
+                        "o" => self.near = value,
                         _ if value != 0.0 => {
-                            report.once(option.at, "the aft clipping plane has no counterpart");
+                            report.unsupported_once(option.at, "the aft clipping plane has no counterpart");
                         }
                         _ => {}
                     }
                 }
                 "tv" | "tl" | "ta" | "th" | "ts" | "tc" => self.kind = name.chars().last().unwrap_or('v'),
                 _ if others => {}
-                _ => report.bad(option.at, format!("unknown view option {}", option.shown())),
+                _ => report.error(option.at, format!("unknown view option {}", option.quoted())),
             }
         }
     }
 
     /// Sets the camera and the picture size of a scene.
-    pub fn place(&self, scene: &mut Scene, larger: u32, report: &SharedReport) {
-        if self.kind != 'l' && self.fore != 0.0 {
-            report.once(self.at, "the fore clipping plane has a counterpart only in parallel views (`-vtl`)");
+    pub fn apply(&self, scene: &mut Scene, larger: u32, report: &SharedReport) {
+        if self.kind != 'l' && self.near != 0.0 {
+            report
+                .unsupported_once(self.at, "the fore clipping plane has a counterpart only in parallel views (`-vtl`)");
         }
         let half = |degrees: f64| 0.5 * degrees.to_radians();
         let [across, upwards] = self.size;
@@ -147,10 +148,10 @@ impl View {
         };
         let above = if self.kind == 'c' { 179.9 } else { most };
         if !(across > 0.0 && across <= most && upwards > 0.0 && upwards <= above) {
-            return report.bad(self.at, "a view's sizes (-vh, -vv) must be above 0 and within the range of its type");
+            return report.error(self.at, "a view's sizes (-vh, -vv) must be above 0 and within the range of its type");
         }
         if self.direction.cross(self.up).try_normalize().is_none() {
-            return report.bad(self.at, "the up vector (-vu) must not be parallel to the view direction (-vd)");
+            return report.error(self.at, "the up vector (-vu) must not be parallel to the view direction (-vd)");
         }
         let tan = |degrees: f64| fp::tan_f64(half(degrees));
         let sides = match self.kind {
@@ -190,7 +191,7 @@ impl View {
                     direction,
                     up,
                     size: across.max(upwards) as f32,
-                    near: Some(self.fore as f32),
+                    near: Some(self.near as f32),
                     ..OrthographicCamera::default()
                 }
                 .into()
@@ -206,7 +207,7 @@ impl View {
             .into(),
             kind => {
                 if across != upwards {
-                    report.once(self.at, "a fisheye view shows the full disc: its picture is square");
+                    report.unsupported_once(self.at, "a fisheye view shows the full disc: its picture is square");
                 }
                 let projection = match kind {
                     'h' => FisheyeProjection::Orthographic,
@@ -217,7 +218,7 @@ impl View {
             }
         };
         if shifted && !matches!(self.kind, 'v' | 'l') {
-            report.once(self.at, "views of this type cannot be shifted (-vs, -vl): the centre is used");
+            report.unsupported_once(self.at, "views of this type cannot be shifted (-vs, -vl): the centre is used");
         }
         let side = |length: f64| ((f64::from(larger) * length / longest).round() as u32).max(1);
         scene.camera = Some(camera);

@@ -1,7 +1,7 @@
 //! Tokenizer for words and commands.
 
 use crate::number::parse_f32;
-use crate::report::shown;
+use crate::report::quoted;
 use crate::shared_report::SharedReport;
 use durer_diag::Span;
 
@@ -14,15 +14,15 @@ pub(super) struct Word {
 
 impl Word {
     /// Returns the word, quoted for messages.
-    pub fn shown(&self) -> String {
-        shown(self.text.as_bytes())
+    pub fn quoted(&self) -> String {
+        quoted(self.text.as_bytes())
     }
 
     /// Parses the word as a number; reports an error if it is not one.
     pub fn number(&self, report: &SharedReport) -> Option<f64> {
         let number = parse_f32(self.text.as_bytes()).ok().and_then(|_| self.text.parse::<f64>().ok());
         if number.is_none() {
-            report.bad(self.at, format!("expected a number, found {}", self.shown()));
+            report.error(self.at, format!("expected a number, found {}", self.quoted()));
         }
         number
     }
@@ -31,14 +31,14 @@ impl Word {
     pub fn count(&self, report: &SharedReport) -> Option<usize> {
         let count = self.text.parse().ok();
         if count.is_none() {
-            report.bad(self.at, format!("expected a whole number of 0 or more, found {}", self.shown()));
+            report.error(self.at, format!("expected a whole number of 0 or more, found {}", self.quoted()));
         }
         count
     }
 }
 
 /// Start of a Radiance primitive: its first word, or a `!` command instead.
-pub(super) enum Start {
+pub(super) enum PrimitiveStart {
     Word(Word),
     /// Byte range of a command, without the `!`.
     Command(std::ops::Range<usize>),
@@ -103,7 +103,7 @@ impl<'a> Words<'a> {
     }
 
     /// Returns the next word or command; skips comments.
-    pub fn start(&mut self) -> Option<Start> {
+    pub fn start(&mut self) -> Option<PrimitiveStart> {
         loop {
             while self.peek().is_some_and(is_space) {
                 self.at += 1;
@@ -117,9 +117,9 @@ impl<'a> Words<'a> {
                         self.at += 1;
                         self.line();
                     }
-                    return Some(Start::Command(start..self.at));
+                    return Some(PrimitiveStart::Command(start..self.at));
                 }
-                _ => return self.next().map(Start::Word),
+                _ => return self.next().map(PrimitiveStart::Word),
             }
         }
     }

@@ -11,9 +11,9 @@ const MAX_PLACES: usize = 1 << 20;
 /// How often a part of an `xform` transform is applied: a fixed number of times, or as an array of
 /// copies.
 #[derive(Clone, Copy, PartialEq)]
-enum Times {
+enum Repetition {
     /// Applied a fixed number of times (`-i`).
-    Just(i32),
+    Fixed(i32),
     /// Array of copies (`-a`): applied zero times in the first copy, once in the second, twice in
     /// the third, and so on.
     Array(usize),
@@ -21,18 +21,18 @@ enum Times {
 
 /// Transform of an `xform` command, as a sequence of parts, which can create several copies.
 #[derive(Clone)]
-pub(super) struct Transform {
-    parts: Vec<(Times, DAffine3)>,
+pub(super) struct TransformSequence {
+    parts: Vec<(Repetition, DAffine3)>,
 }
 
-impl Default for Transform {
+impl Default for TransformSequence {
     fn default() -> Self {
-        Transform { parts: vec![(Times::Just(1), DAffine3::IDENTITY)] }
+        TransformSequence { parts: vec![(Repetition::Fixed(1), DAffine3::IDENTITY)] }
     }
 }
 
 /// Returns the rotation about an axis by degrees; exact for multiples of a right angle.
-fn turn(axis: usize, degrees: f64) -> DAffine3 {
+fn rotation(axis: usize, degrees: f64) -> DAffine3 {
     let (sin, cos) = fp::sin_cos_degrees(degrees);
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
     let mut columns = [DVec3::X, DVec3::Y, DVec3::Z];
@@ -41,28 +41,28 @@ fn turn(axis: usize, degrees: f64) -> DAffine3 {
     DAffine3::from_mat3(DMat3::from_cols_array_2d(&columns.map(|column| column.to_array())))
 }
 
-impl Transform {
+impl TransformSequence {
     /// Parses an option with its arguments at the front of `words`; returns false if the option is
     /// not a transform.
     pub fn option(&mut self, words: &mut &[Word], report: &SharedReport) -> bool {
         let Some((option, rest)) = words.split_first() else { return false };
         let numbers = |count: usize| -> Option<Vec<f64>> {
             if rest.len() < count {
-                let message = format!("{} needs {count} number{}", option.shown(), if count == 1 { "" } else { "s" });
-                report.bad(option.at, message);
+                let message = format!("{} needs {count} number{}", option.quoted(), if count == 1 { "" } else { "s" });
+                report.error(option.at, message);
                 return None;
             }
             rest[..count].iter().map(|word| word.number(report)).collect()
         };
         let (count, map) = match option.text.as_str() {
             "-t" => (3, numbers(3).map(|v| DAffine3::from_translation(DVec3::new(v[0], v[1], v[2])))),
-            "-rx" => (1, numbers(1).map(|v| turn(0, v[0]))),
-            "-ry" => (1, numbers(1).map(|v| turn(1, v[0]))),
-            "-rz" => (1, numbers(1).map(|v| turn(2, v[0]))),
+            "-rx" => (1, numbers(1).map(|v| rotation(0, v[0]))),
+            "-ry" => (1, numbers(1).map(|v| rotation(1, v[0]))),
+            "-rz" => (1, numbers(1).map(|v| rotation(2, v[0]))),
             "-s" => {
                 let factor = numbers(1).map(|v| v[0]);
                 if factor == Some(0.0) {
-                    report.bad(option.at, "the scale factor must not be 0");
+                    report.error(option.at, "the scale factor must not be 0");
                 }
                 (1, factor.filter(|s| *s != 0.0).map(|s| DAffine3::from_scale(DVec3::splat(s))))
             }
@@ -72,9 +72,10 @@ impl Transform {
             "-i" | "-a" => {
                 let count = rest.first().and_then(|word| word.count(report)).unwrap_or(1).min(MAX_PLACES);
                 if rest.is_empty() {
-                    report.bad(option.at, format!("{} needs a number", option.shown()));
+                    report.error(option.at, format!("{} needs a number", option.quoted()));
                 }
-                let times = if option.text == "-i" { Times::Just(count as i32) } else { Times::Array(count) };
+                let times =
+                    if option.text == "-i" { Repetition::Fixed(count as i32) } else { Repetition::Array(count) };
                 self.parts.push((times, DAffine3::IDENTITY));
                 (1, None)
             }
@@ -88,15 +89,15 @@ impl Transform {
     }
 
     /// Returns the transforms of all copies in order; `None` if there are too many.
-    pub fn places(&self) -> Option<Vec<DAffine3>> {
+    pub fn copies(&self) -> Option<Vec<DAffine3>> {
         let mut places = vec![DAffine3::IDENTITY];
         for (times, map) in &self.parts {
             match *times {
-                Times::Just(count) => {
+                Repetition::Fixed(count) => {
                     let map = power(*map, count);
                     places.iter_mut().for_each(|place| *place = map * *place);
                 }
-                Times::Array(count) => {
+                Repetition::Array(count) => {
                     if places.len().saturating_mul(count) > MAX_PLACES {
                         return None;
                     }

@@ -3,7 +3,7 @@
 
 use super::Builder;
 use crate::number::{parse_f32, report_number};
-use crate::report::{Report, counted, shown};
+use crate::report::{Report, count_text, quoted};
 use durer_scene::math::Vec3;
 use std::ops::Range;
 
@@ -37,7 +37,7 @@ pub fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
             _ => {
                 let message = format!(
                     "expected `facet`, `vertex` or another STL keyword, found {}",
-                    shown(&bytes[first.clone()])
+                    quoted(&bytes[first.clone()])
                 );
                 report.error(first, message);
             }
@@ -53,7 +53,7 @@ pub fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
 fn unfinished(corners: &mut Vec<Vec3>, facet: Option<Range<usize>>, report: &mut Report) {
     // An invalid number has been reported already.
     if let Some(at) = facet.filter(|_| !report.has_errors()) {
-        report.error(at, format!("a facet needs 3 corners, found {}", counted(corners.len(), "corner", "corners")));
+        report.error(at, format!("a facet needs 3 corners, found {}", count_text(corners.len(), "corner", "corners")));
     }
     corners.clear();
 }

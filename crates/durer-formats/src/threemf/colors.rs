@@ -1,6 +1,6 @@
 //! Parses property resources: colours, mixtures of colours, and texture coordinates.
 
-use super::model::{Color, Group, Model, Properties};
+use super::model::{Color, Model, Properties, PropertyKind};
 use super::parser::{ErrorReported, Parser};
 use crate::xml::Tag;
 use durer_image::decode_srgb;
@@ -10,18 +10,18 @@ impl Model {
     /// Returns the number of entries in a property list.
     pub fn count(&self, id: u32) -> Option<usize> {
         match &self.properties.get(&id)?.group {
-            Group::Colors(colors) => Some(colors.len()),
-            Group::Texture { uvs, .. } => Some(uvs.len()),
-            Group::Picture { .. } => None,
+            PropertyKind::Colors(colors) => Some(colors.len()),
+            PropertyKind::Texture { uvs, .. } => Some(uvs.len()),
+            PropertyKind::Picture { .. } => None,
         }
     }
 
     /// Returns the colour of a property; white for texture coordinates.
     fn color(&self, id: u32, index: u32) -> Option<Color> {
         match &self.properties.get(&id)?.group {
-            Group::Colors(colors) => colors.get(index as usize).copied(),
-            Group::Texture { uvs, .. } => uvs.get(index as usize).map(|_| [1.0; 4]),
-            Group::Picture { .. } => None,
+            PropertyKind::Colors(colors) => colors.get(index as usize).copied(),
+            PropertyKind::Texture { uvs, .. } => uvs.get(index as usize).map(|_| [1.0; 4]),
+            PropertyKind::Picture { .. } => None,
         }
     }
 }
@@ -36,7 +36,7 @@ impl Parser<'_, '_> {
             "texture2d" => self.picture(tag)?,
             "texture2dgroup" => self.texture(tag)?,
             "compositematerials" => self.composites(tag)?,
-            _ => self.several(tag)?,
+            _ => self.multiproperties(tag)?,
         };
         if let (Some(id), Some(group)) = (id, group) {
             self.model.properties.insert(id, Properties { group, at: tag.at });
@@ -47,7 +47,7 @@ impl Parser<'_, '_> {
     /// Reads an sRGB colour, `#RRGGBB` or `#RRGGBBAA`, as linear values.
     fn color(&self, tag: &Tag, name: &str) -> Option<Color> {
         let Some(attribute) = tag.get(name) else {
-            self.report.bad(tag.at, format!("`<{}>` needs `{name}=\"#RRGGBB\"`", tag.name));
+            self.report.error(tag.at, format!("`<{}>` needs `{name}=\"#RRGGBB\"`", tag.name));
             return None;
         };
         let digits = attribute.value.strip_prefix('#').filter(|digits| digits.is_ascii());
@@ -58,12 +58,12 @@ impl Parser<'_, '_> {
             Some([r, g, b, f32::from(alpha) / 255.0])
         });
         if color.is_none() {
-            self.report.bad(attribute.at, format!("expected a colour as #RRGGBB, found `{}`", attribute.value));
+            self.report.error(attribute.at, format!("expected a colour as #RRGGBB, found `{}`", attribute.value));
         }
         color
     }
 
-    fn colors(&mut self, name: &str, attribute: &str) -> Result<Option<Group>, ErrorReported> {
+    fn colors(&mut self, name: &str, attribute: &str) -> Result<Option<PropertyKind>, ErrorReported> {
         let mut colors = Vec::new();
         while let Some(tag) = self.next()? {
             if tag.name == name {
@@ -71,21 +71,21 @@ impl Parser<'_, '_> {
             }
             self.skip()?;
         }
-        Ok(Some(Group::Colors(colors)))
+        Ok(Some(PropertyKind::Colors(colors)))
     }
 
-    fn picture(&mut self, tag: &Tag) -> Result<Option<Group>, ErrorReported> {
+    fn picture(&mut self, tag: &Tag) -> Result<Option<PropertyKind>, ErrorReported> {
         self.skip()?;
         let Some(path) = tag.get("path") else {
-            self.report.bad(tag.at, "`<texture2d>` needs `path=\"...\"`");
+            self.report.error(tag.at, "`<texture2d>` needs `path=\"...\"`");
             return Ok(None);
         };
         let styles = ["tilestyleu", "tilestylev"].map(|name| tag.get(name).map(|style| style.value.to_string()));
-        Ok(Some(Group::Picture { part: path.value.trim_start_matches('/').to_string(), styles, at: path.at }))
+        Ok(Some(PropertyKind::Picture { part: path.value.trim_start_matches('/').to_string(), styles, at: path.at }))
     }
 
-    fn texture(&mut self, tag: &Tag) -> Result<Option<Group>, ErrorReported> {
-        let picture = self.whole_number(tag, "texid");
+    fn texture(&mut self, tag: &Tag) -> Result<Option<PropertyKind>, ErrorReported> {
+        let picture = self.integer(tag, "texid");
         let mut uvs = Vec::new();
         while let Some(place) = self.next()? {
             if place.name == "tex2coord" {
@@ -94,32 +94,32 @@ impl Parser<'_, '_> {
             }
             self.skip()?;
         }
-        Ok(picture.map(|picture| Group::Texture { picture, uvs }))
+        Ok(picture.map(|picture| PropertyKind::Texture { picture, uvs }))
     }
 
     /// Reads integers separated by spaces.
     fn list(&self, tag: &Tag, name: &str) -> Vec<u32> {
         let Some(attribute) = tag.get(name) else {
-            self.report.bad(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
+            self.report.error(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
             return Vec::new();
         };
         let numbers: Option<Vec<u32>> = attribute.value.split_whitespace().map(|word| word.parse().ok()).collect();
         numbers.unwrap_or_else(|| {
-            self.report.bad(attribute.at, format!("expected whole numbers, found `{}`", attribute.value));
+            self.report.error(attribute.at, format!("expected whole numbers, found `{}`", attribute.value));
             Vec::new()
         })
     }
 
     /// Reads composite materials: mixtures of base materials in given proportions.
-    fn composites(&mut self, tag: &Tag) -> Result<Option<Group>, ErrorReported> {
-        let (base, indices) = (self.whole_number(tag, "matid"), self.list(tag, "matindices"));
+    fn composites(&mut self, tag: &Tag) -> Result<Option<PropertyKind>, ErrorReported> {
+        let (base, indices) = (self.integer(tag, "matid"), self.list(tag, "matindices"));
         let known = base.and_then(|base| self.model.count(base));
         if let (Some(base), None) = (base, known) {
-            self.report.bad(tag.at, format!("no base material list {base} is defined before this"));
+            self.report.error(tag.at, format!("no base material list {base} is defined before this"));
         }
         let parts: Vec<Color> = indices.iter().filter_map(|index| self.model.color(base?, *index)).collect();
         if known.is_some() && parts.len() < indices.len() {
-            self.report.bad(tag.at, "`matindices` refers to base materials that do not exist");
+            self.report.error(tag.at, "`matindices` refers to base materials that do not exist");
         }
         let mut colors = Vec::new();
         while let Some(mixture) = self.next()? {
@@ -136,20 +136,23 @@ impl Parser<'_, '_> {
             }
             self.skip()?;
         }
-        Ok(Some(Group::Colors(colors)))
+        Ok(Some(PropertyKind::Colors(colors)))
     }
 
     /// Reads multiproperties: layers of properties, the last one on top.
-    fn several(&mut self, tag: &Tag) -> Result<Option<Group>, ErrorReported> {
+    fn multiproperties(&mut self, tag: &Tag) -> Result<Option<PropertyKind>, ErrorReported> {
         let pids = self.list(tag, "pids");
         if let Some(missing) = pids.iter().find(|pid| !self.model.properties.contains_key(pid)) {
-            self.report.bad(tag.at, format!("no property list {missing} is defined before this"));
+            self.report.error(tag.at, format!("no property list {missing} is defined before this"));
         }
         if pids
             .iter()
-            .any(|pid| matches!(self.model.properties.get(pid).map(|p| &p.group), Some(Group::Texture { .. })))
+            .any(|pid| matches!(self.model.properties.get(pid).map(|p| &p.group), Some(PropertyKind::Texture { .. })))
         {
-            self.report.once(tag.at, "pictures in multiproperties have no counterpart: only the colours are shown");
+            self.report.unsupported_once(
+                tag.at,
+                "pictures in multiproperties have no counterpart: only the colours are shown",
+            );
         }
         let mut colors = Vec::new();
         while let Some(several) = self.next()? {
@@ -157,7 +160,7 @@ impl Parser<'_, '_> {
                 let indices = self.list(&several, "pindices");
                 let layers = pids.iter().enumerate().filter_map(|(i, pid)| {
                     let color = self.model.color(*pid, indices.get(i).copied().unwrap_or(0));
-                    let texture = matches!(self.model.properties.get(pid)?.group, Group::Texture { .. });
+                    let texture = matches!(self.model.properties.get(pid)?.group, PropertyKind::Texture { .. });
                     color.filter(|_| !texture)
                 });
                 // Each layer covers the layers below it in proportion to its opacity.
@@ -170,6 +173,6 @@ impl Parser<'_, '_> {
             }
             self.skip()?;
         }
-        Ok(Some(Group::Colors(colors)))
+        Ok(Some(PropertyKind::Colors(colors)))
     }
 }

@@ -6,9 +6,9 @@ use crate::xml::Tag;
 use durer_scene::math::Vec3;
 
 impl Parser<'_, '_> {
-    /// Parses a `<mesh>`. `usual` is the default property of its triangles.
-    pub fn mesh(&mut self, usual: Option<Property>) -> Result<Mesh, ErrorReported> {
-        let mut mesh = Mesh { usual, ..Mesh::default() };
+    /// Parses a `<mesh>`. `default` is the default property of its triangles.
+    pub fn mesh(&mut self, default: Option<Property>) -> Result<Mesh, ErrorReported> {
+        let mut mesh = Mesh { default_property: default, ..Mesh::default() };
         while let Some(tag) = self.next()? {
             match tag.name {
                 "vertices" => self.vertices(&mut mesh)?,
@@ -28,7 +28,7 @@ impl Parser<'_, '_> {
             if tag.name == "vertex" {
                 let coordinate = |name| {
                     if tag.get(name).is_none() {
-                        self.report.bad(tag.at, format!("a vertex needs `{name}=\"...\"`"));
+                        self.report.error(tag.at, format!("a vertex needs `{name}=\"...\"`"));
                     }
                     self.number(&tag, name).unwrap_or(0.0)
                 };
@@ -41,10 +41,11 @@ impl Parser<'_, '_> {
 
     /// Reads a vertex index, which must be below `count`.
     fn corner(&self, tag: &Tag, name: &str, count: usize) -> Option<u32> {
-        let number = self.whole_number(tag, name)?;
+        let number = self.integer(tag, name)?;
         if number as usize >= count {
             let at = tag.get(name).map_or(tag.at, |attribute| attribute.at);
-            self.report.bad(at, format!("vertex {number} does not exist: there are {count} vertices, counted from 0"));
+            self.report
+                .error(at, format!("vertex {number} does not exist: there are {count} vertices, counted from 0"));
             return None;
         }
         Some(number)
@@ -59,7 +60,7 @@ impl Parser<'_, '_> {
             }
             let [a, b, c] = ["v1", "v2", "v3"].map(|name| self.corner(&tag, name, count));
             let (Some(a), Some(b), Some(c)) = (a, b, c) else { continue };
-            let property = self.property(&tag, mesh.usual);
+            let property = self.property(&tag, mesh.default_property);
             if property.is_some() {
                 mesh.properties.resize(mesh.triangles.len(), None);
                 mesh.properties.push(property);
@@ -73,22 +74,22 @@ impl Parser<'_, '_> {
     }
 
     /// Reads the properties of a triangle's corners; `None` if the triangle has none.
-    fn property(&self, tag: &Tag, usual: Option<Property>) -> Option<(u32, [u32; 3])> {
+    fn property(&self, tag: &Tag, default: Option<Property>) -> Option<(u32, [u32; 3])> {
         let p1 = self.optional_number(tag, "p1")?;
-        let Some(pid) = self.optional_number(tag, "pid").or(usual.map(|usual| usual.0)) else {
+        let Some(pid) = self.optional_number(tag, "pid").or(default.map(|default| default.0)) else {
             let at = tag.get("p1").map_or(tag.at, |attribute| attribute.at);
-            self.report.bad(at, "`p1` needs a `pid` on the triangle or on its object");
+            self.report.error(at, "`p1` needs a `pid` on the triangle or on its object");
             return None;
         };
         let Some(count) = self.model.count(pid) else {
             let at = tag.get("pid").map_or(tag.at, |attribute| attribute.at);
-            self.report.bad(at, format!("no property list {pid} is defined before this"));
+            self.report.error(at, format!("no property list {pid} is defined before this"));
             return None;
         };
         let corners = [Some(p1), self.optional_number(tag, "p2"), self.optional_number(tag, "p3")];
         let corners = corners.map(|corner| corner.unwrap_or(p1));
         if let Some(wrong) = corners.iter().find(|corner| **corner as usize >= count) {
-            self.report.bad(
+            self.report.error(
                 tag.at,
                 format!("property {wrong} does not exist: the list {pid} has {count} properties, counted from 0"),
             );
@@ -98,7 +99,7 @@ impl Parser<'_, '_> {
     }
 
     fn lattice(&mut self, tag: &Tag, mesh: &mut Mesh) -> Result<(), ErrorReported> {
-        let usual = self.number(tag, "radius").unwrap_or(1.0);
+        let default = self.number(tag, "radius").unwrap_or(1.0);
         let count = mesh.positions.len();
         while let Some(part) = self.next()? {
             if part.name != "beams" {
@@ -106,11 +107,11 @@ impl Parser<'_, '_> {
                 continue;
             }
             while let Some(beam) = self.next()? {
-                let first = self.number(&beam, "r1").unwrap_or(usual);
+                let first = self.number(&beam, "r1").unwrap_or(default);
                 let radii = [first, self.number(&beam, "r2").unwrap_or(first)];
                 let [a, b] = ["v1", "v2"].map(|name| self.corner(&beam, name, count));
                 if radii.iter().any(|radius| *radius <= 0.0) {
-                    self.report.bad(beam.at, "the radius of a beam must be more than 0");
+                    self.report.error(beam.at, "the radius of a beam must be more than 0");
                 } else if let (Some(a), Some(b)) = (a, b) {
                     mesh.beams.push(([a, b], radii));
                 }

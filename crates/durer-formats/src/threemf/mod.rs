@@ -5,16 +5,16 @@
 //! converted to millimetres.
 
 mod colors;
+mod convert;
 mod mesh;
 mod model;
 mod package;
 mod parser;
-mod show;
 
 #[cfg(test)]
 mod tests;
 
-use super::model::{Input, SceneFormat};
+use super::model::{ReadInput, SceneFormat};
 use super::shared_report::SharedReport;
 use super::{too_large, zip};
 use durer_diag::Diagnostics;
@@ -28,7 +28,7 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     read,
     write: None,
     up: Axis::Z,
-    whole: false,
+    is_complete_scene: false,
     light_hint: None,
 };
 
@@ -38,13 +38,13 @@ fn recognise(bytes: &[u8]) -> bool {
 }
 
 /// Reads a file; see [`read_model`](super::scene::read_model).
-fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
         diagnostics.push(error);
         return None;
     }
     let report = SharedReport::default();
-    let scene = package::Package::open(input, &report).and_then(|package| show::scene(package, &report));
+    let scene = package::Package::open(input, &report).and_then(|package| convert::scene(package, &report));
     let sound = !report.has_errors() && !diagnostics.has_errors();
     diagnostics.extend(report.finish());
     scene.filter(|_| sound)

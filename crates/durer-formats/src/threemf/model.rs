@@ -10,7 +10,7 @@ pub(super) struct ObjectRef {
     /// Name of the part that contains the object, if it is another part.
     pub part: Option<String>,
     pub id: u32,
-    pub map: DAffine3,
+    pub transform: DAffine3,
     pub at: Span,
 }
 
@@ -42,7 +42,7 @@ pub(super) struct Mesh {
     /// properties.
     pub properties: Vec<Option<(u32, [u32; 3])>>,
     /// Default property of triangles without their own.
-    pub usual: Option<Property>,
+    pub default_property: Option<Property>,
     /// The two vertices of each beam, and the radius at each.
     pub beams: Vec<([u32; 2], [f32; 2])>,
     /// Span of the triangle list.
@@ -54,12 +54,12 @@ pub(super) type Color = [f32; 4];
 
 /// Property list, such as colours or texture coordinates, that triangle corners refer to.
 pub(super) struct Properties {
-    pub group: Group,
+    pub group: PropertyKind,
     pub at: Span,
 }
 
 /// Content of a 3MF property list.
-pub(super) enum Group {
+pub(super) enum PropertyKind {
     /// Appearance of base materials, colours, composites or multiproperties.
     Colors(Vec<Color>),
     /// Texture coordinates in a texture resource, with v upwards.
@@ -68,7 +68,7 @@ pub(super) enum Group {
     Picture { part: String, styles: [Option<String>; 2], at: Span },
 }
 
-impl Group {
+impl PropertyKind {
     pub const NAMES: [&str; 6] =
         ["basematerials", "colorgroup", "texture2d", "texture2dgroup", "compositematerials", "multiproperties"];
 }

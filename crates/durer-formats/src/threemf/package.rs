@@ -1,9 +1,9 @@
 //! Access to the ZIP archive: finds the model part, and reads parts by name.
 
-use crate::files::unescaped;
-use crate::model::Input;
+use crate::files::percent_decoded;
+use crate::model::ReadInput;
 use crate::shared_report::{SharedReport, suggest};
-use crate::xml::{Piece, Xml, utf8};
+use crate::xml::{Event, Xml, utf8};
 use crate::zip::Zip;
 use durer_diag::{Diagnostic, Span};
 use std::sync::Arc;
@@ -14,7 +14,7 @@ const RELATIONS: &str = "_rels/.rels";
 
 /// An open 3MF archive: finds and reads its parts, and reports errors.
 pub(super) struct Package<'a> {
-    pub input: &'a Input<'a>,
+    pub input: &'a ReadInput<'a>,
     report: &'a SharedReport,
     zip: Zip<'a>,
     /// Name of the root model part.
@@ -23,7 +23,7 @@ pub(super) struct Package<'a> {
 
 impl<'a> Package<'a> {
     /// Opens an archive and finds its root model part.
-    pub fn open(input: &'a Input<'a>, report: &'a SharedReport) -> Option<Self> {
+    pub fn open(input: &'a ReadInput<'a>, report: &'a SharedReport) -> Option<Self> {
         let at = Span { file: input.file, start: 0, end: 0 };
         let zip = match Zip::open(input.bytes) {
             Ok(zip) => zip,
@@ -34,13 +34,13 @@ impl<'a> Package<'a> {
             }
         };
         let mut package = Package { input, report, zip, root: String::new() };
-        package.root = package.found(at)?;
+        package.root = package.find_model(at)?;
         Some(package)
     }
 
     /// Returns the name of the model part: the target of the relationship, otherwise the only part
     /// that ends in `.model`.
-    fn found(&mut self, at: Span) -> Option<String> {
+    fn find_model(&mut self, at: Span) -> Option<String> {
         let (mut roots, mut broken) = (Vec::new(), false);
         if let Some((bytes, file)) = self.part(RELATIONS, at) {
             let mut xml = match Xml::new(&bytes, file) {
@@ -52,7 +52,7 @@ impl<'a> Package<'a> {
             };
             loop {
                 match xml.next() {
-                    Ok(Piece::Open(tag)) if tag.name == "Relationship" => {
+                    Ok(Event::Open(tag)) if tag.name == "Relationship" => {
                         let kind = tag.get("Type").is_none_or(|kind| kind.value.ends_with(MODEL));
                         let Some(target) = tag.get("Target").filter(|_| kind) else { continue };
                         let name = target.value.trim_start_matches('/').to_string();
@@ -60,7 +60,7 @@ impl<'a> Package<'a> {
                             roots.push((name, target.at));
                         }
                     }
-                    Ok(Piece::End) => break,
+                    Ok(Event::End) => break,
                     Ok(_) => {}
                     Err(error) => {
                         self.report.push(*error);
@@ -76,9 +76,9 @@ impl<'a> Package<'a> {
             return None;
         }
         if let Some((name, at)) = roots.into_iter().next() {
-            if self.known(&name).is_none() {
+            if self.find_part(&name).is_none() {
                 let help = suggest(&name, self.zip.names());
-                self.report.bad_with(at, format!("the archive has no part `{name}`"), help);
+                self.report.error_with_help(at, format!("the archive has no part `{name}`"), help);
                 return None;
             }
             return Some(name);
@@ -96,8 +96,8 @@ impl<'a> Package<'a> {
     }
 
     /// Finds the name of a part in the archive, ignoring case and decoding percent escapes.
-    fn known(&self, name: &str) -> Option<String> {
-        let plain = |name: &str| unescaped(name).unwrap_or_else(|| name.to_string()).to_lowercase();
+    fn find_part(&self, name: &str) -> Option<String> {
+        let plain = |name: &str| percent_decoded(name).unwrap_or_else(|| name.to_string()).to_lowercase();
         let same = |part: &&str| *part == name;
         let alike = |part: &&str| plain(part) == plain(name);
         self.zip.names().find(same).or_else(|| self.zip.names().find(alike)).map(str::to_string)
@@ -105,7 +105,7 @@ impl<'a> Package<'a> {
 
     /// Returns the bytes of a part; reports an error if it cannot be read.
     pub fn bytes(&mut self, name: &str, at: Span) -> Option<Arc<[u8]>> {
-        let name = &self.known(name)?;
+        let name = &self.find_part(name)?;
         match self.zip.part(name)? {
             Ok(bytes) => Some(bytes.into()),
             Err(problem) => {
@@ -120,7 +120,7 @@ impl<'a> Package<'a> {
     pub fn part(&mut self, name: &str, at: Span) -> Option<(Arc<[u8]>, u32)> {
         let bytes = utf8(self.bytes(name, at)?);
         if bytes.len() >= u32::MAX as usize {
-            self.report.bad(at, format!("the part `{name}` is too large"));
+            self.report.error(at, format!("the part `{name}` is too large"));
             return None;
         }
         let file = self.input.files.borrow_mut().add(format!("{}/{name}", self.input.name), bytes.clone());

@@ -1,9 +1,9 @@
 //! Parses the XML of a model part: resources and build items.
 
-use super::model::{Group, Model, Object, ObjectRef};
+use super::model::{Model, Object, ObjectRef, PropertyKind};
 use super::package::Package;
 use crate::shared_report::{SharedReport, suggest};
-use crate::xml::{Piece, Tag, Xml};
+use crate::xml::{Event, Tag, Xml};
 use durer_diag::{Diagnostic, Span};
 use glam::DAffine3;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ pub(super) struct ErrorReported;
 pub fn read(package: &mut Package, name: &str, at: Span, report: &SharedReport) -> Option<Model> {
     let Some((bytes, file)) = package.part(name, at) else {
         if !report.has_errors() {
-            report.bad(at, format!("the archive has no part `{name}`"));
+            report.error(at, format!("the archive has no part `{name}`"));
         }
         return None;
     };
@@ -40,7 +40,7 @@ pub fn read(package: &mut Package, name: &str, at: Span, report: &SharedReport) 
         }
     };
     let mut parser = Parser { xml, report, model: Model { unit: 1.0, ..Model::default() } };
-    parser.whole().ok()?;
+    parser.read_package_model().ok()?;
     Some(parser.model)
 }
 
@@ -49,7 +49,7 @@ impl<'x> Parser<'_, 'x> {
     pub fn next(&mut self) -> Result<Option<Tag<'x>>, ErrorReported> {
         match self.xml.next() {
             _ if self.report.is_full() => Err(ErrorReported),
-            Ok(Piece::Open(tag)) => Ok(Some(tag)),
+            Ok(Event::Open(tag)) => Ok(Some(tag)),
             Ok(_) => Ok(None),
             Err(error) => {
                 self.report.push(*error);
@@ -70,10 +70,10 @@ impl<'x> Parser<'_, 'x> {
         Ok(())
     }
 
-    fn whole(&mut self) -> Result<(), ErrorReported> {
+    fn read_package_model(&mut self) -> Result<(), ErrorReported> {
         let Some(tag) = self.next()? else { return Err(ErrorReported) };
         if tag.name != "model" {
-            self.report.bad(tag.at, format!("expected `<model>`, found `<{}>`", tag.name));
+            self.report.error(tag.at, format!("expected `<model>`, found `<{}>`", tag.name));
             return Err(ErrorReported);
         }
         if let Some(unit) = tag.get("unit") {
@@ -81,7 +81,7 @@ impl<'x> Parser<'_, 'x> {
                 Some(row) => self.model.unit = row.1,
                 None => {
                     let help = suggest(&unit.value, UNITS.map(|row| row.0));
-                    self.report.bad_with(unit.at, format!("unknown unit `{}`", unit.value), help);
+                    self.report.error_with_help(unit.at, format!("unknown unit `{}`", unit.value), help);
                 }
             }
         }
@@ -94,7 +94,7 @@ impl<'x> Parser<'_, 'x> {
                     self.build()?;
                 }
                 "model" => {
-                    self.report.bad(part.at, "a file can have only one `<model>` element, and this is the second");
+                    self.report.error(part.at, "a file can have only one `<model>` element, and this is the second");
                     return Err(ErrorReported);
                 }
                 _ => self.skip()?,
@@ -103,7 +103,7 @@ impl<'x> Parser<'_, 'x> {
         // No element may follow `<model>`.
         self.next()?;
         if built.is_none() {
-            self.report.bad(tag.at, "a model needs a `<build>` that lists the objects to show");
+            self.report.error(tag.at, "a model needs a `<build>` that lists the objects to show");
         }
         Ok(())
     }
@@ -112,7 +112,7 @@ impl<'x> Parser<'_, 'x> {
         while let Some(tag) = self.next()? {
             match tag.name {
                 "object" => self.object(&tag)?,
-                name if Group::NAMES.contains(&name) => self.properties(&tag)?,
+                name if PropertyKind::NAMES.contains(&name) => self.properties(&tag)?,
                 _ => self.skip()?,
             }
         }
@@ -121,9 +121,9 @@ impl<'x> Parser<'_, 'x> {
 
     /// Reads the id of a resource, which must be unique.
     pub fn new_id(&self, tag: &Tag) -> Option<u32> {
-        let id = self.whole_number(tag, "id")?;
-        let known = self.model.objects.get(&id).map(|known| known.1);
-        if let Some(first) = known.or(self.model.properties.get(&id).map(|known| known.at)) {
+        let id = self.integer(tag, "id")?;
+        let earlier = self.model.objects.get(&id).map(|earlier| earlier.1);
+        if let Some(first) = earlier.or(self.model.properties.get(&id).map(|earlier| earlier.at)) {
             let error = Diagnostic::error(format!("two resources have the id {id}")).code("bad-value").at(tag.at);
             self.report.push(error.related(first, "the first is here"));
             return None;
@@ -132,14 +132,14 @@ impl<'x> Parser<'_, 'x> {
     }
 
     /// Reads a required integer.
-    pub fn whole_number(&self, tag: &Tag, name: &str) -> Option<u32> {
+    pub fn integer(&self, tag: &Tag, name: &str) -> Option<u32> {
         let Some(attribute) = tag.get(name) else {
-            self.report.bad(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
+            self.report.error(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
             return None;
         };
         let number = attribute.value.trim().parse::<u32>().ok();
         if number.is_none() {
-            self.report.bad(attribute.at, format!("expected a whole number, found `{}`", attribute.value));
+            self.report.error(attribute.at, format!("expected a whole number, found `{}`", attribute.value));
         }
         number
     }
@@ -147,7 +147,7 @@ impl<'x> Parser<'_, 'x> {
     /// Reads an optional integer.
     pub fn optional_number(&self, tag: &Tag, name: &str) -> Option<u32> {
         tag.get(name)?;
-        self.whole_number(tag, name)
+        self.integer(tag, name)
     }
 
     /// Reads an optional number.
@@ -155,7 +155,7 @@ impl<'x> Parser<'_, 'x> {
         let attribute = tag.get(name)?;
         let number = attribute.value.trim().parse::<f32>().ok().filter(|number| number.is_finite());
         if number.is_none() {
-            self.report.bad(attribute.at, format!("expected a number, found `{}`", attribute.value));
+            self.report.error(attribute.at, format!("expected a number, found `{}`", attribute.value));
         }
         number
     }
@@ -164,17 +164,17 @@ impl<'x> Parser<'_, 'x> {
         let id = self.new_id(tag);
         if let Some(kind) = tag.get("type").filter(|kind| !TYPES.contains(&&*kind.value)) {
             let help = suggest(&kind.value, TYPES);
-            self.report.bad_with(kind.at, format!("unknown object type `{}`", kind.value), help);
+            self.report.error_with_help(kind.at, format!("unknown object type `{}`", kind.value), help);
         }
         let (pid, pindex) = (self.optional_number(tag, "pid"), self.optional_number(tag, "pindex"));
         if let (None, Some(_), Some(attribute)) = (pid, pindex, tag.get("pindex")) {
-            self.report.bad(attribute.at, "`pindex` needs a `pid`");
+            self.report.error(attribute.at, "`pindex` needs a `pid`");
         }
         let mut object = None;
         while let Some(part) = self.next()? {
             match part.name {
                 "mesh" => object = Some(Object::Mesh(Box::new(self.mesh(pid.zip(pindex.or(Some(0))))?))),
-                "components" => object = Some(Object::Components(self.places("component")?)),
+                "components" => object = Some(Object::Components(self.object_refs("component")?)),
                 _ => self.skip()?,
             }
         }
@@ -182,26 +182,26 @@ impl<'x> Parser<'_, 'x> {
             (Some(id), Some(object)) => {
                 self.model.objects.insert(id, (object, tag.at));
             }
-            (_, None) => self.report.bad(tag.at, "an object needs a `<mesh>` or `<components>`"),
+            (_, None) => self.report.error(tag.at, "an object needs a `<mesh>` or `<components>`"),
             _ => {}
         }
         Ok(())
     }
 
     fn build(&mut self) -> Result<(), ErrorReported> {
-        self.model.items = self.places("item")?;
+        self.model.items = self.object_refs("item")?;
         Ok(())
     }
 
     /// Reads build items or components.
-    fn places(&mut self, name: &str) -> Result<Vec<ObjectRef>, ErrorReported> {
+    fn object_refs(&mut self, name: &str) -> Result<Vec<ObjectRef>, ErrorReported> {
         let mut places = Vec::new();
         while let Some(tag) = self.next()? {
             if tag.name == name
-                && let Some(id) = self.whole_number(&tag, "objectid")
+                && let Some(id) = self.integer(&tag, "objectid")
             {
                 let part = tag.get("path").map(|path| path.value.trim_start_matches('/').to_string());
-                places.push(ObjectRef { part, id, map: self.map(&tag), at: tag.at });
+                places.push(ObjectRef { part, id, transform: self.transform(&tag), at: tag.at });
             }
             self.skip()?;
         }
@@ -209,17 +209,18 @@ impl<'x> Parser<'_, 'x> {
     }
 
     /// Reads a transform of twelve numbers for row vectors: three axes, then the translation.
-    fn map(&self, tag: &Tag) -> DAffine3 {
+    fn transform(&self, tag: &Tag) -> DAffine3 {
         let Some(attribute) = tag.get("transform") else { return DAffine3::IDENTITY };
         let words = attribute.value.split_whitespace();
         let numbers: Option<Vec<f64>> =
             words.map(|word| word.parse::<f64>().ok().filter(|x| (*x as f32).is_finite())).collect();
-        let map = numbers.and_then(|all| <[f64; 12]>::try_from(all).ok()).map(|all| DAffine3::from_cols_array(&all));
-        match map {
-            Some(map) if map.matrix3.determinant() != 0.0 => map,
+        let transform =
+            numbers.and_then(|all| <[f64; 12]>::try_from(all).ok()).map(|all| DAffine3::from_cols_array(&all));
+        match transform {
+            Some(transform) if transform.matrix3.determinant() != 0.0 => transform,
             found => {
                 let what = if found.is_some() { "an invertible transform" } else { "twelve numbers" };
-                self.report.bad(attribute.at, format!("expected {what}, found `{}`", attribute.value));
+                self.report.error(attribute.at, format!("expected {what}, found `{}`", attribute.value));
                 DAffine3::IDENTITY
             }
         }

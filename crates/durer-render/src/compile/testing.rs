@@ -19,7 +19,8 @@ pub fn try_read(text: &str, rules: &DialectRules, accel: AccelKind, folder: &Pat
     let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
     let source = FolderSource::new(folder);
     let included = RefCell::new(std::mem::take(&mut files));
-    let scene = course::read_with(text.as_bytes(), file, options, &course::below(&source, &included), &mut diagnostics);
+    let scene =
+        course::read_with(text.as_bytes(), file, options, &course::open_below(&source, &included), &mut diagnostics);
     files = included.into_inner();
     let resources = Resources::new(&source, &Decoder, &mut files);
     let world = scene.and_then(|scene| compile(&scene, rules, accel, resources, &mut diagnostics));

@@ -6,17 +6,17 @@ use durer_scene::light::Illuminate as _;
 use durer_scene::math::{Ray, Vec3};
 
 /// A beam that covers at most this share of the visible points misses the scene.
-const NOTHING: f32 = 0.005;
-/// The limit used instead of [`NOTHING`] if the beam is so narrow that its angle may be in radians.
-const LITTLE: f32 = 0.03;
+const MIN_COVERAGE: f32 = 0.005;
+/// The limit used instead of [`MIN_COVERAGE`] if the beam is so narrow that its angle may be in radians.
+const MIN_COVERAGE_NARROW: f32 = 0.03;
 /// A point is in the beam if it gets more than this share of the light's peak intensity.
 const IN_BEAM: f32 = 0.02;
 /// Cone angle in degrees at or below which the angle may be in radians by mistake.
-const PENCIL: f32 = 3.2;
+const NARROW_ANGLE: f32 = 3.2;
 
 /// How the beam of a spotlight or photometric light misses everything that the camera sees.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Aim {
+pub(super) enum BeamMiss {
     /// The beam points away from everything visible.
     Away,
     /// The beam points at the scene, but covers almost none of the visible points.
@@ -25,7 +25,7 @@ pub(super) enum Aim {
 
 /// Returns the light that arrives at a point, as a fraction of the light's peak intensity at that
 /// distance. Ignores occlusion.
-pub(super) fn share(world: &World, light: usize, point: Vec3) -> f32 {
+pub(super) fn relative_intensity(world: &World, light: usize, point: Vec3) -> f32 {
     let emitter = &world.lights()[light];
     let Some((place, strongest)) = emitter.inverse_square() else { return 1.0 };
     let most = world.profiles().get(light).and_then(Option::as_ref).map_or(1.0, |profile| profile.max_candela());
@@ -34,30 +34,30 @@ pub(super) fn share(world: &World, light: usize, point: Vec3) -> f32 {
 }
 
 /// Returns the world-space positions of the probes' hits.
-pub(super) fn places(grid: &ProbeGrid) -> Vec<Vec3> {
-    grid.seen().map(|(probe, seen): (&Probe, &ProbeHit)| probe.ray.at(seen.t)).collect()
+pub(super) fn hit_points(grid: &ProbeGrid) -> Vec<Vec3> {
+    grid.hits().map(|(probe, hit): (&Probe, &ProbeHit)| probe.ray.at(hit.t)).collect()
 }
 
-/// Returns the share of `places` that lie in the beam of a light.
-pub(super) fn within(grid: &ProbeGrid, light: usize, places: &[Vec3]) -> f32 {
-    let held = places.iter().filter(|place| share(grid.world(), light, **place) > IN_BEAM).count();
-    held as f32 / places.len().max(1) as f32
+/// Returns the share of `points` that lie in the beam of a light.
+pub(super) fn beam_coverage(grid: &ProbeGrid, light: usize, points: &[Vec3]) -> f32 {
+    let held = points.iter().filter(|point| relative_intensity(grid.world(), light, **point) > IN_BEAM).count();
+    held as f32 / points.len().max(1) as f32
 }
 
 /// Returns how the beam of a light misses the visible points; `None` if it covers some of them or
 /// the light has no cone.
-pub(super) fn aim(grid: &ProbeGrid, light: usize) -> Option<Aim> {
+pub(super) fn beam_miss(grid: &ProbeGrid, light: usize) -> Option<BeamMiss> {
     let angle = grid.world().lights()[light].cone()?;
-    let places = places(grid);
-    let held = within(grid, light, &places);
-    if places.is_empty() || held > if angle <= PENCIL { LITTLE } else { NOTHING } {
+    let points = hit_points(grid);
+    let held = beam_coverage(grid, light, &points);
+    if points.is_empty() || held > if angle <= NARROW_ANGLE { MIN_COVERAGE_NARROW } else { MIN_COVERAGE } {
         return None;
     }
-    Some(if angle <= PENCIL && at_something(grid, light) { Aim::Narrow } else { Aim::Away })
+    Some(if angle <= NARROW_ANGLE && axis_hits_scene(grid, light) { BeamMiss::Narrow } else { BeamMiss::Away })
 }
 
 /// Returns true if the axis of a beam hits the scene.
-fn at_something(grid: &ProbeGrid, light: usize) -> bool {
+fn axis_hits_scene(grid: &ProbeGrid, light: usize) -> bool {
     let light = &grid.world().lights()[light];
     let (Some(position), Some(direction)) = (light.position(), light.direction()) else { return false };
     let ray = Ray::new(position, direction.normalize_or(Vec3::NEG_Y));

@@ -1,7 +1,7 @@
 //! Checks for path tracing of area lights whose light does not reach the visible surfaces.
 
 use super::facing::{flip_text, flipped};
-use super::finding::{Finding, MAX_SOUGHT};
+use super::finding::{Finding, MAX_FINDINGS};
 use super::scene_probe::SceneProbe;
 use super::shapes::{plane, shape};
 use durer_diag::{Diagnostic, Severity, Span};
@@ -9,21 +9,21 @@ use durer_render::integrator::IntegratorKind;
 use durer_render::world::emitters::emitter_of;
 use durer_render::world::{Material, Object};
 use durer_scene::math::{Ray, Vec2, Vec3};
-use durer_scene::scene::Material as Written;
+use durer_scene::scene::Material as ParsedMaterial;
 use durer_scene::shape::{Flip, Shape};
 
 /// Maximum number of visible points at which the contribution of an area light is measured.
-const MAX_PLACES: usize = 200;
+const MAX_POINTS: usize = 200;
 /// Sample points on an area light.
 const ON_LIGHT: [Vec2; 4] = [Vec2::new(0.3, 0.2), Vec2::new(0.7, 0.3), Vec2::new(0.2, 0.7), Vec2::new(0.8, 0.8)];
 /// Positions on the unit square at which an area light is sampled.
-const NOTHING: f32 = 0.1;
-const HARDLY: f32 = 0.03;
+const MIN_CONTRIBUTION: f32 = 0.1;
+const MIN_VISIBLE_SHARE: f32 = 0.03;
 
 /// Light from one area light at the visible points, with and without occlusion; each sum is of
 /// cosines at the light.
 #[derive(Clone, Copy, Debug, Default)]
-struct AreaLightShare {
+struct AreaLightSums {
     /// Sum over the points in front of the light that nothing occludes.
     front: f32,
     back: f32,
@@ -38,31 +38,31 @@ struct AreaLightShare {
 
 /// Returns the objects that emit light and can be sampled, each with true if it emits on both
 /// sides.
-pub(super) fn emissive_objects(scout: &SceneProbe) -> Vec<(u32, bool)> {
-    let world = scout.world();
+pub(super) fn emissive_objects(scene_probe: &SceneProbe) -> Vec<(u32, bool)> {
+    let world = scene_probe.world();
     let emits = |(number, object): (usize, &Object)| {
         let Some(Material::Phong(phong)) = world.materials().get(object.material as usize) else { return None };
         let emission = phong.emission.as_ref().filter(|emission| emission.radiance.max_element() > 0.0)?;
         Some((number as u32, emission.two_sided))
     };
-    world.objects().iter().enumerate().filter_map(emits).take(MAX_SOUGHT).collect()
+    world.objects().iter().enumerate().filter_map(emits).take(MAX_FINDINGS).collect()
 }
 
 /// Returns the highest `emissionLuminance` of the area lights, and its span in the scene file.
-pub(super) fn brightest(scout: &SceneProbe) -> Option<(Span, f32)> {
-    let materials = &scout.subject.scene.materials;
-    let lights = emissive_objects(scout).into_iter().filter_map(|(number, _)| {
-        let written = materials.get(scout.world().objects()[number as usize].material as usize)?;
-        let Written::Principled(layers) = &written.value else { return None };
-        Some((scout.value(written.span, &["emissionLuminance"])?, layers.emission_luminance))
+pub(super) fn brightest(scene_probe: &SceneProbe) -> Option<(Span, f32)> {
+    let materials = &scene_probe.input.scene.materials;
+    let lights = emissive_objects(scene_probe).into_iter().filter_map(|(number, _)| {
+        let material = materials.get(scene_probe.world().objects()[number as usize].material as usize)?;
+        let ParsedMaterial::Principled(layers) = &material.value else { return None };
+        Some((scene_probe.field_span(material.span, &["emissionLuminance"])?, layers.emission_luminance))
     });
     lights.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Returns true if light can pass through an object: it is transparent, an interface, or not
 /// opaque.
-fn is_clear(scout: &SceneProbe, object: u32) -> bool {
-    match scout.world().materials().get(scout.world().objects()[object as usize].material as usize) {
+fn transmits_light(scene_probe: &SceneProbe, object: u32) -> bool {
+    match scene_probe.world().materials().get(scene_probe.world().objects()[object as usize].material as usize) {
         Some(Material::Phong(phong)) => {
             phong.transparent.max_element() > 0.0
                 || phong.principled.as_ref().is_some_and(|own| own.interface || own.definition.opacity < 1.0)
@@ -73,11 +73,11 @@ fn is_clear(scout: &SceneProbe, object: u32) -> bool {
 
 /// Returns the first opaque object between two points, and true if the ray passed through glass
 /// before it.
-fn between(scout: &SceneProbe, light: u32, from: Vec3, to: Vec3) -> (Option<u32>, bool) {
+fn first_occluder(scene_probe: &SceneProbe, light: u32, from: Vec3, to: Vec3) -> (Option<u32>, bool) {
     let ray = Ray { t_min: 1e-3, t_max: 1.0 - 1e-3, ..Ray::new(from, to - from) };
     let mut glass = false;
-    for hit in scout.world().all_hits(&ray).take(16).filter(|hit| hit.object != light) {
-        if !is_clear(scout, hit.object) {
+    for hit in scene_probe.world().all_hits(&ray).take(16).filter(|hit| hit.object != light) {
+        if !transmits_light(scene_probe, hit.object) {
             return (Some(hit.object), glass);
         }
         glass = true;
@@ -87,14 +87,14 @@ fn between(scout: &SceneProbe, light: u32, from: Vec3, to: Vec3) -> (Option<u32>
 
 /// Measures the light from an area light at the visible points, and returns true if the light is
 /// flat. `None` if the light consists of several parts or cannot be sampled.
-fn contribution(scout: &SceneProbe, light: u32) -> Option<(AreaLightShare, bool)> {
-    let object = &scout.world().objects()[light as usize];
+fn measure_area_light(scene_probe: &SceneProbe, light: u32) -> Option<(AreaLightSums, bool)> {
+    let object = &scene_probe.world().objects()[light as usize];
     let all: Vec<Vec3> =
-        scout.seen().filter(|(_, seen)| seen.object != light).map(|(probe, seen)| probe.ray.at(seen.t)).collect();
-    let places = all.iter().step_by(all.len().div_ceil(MAX_PLACES).max(1));
-    let mut contribution = AreaLightShare::default();
+        scene_probe.hits().filter(|(_, hit)| hit.object != light).map(|(probe, hit)| probe.ray.at(hit.t)).collect();
+    let points = all.iter().step_by(all.len().div_ceil(MAX_POINTS).max(1));
+    let mut contribution = AreaLightSums::default();
     let mut flat = true;
-    for place in places {
+    for place in points {
         for u in ON_LIGHT {
             let (point, normal) = if let Some(plane) = plane(object) {
                 let n = object.to_world.as_ref().map_or(plane.normal, |m| m.normal(plane.normal)).normalize_or(Vec3::Y);
@@ -108,9 +108,9 @@ fn contribution(scout: &SceneProbe, light: u32) -> Option<(AreaLightShare, bool)
             } else {
                 return None;
             };
-            let way = *place - point;
-            let cosine = way.normalize_or_zero().dot(normal);
-            let (blocker, glass) = between(scout, light, point, *place);
+            let direction = *place - point;
+            let cosine = direction.normalize_or_zero().dot(normal);
+            let (blocker, glass) = first_occluder(scene_probe, light, point, *place);
             contribution.rays += 1;
             contribution.glass += usize::from(glass && blocker.is_none());
             if cosine > 0.0 {
@@ -128,23 +128,24 @@ fn contribution(scout: &SceneProbe, light: u32) -> Option<(AreaLightShare, bool)
 
 /// Returns the distance from an area light to the first hit along its normal, as a fraction of the
 /// scene's size; `None` if there is no hit.
-fn reach(scout: &SceneProbe, object: &Object) -> Option<f32> {
+fn distance_along_normal(scene_probe: &SceneProbe, object: &Object) -> Option<f32> {
     let (form, normal) = emitter_of(object, 0)?;
     let (point, n, _) = form.point(normal, Vec2::splat(0.5))?;
     let ray = Ray { t_min: 1e-5, ..Ray::new(point.as_vec3(), n) };
-    let hit = scout.world().closest(&ray, &mut ())?;
-    Some(hit.t / scout.world().bounds().size().length().max(1e-6))
+    let hit = scene_probe.world().closest(&ray, &mut ())?;
+    Some(hit.t / scene_probe.world().bounds().size().length().max(1e-6))
 }
 
 /// Reports area lights that face away from the visible points.
-pub(super) fn turned(scout: &SceneProbe) -> Vec<Finding> {
-    let one_sided = emissive_objects(scout).into_iter().filter(|(_, both)| !both && scout.is_physical());
+pub(super) fn facing_away(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let one_sided = emissive_objects(scene_probe).into_iter().filter(|(_, both)| !both && scene_probe.is_physical());
     let say = |(number, _): (u32, bool)| {
-        let object = &scout.world().objects()[number as usize];
-        let (contribution, flat) = contribution(scout, number)?;
+        let object = &scene_probe.world().objects()[number as usize];
+        let (contribution, flat) = measure_area_light(scene_probe, number)?;
         // A light that illuminates the ceiling may be intended.
-        let indirect = reach(scout, object).is_some_and(|far| far > 0.03) && !scout.is_dark();
-        if !flat || contribution.back <= 0.0 || contribution.front > NOTHING * contribution.back || indirect {
+        let indirect =
+            distance_along_normal(scene_probe, object).is_some_and(|far| far > 0.03) && !scene_probe.is_dark();
+        if !flat || contribution.back <= 0.0 || contribution.front > MIN_CONTRIBUTION * contribution.back || indirect {
             return None;
         }
         let turn = match shape(object).and_then(Shape::flip) {
@@ -152,71 +153,72 @@ pub(super) fn turned(scout: &SceneProbe) -> Vec<Finding> {
             Some(flip) => flip_text(flip),
             None => "negate its `normal`".into(),
         };
-        let message = format!("the {} emits light away from everything visible", scout.object(number));
+        let message = format!("the {} emits light away from everything visible", scene_probe.object(number));
         let diagnostic = Diagnostic::warning(message)
-            .at(scout.object_span(number))
+            .at(scene_probe.object_span(number))
             .effect("it lights nothing visible, and its back is black")
             .help(format!(
                 "a surface emits light on the side of its normal: {turn}, or set `walls thin` in its material so \
                  that both sides emit light"
             ));
-        let whole = scout.is_dark() || scout.world().lights().is_empty();
-        Some(Finding::from(turned_round(scout, diagnostic, number)).whole(whole))
+        let whole = scene_probe.is_dark() || scene_probe.world().lights().is_empty();
+        Some(Finding::from(with_flip(scene_probe, diagnostic, number)).affecting_whole_picture(whole))
     };
     one_sided.filter_map(say).collect()
 }
 
 /// Adds the edit that flips a flat area light. For a triangle there is no edit: any two of its
 /// corners can be swapped.
-fn turned_round(scout: &SceneProbe, diagnostic: Diagnostic, number: u32) -> Diagnostic {
-    match shape(&scout.world().objects()[number as usize]).and_then(Shape::flip) {
-        Some(Flip::Edges(_) | Flip::Negate(_)) => flipped(scout, &diagnostic, number).unwrap_or(diagnostic),
+fn with_flip(scene_probe: &SceneProbe, diagnostic: Diagnostic, number: u32) -> Diagnostic {
+    match shape(&scene_probe.world().objects()[number as usize]).and_then(Shape::flip) {
+        Some(Flip::Edges(_) | Flip::Negate(_)) => flipped(scene_probe, &diagnostic, number).unwrap_or(diagnostic),
         Some(Flip::Corners(_)) | None => diagnostic,
     }
 }
 
 /// Reports area lights that are occluded from all visible points.
-pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
-    if !scout.is_physical() {
+pub(super) fn blocked(scene_probe: &SceneProbe) -> Vec<Finding> {
+    if !scene_probe.is_physical() {
         return Vec::new();
     }
-    let lights = emissive_objects(scout);
+    let lights = emissive_objects(scene_probe);
     let say = |&(number, both): &(u32, bool)| {
-        let (contribution, _) = contribution(scout, number)?;
+        let (contribution, _) = measure_area_light(scene_probe, number)?;
         let blocker = contribution.blocker?;
         let back = if both { contribution.back } else { 0.0 };
-        if contribution.front_free < 1.0 || contribution.front + back > HARDLY * contribution.front_free {
+        if contribution.front_free < 1.0 || contribution.front + back > MIN_VISIBLE_SHARE * contribution.front_free {
             return None;
         }
-        let whole = scout.is_dark() || lights.len() == 1 && scout.world().lights().is_empty();
-        let name = scout.object(number);
+        let whole = scene_probe.is_dark() || lights.len() == 1 && scene_probe.world().lights().is_empty();
+        let name = scene_probe.object(number);
         let diagnostic = Diagnostic::warning(format!(
             "the {name} emits light, but the {} occludes it from everything visible",
-            scout.object(blocker)
+            scene_probe.object(blocker)
         ))
-        .at(scout.object_span(number))
-        .related(scout.object_span(blocker), "the occluder")
-        .effect(if scout.is_dark() {
+        .at(scene_probe.object_span(number))
+        .related(scene_probe.object_span(blocker), "the occluder")
+        .effect(if scene_probe.is_dark() {
             "the picture is black"
         } else {
             "none of its light reaches the visible surfaces directly"
         })
         .help("is the light on the wrong side, or inside? Move it to the visible side");
         // If the picture is not dark, the light arrives indirectly.
-        let dark = scout.is_dark();
+        let dark = scene_probe.is_dark();
         let severity = if dark { Severity::Warning } else { Severity::Note };
-        (dark || lights.len() > 1).then(|| Finding::from(Diagnostic { severity, ..diagnostic }).whole(whole))
+        (dark || lights.len() > 1)
+            .then(|| Finding::from(Diagnostic { severity, ..diagnostic }).affecting_whole_picture(whole))
     };
     lights.iter().filter_map(say).collect()
 }
 
 /// Reports area lights inside glass: paths hit them only by chance, or never.
-pub(super) fn in_glass(scout: &SceneProbe) -> Vec<Finding> {
-    let world = scout.world();
-    if !matches!(scout.subject.job.method, IntegratorKind::Path(_)) {
+pub(super) fn in_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
+    if !matches!(scene_probe.input.job.method, IntegratorKind::Path(_)) {
         return Vec::new();
     }
-    let around = |place: Vec3, own: Option<u32>| {
+    let around = |point: Vec3, own: Option<u32>| {
         let bodies = world.objects().iter().enumerate().map(|(number, _)| number as u32).filter(|n| Some(*n) != own);
         bodies.take(500).find(|&number| {
             let Some(Material::Phong(phong)) =
@@ -227,23 +229,26 @@ pub(super) fn in_glass(scout: &SceneProbe) -> Vec<Finding> {
             let skin = phong.principled.as_ref().is_none_or(|layers| !layers.interface);
             skin && phong.transparent.max_element() > 0.0
                 && phong.ior != 1.0
-                && world.objects()[number as usize].contains(place)
+                && world.objects()[number as usize].contains(point)
         })
     };
-    let mut found = super::physical::lamp_in_glass(scout);
-    for (number, _) in emissive_objects(scout) {
+    let mut findings = super::physical::light_in_glass(scene_probe);
+    for (number, _) in emissive_objects(scene_probe) {
         let Some(middle) = world.objects()[number as usize].bounds().map(|bounds| bounds.center()) else { continue };
         let Some(glass) = around(middle, Some(number)) else { continue };
-        if contribution(scout, number).is_some_and(|(contribution, _)| contribution.glass * 2 <= contribution.rays) {
+        if measure_area_light(scene_probe, number)
+            .is_some_and(|(contribution, _)| contribution.glass * 2 <= contribution.rays)
+        {
             continue;
         }
-        let message = format!("the {} emits light inside the {}", scout.object(number), scout.object(glass));
+        let message =
+            format!("the {} emits light inside the {}", scene_probe.object(number), scene_probe.object(glass));
         let diagnostic = Diagnostic::warning(message)
-            .at(scout.object_span(number))
-            .related(scout.object_span(glass), "the glass around it")
+            .at(scene_probe.object_span(number))
+            .related(scene_probe.object_span(glass), "the glass around it")
             .effect("paths hit it only by chance, so the picture has little light and bright specks")
             .help("use `--integrator photons`, or remove the glass");
-        found.push(Finding::from(diagnostic));
+        findings.push(Finding::from(diagnostic));
     }
-    found
+    findings
 }

@@ -1,8 +1,8 @@
 //! Checks of lights with a beam: spotlights and photometric lights that miss the visible scene.
 
-use super::aim::{Aim, places, within};
-use super::finding::{Finding, MAX_SOUGHT, number, percent, vector};
-use super::lights::{all_fail, useless, written};
+use super::aim::{BeamMiss, beam_coverage, hit_points};
+use super::finding::{Finding, MAX_FINDINGS, number, percent, vector};
+use super::lights::{description, no_contribution, none_contributes};
 use super::scene_probe::SceneProbe;
 use super::shapes::{point, spot};
 use durer_diag::Diagnostic;
@@ -11,27 +11,28 @@ use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::Spanned;
 
 /// Reports lights whose beam misses everything visible.
-pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
-    missing(scout, Aim::Away, |diagnostic, light| {
-        let place = light.value.inverse_square().map_or(Vec3::ZERO, |(place, _)| place);
+pub(super) fn away(scene_probe: &SceneProbe) -> Vec<Finding> {
+    missing(scene_probe, BeamMiss::Away, |diagnostic, light| {
+        let point = light.value.inverse_square().map_or(Vec3::ZERO, |(point, _)| point);
         // The visible part of a plane reaches the horizon, so aim at bounded objects only.
-        let objects = scout.seen().filter(|(_, seen)| scout.world().objects()[seen.object as usize].bounds().is_some());
-        let objects: Vec<Vec3> = objects.map(|(probe, seen)| probe.ray.at(seen.t)).collect();
-        let all = if objects.is_empty() { places(scout) } else { objects };
+        let objects =
+            scene_probe.hits().filter(|(_, hit)| scene_probe.world().objects()[hit.object as usize].bounds().is_some());
+        let objects: Vec<Vec3> = objects.map(|(probe, hit)| probe.ray.at(hit.t)).collect();
+        let all = if objects.is_empty() { hit_points(scene_probe) } else { objects };
         let middle = all.iter().sum::<Vec3>() / all.len().max(1) as f32;
         let (Some(direction), Some(_)) = (light.value.direction(), light.value.cone()) else { return diagnostic };
         let word = if light.value.profile().is_some() { "this photometric light" } else { "this spotlight" };
         // Usually the opposite direction is the intended one.
         let turned = -direction.normalize_or(Vec3::NEG_Y);
-        let to = (middle - place).normalize_or(Vec3::NEG_Y);
-        let aimed = if turned.dot(to) > 0.7 { -direction } else { middle - place };
+        let to = (middle - point).normalize_or(Vec3::NEG_Y);
+        let aimed = if turned.dot(to) > 0.7 { -direction } else { middle - point };
         let text = vector(aimed);
         let help = format!(
             "`direction` is the direction in which the light travels: `direction {text}` points at the center of \
              the visible objects"
         );
         let diagnostic = Diagnostic { message: format!("{word} misses every visible surface"), ..diagnostic };
-        match scout.value(light.span, &["direction"]) {
+        match scene_probe.field_span(light.span, &["direction"]) {
             Some(value) => diagnostic.at(value).help(help).fix(value, text),
             // The default direction is straight down.
             None => diagnostic.help(help),
@@ -40,43 +41,50 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
 }
 
 /// Reports cones that cover almost none of the visible points.
-pub(super) fn narrow(scout: &SceneProbe) -> Vec<Finding> {
-    missing(scout, Aim::Narrow, |diagnostic, light| {
+pub(super) fn narrow(scene_probe: &SceneProbe) -> Vec<Finding> {
+    missing(scene_probe, BeamMiss::Narrow, |diagnostic, light| {
         let Some(spot) = spot(&light.value) else { return diagnostic };
         let degrees = number(spot.angle.to_degrees().round().clamp(1.0, 180.0));
         let message = format!("the cone of this spotlight is only {} degrees wide", number(spot.angle));
         let diagnostic = Diagnostic { message, ..diagnostic };
         let help = format!("`angle` is in degrees, from the axis to the edge: try `angle {degrees}`");
-        let Some(value) = scout.value(light.span, &["angle"]) else { return diagnostic.help(help) };
+        let Some(value) = scene_probe.field_span(light.span, &["angle"]) else { return diagnostic.help(help) };
         let mut diagnostic = diagnostic.at(value).help(help).fix(value, degrees);
-        if let Some(inner) = scout.value(light.span, &["innerAngle"]).filter(|_| spot.inner_angle <= spot.angle) {
+        if let Some(inner) =
+            scene_probe.field_span(light.span, &["innerAngle"]).filter(|_| spot.inner_angle <= spot.angle)
+        {
             diagnostic = diagnostic.fix(inner, number(spot.inner_angle.to_degrees().round()));
         }
         diagnostic
     })
 }
 
-fn missing(scout: &SceneProbe, wanted: Aim, say: impl Fn(Diagnostic, &Spanned<Light>) -> Diagnostic) -> Vec<Finding> {
-    let lights = scout.world().lights().len().min(MAX_SOUGHT);
-    let mut found = Vec::new();
-    for number in (0..lights).filter(|&light| scout.aims()[light] == Some(wanted)) {
-        let (Some(light), Some((diagnostic, span))) = (written(scout, number), useless(scout, number, String::new()))
+fn missing(
+    scene_probe: &SceneProbe,
+    wanted: BeamMiss,
+    say: impl Fn(Diagnostic, &Spanned<Light>) -> Diagnostic,
+) -> Vec<Finding> {
+    let lights = scene_probe.world().lights().len().min(MAX_FINDINGS);
+    let mut findings = Vec::new();
+    for number in (0..lights).filter(|&light| scene_probe.aims()[light] == Some(wanted)) {
+        let (Some(light), Some((diagnostic, span))) =
+            (description(scene_probe, number), no_contribution(scene_probe, number, String::new()))
         else {
             continue;
         };
-        let held = percent((1e4 * within(scout, number, &places(scout))) as usize, 10_000);
+        let held = percent((1e4 * beam_coverage(scene_probe, number, &hit_points(scene_probe))) as usize, 10_000);
         let mut diagnostic = say(diagnostic.at(span), light);
-        if wanted == Aim::Narrow {
+        if wanted == BeamMiss::Narrow {
             diagnostic = diagnostic.label(format!("{held} of the visible points are in its cone"));
         }
-        found.push(Finding::from(diagnostic).whole(all_fail(scout)));
+        findings.push(Finding::from(diagnostic).affecting_whole_picture(none_contributes(scene_probe)));
     }
-    found
+    findings
 }
 
 /// Reports spotlights whose inner cone is wider than the outer one.
-pub(super) fn inner_angle(scout: &SceneProbe) -> Vec<Finding> {
-    let lights = scout.subject.scene.lights.iter().flatten();
+pub(super) fn inner_angle(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let lights = scene_probe.input.scene.lights.iter().flatten();
     let say = |light: &Spanned<Light>| {
         let spot = spot(&light.value)?;
         if spot.inner_angle <= spot.angle {
@@ -87,20 +95,23 @@ pub(super) fn inner_angle(scout: &SceneProbe) -> Vec<Finding> {
             Diagnostic::warning(format!("the `innerAngle` of {inner} is greater than the `angle` of {angle}"))
                 .effect(format!("the cone ends abruptly at {angle} degrees"))
                 .help(format!("light fades between the two angles: write `angle {inner} innerAngle {angle}`"));
-        Some(Finding::from(match (scout.value(light.span, &["angle"]), scout.value(light.span, &["innerAngle"])) {
-            (Some(a), Some(b)) => diagnostic.at(b).fix(a, inner).fix(b, angle),
-            _ => diagnostic.at(light.span),
-        }))
+        Some(Finding::from(
+            match (scene_probe.field_span(light.span, &["angle"]), scene_probe.field_span(light.span, &["innerAngle"]))
+            {
+                (Some(a), Some(b)) => diagnostic.at(b).fix(a, inner).fix(b, angle),
+                _ => diagnostic.at(light.span),
+            },
+        ))
     };
-    lights.filter_map(say).take(MAX_SOUGHT).collect()
+    lights.filter_map(say).take(MAX_FINDINGS).collect()
 }
 
 /// Returns the distance and the object if a light is so close to a surface that it illuminates only
 /// a spot.
-fn touching(scout: &SceneProbe, light: usize) -> Option<(f32, u32)> {
-    let point = point(&scout.world().lights()[light])?;
+fn too_close(scene_probe: &SceneProbe, light: usize) -> Option<(f32, u32)> {
+    let point = point(&scene_probe.world().lights()[light])?;
     point.attenuation.filter(|a| a.z > 0.0 || a.y > 0.0)?;
-    let world = scout.world();
+    let world = scene_probe.world();
     let steps = (0..26).map(|i| {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(i) * 137.508);
         let z = 1.0 - 2.0 * (f64::from(i) + 0.5) / 26.0;
@@ -114,43 +125,49 @@ fn touching(scout: &SceneProbe, light: usize) -> Option<(f32, u32)> {
 }
 
 /// Reports lights with attenuation that are just above a surface.
-pub(super) fn near(scout: &SceneProbe) -> Vec<Finding> {
-    let places = places(scout);
-    let mut found = Vec::new();
-    for light in 0..scout.world().lights().len().min(super::finding::MAX_ALIKE) {
-        let Some((near, object)) = touching(scout, light) else { continue };
-        let Some((emitter, point)) = written(scout, light).and_then(|emitter| Some((emitter, point(&emitter.value)?)))
+pub(super) fn near(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let points = hit_points(scene_probe);
+    let mut findings = Vec::new();
+    for light in 0..scene_probe.world().lights().len().min(super::finding::MAX_PER_KIND) {
+        let Some((near, object)) = too_close(scene_probe, light) else { continue };
+        let Some((emitter, point)) =
+            description(scene_probe, light).and_then(|emitter| Some((emitter, point(&emitter.value)?)))
         else {
             continue;
         };
-        let mut away: Vec<f32> = places.iter().map(|place| (*place - point.position).length()).collect();
+        let mut away: Vec<f32> = points.iter().map(|place| (*place - point.position).length()).collect();
         away.sort_by(f32::total_cmp);
-        let lit: Vec<f32> =
-            scout.seen().filter_map(|(_, seen)| seen.by(light)).map(|lit| lit.adds.max_element()).collect();
+        let lit: Vec<f32> = scene_probe
+            .hits()
+            .filter_map(|(_, hit)| hit.contribution(light))
+            .map(|lit| lit.contribution.max_element())
+            .collect();
         let bright = lit.iter().filter(|adds| **adds > 0.04).count();
         // Only a large surface loses light at grazing angles; lights in a fixture are close to a
         // small one.
-        let along: Vec<f32> = scout
-            .seen()
-            .filter(|(_, seen)| seen.object == object)
-            .filter_map(|(_, seen)| Some(seen.by(light)?.cosine))
+        let along: Vec<f32> = scene_probe
+            .hits()
+            .filter(|(_, hit)| hit.object == object)
+            .filter_map(|(_, hit)| Some(hit.contribution(light)?.cosine))
             .collect();
         let grazing = along.iter().filter(|cosine| cosine.abs() < 0.15).count() * 10 > along.len() * 7;
-        let large = along.len() * 4 > scout.seen().count();
+        let large = along.len() * 4 > scene_probe.hits().count();
         if away.is_empty() || !grazing || !large || near > 0.03 * away[away.len() / 2] || bright * 5 > lit.len() {
             continue;
         }
         let middle = away[away.len() / 2];
         let diagnostic =
-            Diagnostic::warning(format!("this light is {} from the {}", number(near), scout.object(object)))
-                .related(scout.object_span(object), "this object")
+            Diagnostic::warning(format!("this light is {} from the {}", number(near), scene_probe.object(object)))
+                .related(scene_probe.object_span(object), "this object")
                 .effect("it makes a bright spot below it and lights hardly anything else")
                 .help(format!(
                     "the mean distance of the visible points is {}: move the light away from the object",
                     number(middle)
                 ));
-        let only = scout.world().lights().len() == 1;
-        found.push(Finding::from(scout.at_value(diagnostic, emitter.span, &["position"])).whole(only));
+        let only = scene_probe.world().lights().len() == 1;
+        findings.push(
+            Finding::from(scene_probe.at_value(diagnostic, emitter.span, &["position"])).affecting_whole_picture(only),
+        );
     }
-    found
+    findings
 }

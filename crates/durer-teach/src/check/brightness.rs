@@ -13,12 +13,12 @@ const SAMPLES: u32 = 16;
 /// Returns exposed colours of the picture, each with the index of its probe. Whitted's method gives
 /// one colour per probe; path tracing gives the mean of `SAMPLES` samples for at most `MAX_PIXELS`
 /// probes.
-pub(super) fn light(grid: &ProbeGrid) -> (Vec<usize>, Vec<Color>) {
-    let exposure = grid.subject.exposure;
-    let Some(transport) = grid.subject.job.method.path_options() else {
+pub(super) fn exposed_colors(grid: &ProbeGrid) -> (Vec<usize>, Vec<Color>) {
+    let exposure = grid.input.exposure;
+    let Some(transport) = grid.input.job.method.path_options() else {
         return grid.probes.iter().enumerate().map(|(i, probe)| (i, exposure * probe.color)).unzip();
     };
-    let job = grid.subject.job;
+    let job = grid.input.job;
     let path = Path::new(grid.world(), job.settings, transport);
     let step = grid.probes.len().div_ceil(MAX_PIXELS).max(1);
     // An odd step avoids sampling the same column in each row.

@@ -3,7 +3,7 @@
 
 use super::brightness::brightest;
 use super::finding::{Finding, number, percent, vector};
-use super::lights::place;
+use super::lights::span;
 use super::probes::{Probe, ProbeHit};
 use super::scene_probe::SceneProbe;
 use super::verdict::VISIBLE;
@@ -11,9 +11,9 @@ use durer_diag::{Diagnostic, Severity};
 use durer_scene::light::Illuminate as _;
 use durer_scene::math::{Color, fp};
 
-/// Values above `BEYOND` are clipped to white; above `FAR_BEYOND` most shading is lost.
-const BEYOND: f32 = 1.0 + VISIBLE;
-const FAR_BEYOND: f32 = 1.25;
+/// Values above `MAX_UNCLIPPED` are clipped to white; above `FAR_ABOVE_WHITE` most shading is lost.
+const MAX_UNCLIPPED: f32 = 1.0 + VISIBLE;
+const FAR_ABOVE_WHITE: f32 = 1.25;
 /// Maximum fractions of visible points that may be clipped, or far too bright. Above these, more
 /// than highlights is affected.
 const MAX_CUT: f32 = 0.4;
@@ -22,7 +22,7 @@ const MAX_FAR: f32 = 0.2;
 /// Maximum share of white pixels in a usable picture.
 const MAX_WHITE: f32 = 0.5;
 /// Maximum share of white points on lit surfaces, whatever the background looks like.
-const MAX_WHITE_THINGS: f32 = 0.8;
+const MAX_WHITE_SURFACES: f32 = 0.8;
 
 /// Converts a ratio of luminances to stops.
 fn stops_of(factor: f32) -> f32 {
@@ -30,35 +30,37 @@ fn stops_of(factor: f32) -> f32 {
 }
 
 /// Reports a picture in physical units (path tracing, or a sky in cd/m^2) that is clipped to white.
-fn white(scout: &SceneProbe) -> Vec<Finding> {
+fn white(scene_probe: &SceneProbe) -> Vec<Finding> {
     // Emitters can be white, and an unlit background does not count.
-    let lit = |probe: &Probe| probe.seen.as_ref().is_some_and(|seen| !scout.world().may_emit(seen.material));
-    let all = scout.light();
-    let objects: Vec<Color> = (scout.lit_probes().filter(|(probe, color)| lit(probe) && color.max_element() > VISIBLE))
-        .map(|(_, color)| color)
-        .collect();
+    let lit = |probe: &Probe| probe.hit.as_ref().is_some_and(|hit| !scene_probe.world().may_emit(hit.material));
+    let all = scene_probe.exposed_colors();
+    let objects: Vec<Color> =
+        (scene_probe.lit_probes().filter(|(probe, color)| lit(probe) && color.max_element() > VISIBLE))
+            .map(|(_, color)| color)
+            .collect();
     let is_white = |color: &&Color| color.min_element() > 1.1;
-    let over = |shown: &[Color], share: f32| shown.iter().filter(is_white).count() as f32 > share * shown.len() as f32;
-    let (shown, what) = if over(all, MAX_WHITE) {
+    let over =
+        |clamped: &[Color], share: f32| clamped.iter().filter(is_white).count() as f32 > share * clamped.len() as f32;
+    let (clamped, what) = if over(all, MAX_WHITE) {
         (all, "the picture")
-    } else if objects.len() * 20 > all.len() && over(&objects, MAX_WHITE_THINGS) {
+    } else if objects.len() * 20 > all.len() && over(&objects, MAX_WHITE_SURFACES) {
         (&objects[..], "the lit surface area")
     } else {
         return Vec::new();
     };
-    let white = shown.iter().filter(is_white).count();
-    let mut values: Vec<f32> = shown.iter().map(|color| color.max_element()).collect();
+    let white = clamped.iter().filter(is_white).count();
+    let mut values: Vec<f32> = clamped.iter().map(|color| color.max_element()).collect();
     values.sort_by(f32::total_cmp);
     let middle = values[values.len() / 2];
     let stops = stops_of(0.5 / middle).round();
     let factor = number(0.5 / middle);
     let diagnostic =
         Diagnostic::warning(format!("there is too much light: half of {what} is brighter than {}", number(middle)))
-            .effect(format!("{} of {what} is white", percent(white, shown.len())));
-    let background = &scout.subject.scene.background;
+            .effect(format!("{} of {what} is white", percent(white, clamped.len())));
+    let background = &scene_probe.input.scene.background;
     let sky = background.sun().is_some() || background.cie_sky.is_some();
-    let light = super::area_lights::brightest(scout).filter(|_| !sky);
-    let exposure = number(stops + stops_of(scout.subject.exposure));
+    let light = super::area_lights::brightest(scene_probe).filter(|_| !sky);
+    let exposure = number(stops + stops_of(scene_probe.input.exposure));
     let help = match sky {
         true => format!("this sky has outdoor brightness, in cd/m^2: set `--exposure {exposure}`"),
         false => format!("light is in cd/m^2: set `--exposure {exposure}`, or multiply the emission by {factor}"),
@@ -66,27 +68,27 @@ fn white(scout: &SceneProbe) -> Vec<Finding> {
     let diagnostic = diagnostic.help(help);
     let diagnostic = match light {
         Some((place, value)) => diagnostic.at(place).fix(place, number(value * 0.5 / middle)),
-        None => Diagnostic { span: super::colors::background_span(scout), ..diagnostic },
+        None => Diagnostic { span: super::colors::background_span(scene_probe), ..diagnostic },
     };
-    vec![Finding::from(diagnostic).whole(true)]
+    vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }
 
 /// Reports values above 1 in an eight-bit picture.
-pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
-    if scout.is_physical() || scout.world().environment().is_some() {
-        return white(scout);
+pub(super) fn too_bright(scene_probe: &SceneProbe) -> Vec<Finding> {
+    if scene_probe.is_physical() || scene_probe.world().environment().is_some() {
+        return white(scene_probe);
     }
-    let lit: Vec<Color> = scout.seen().map(|(probe, _)| probe.color).filter(|color| color.is_finite()).collect();
-    let far = lit.iter().filter(|color| color.max_element() > FAR_BEYOND).count();
-    let cut = lit.iter().filter(|color| color.max_element() > BEYOND).count();
-    let white = lit.iter().filter(|color| color.min_element() > BEYOND).count();
+    let lit: Vec<Color> = scene_probe.hits().map(|(probe, _)| probe.color).filter(|color| color.is_finite()).collect();
+    let far = lit.iter().filter(|color| color.max_element() > FAR_ABOVE_WHITE).count();
+    let cut = lit.iter().filter(|color| color.max_element() > MAX_UNCLIPPED).count();
+    let white = lit.iter().filter(|color| color.min_element() > MAX_UNCLIPPED).count();
     let over = |count: usize, share: f32| count as f32 > share * lit.len() as f32;
     if !over(cut, MAX_CUT) && !over(far, MAX_FAR) {
         return Vec::new();
     }
     let brightest = lit.iter().copied().max_by(|a, b| a.max_element().total_cmp(&b.max_element())).unwrap_or_default();
     // Keep the ambient light, unless it alone is too much.
-    let world = scout.world();
+    let world = scene_probe.world();
     let (most, ambient) = (brightest.max_element(), world.ambient().max_element().min(0.5));
     let factor = (1.0 - ambient) / (most - ambient).max(1e-6);
     let effect = format!(
@@ -103,28 +105,29 @@ pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
                 number(factor)
             ));
     // If the lights alone are too strong, do not blame a material.
-    let local = |seen: &ProbeHit| (seen.ambient + seen.lit.iter().map(|lit| lit.adds).sum::<Color>()).max_element();
-    let by_lights = scout.seen().filter(|(_, seen)| local(seen) > FAR_BEYOND).count();
-    if let Some(cause) = super::colors::gives_too_much(scout).filter(|_| by_lights * 2 < far) {
+    let local =
+        |hit: &ProbeHit| (hit.ambient + hit.lights.iter().map(|lit| lit.contribution).sum::<Color>()).max_element();
+    let by_lights = scene_probe.hits().filter(|(_, hit)| local(hit) > FAR_ABOVE_WHITE).count();
+    if let Some(cause) = super::colors::energy_gain(scene_probe).filter(|_| by_lights * 2 < far) {
         let severity = if over(far, MAX_FAR) { Severity::Warning } else { Severity::Note };
         let diagnostic = Diagnostic { severity, effect: diagnostic.effect, ..cause };
-        return vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())];
+        return vec![Finding::from(diagnostic).affecting_whole_picture(cut * 2 > lit.len())];
     }
     for (i, light) in world.lights().iter().enumerate() {
-        let Some(span) = place(scout, i) else { continue };
+        let Some(span) = span(scene_probe, i) else { continue };
         // A light with almost no attenuation is not too bright itself.
-        let faded = scout.value(span, &["attenuation", "falloff"]).filter(|_| factor < 0.1 && most > 10.0);
-        if let (Some(value), Some(a)) = (faded, super::verdict::divisor(light)) {
-            let single = scout.text(value).split_whitespace().count() == 1;
+        let faded = scene_probe.field_span(span, &["attenuation", "falloff"]).filter(|_| factor < 0.1 && most > 10.0);
+        if let (Some(value), Some(a)) = (faded, super::verdict::attenuation(light)) {
+            let single = scene_probe.text(value).split_whitespace().count() == 1;
             let text = if single { number(a.z / factor) } else { vector(a / factor) };
             let diagnostic =
-                diagnostic.help(format!("it fades too little: try `{text}` instead of `{}`", scout.text(value)));
+                diagnostic.help(format!("it fades too little: try `{text}` instead of `{}`", scene_probe.text(value)));
             let diagnostic = diagnostic.at(value).label("this light is too strong").fix(value, text);
-            return vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())];
+            return vec![Finding::from(diagnostic).affecting_whole_picture(cut * 2 > lit.len())];
         }
-        let unit = scout.value(span, &["candela", "lumens", "lux"]);
-        let value = unit.or_else(|| scout.value(span, &["color"]));
-        let strength = unit.and_then(|unit| scout.text(unit).trim().parse::<f32>().ok());
+        let unit = scene_probe.field_span(span, &["candela", "lumens", "lux"]);
+        let value = unit.or_else(|| scene_probe.field_span(span, &["color"]));
+        let strength = unit.and_then(|unit| scene_probe.text(unit).trim().parse::<f32>().ok());
         let less = strength.map_or_else(|| vector(light.color() * factor), |strength| number(strength * factor));
         diagnostic = diagnostic.fix_at(value, less);
         diagnostic.span = diagnostic.span.or(value).or(Some(span));
@@ -132,14 +135,14 @@ pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
     if !over(far, MAX_FAR) {
         diagnostic.severity = Severity::Note;
     }
-    vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())]
+    vec![Finding::from(diagnostic).affecting_whole_picture(cut * 2 > lit.len())]
 }
 
 /// Reports a picture of a single colour.
-pub(super) fn one_color(scout: &SceneProbe) -> Vec<Finding> {
-    let shown = |color: Color| color.clamp(Color::ZERO, Color::ONE);
-    let mut colors = scout.light().iter().map(|color| shown(*color));
-    let Some(first) = colors.next().filter(|_| scout.light().len() > 4) else { return Vec::new() };
+pub(super) fn one_color(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let clamped = |color: Color| color.clamp(Color::ZERO, Color::ONE);
+    let mut colors = scene_probe.exposed_colors().iter().map(|color| clamped(*color));
+    let Some(first) = colors.next().filter(|_| scene_probe.exposed_colors().len() > 4) else { return Vec::new() };
     if !colors.all(|color| (color - first).abs().max_element() < VISIBLE) {
         return Vec::new();
     }
@@ -148,9 +151,9 @@ pub(super) fn one_color(scout: &SceneProbe) -> Vec<Finding> {
         (_, true) => "white".to_string(),
         _ => format!("uniformly {}", vector(first)),
     };
-    let empty = scout.seen().next().is_none();
+    let empty = scene_probe.hits().next().is_none();
     // Probes can miss small objects that are visible.
-    if empty && scout.visibilities().contains(&super::visibility::Visibility::Seen) {
+    if empty && scene_probe.visibilities().contains(&super::visibility::Visibility::Visible) {
         return Vec::new();
     }
     let diagnostic = Diagnostic::warning(format!("the whole picture is {name}"));
@@ -158,45 +161,48 @@ pub(super) fn one_color(scout: &SceneProbe) -> Vec<Finding> {
         true => diagnostic.effect("every ray misses; only the background is visible"),
         false => diagnostic.effect("no shading is visible"),
     };
-    vec![Finding::from(diagnostic.help("`durer explain SCENE --pixel X,Y` explains the colour of a pixel")).last()]
+    vec![
+        Finding::from(diagnostic.help("`durer explain SCENE --pixel X,Y` explains the colour of a pixel"))
+            .only_describing(),
+    ]
 }
 
 /// Reports a picture that is almost black wherever it shows an object.
-pub(super) fn too_dark(scout: &SceneProbe) -> Vec<Finding> {
-    if scout.is_physical() {
-        return dark_paths(scout);
+pub(super) fn too_dark(scene_probe: &SceneProbe) -> Vec<Finding> {
+    if scene_probe.is_physical() {
+        return dark_paths(scene_probe);
     }
-    let most = scout.seen().map(|(probe, _)| probe.color.max_element()).fold(0.0, f32::max);
-    let lights = scout.world().lights();
-    if scout.seen().next().is_none() || most > 0.06 || lights.is_empty() {
+    let most = scene_probe.hits().map(|(probe, _)| probe.color.max_element()).fold(0.0, f32::max);
+    let lights = scene_probe.world().lights();
+    if scene_probe.hits().next().is_none() || most > 0.06 || lights.is_empty() {
         return Vec::new();
     }
     let diagnostic = Diagnostic::warning(format!("the brightest value in the picture is only {}", number(most)))
         .effect("everything visible is black, or nearly black")
         .help(format!("the scene needs about {} times as much light", number(0.8 / most.max(1e-4))));
-    let diagnostic = match place(scout, 0) {
-        Some(span) => scout.at_value(diagnostic, span, &["color"]),
+    let diagnostic = match span(scene_probe, 0) {
+        Some(span) => scene_probe.at_value(diagnostic, span, &["color"]),
         None => diagnostic,
     };
-    vec![Finding::from(diagnostic).last()]
+    vec![Finding::from(diagnostic).only_describing()]
 }
 
 /// Reports a path tracer's picture that is almost black.
-fn dark_paths(scout: &SceneProbe) -> Vec<Finding> {
-    if !scout.is_dark() {
+fn dark_paths(scene_probe: &SceneProbe) -> Vec<Finding> {
+    if !scene_probe.is_dark() {
         return Vec::new();
     }
-    let most = brightest(scout.light());
+    let most = brightest(scene_probe.exposed_colors());
     let message = match most < 1e-6 {
         true => "the whole picture is black: no light reaches the camera".to_string(),
         false => format!("the brightest value in the picture is only {}", number(most)),
     };
     let factor = 0.6 / most.max(1e-9);
     let diagnostic = Diagnostic::warning(message).effect("everything visible is black, or nearly black");
-    let light = super::area_lights::brightest(scout).filter(|_| most > 1e-6);
+    let light = super::area_lights::brightest(scene_probe).filter(|_| most > 1e-6);
     let diagnostic = match light {
         Some((place, value)) => {
-            let stops = number(stops_of(factor).round() + stops_of(scout.subject.exposure));
+            let stops = number(stops_of(factor).round() + stops_of(scene_probe.input.exposure));
             let text = number(value * factor);
             diagnostic.at(place).fix(place, text.clone()).help(format!(
                 "the scene needs about {} times as much light: try `{text}`, or set `--exposure {stops}`",
@@ -205,13 +211,13 @@ fn dark_paths(scout: &SceneProbe) -> Vec<Finding> {
         }
         None => diagnostic.help("is a light enclosed, turned away, or too weak? Does fog absorb its light?"),
     };
-    vec![Finding::from(diagnostic).last()]
+    vec![Finding::from(diagnostic).only_describing()]
 }
 
 /// Reports a depth range that contains none of the picture's depths.
-pub(super) fn depth_range(scout: &SceneProbe) -> Vec<Finding> {
-    let Some((min, max)) = scout.subject.job.depth_range else { return Vec::new() };
-    let depths: Vec<f32> = scout.seen().map(|(_, seen)| seen.t).collect();
+pub(super) fn depth_range(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let Some((min, max)) = scene_probe.input.job.depth_range else { return Vec::new() };
+    let depths: Vec<f32> = scene_probe.hits().map(|(_, hit)| hit.t).collect();
     let least = depths.iter().copied().fold(f32::INFINITY, f32::min);
     let most = depths.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let (low, high) = (min.min(max), min.max(max));
@@ -240,5 +246,5 @@ pub(super) fn depth_range(scout: &SceneProbe) -> Vec<Finding> {
                 "the depth picture is all black or all white"
             })
             .help(format!("to show them, set `--depth-range {fitting}` (in the course's programs `-depth {fitting}`)"));
-    vec![Finding::from(diagnostic).whole(true)]
+    vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }

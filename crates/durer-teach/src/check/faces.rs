@@ -8,14 +8,14 @@ use durer_scene::math::Vec3;
 use durer_scene::shape::Shape as _;
 
 /// Maximum number of objects for this check.
-const MAX_THINGS: usize = 300;
+const MAX_OBJECTS: usize = 300;
 
 /// A flat face of a box or rectangle in world space, compared with others to find coplanar
-/// overlaps. `outwards` is its normal if only that side can be visible.
+/// overlaps. `outward_normal` is its normal if only that side can be visible.
 struct Face {
     object: usize,
     corners: Vec<Vec3>,
-    outwards: Option<Vec3>,
+    outward_normal: Option<Vec3>,
 }
 
 impl Face {
@@ -33,21 +33,21 @@ fn faces_of(number: usize, object: &Object) -> Vec<Face> {
     let mut faces: Vec<Face> = polygons
         .iter()
         .filter(|polygon| polygon.len() > 3)
-        .map(|polygon| Face { object: number, corners: world(polygon), outwards: None })
+        .map(|polygon| Face { object: number, corners: world(polygon), outward_normal: None })
         .collect();
     if shape.flip().is_none() {
         let corners = || polygons.iter().flatten();
         let middle = object.world_point(corners().sum::<Vec3>() / corners().count().max(1) as f32);
         for face in &mut faces {
             let n = face.normal();
-            face.outwards = Some(if n.dot(face.corners[0] - middle) < 0.0 { -n } else { n });
+            face.outward_normal = Some(if n.dot(face.corners[0] - middle) < 0.0 { -n } else { n });
         }
     }
     faces
 }
 
 /// Returns true if two faces are coplanar and overlap.
-fn meet(a: &Face, b: &Face) -> bool {
+fn overlap(a: &Face, b: &Face) -> bool {
     let (n, m) = (a.normal(), b.normal());
     if n == Vec3::ZERO || m == Vec3::ZERO || n.dot(m).abs() < 1.0 - 1e-6 {
         return false;
@@ -75,26 +75,26 @@ fn meet(a: &Face, b: &Face) -> bool {
 
 /// Returns pairs of objects (boxes or rectangles) whose faces overlap on the side that the camera
 /// sees.
-pub(super) fn overlapping(scout: &SceneProbe) -> Vec<(usize, usize)> {
-    let objects = scout.world().objects();
-    if objects.len() > MAX_THINGS {
+pub(super) fn overlapping(scene_probe: &SceneProbe) -> Vec<(usize, usize)> {
+    let objects = scene_probe.world().objects();
+    if objects.len() > MAX_OBJECTS {
         return Vec::new();
     }
-    let eye = scout.world().camera().pose().center;
+    let eye = scene_probe.world().camera().pose().center;
     let faces: Vec<Face> = objects.iter().enumerate().flat_map(|(i, object)| faces_of(i, object)).collect();
-    let faces_eye = |face: &Face| face.outwards.is_none_or(|n| n.dot(eye - face.corners[0]) > 0.0);
-    let mut found: Vec<(usize, usize)> = Vec::new();
+    let faces_eye = |face: &Face| face.outward_normal.is_none_or(|n| n.dot(eye - face.corners[0]) > 0.0);
+    let mut overlapping: Vec<(usize, usize)> = Vec::new();
     for (i, a) in faces.iter().enumerate() {
         for b in faces[i + 1..].iter().filter(|b| b.object != a.object) {
             let (first, second) = (a.object, b.object);
-            if !found.contains(&(first, second)) && faces_eye(a) && faces_eye(b) && meet(a, b) {
+            if !overlapping.contains(&(first, second)) && faces_eye(a) && faces_eye(b) && overlap(a, b) {
                 // Adjacent boxes touch with opposite normals.
-                let opposite = a.outwards.zip(b.outwards).is_some_and(|(n, m)| n.dot(m) < 0.0);
+                let opposite = a.outward_normal.zip(b.outward_normal).is_some_and(|(n, m)| n.dot(m) < 0.0);
                 if !opposite {
-                    found.push((first, second));
+                    overlapping.push((first, second));
                 }
             }
         }
     }
-    found
+    overlapping
 }

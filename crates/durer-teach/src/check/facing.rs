@@ -1,7 +1,7 @@
 //! Checks of orientation: surfaces seen from behind, and triangles with reversed winding in the
 //! scene file.
 
-use super::finding::{Finding, MAX_SOUGHT, counted};
+use super::finding::{Finding, MAX_FINDINGS, counted};
 use super::mesh_files::topology::Topology;
 use super::scene_probe::SceneProbe;
 use super::shapes::{plane, shape, triangle};
@@ -25,14 +25,14 @@ pub(super) fn flip_text(flip: Flip) -> String {
 
 /// Adds the edit that flips a flat shape. `None` if the shape is not flat, or the scene file does
 /// not set the field to change.
-pub(super) fn flipped(scout: &SceneProbe, diagnostic: &Diagnostic, object: u32) -> Option<Diagnostic> {
-    let shape = shape(&scout.world().objects()[object as usize])?;
-    let value = |field: &str| scout.value(scout.object_span(object), &[field]);
+pub(super) fn flipped(scene_probe: &SceneProbe, diagnostic: &Diagnostic, object: u32) -> Option<Diagnostic> {
+    let shape = shape(&scene_probe.world().objects()[object as usize])?;
+    let value = |field: &str| scene_probe.field_span(scene_probe.object_span(object), &[field]);
     let mut diagnostic = diagnostic.clone();
     match shape.flip()? {
         Flip::Corners([a, b]) | Flip::Edges([a, b]) => {
             let (a, b) = (value(a)?, value(b)?);
-            diagnostic = diagnostic.fix(a, scout.text(b)).fix(b, scout.text(a));
+            diagnostic = diagnostic.fix(a, scene_probe.text(b)).fix(b, scene_probe.text(a));
         }
         Flip::Negate(fields) => {
             for &name in fields {
@@ -54,9 +54,9 @@ fn course_flip(object: &Object) -> Option<Flip> {
 }
 
 /// Adds the edit that flips a flat shape that the course's programs support.
-fn turned(scout: &SceneProbe, diagnostic: Diagnostic, object: u32) -> Diagnostic {
-    match course_flip(&scout.world().objects()[object as usize]) {
-        Some(flip) => match flipped(scout, &diagnostic, object) {
+fn with_flip(scene_probe: &SceneProbe, diagnostic: Diagnostic, object: u32) -> Diagnostic {
+    match course_flip(&scene_probe.world().objects()[object as usize]) {
+        Some(flip) => match flipped(scene_probe, &diagnostic, object) {
             Some(flipped) => flipped.help(flip_text(flip)),
             None => diagnostic,
         },
@@ -66,55 +66,58 @@ fn turned(scout: &SceneProbe, diagnostic: Diagnostic, object: u32) -> Diagnostic
 
 /// Reports objects that are seen only from behind: a warning if backs are not shaded, otherwise a
 /// note for flat shapes, whose front was probably meant to be visible.
-pub(super) fn from_behind(scout: &SceneProbe) -> Vec<Finding> {
-    let shaded = scout.subject.job.settings.shade_back;
-    let is_flat = |i: usize| course_flip(&scout.world().objects()[i]).is_some();
-    let count = scout.world().objects().len();
+pub(super) fn from_behind(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let shaded = scene_probe.input.job.settings.shade_back;
+    let is_flat = |i: usize| course_flip(&scene_probe.world().objects()[i]).is_some();
+    let count = scene_probe.world().objects().len();
     let (mut seen, mut backs, mut black) = (vec![0; count], vec![0; count], false);
-    for (_, surface) in scout.seen() {
+    for (_, surface) in scene_probe.hits() {
         seen[surface.object as usize] += 1;
         backs[surface.object as usize] += usize::from(surface.from_behind);
-        black |= surface.black;
+        black |= surface.unshaded_back;
     }
     let all: usize = seen.iter().sum();
     // If `hidden-behind` reports something, skip this finding: the cause is the same.
-    if !super::hidden::hidden(scout).is_empty() {
+    if !super::hidden::hidden(scene_probe).is_empty() {
         return Vec::new();
     }
     let turned_away = (0..count).filter(|&i| {
-        seen[i] > 0 && backs[i] == seen[i] && (!shaded || is_flat(i)) && !super::mesh::shows_inside_out(scout, i as u32)
+        seen[i] > 0
+            && backs[i] == seen[i]
+            && (!shaded || is_flat(i))
+            && !super::mesh::is_inside_out_object(scene_probe, i as u32)
     });
     let say = |i: usize| {
-        let message = format!("the {} is visible from behind", scout.object(i as u32));
+        let message = format!("the {} is visible from behind", scene_probe.object(i as u32));
         if shaded {
             let note = Diagnostic::note(message)
-                .at(scout.object_span(i as u32))
+                .at(scene_probe.object_span(i as u32))
                 .effect("a ray tracer that does not shade back faces, such as the course's without `-shade_back`, leaves it black");
             // Negating a plane's normal and offset gives the same plane, which looks the same if
             // backs are shaded.
-            return Finding::from(if plane(&scout.world().objects()[i]).is_some() {
+            return Finding::from(if plane(&scene_probe.world().objects()[i]).is_some() {
                 note
             } else {
-                turned(scout, note, i as u32)
+                with_flip(scene_probe, note, i as u32)
             });
         }
         let diagnostic = Diagnostic::warning(message)
-            .at(scout.object_span(i as u32))
+            .at(scene_probe.object_span(i as u32))
             .effect(if black {
                 "its back stays black"
             } else {
                 "its normal points away: the visible side gets no light"
             })
             .help("set `--shade-back` (in the course's programs `-shade_back`)");
-        Finding::from(turned(scout, diagnostic, i as u32)).whole(backs[i] * 10 > all * 9)
+        Finding::from(with_flip(scene_probe, diagnostic, i as u32)).affecting_whole_picture(backs[i] * 10 > all * 9)
     };
-    turned_away.take(MAX_SOUGHT).map(say).collect()
+    turned_away.take(MAX_FINDINGS).map(say).collect()
 }
 
 /// Reports connected triangles of the scene file whose winding is opposite to that of most others.
-pub(super) fn turned_triangles(scout: &SceneProbe) -> Vec<Finding> {
+pub(super) fn turned_triangles(scene_probe: &SceneProbe) -> Vec<Finding> {
     let mut soups: Vec<(Option<Affine>, Vec<u32>)> = Vec::new();
-    for (i, object) in scout.world().objects().iter().enumerate() {
+    for (i, object) in scene_probe.world().objects().iter().enumerate() {
         if triangle(object).is_some() {
             match soups.iter_mut().rev().take(8).find(|soup| soup.0 == object.to_world) {
                 Some(soup) => soup.1.push(i as u32),
@@ -122,39 +125,39 @@ pub(super) fn turned_triangles(scout: &SceneProbe) -> Vec<Finding> {
             }
         }
     }
-    soups.iter().filter(|soup| soup.1.len() > 3).flat_map(|soup| turned_of(scout, &soup.1)).collect()
+    soups.iter().filter(|soup| soup.1.len() > 3).flat_map(|soup| turned_of(scene_probe, &soup.1)).collect()
 }
 
-fn turned_of(scout: &SceneProbe, soup: &[u32]) -> Vec<Finding> {
-    let corners = |&i: &u32| triangle(&scout.world().objects()[i as usize]).unwrap_or([Vec3::ZERO; 3]);
+fn turned_of(scene_probe: &SceneProbe, soup: &[u32]) -> Vec<Finding> {
+    let corners = |&i: &u32| triangle(&scene_probe.world().objects()[i as usize]).unwrap_or([Vec3::ZERO; 3]);
     let positions: Vec<Vec3> = soup.iter().flat_map(corners).collect();
     let triangles: Vec<[u32; 3]> = (0..soup.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let topology = Topology::of(&positions, &triangles);
-    let inside_out = topology.is_closed() && topology.turned.is_empty() && topology.volume < 0.0;
+    let inside_out = topology.is_closed() && topology.reversed.is_empty() && topology.volume < 0.0;
     if inside_out {
         let diagnostic = Diagnostic::warning(format!(
             "{} of a closed surface face inwards",
             counted(soup.len(), "triangle", "triangles")
         ))
-        .at(scout.object_span(soup[0]))
+        .at(scene_probe.object_span(soup[0]))
         .label("the first of them")
         .effect("a ray tracer that does not flip normals shades them as back faces, in black");
-        let diagnostic = soup.iter().fold(diagnostic, |diagnostic, &i| turned(scout, diagnostic, i));
+        let diagnostic = soup.iter().fold(diagnostic, |diagnostic, &i| with_flip(scene_probe, diagnostic, i));
         return vec![Finding::from(diagnostic.help("order their vertices counter-clockwise, as seen from outside"))];
     }
-    let Some(&first) = topology.turned.first() else { return Vec::new() };
-    let count = topology.turned.len();
+    let Some(&first) = topology.reversed.first() else { return Vec::new() };
+    let count = topology.reversed.len();
     let mut diagnostic = Diagnostic::warning(match count {
         1 => "this triangle faces the opposite way from its neighbours".to_string(),
         n => format!("{n} triangles face the opposite way from their neighbours"),
     })
-    .at(scout.object_span(soup[first as usize]))
+    .at(scene_probe.object_span(soup[first as usize]))
     .effect("its normal points inwards: black or wrongly lit in a ray tracer that does not flip normals");
     if count > 1 {
         diagnostic = diagnostic.label("the first of them");
     }
-    for &i in &topology.turned {
-        diagnostic = turned(scout, diagnostic, soup[i as usize]);
+    for &i in &topology.reversed {
+        diagnostic = with_flip(scene_probe, diagnostic, soup[i as usize]);
     }
     if !topology.is_closed() && count * 3 > soup.len() {
         // Sheets that only touch do not share an edge, so this is only a note.

@@ -5,9 +5,9 @@ pub(super) use durer_render::render::explain::number;
 use durer_scene::math::Vec3;
 
 /// Maximum number of findings of one kind that are reported one by one.
-pub(super) const MAX_ALIKE: usize = 3;
+pub(super) const MAX_PER_KIND: usize = 3;
 /// Number of findings of one kind after which a check stops.
-pub(super) const MAX_SOUGHT: usize = 50;
+pub(super) const MAX_FINDINGS: usize = 50;
 
 /// A problem that a check found in a scene, such as a light that illuminates nothing, with the edit
 /// that fixes it.
@@ -16,15 +16,15 @@ pub struct Finding {
     /// Code, span, message, and the edit that fixes it.
     pub diagnostic: Diagnostic,
     /// True if it affects the whole picture, not only part of it.
-    pub whole: bool,
+    pub affects_whole_picture: bool,
     /// True if it only describes the picture. It is dropped if another finding explains the whole
     /// picture.
-    pub(super) last: bool,
+    pub(super) only_describes: bool,
 }
 
 impl From<Diagnostic> for Finding {
     fn from(diagnostic: Diagnostic) -> Self {
-        Finding { diagnostic, whole: false, last: false }
+        Finding { diagnostic, affects_whole_picture: false, only_describes: false }
     }
 }
 
@@ -35,14 +35,14 @@ impl Finding {
     }
 
     /// Sets whether the finding affects the whole picture.
-    pub(super) fn whole(self, whole: bool) -> Self {
-        Finding { whole, ..self }
+    pub(super) fn affecting_whole_picture(self, whole: bool) -> Self {
+        Finding { affects_whole_picture: whole, ..self }
     }
 
     /// Marks the finding as a description that is dropped if another finding explains the whole
     /// picture.
-    pub(super) fn last(self) -> Self {
-        Finding { last: true, whole: true, ..self }
+    pub(super) fn only_describing(self) -> Self {
+        Finding { only_describes: true, affects_whole_picture: true, ..self }
     }
 }
 

@@ -13,38 +13,38 @@ use durer_scene::math::{Ray, Vec3};
 const FEW_OBJECTS: usize = 8;
 
 /// Reports one object that hides all, or almost all, others.
-pub(super) fn hidden_behind(scout: &SceneProbe) -> Vec<Finding> {
-    let found = hidden(scout);
-    if found.is_empty() { in_the_way(scout) } else { found }
+pub(super) fn hidden_behind(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let findings = hidden(scene_probe);
+    if findings.is_empty() { obstructing_object(scene_probe) } else { findings }
 }
 
 /// Reports one object that hides all others.
-pub(super) fn hidden(scout: &SceneProbe) -> Vec<Finding> {
-    let mut hits = scout.seen().map(|(_, seen)| seen.object);
+pub(super) fn hidden(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let mut hits = scene_probe.hits().map(|(_, hit)| hit.object);
     let Some(front) = hits.next().filter(|front| hits.all(|other| other == *front)) else { return Vec::new() };
     let (mut hidden, mut others) = (0, 0);
-    let empty = super::objects::nothing_of(scout);
+    let empty = super::objects::without_surface(scene_probe);
     let there = |(i, _): &(usize, &Visibility)| *i as u32 != front && !empty.contains(&(*i as u32));
-    for (number, sight) in scout.visibilities().iter().enumerate().filter(there) {
+    for (number, sight) in scene_probe.visibilities().iter().enumerate().filter(there) {
         match sight {
             Visibility::Hidden(_) => hidden += 1,
-            Visibility::Unknown if scout.world().objects()[number].bounds().is_none() => {}
+            Visibility::Unknown if scene_probe.world().objects()[number].bounds().is_none() => {}
             _ => others += 1,
         }
     }
-    let covered = scout.seen().count();
-    let is_plane = scout.world().objects()[front as usize].bounds().is_none();
+    let covered = scene_probe.hits().count();
+    let is_plane = scene_probe.world().objects()[front as usize].bounds().is_none();
     // An object can be hidden on purpose, but nothing behind an infinite plane is ever visible.
-    let few = !is_plane && covered * 2 < scout.probes.len();
-    if hidden == 0 || others > 0 || few || scout.is_glass(front) {
+    let few = !is_plane && covered * 2 < scene_probe.probes.len();
+    if hidden == 0 || others > 0 || few || scene_probe.is_glass(front) {
         return Vec::new();
     }
-    let name = scout.object(front);
-    let behind = scout.seen().all(|(_, seen)| seen.from_behind);
+    let name = scene_probe.object(front);
+    let behind = scene_probe.hits().all(|(_, hit)| hit.from_behind);
     // The rays of some cameras are infinite lines, which also hit objects behind the camera.
-    let backwards = !has_eye(scout) && scout.seen().all(|(_, seen)| seen.t < 0.0);
+    let backwards = !has_eye(scene_probe) && scene_probe.hits().all(|(_, hit)| hit.t < 0.0);
     // If the visible side is the back, the camera is probably on the wrong side instead.
-    let turned = (is_plane && !behind).then(|| offset_turned(scout, front)).flatten();
+    let turned = (is_plane && !behind).then(|| negated_offset(scene_probe, front)).flatten();
     let help = match (is_plane, behind) {
         _ if backwards => {
             "it is behind the camera's `center`, but this camera's rays are infinite lines and hit objects behind it first: move \
@@ -61,34 +61,37 @@ pub(super) fn hidden(scout: &SceneProbe) -> Vec<Finding> {
         _ => "move it, make it smaller, or move the camera",
     };
     let diagnostic = Diagnostic::warning(format!("the {name} hides everything else"))
-        .at(scout.object_span(front))
-        .label(format!("covers {} of the picture", percent(covered, scout.probes.len())))
+        .at(scene_probe.object_span(front))
+        .label(format!("covers {} of the picture", percent(covered, scene_probe.probes.len())))
         .effect(format!("{} behind it are invisible", counted(hidden, "object", "objects")))
         .help(help);
     let diagnostic = match turned {
         Some((place, text)) => diagnostic.fix(place, text),
         None => diagnostic,
     };
-    vec![Finding::from(diagnostic).whole(true)]
+    vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }
 
 /// Reports one object close to the camera that covers most of the picture and the other objects.
-fn in_the_way(scout: &SceneProbe) -> Vec<Finding> {
-    let objects = scout.world().objects();
+fn obstructing_object(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let objects = scene_probe.world().objects();
     let mut counts = vec![0; objects.len()];
     let mut nearest = vec![f32::INFINITY; objects.len()];
-    for (probe, seen) in scout.seen() {
+    for (probe, seen) in scene_probe.hits() {
         counts[seen.object as usize] += 1;
         nearest[seen.object as usize] = nearest[seen.object as usize].min(seen.t * probe.ray.dir.length());
     }
     let Some(front) = (0..objects.len()).max_by_key(|&i| counts[i]) else { return Vec::new() };
-    if counts[front] * 10 < scout.probes.len() * 5 || scout.is_glass(front as u32) || !hidden(scout).is_empty() {
+    if counts[front] * 10 < scene_probe.probes.len() * 5
+        || scene_probe.is_glass(front as u32)
+        || !hidden(scene_probe).is_empty()
+    {
         return Vec::new();
     }
     let Some(bounds) = objects[front].bounds() else { return Vec::new() };
     // A room or a table contains the other objects. An obstacle is far in front of them and hides
     // almost all of them.
-    let eye = scout.world().camera().pose().center;
+    let eye = scene_probe.world().camera().pose().center;
     let others: Vec<usize> = (0..objects.len()).filter(|&i| i != front && objects[i].bounds().is_some()).collect();
     let away = |i: &usize| objects[*i].bounds().map_or(f32::INFINITY, |own| (own.center() - eye).length());
     let nearest_other = others.iter().map(away).fold(f32::INFINITY, f32::min);
@@ -97,8 +100,8 @@ fn in_the_way(scout: &SceneProbe) -> Vec<Finding> {
     }
     let (mut looked, mut covered) = (0, 0);
     for &other in &others {
-        let rays = points(&objects[other]).into_iter().flat_map(|point| rays_to(scout, point));
-        for hit in rays.filter_map(|ray| scout.world().closest(&ray, &mut ())) {
+        let rays = points(&objects[other]).into_iter().flat_map(|point| rays_to(scene_probe, point));
+        for hit in rays.filter_map(|ray| scene_probe.world().closest(&ray, &mut ())) {
             looked += usize::from(hit.object as usize == other || hit.object as usize == front);
             covered += usize::from(hit.object as usize == front);
         }
@@ -106,31 +109,31 @@ fn in_the_way(scout: &SceneProbe) -> Vec<Finding> {
     if looked == 0 || covered * 10 < looked * 7 || bounds.contains(eye) {
         return Vec::new();
     }
-    let diagnostic = Diagnostic::note(format!("the {} covers most of the picture", scout.object(front as u32)))
-        .at(scout.object_span(front as u32))
-        .label(format!("{} of it", percent(counts[front], scout.probes.len())))
+    let diagnostic = Diagnostic::note(format!("the {} covers most of the picture", scene_probe.object(front as u32)))
+        .at(scene_probe.object_span(front as u32))
+        .label(format!("{} of it", percent(counts[front], scene_probe.probes.len())))
         .effect(format!("the others are hardly visible: it covers {} of them", percent(covered, looked)))
         .help(format!(
             "it is {} in front of the camera: move it away, make it smaller, or move the camera back",
             number(nearest[front])
         ));
-    vec![Finding::from(diagnostic).whole(true)]
+    vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }
 
 /// Reports a plane between the camera and all bounded objects, even if other objects, such as the
 /// sky, are visible beside it.
-pub(super) fn below_plane(scout: &SceneProbe) -> Vec<Finding> {
-    let objects = scout.world().objects();
+pub(super) fn below_plane(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let objects = scene_probe.world().objects();
     let mut front = None;
-    let empty = super::objects::nothing_of(scout);
+    let empty = super::objects::without_surface(scene_probe);
     let there =
         |(i, (object, _)): &(usize, (&Object, &Visibility))| object.bounds().is_some() && !empty.contains(&(*i as u32));
-    for (_, (object, sight)) in objects.iter().zip(scout.visibilities()).enumerate().filter(there) {
+    for (_, (object, sight)) in objects.iter().zip(scene_probe.visibilities()).enumerate().filter(there) {
         let by = match sight {
             Visibility::Hidden(by) => {
-                Some(*by).filter(|by| objects[*by as usize].bounds().is_none() && !scout.is_glass(*by))
+                Some(*by).filter(|by| objects[*by as usize].bounds().is_none() && !scene_probe.is_glass(*by))
             }
-            Visibility::Outside if has_eye(scout) => plane_before(scout, object),
+            Visibility::Outside if has_eye(scene_probe) => plane_before(scene_probe, object),
             _ => None,
         };
         if by.is_none() || front.is_some_and(|known| Some(known) != by) {
@@ -140,42 +143,42 @@ pub(super) fn below_plane(scout: &SceneProbe) -> Vec<Finding> {
         front = by;
     }
     let front = match front {
-        Some(front) => Some(front).filter(|_| hidden(scout).is_empty()),
-        None => ceiling(scout),
+        Some(front) => Some(front).filter(|_| hidden(scene_probe).is_empty()),
+        None => ceiling(scene_probe),
     };
     let Some(front) = front else { return Vec::new() };
-    let lid = ceiling(scout) == Some(front);
+    let lid = ceiling(scene_probe) == Some(front);
     let what =
         if lid { "everything, the camera too, is below the" } else { "all other objects are on the far side of the" };
-    if let Some(raised) = raised(scout, front).filter(|_| !lid) {
-        let pose = scout.world().camera().pose();
-        let diagnostic = Diagnostic::warning(format!("the camera is below the {}", scout.object(front)))
-            .related(scout.object_span(front), "the other objects stand on it")
+    if let Some(raised) = mirrored_eye(scene_probe, front).filter(|_| !lid) {
+        let pose = scene_probe.world().camera().pose();
+        let diagnostic = Diagnostic::warning(format!("the camera is below the {}", scene_probe.object(front)))
+            .related(scene_probe.object_span(front), "the other objects stand on it")
             .effect("only the plane and the background are visible")
             .help(format!("move it to the side of the objects: try `center {}`", vector(raised)));
-        let span = scout.subject.scene.camera_span;
-        let value = scout.value(span, &["center"]).filter(|_| raised != pose.center);
-        let diagnostic = scout.at_value(diagnostic.fix_at(value, vector(raised)), span, &["center"]);
-        return vec![Finding::from(diagnostic).whole(true)];
+        let span = scene_probe.input.scene.camera_span;
+        let value = scene_probe.field_span(span, &["center"]).filter(|_| raised != pose.center);
+        let diagnostic = scene_probe.at_value(diagnostic.fix_at(value, vector(raised)), span, &["center"]);
+        return vec![Finding::from(diagnostic).affecting_whole_picture(true)];
     }
-    let diagnostic = Diagnostic::warning(format!("{what} {}", scout.object(front)))
-        .at(scout.object_span(front))
+    let diagnostic = Diagnostic::warning(format!("{what} {}", scene_probe.object(front)))
+        .at(scene_probe.object_span(front))
         .effect(match lid {
             true => "it acts as a ceiling, visible from its back, and blocks the light from above",
             false => "only the plane and the background are visible",
         })
         .help("a plane is at p · normal = offset: check its `offset`, or the height of the objects");
-    let diagnostic = match offset_turned(scout, front) {
+    let diagnostic = match negated_offset(scene_probe, front) {
         Some((place, text)) => diagnostic.fix(place, text),
         None => diagnostic,
     };
-    vec![Finding::from(diagnostic).whole(true)]
+    vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }
 
 /// Returns the plane between the camera and an object. It hides the object whatever the camera's
 /// direction.
-pub(super) fn plane_before(scout: &SceneProbe, object: &Object) -> Option<u32> {
-    let world = scout.world();
+pub(super) fn plane_before(scene_probe: &SceneProbe, object: &Object) -> Option<u32> {
+    let world = scene_probe.world();
     let (eye, place) = (world.camera().pose().center, object.bounds().filter(|b| !b.is_empty())?.center());
     let way = Ray { t_max: 1.0, ..Ray::new(eye, place - eye) };
     world.hits_of_each(&way).map(|hit| hit.object).find(|&other| world.objects()[other as usize].bounds().is_none())
@@ -183,19 +186,20 @@ pub(super) fn plane_before(scout: &SceneProbe, object: &Object) -> Option<u32> {
 
 /// Returns the camera's mirror image in a plane, if the camera is below the plane and all objects
 /// stand on it.
-fn raised(scout: &SceneProbe, object: u32) -> Option<Vec3> {
-    let (n, d) = ground(scout, object)?;
-    let eye = scout.world().camera().pose().center;
+fn mirrored_eye(scene_probe: &SceneProbe, object: u32) -> Option<Vec3> {
+    let (n, d) = world_plane(scene_probe, object)?;
+    let eye = scene_probe.world().camera().pose().center;
     let height = |p: Vec3| p.dot(n) - d;
-    let objects: Vec<[Vec3; 8]> = scout.world().objects().iter().filter_map(|o| Some(o.bounds()?.corners())).collect();
-    let size = scout.world().bounds().size().max_element();
+    let objects: Vec<[Vec3; 8]> =
+        scene_probe.world().objects().iter().filter_map(|o| Some(o.bounds()?.corners())).collect();
+    let size = scene_probe.world().bounds().size().max_element();
     let lowest = objects.iter().flatten().map(|p| height(*p)).fold(f32::INFINITY, f32::min);
     (lowest > -0.05 * size && lowest < 0.05 * size && height(eye) < 0.0).then(|| eye - 2.0 * height(eye) * n)
 }
 
 /// Returns the normal and offset of a plane in world space.
-pub(super) fn ground(scout: &SceneProbe, object: u32) -> Option<(Vec3, f32)> {
-    let object = &scout.world().objects()[object as usize];
+pub(super) fn world_plane(scene_probe: &SceneProbe, object: u32) -> Option<(Vec3, f32)> {
+    let object = &scene_probe.world().objects()[object as usize];
     let plane = plane(object)?;
     let on = object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(f32::MIN_POSITIVE)));
     let n = object.to_world.as_ref().map_or(plane.normal, |m| m.normal(plane.normal)).normalize_or(Vec3::Y);
@@ -203,8 +207,8 @@ pub(super) fn ground(scout: &SceneProbe, object: u32) -> Option<(Vec3, f32)> {
 }
 
 /// Returns the only plane of the scene, if it faces up and the camera and all objects are below it.
-fn ceiling(scout: &SceneProbe) -> Option<u32> {
-    let world = scout.world();
+fn ceiling(scene_probe: &SceneProbe) -> Option<u32> {
+    let world = scene_probe.world();
     let planes = world.objects().iter().enumerate().filter(|(_, object)| object.bounds().is_none());
     let planes = planes.filter(|(_, object)| object.to_world.is_none());
     let mut planes = planes.filter_map(|(i, object)| Some((i as u32, plane(object)?)));
@@ -214,20 +218,21 @@ fn ceiling(scout: &SceneProbe) -> Option<u32> {
     let faces_up = plane.normal.normalize_or_zero().dot(pose.up.normalize_or_zero()) > 0.7;
     let objects = world.bounds();
     let all = !objects.is_empty() && objects.corners().iter().all(|corner| below(*corner)) && below(pose.center);
-    let seen = scout.seen().any(|(_, seen)| seen.object == number);
-    (faces_up && all && seen && !matches!(world.camera(), Camera::Orthographic(_))).then_some(number)
+    let hit = scene_probe.hits().any(|(_, hit)| hit.object == number);
+    (faces_up && all && hit && !matches!(world.camera(), Camera::Orthographic(_))).then_some(number)
 }
 
 /// Returns the span of a plane's offset and the negated value, if negating it puts the camera and
 /// the objects on the same side.
-fn offset_turned(scout: &SceneProbe, object: u32) -> Option<(Span, String)> {
-    let plane_object = &scout.world().objects()[object as usize];
+fn negated_offset(scene_probe: &SceneProbe, object: u32) -> Option<(Span, String)> {
+    let plane_object = &scene_probe.world().objects()[object as usize];
     let plane = plane(plane_object)?;
     if plane_object.to_world.is_some() || plane.offset == 0.0 {
         return None;
     }
-    let place = scout.value(scout.object_span(object), &["offset"])?;
+    let place = scene_probe.field_span(scene_probe.object_span(object), &["offset"])?;
     let above = |p: Vec3| p.dot(plane.normal) > -plane.offset;
-    let objects = scout.world().bounds();
-    (above(objects.center()) == above(scout.world().camera().pose().center)).then(|| (place, number(-plane.offset)))
+    let objects = scene_probe.world().bounds();
+    (above(objects.center()) == above(scene_probe.world().camera().pose().center))
+        .then(|| (place, number(-plane.offset)))
 }

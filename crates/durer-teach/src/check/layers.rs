@@ -1,39 +1,41 @@
 //! Checks of layered materials: black metals, glass that absorbs all light, and invisible surfaces.
 
-use super::finding::{Finding, MAX_SOUGHT, number as number_word, vector};
+use super::finding::{Finding, MAX_FINDINGS, number as number_word, vector};
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Walls;
 use durer_scene::math::fp;
-use durer_scene::scene::{Material as Written, Spanned};
+use durer_scene::scene::{Material as ParsedMaterial, Spanned};
 
 /// Reflectances and transmittances below this count as black.
 const BLACK: f32 = 0.002;
 
 /// Returns the layered materials that objects use: index, description in the scene file, and
 /// parameters.
-pub(super) fn layers<'s>(scout: &SceneProbe<'s>) -> Vec<(usize, &'s Spanned<Written>, &'s PrincipledMaterial)> {
-    let used = |number: usize| scout.world().objects().iter().any(|object| object.material as usize == number);
-    let all = scout.subject.scene.materials.iter().enumerate();
-    let own = all.filter_map(|(number, written)| match &written.value {
-        Written::Principled(layers) if used(number) => Some((number, written, &**layers)),
+pub(super) fn layers<'s>(
+    scene_probe: &SceneProbe<'s>,
+) -> Vec<(usize, &'s Spanned<ParsedMaterial>, &'s PrincipledMaterial)> {
+    let used = |number: usize| scene_probe.world().objects().iter().any(|object| object.material as usize == number);
+    let all = scene_probe.input.scene.materials.iter().enumerate();
+    let own = all.filter_map(|(number, material)| match &material.value {
+        ParsedMaterial::Principled(layers) if used(number) => Some((number, material, &**layers)),
         _ => None,
     });
-    own.take(MAX_SOUGHT).collect()
+    own.take(MAX_FINDINGS).collect()
 }
 
 /// Returns the thickness of the thickest object with a material: the smallest side of its bounds.
-pub(super) fn thickness(scout: &SceneProbe, material: usize) -> Option<f32> {
-    let made = scout.world().objects().iter().filter(|object| object.material as usize == material);
-    let sides = made.filter_map(|object| Some(object.bounds()?.size().min_element()));
+pub(super) fn thickness(scene_probe: &SceneProbe, material: usize) -> Option<f32> {
+    let users = scene_probe.world().objects().iter().filter(|object| object.material as usize == material);
+    let sides = users.filter_map(|object| Some(object.bounds()?.size().min_element()));
     sides.max_by(f32::total_cmp).filter(|side| *side > 0.0)
 }
 
 /// Reports layered materials that reflect no light.
-pub(super) fn black(scout: &SceneProbe) -> Vec<Finding> {
-    let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
-        if scout.material_rays()[number] == 0 {
+pub(super) fn black(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let say = |(number, material, m): (usize, &Spanned<ParsedMaterial>, &PrincipledMaterial)| {
+        if scene_probe.material_rays()[number] == 0 {
             return None;
         }
         let base = m.base_weight * m.base_color.max_element();
@@ -60,14 +62,14 @@ pub(super) fn black(scout: &SceneProbe) -> Vec<Finding> {
             .effect("its objects are black under any light")
             .help(format!("`{word}` sets {what}; for example, `{word} 0.8 0.8 0.8` gives a light grey"));
         let words = [word, "baseWeight"];
-        Some(Finding::from(scout.at_value(diagnostic, written.span, &words)))
+        Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &words)))
     };
-    layers(scout).into_iter().filter_map(say).collect()
+    layers(scene_probe).into_iter().filter_map(say).collect()
 }
 
 /// Reports glass that transmits nothing.
-pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
-    let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
+pub(super) fn opaque_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let say = |(number, material, m): (usize, &Spanned<ParsedMaterial>, &PrincipledMaterial)| {
         let color = m.transmission_color.max_element();
         if m.transmission_weight < 0.5 || m.transmission_scatter.max_element() > 0.0 || color >= 1.0 {
             return None;
@@ -81,7 +83,7 @@ pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
             })?
         } else {
             // Use the thickness as the length of a path through a round body.
-            let thick = thickness(scout, number)?;
+            let thick = thickness(scene_probe, number)?;
             let left = fp::exp(fp::ln(color.max(1e-6)) * 0.6 * thick / m.transmission_depth);
             (left < BLACK).then(|| {
                 let depth = number_word(thick);
@@ -97,19 +99,19 @@ pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
                     diagnostic
                         .effect(effect)
                         .help(help)
-                        .fix_at(scout.value(written.span, &["transmissionDepth"]), depth),
+                        .fix_at(scene_probe.field_span(material.span, &["transmissionDepth"]), depth),
                     "transmissionDepth",
                 )
             })?
         };
-        Some(Finding::from(scout.at_value(diagnostic, written.span, &[word])))
+        Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &[word])))
     };
-    layers(scout).into_iter().filter_map(say).collect()
+    layers(scene_probe).into_iter().filter_map(say).collect()
 }
 
 /// Reports glass with an index of refraction of 1 or of an impossible value.
-pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
-    let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
+pub(super) fn odd_index(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let say = |(number, material, m): (usize, &Spanned<ParsedMaterial>, &PrincipledMaterial)| {
         let clear = m.transmission_color.min_element() >= 0.99 && m.transmission_scatter.max_element() == 0.0;
         let plain =
             m.coat_weight == 0.0 && m.fuzz_weight == 0.0 && m.emission_luminance == 0.0 && m.thin_film_weight == 0.0;
@@ -128,23 +130,23 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
         };
         let help = "water has 1.33, glass 1.5, diamond 2.4: `specularIor 1.5`";
         let diagnostic = Diagnostic::warning(message).effect(effect).help(help);
-        let diagnostic = diagnostic.fix_at(scout.value(written.span, &["specularIor"]), "1.5");
-        Some(Finding::from(scout.at_value(diagnostic, written.span, &["specularIor"])))
+        let diagnostic = diagnostic.fix_at(scene_probe.field_span(material.span, &["specularIor"]), "1.5");
+        Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &["specularIor"])))
     };
-    layers(scout).into_iter().filter_map(say).collect()
+    layers(scene_probe).into_iter().filter_map(say).collect()
 }
 
 /// Reports surfaces with zero opacity.
-pub(super) fn not_there(scout: &SceneProbe) -> Vec<Finding> {
-    let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
+pub(super) fn zero_opacity(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let say = |(number, material, m): (usize, &Spanned<ParsedMaterial>, &PrincipledMaterial)| {
         if m.opacity > 0.01 {
             return None;
         }
         let diagnostic = Diagnostic::warning(format!("material {number} has the `opacity` {}", number_word(m.opacity)))
             .effect("its objects are invisible: light passes through unchanged")
             .help("`opacity` is the fraction of the surface that is present, from 0 to 1");
-        let value = scout.value(written.span, &["opacity"]);
-        Some(Finding::from(scout.at_value(diagnostic.fix_at(value, "1"), written.span, &["opacity"])))
+        let value = scene_probe.field_span(material.span, &["opacity"]);
+        Some(Finding::from(scene_probe.at_value(diagnostic.fix_at(value, "1"), material.span, &["opacity"])))
     };
-    layers(scout).into_iter().filter_map(say).collect()
+    layers(scene_probe).into_iter().filter_map(say).collect()
 }

@@ -13,32 +13,32 @@ use durer_scene::math::{Aabb, Vec3, fp};
 /// Diameter of blur discs above which the picture is blurred everywhere, as a share of its size.
 const MAX_BLUR: f32 = 0.08;
 /// Diameter of blur discs below which a point looks sharp, as a share of the picture's size.
-const SHARP: f32 = 0.02;
+const MAX_SHARP_BLUR: f32 = 0.02;
 /// Aperture that no lens exceeds, as a share of the focus distance.
-const WIDEST: f32 = 0.4;
+const MAX_APERTURE: f32 = 0.4;
 /// Aperture that few lenses exceed, as a share of the distance to the objects.
-const FITTING: f32 = 0.12;
+const USUAL_MAX_APERTURE: f32 = 0.12;
 /// Eye separation above which the two images do not fuse, as a share of the distance.
-const FURTHEST: f32 = 0.5;
+const MAX_SEPARATION: f32 = 0.5;
 
 /// Returns the diameter of the blur disc of each visible point, as a share of the picture's larger
 /// side, and the point's depth.
-fn blurs(scout: &SceneProbe, camera: &ThinLensCamera) -> Vec<(f32, f32)> {
-    let forward = scout.world().camera_frame().forward;
-    let depth = |(probe, seen): (&Probe, &ProbeHit)| seen.t * probe.ray.dir.dot(forward);
+fn blurs(scene_probe: &SceneProbe, camera: &ThinLensCamera) -> Vec<(f32, f32)> {
+    let forward = scene_probe.world().camera_frame().forward;
+    let depth = |(probe, hit): (&Probe, &ProbeHit)| hit.t * probe.ray.dir.dot(forward);
     let (sine, cosine) = fp::sin_cos_degrees(f64::from(0.5 * camera.angle));
     let width = 2.0 * (sine / cosine) as f32;
     let blur = |z: f32| camera.aperture * (z - camera.focus_distance).abs() / (camera.focus_distance * z * width);
-    scout.seen().map(depth).filter(|z| *z > 0.0).map(|z| (blur(z), z)).collect()
+    scene_probe.hits().map(depth).filter(|z| *z > 0.0).map(|z| (blur(z), z)).collect()
 }
 
 /// Reports a lens that blurs everything visible.
-pub(super) fn out_of_focus(scout: &SceneProbe) -> Vec<Finding> {
-    let Camera::ThinLens(camera) = scout.world().camera() else { return Vec::new() };
-    let all = blurs(scout, camera);
+pub(super) fn out_of_focus(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let Camera::ThinLens(camera) = scene_probe.world().camera() else { return Vec::new() };
+    let all = blurs(scene_probe, camera);
     let depths: Vec<f32> = all.iter().map(|(_, depth)| *depth).collect();
     let least = all.iter().map(|(blur, _)| *blur).fold(f32::INFINITY, f32::min);
-    if !wide_aperture(scout).is_empty() || depths.is_empty() || least < MAX_BLUR {
+    if !wide_aperture(scene_probe).is_empty() || depths.is_empty() || least < MAX_BLUR {
         return Vec::new();
     }
     let mut sorted = depths;
@@ -52,20 +52,23 @@ pub(super) fn out_of_focus(scout: &SceneProbe) -> Vec<Finding> {
     let diagnostic = Diagnostic::warning(message)
         .effect(format!("every point becomes a disc of at least {:.0} % of the picture's width", 100.0 * least))
         .help(format!("`focusDistance {middle}` is the distance of most objects; a smaller `aperture` blurs less"));
-    let span = scout.subject.scene.camera_span;
-    vec![Finding::from(scout.at_value(diagnostic, span, &["focusDistance", "aperture"])).whole(true)]
+    let span = scene_probe.input.scene.camera_span;
+    vec![
+        Finding::from(scene_probe.at_value(diagnostic, span, &["focusDistance", "aperture"]))
+            .affecting_whole_picture(true),
+    ]
 }
 
 /// Reports an aperture larger than that of any lens, which blurs everything except one plane.
-pub(super) fn wide_aperture(scout: &SceneProbe) -> Vec<Finding> {
-    let Camera::ThinLens(camera) = scout.world().camera() else { return Vec::new() };
-    let all = blurs(scout, camera);
-    let sharp = all.iter().filter(|(blur, _)| *blur < SHARP).count();
+pub(super) fn wide_aperture(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let Camera::ThinLens(camera) = scene_probe.world().camera() else { return Vec::new() };
+    let all = blurs(scene_probe, camera);
+    let sharp = all.iter().filter(|(blur, _)| *blur < MAX_SHARP_BLUR).count();
     // If the aperture fits the distance of most objects, the focus distance is wrong instead.
     let mut depths: Vec<f32> = all.iter().map(|(_, depth)| *depth).collect();
     depths.sort_by(f32::total_cmp);
-    let fits = depths.get(depths.len() / 2).is_some_and(|middle| camera.aperture < FITTING * middle);
-    if all.is_empty() || camera.aperture < WIDEST * camera.focus_distance || sharp * 10 > all.len() || fits {
+    let fits = depths.get(depths.len() / 2).is_some_and(|middle| camera.aperture < USUAL_MAX_APERTURE * middle);
+    if all.is_empty() || camera.aperture < MAX_APERTURE * camera.focus_distance || sharp * 10 > all.len() || fits {
         return Vec::new();
     }
     let mut sizes: Vec<f32> = all.iter().map(|(blur, _)| *blur).collect();
@@ -85,22 +88,22 @@ pub(super) fn wide_aperture(scout: &SceneProbe) -> Vec<Finding> {
             "`aperture` is the diameter of the lens in world units, not an f-number; a usual value is \
              `aperture {usual}`"
         ));
-    let span = scout.subject.scene.camera_span;
-    let diagnostic = diagnostic.fix_at(scout.value(span, &["aperture"]), usual);
-    vec![Finding::from(scout.at_value(diagnostic, span, &["aperture"])).whole(true)]
+    let span = scene_probe.input.scene.camera_span;
+    let diagnostic = diagnostic.fix_at(scene_probe.field_span(span, &["aperture"]), usual);
+    vec![Finding::from(scene_probe.at_value(diagnostic, span, &["aperture"])).affecting_whole_picture(true)]
 }
 
 /// Reports a film shift that moves everything out of the picture.
-pub(super) fn shifted(scout: &SceneProbe, middle: Vec3) -> Option<Diagnostic> {
-    let Camera::ThinLens(camera) = scout.world().camera() else { return None };
-    let span = scout.subject.scene.camera_span;
+pub(super) fn film_shift(scene_probe: &SceneProbe, middle: Vec3) -> Option<Diagnostic> {
+    let Camera::ThinLens(camera) = scene_probe.world().camera() else { return None };
+    let span = scene_probe.input.scene.camera_span;
     let fields = [("shiftRight", camera.shift_right), ("shiftUp", camera.shift_up)];
     let (word, shift) =
         fields.into_iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).filter(|(_, s)| s.abs() > 0.5)?;
     let to = middle - camera.center;
-    let forward = to.dot(scout.world().camera_frame().forward);
+    let forward = to.dot(scene_probe.world().camera_frame().forward);
     let (sine, cosine) = fp::sin_cos_degrees(f64::from(0.5 * camera.angle));
-    let across = (to - forward * scout.world().camera_frame().forward).length() / forward.max(1e-6);
+    let across = (to - forward * scene_probe.world().camera_frame().forward).length() / forward.max(1e-6);
     (forward > 0.0 && across < (sine / cosine) as f32).then(|| {
         let diagnostic = Diagnostic::warning(format!("the film shift misses everything: `{word} {}`", number(shift)))
             .effect("the objects in front of the lens are outside the picture")
@@ -108,14 +111,14 @@ pub(super) fn shifted(scout: &SceneProbe, middle: Vec3) -> Option<Diagnostic> {
                 "the shift is relative to half the picture's larger side, so 1 moves the center to the edge: try \
                    0 or 0.3",
             );
-        let value = scout.value(span, &[word]);
-        scout.at_value(diagnostic.fix_at(value, "0"), span, &[word])
+        let value = scene_probe.field_span(span, &[word]);
+        scene_probe.at_value(diagnostic.fix_at(value, "0"), span, &[word])
     })
 }
 
 /// Reports a stereo camera whose eyes are too far apart.
-pub(super) fn eyes_apart(scout: &SceneProbe) -> Vec<Finding> {
-    let world = scout.world();
+pub(super) fn eyes_apart(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
     let (separation, target) = match world.camera() {
         Camera::Stereo(camera) => (camera.separation, Some(camera.convergence)),
         Camera::Cave(camera) => (camera.separation, None),
@@ -123,17 +126,17 @@ pub(super) fn eyes_apart(scout: &SceneProbe) -> Vec<Finding> {
         Camera::Equirectangular(camera) => (camera.separation, None),
         _ => return Vec::new(),
     };
-    let span = scout.subject.scene.camera_span;
-    if scout.value(span, &["separation"]).is_none() {
+    let span = scene_probe.input.scene.camera_span;
+    if scene_probe.field_span(span, &["separation"]).is_none() {
         return Vec::new();
     }
     let eye = world.camera().pose().center;
-    let mut depths: Vec<f32> = scout.seen().map(|(probe, seen)| (probe.ray.at(seen.t) - eye).length()).collect();
+    let mut depths: Vec<f32> = scene_probe.hits().map(|(probe, hit)| (probe.ray.at(hit.t) - eye).length()).collect();
     depths.sort_by(f32::total_cmp);
     let bounds = world.bounds();
     let away = if bounds.is_empty() { f32::INFINITY } else { (bounds.center() - eye).length() };
     let middle = depths.get(depths.len() / 2).copied().unwrap_or(away).min(away).min(target.unwrap_or(f32::INFINITY));
-    if !middle.is_finite() || separation < FURTHEST * middle || middle <= 0.0 {
+    if !middle.is_finite() || separation < MAX_SEPARATION * middle || middle <= 0.0 {
         return Vec::new();
     }
     let millimetres = (50.0..=80.0).contains(&separation);
@@ -148,32 +151,32 @@ pub(super) fn eyes_apart(scout: &SceneProbe) -> Vec<Finding> {
         "`separation` is in scene units{}; one thirtieth of the distance is usual: try `separation {usual}`",
         if millimetres { ", and this value may be in millimetres" } else { "" }
     ));
-    let diagnostic = diagnostic.fix_at(scout.value(span, &["separation"]), usual);
-    vec![Finding::from(scout.at_value(diagnostic, span, &["separation"])).whole(true)]
+    let diagnostic = diagnostic.fix_at(scene_probe.field_span(span, &["separation"]), usual);
+    vec![Finding::from(scene_probe.at_value(diagnostic, span, &["separation"])).affecting_whole_picture(true)]
 }
 
 /// Reports planes that are seen edge-on and are therefore invisible.
-pub(super) fn edge_on(scout: &SceneProbe) -> Vec<Finding> {
-    let world = scout.world();
+pub(super) fn edge_on(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
     let (eye, forward) = (world.camera().pose().center, world.camera_frame().forward);
     let orthographic = matches!(world.camera(), Camera::Orthographic(_));
-    if !orthographic && !super::visibility::has_eye(scout) {
+    if !orthographic && !super::visibility::has_eye(scene_probe) {
         return Vec::new();
     }
     let objects = world.bounds();
     let size = if objects.is_empty() { 1.0 } else { objects.size().max_element() };
-    let mut found = Vec::new();
-    for (number, object) in world.objects().iter().enumerate().take(super::finding::MAX_SOUGHT) {
+    let mut findings = Vec::new();
+    for (number, object) in world.objects().iter().enumerate().take(super::finding::MAX_FINDINGS) {
         let Some(plane) = plane(object) else { continue };
         let on =
             object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(f32::MIN_POSITIVE)));
         let n = object.to_world.as_ref().map_or(plane.normal, |m| m.normal(plane.normal)).normalize_or(Vec3::Y);
         let off = (eye - on).dot(n);
         let edge = if orthographic { forward.dot(n).abs() < 1e-5 } else { off.abs() < 1e-5 * size };
-        if !edge || scout.visibilities()[number] == Visibility::Seen {
+        if !edge || scene_probe.visibilities()[number] == Visibility::Visible {
             continue;
         }
-        let name = scout.object(number as u32);
+        let name = scene_probe.object(number as u32);
         let diagnostic = match orthographic {
             true => Diagnostic::note(format!("the camera looks along the {name}"))
                 .help("from there it is at most a line: tilt the camera's `direction` towards it"),
@@ -181,22 +184,26 @@ pub(super) fn edge_on(scout: &SceneProbe) -> Vec<Finding> {
                 // The normal on the side of the objects.
                 let side = if (objects.center() - on).dot(n) < 0.0 { -n } else { n };
                 let raised = super::finding::vector(eye + 0.2 * size * side);
-                let value = scout.value(scout.subject.scene.camera_span, &["center"]);
+                let value = scene_probe.field_span(scene_probe.input.scene.camera_span, &["center"]);
                 Diagnostic::warning(format!("the camera is in the plane of the {name}"))
                     .help(format!("move it to one side: try `center {raised}`"))
                     .fix_at(value, raised)
             }
         };
         let diagnostic = diagnostic.effect("the plane is seen edge-on, so it is invisible");
-        let diagnostic = diagnostic.related(scout.object_span(number as u32), "this plane");
-        found.push(Finding::from(scout.at_value(diagnostic, scout.subject.scene.camera_span, &["center"])));
+        let diagnostic = diagnostic.related(scene_probe.object_span(number as u32), "this plane");
+        findings.push(Finding::from(scene_probe.at_value(
+            diagnostic,
+            scene_probe.input.scene.camera_span,
+            &["center"],
+        )));
     }
-    found
+    findings
 }
 
 /// Reports a scene so far from the origin that single precision cannot resolve its shapes.
-pub(super) fn far_origin(scout: &SceneProbe) -> Vec<Finding> {
-    let world = scout.world();
+pub(super) fn far_origin(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
     let sized = |b: Aabb| {
         (!b.is_empty() && b.size().is_finite()).then(|| (b.center().abs().max_element(), b.size().max_element()))
     };
@@ -226,14 +233,17 @@ pub(super) fn far_origin(scout: &SceneProbe) -> Vec<Finding> {
         number(far * f32::EPSILON)
     ))
     .help("move the scene to the origin: subtract one vector from all coordinates, including the camera's");
-    vec![Finding::from(scout.at_value(diagnostic, scout.subject.scene.camera_span, &["center"])).whole(true)]
+    vec![
+        Finding::from(scene_probe.at_value(diagnostic, scene_probe.input.scene.camera_span, &["center"]))
+            .affecting_whole_picture(true),
+    ]
 }
 
 /// Reports a scene smaller than the offset at which a dialect's program starts shadow rays.
-pub(super) fn below_epsilon(scout: &SceneProbe) -> Vec<Finding> {
-    let world = scout.world();
+pub(super) fn below_epsilon(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
     let Some(epsilon) = world.rules().epsilon else { return Vec::new() };
-    let settings = &scout.subject.job.settings;
+    let settings = &scene_probe.input.job.settings;
     let mut sizes: Vec<f32> = world
         .objects()
         .iter()
@@ -253,5 +263,5 @@ pub(super) fn below_epsilon(scout: &SceneProbe) -> Vec<Finding> {
             number(epsilon)
         ))
         .help(format!("scale the entire scene, including the camera and lights, by about {factor}"));
-    vec![Finding::from(diagnostic.at(scout.subject.scene.camera_span)).whole(true)]
+    vec![Finding::from(diagnostic.at(scene_probe.input.scene.camera_span)).affecting_whole_picture(true)]
 }

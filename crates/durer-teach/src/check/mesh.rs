@@ -5,42 +5,42 @@ use super::mesh_files::topology::Topology;
 use super::mesh_files::{MeshFile, models};
 use super::scene_probe::SceneProbe;
 use durer_diag::{Diagnostic, Severity, Span};
-use durer_render::world::{Material, Object as Placed};
+use durer_render::world::{Material, Object as CompiledObject};
 use durer_scene::dialect::Quirk;
 use durer_scene::math::Vec3;
 
 /// Fraction of zero-area triangles above which they are more than the poles of a surface of
 /// revolution.
-const MANY_FLAT: f32 = 0.03;
+const MAX_DEGENERATE: f32 = 0.03;
 
 /// Reports triangles with zero area.
-pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
-    let mut found = Vec::new();
-    for mesh in scout.meshes() {
+pub(super) fn degenerate(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for mesh in scene_probe.meshes() {
         let (flat, all) = (&mesh.topology.degenerate, mesh.data.triangles.len());
         let Some(&first) = flat.first() else { continue };
         let message =
             format!("{} of {all} of `{}` have no area", counted(flat.len(), "triangle", "triangles"), mesh.name.path);
-        let mut diagnostic = mesh.at_triangle(scout, Diagnostic::warning(message), first);
-        if (flat.len() as f32) < MANY_FLAT * all as f32 {
+        let mut diagnostic = mesh.at_triangle(scene_probe, Diagnostic::warning(message), first);
+        if (flat.len() as f32) < MAX_DEGENERATE * all as f32 {
             diagnostic.severity = durer_diag::Severity::Note;
         }
         let diagnostic = diagnostic
             .effect("they are invisible and leave holes in the surface")
             .help("do two corners have the same index or position? Remove these triangles, or fix their corners");
-        found.push(Finding::from(diagnostic).whole(flat.len() == all));
+        findings.push(Finding::from(diagnostic).affecting_whole_picture(flat.len() == all));
     }
-    found
+    findings
 }
 
 /// Reports holes and non-manifold edges in glass meshes, which must be closed.
-pub(super) fn open_glass(scout: &SceneProbe) -> Vec<Finding> {
-    let mut found = flat_glass(scout);
-    for mesh in scout.meshes() {
-        let Some(glass) = mesh.glass(scout) else { continue };
-        let Topology { open, crowded, some_edge, .. } = &mesh.topology;
+pub(super) fn open_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let mut findings = flat_glass(scene_probe);
+    for mesh in scene_probe.meshes() {
+        let Some(glass) = mesh.glass(scene_probe) else { continue };
+        let Topology { open, non_manifold, some_edge, .. } = &mesh.topology;
         let Some([p, q]) = some_edge.map(|edge| edge.map(vector)) else { continue };
-        let what = match (open, crowded) {
+        let what = match (open, non_manifold) {
             (0, n) => format!("has {} with more than two triangles", counted(*n, "edge", "edges")),
             (n, 0) => format!("is open: {} with one triangle only", counted(*n, "edge", "edges")),
             (n, m) => format!("is open: {} with one triangle, {m} with more than two", counted(*n, "edge", "edges")),
@@ -49,17 +49,17 @@ pub(super) fn open_glass(scout: &SceneProbe) -> Vec<Finding> {
             .at(glass.span)
             .effect("a ray that enters through a hole never leaves: refraction is wrong behind it")
             .help(format!("close it; one such edge goes from {p} to {q}"));
-        found.push(Finding::from(diagnostic));
+        findings.push(Finding::from(diagnostic));
     }
-    found
+    findings
 }
 
 /// Reports opaque meshes whose inside is visible through holes.
-pub(super) fn holes(scout: &SceneProbe) -> Vec<Finding> {
-    let mut found = Vec::new();
-    for mesh in scout.meshes().iter().filter(|mesh| mesh.glass(scout).is_none() && mesh.topology.open > 0) {
-        let seen = scout.seen().filter(|(_, seen)| mesh.is_shown_at(scout.object_span(seen.object)));
-        let (all, backs) = seen.fold((0, 0), |(all, backs), (_, s)| (all + 1, backs + usize::from(s.from_behind)));
+pub(super) fn holes(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for mesh in scene_probe.meshes().iter().filter(|mesh| mesh.glass(scene_probe).is_none() && mesh.topology.open > 0) {
+        let hit = scene_probe.hits().filter(|(_, hit)| mesh.is_used_at(scene_probe.object_span(hit.object)));
+        let (all, backs) = hit.fold((0, 0), |(all, backs), (_, s)| (all + 1, backs + usize::from(s.from_behind)));
         // Most rays hit the same side of an open sheet.
         if backs * 50 < all || backs * 10 > all * 7 || all == 0 {
             continue;
@@ -70,26 +70,26 @@ pub(super) fn holes(scout: &SceneProbe) -> Vec<Finding> {
             .at(mesh.name.span)
             .effect("its inside is visible through them")
             .help("are faces missing in the file?");
-        found.push(Finding::from(diagnostic));
+        findings.push(Finding::from(diagnostic));
     }
-    found
+    findings
 }
 
 /// Reports flat objects of glass, which have no interior.
-pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
+pub(super) fn flat_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
     use super::shapes::{shape, triangle};
     use durer_scene::describe::DescribedKind as _;
     use durer_scene::shape::Shape as _;
-    let world = scout.world();
-    let glass = |object: &&Placed| {
+    let world = scene_probe.world();
+    let glass = |object: &&CompiledObject| {
         let refracts = |material: &Material| matches!(material, Material::Phong(phong) if phong.transparent.max_element() > 0.0 && phong.ior != 1.0);
         world.materials().get(object.material as usize).is_some_and(refracts)
     };
-    let what = |object: &Placed| {
+    let what = |object: &CompiledObject| {
         let shape = shape(object)?;
         shape.flip().map(|_| shape.own_keyword().to_lowercase())
     };
-    let flat: Vec<(&Placed, String)> =
+    let flat: Vec<(&CompiledObject, String)> =
         world.objects().iter().filter(glass).filter_map(|object| Some((object, what(object)?))).collect();
     // Triangles that form a closed surface enclose an interior.
     let corners: Vec<_> = flat
@@ -99,8 +99,8 @@ pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
     let positions: Vec<_> = corners.iter().flatten().copied().collect();
     let triangles: Vec<[u32; 3]> = (0..corners.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let body = triangles.len() > 3 && Topology::of(&positions, &triangles).open == 0;
-    let open = |(_, what): &&(&Placed, String)| !(body && *what == "triangle");
-    let say = |(object, what): &(&Placed, String)| {
+    let open = |(_, what): &&(&CompiledObject, String)| !(body && *what == "triangle");
+    let say = |(object, what): &(&CompiledObject, String)| {
         let mut diagnostic = Diagnostic::warning(format!("this {what} is glass, but has no inside"))
             .at(object.span)
             .effect(
@@ -119,9 +119,9 @@ pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
 
 /// Returns the mesh files that have faces with more than three vertices: path, number of such
 /// faces, number of all faces, and span of the first such face.
-pub(super) fn large_faces<'s>(scout: &SceneProbe<'s>) -> Vec<(&'s str, usize, usize, Span)> {
+pub(super) fn large_faces<'s>(scene_probe: &SceneProbe<'s>) -> Vec<(&'s str, usize, usize, Span)> {
     let one = |mesh: &MeshFile<'s>| {
-        let bytes = scout.subject.files.bytes(mesh.file)?;
+        let bytes = scene_probe.input.files.bytes(mesh.file)?;
         let (mut start, mut all, mut large, mut first) = (0, 0, 0, None);
         for line in bytes.split_inclusive(|b| *b == b'\n') {
             if line.starts_with(b"f ") || line.starts_with(b"f\t") {
@@ -136,16 +136,16 @@ pub(super) fn large_faces<'s>(scout: &SceneProbe<'s>) -> Vec<(&'s str, usize, us
         }
         Some((&*mesh.name.path, large, all, first?))
     };
-    scout.meshes().iter().filter_map(one).collect()
+    scene_probe.meshes().iter().filter_map(one).collect()
 }
 
 /// Reports mesh files that a dialect's program misreads: it drops their last line, or assigns
 /// normals to other vertices than the faces do.
-pub(super) fn misread(scout: &SceneProbe) -> Vec<Finding> {
-    let rules = scout.world().rules();
-    let mut found = Vec::new();
-    for mesh in scout.meshes() {
-        let Some(bytes) = scout.subject.files.bytes(mesh.file).filter(|_| mesh.name.path.ends_with(".obj")) else {
+pub(super) fn quirky_files(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let rules = scene_probe.world().rules();
+    let mut findings = Vec::new();
+    for mesh in scene_probe.meshes() {
+        let Some(bytes) = scene_probe.input.files.bytes(mesh.file).filter(|_| mesh.name.path.ends_with(".obj")) else {
             continue;
         };
         let last = bytes.rsplit(|b| *b == b'\n').next().unwrap_or_default();
@@ -160,10 +160,10 @@ pub(super) fn misread(scout: &SceneProbe) -> Vec<Finding> {
                     .effect("this year's program loses that line: a face is missing, which leaves a hole")
                     .help("end the file with a newline")
                     .fix(end, "\n");
-            found.push(Finding::from(diagnostic));
+            findings.push(Finding::from(diagnostic));
         }
         if rules.has(Quirk::NormalsByVertex)
-            && let Some(span) = other_normal(bytes, mesh.file)
+            && let Some(span) = different_normal_index(bytes, mesh.file)
         {
             let diagnostic = Diagnostic::warning(format!("faces of `{}` use normal indices that differ from the vertex indices", mesh.name.path))
                 .at(span)
@@ -171,14 +171,14 @@ pub(super) fn misread(scout: &SceneProbe) -> Vec<Finding> {
                 .related(mesh.name.span, "the mesh is used here")
                 .effect("this year's program uses normal i for vertex i and ignores the faces: the shading is wrong")
                 .help("write one `vn` for each `v`, in the same order, and faces as `f 1//1 2//2 3//3`; or remove the `vn` lines");
-            found.push(Finding::from(diagnostic));
+            findings.push(Finding::from(diagnostic));
         }
     }
-    found
+    findings
 }
 
 /// Returns the first face with a normal index that differs from the vertex index.
-fn other_normal(bytes: &[u8], file: u32) -> Option<Span> {
+fn different_normal_index(bytes: &[u8], file: u32) -> Option<Span> {
     let mut start = 0;
     for line in bytes.split_inclusive(|b| *b == b'\n') {
         if line.starts_with(b"f ") {
@@ -198,65 +198,70 @@ fn other_normal(bytes: &[u8], file: u32) -> Option<Span> {
 }
 
 /// Reports triangles whose winding is opposite to that of their neighbours.
-pub(super) fn winding(scout: &SceneProbe) -> Vec<Finding> {
-    let mut found = Vec::new();
-    for mesh in scout.meshes().iter().filter(|mesh| mesh.odd_normals.is_none()) {
-        let (turned, all) = (&mesh.topology.turned, mesh.data.triangles.len());
-        let Some(&first) = turned.first().filter(|_| !mesh.is_beyond_notice(turned.len())) else { continue };
+pub(super) fn winding(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for mesh in scene_probe.meshes().iter().filter(|mesh| mesh.odd_normals.is_none()) {
+        let (turned, all) = (&mesh.topology.reversed, mesh.data.triangles.len());
+        let Some(&first) = turned.first().filter(|_| !mesh.is_negligible(turned.len())) else { continue };
         let message = format!(
             "{} of {all} of `{}` have the opposite winding to their neighbours",
             counted(turned.len(), "triangle", "triangles"),
             mesh.name.path
         );
         let diagnostic = mesh
-            .at_triangle(scout, Diagnostic::warning(message), first)
+            .at_triangle(scene_probe, Diagnostic::warning(message), first)
             .effect("their normals point to the opposite side, so patches are dark or wrongly shaded")
             .help("swap two vertices of each of them");
-        found.push(Finding::from(diagnostic));
+        findings.push(Finding::from(diagnostic));
     }
-    found
+    findings
 }
 
 /// Reports closed meshes whose normals point inwards.
-pub(super) fn inside_out(scout: &SceneProbe) -> Vec<Finding> {
-    let mut found = Vec::new();
-    for mesh in
-        scout.meshes().iter().filter(|mesh| mesh.is_inside_out() && !mesh.is_room(scout) && !mesh.is_hollow(scout))
+pub(super) fn inside_out(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for mesh in scene_probe
+        .meshes()
+        .iter()
+        .filter(|mesh| mesh.is_inside_out() && !mesh.is_room(scene_probe) && !mesh.is_hollow(scene_probe))
     {
         let by_file = mesh.odd_normals.is_some();
-        let seen = scout
-            .seen()
-            .filter(|(_, seen)| mesh.objects.iter().any(|o| scout.object_span(seen.object).start == o.span.start));
-        let most = seen.count() * 2 > scout.seen().count();
+        let hit = scene_probe
+            .hits()
+            .filter(|(_, hit)| mesh.objects.iter().any(|o| scene_probe.object_span(hit.object).start == o.span.start));
+        let most = hit.count() * 2 > scene_probe.hits().count();
         let diagnostic = Diagnostic::warning(format!("the normals of `{}` point inwards", mesh.name.path))
             .at(mesh.name.span)
             .effect("a ray tracer that does not flip them shades the inner side, black; as glass it refracts light the wrong way")
             .help(if by_file { "negate its `vn` vectors" } else { "order the vertices of its faces \
                                                                    counter-clockwise, as seen from outside" });
-        found.push(Finding::from(diagnostic).whole(most));
+        findings.push(Finding::from(diagnostic).affecting_whole_picture(most));
     }
-    found.extend(models_inside_out(scout));
-    found
+    findings.extend(models_inside_out(scene_probe));
+    findings
 }
 
 /// Reports closed meshes in model files whose triangles are clockwise when seen from outside.
-fn models_inside_out(scout: &SceneProbe) -> Vec<Finding> {
+fn models_inside_out(scene_probe: &SceneProbe) -> Vec<Finding> {
     // File formats reverse the winding under a mirroring transform, so skip mirrored meshes.
-    let kept = |object: &Placed| {
+    let kept = |object: &CompiledObject| {
         object.to_world.as_ref().is_none_or(|to_world| {
             to_world.vector(Vec3::X).cross(to_world.vector(Vec3::Y)).dot(to_world.vector(Vec3::Z)) > 0.0
         })
     };
-    let all = models(scout);
+    let all = models(scene_probe);
     let turned = all.iter().filter(|mesh| {
-        mesh.is_inside_out() && !mesh.is_room(scout) && !mesh.is_hollow(scout) && mesh.placed(scout).all(kept)
+        mesh.is_inside_out()
+            && !mesh.is_room(scene_probe)
+            && !mesh.is_hollow(scene_probe)
+            && mesh.compiled_objects(scene_probe).all(kept)
     });
     let say = |mesh: &MeshFile| {
-        let index = scout.world().objects().iter().position(|object| mesh.is_shown_at(object.span))? as u32;
-        let seen = scout.seen().filter(|(_, seen)| mesh.is_shown_at(scout.object_span(seen.object))).count();
-        let most = seen * 2 > scout.seen().count();
-        let diagnostic = Diagnostic::warning(format!("the {} is closed, but inside out", scout.object(index)))
-            .at(scout.object_span(index))
+        let index = scene_probe.world().objects().iter().position(|object| mesh.is_used_at(object.span))? as u32;
+        let hit = scene_probe.hits().filter(|(_, hit)| mesh.is_used_at(scene_probe.object_span(hit.object))).count();
+        let most = hit * 2 > scene_probe.hits().count();
+        let diagnostic = Diagnostic::warning(format!("the {} is closed, but inside out", scene_probe.object(index)))
+            .at(scene_probe.object_span(index))
             .effect("programs that cull back faces show its inside; as glass it refracts light the wrong way")
             .help("order the vertices of its faces counter-clockwise, as seen from outside");
         // Modelling programs often leave small inverted pieces, which are hardly visible.
@@ -267,29 +272,32 @@ fn models_inside_out(scout: &SceneProbe) -> Vec<Finding> {
 }
 
 /// Returns true if an object uses a mesh that `inside-out` reports.
-pub(super) fn shows_inside_out(scout: &SceneProbe, object: u32) -> bool {
-    let span = scout.object_span(object);
-    let turned =
-        scout.meshes().iter().filter(|mesh| mesh.is_inside_out() && !mesh.is_room(scout) && !mesh.is_hollow(scout));
+pub(super) fn is_inside_out_object(scene_probe: &SceneProbe, object: u32) -> bool {
+    let span = scene_probe.object_span(object);
+    let turned = scene_probe
+        .meshes()
+        .iter()
+        .filter(|mesh| mesh.is_inside_out() && !mesh.is_room(scene_probe) && !mesh.is_hollow(scene_probe));
     turned.into_iter().any(|mesh| mesh.objects.iter().any(|own| own.span.start == span.start))
 }
 
 /// Reports normals in a mesh file that contradict its faces, are missing for some faces, or have
 /// zero length.
-pub(super) fn given_normals(scout: &SceneProbe) -> Vec<Finding> {
-    let mut found = Vec::new();
-    for mesh in scout.meshes() {
+pub(super) fn file_normals(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for mesh in scene_probe.meshes() {
         let Some(odd_normals) = &mesh.odd_normals else { continue };
         let all = mesh.data.triangles.len();
-        let some = |list: &[u32]| list.first().copied().filter(|_| !mesh.is_beyond_notice(list.len()));
+        let some = |list: &[u32]| list.first().copied().filter(|_| !mesh.is_negligible(list.len()));
         let mut say = |list: &[u32], first: u32, what: &str, effect: &str, help: &str| {
             let message = format!("{} of the triangles of `{}` {what}", percent(list.len(), all), mesh.name.path);
-            let diagnostic = mesh.at_triangle(scout, Diagnostic::warning(message), first).effect(effect).help(help);
-            found.push(Finding::from(diagnostic));
+            let diagnostic =
+                mesh.at_triangle(scene_probe, Diagnostic::warning(message), first).effect(effect).help(help);
+            findings.push(Finding::from(diagnostic));
         };
-        if let Some(first) = some(&odd_normals.against) {
+        if let Some(first) = some(&odd_normals.opposed) {
             say(
-                &odd_normals.against,
+                &odd_normals.opposed,
                 first,
                 "have normals that contradict the order of their vertices",
                 "they are shaded as back faces: dark, or lit from the wrong side",
@@ -315,5 +323,5 @@ pub(super) fn given_normals(scout: &SceneProbe) -> Vec<Finding> {
             );
         }
     }
-    found
+    findings
 }

@@ -6,24 +6,27 @@
 //! suggested change. If the change is mechanical, the finding also has an edit of the scene's text.
 
 mod aim;
-mod air;
 mod area_lights;
+mod attenuation;
 mod beams;
 mod brightness;
 mod colors;
+mod completion;
+mod containment;
 mod exposure;
 mod extent;
 mod faces;
 mod facing;
-mod fading;
 mod finding;
+mod fog;
 mod hidden;
+mod integrator;
+mod invisible;
 mod layers;
 mod lens;
 mod lights;
 mod mesh;
 mod mesh_files;
-mod method;
 mod names;
 mod numbers;
 mod objects;
@@ -31,8 +34,8 @@ mod optics;
 mod patterns;
 mod physical;
 pub mod picture;
-mod places;
 mod probes;
+mod quirks;
 mod repair;
 mod scene_probe;
 mod shapes;
@@ -40,24 +43,21 @@ mod solid;
 mod table;
 #[cfg(test)]
 mod tests;
-mod unseen;
+mod transforms;
 mod verdict;
 mod view;
 mod visibility;
-mod within;
-mod words;
-mod year;
 
 use durer_diag::{Diagnostics, Severity};
 pub use finding::Finding;
-use finding::MAX_ALIKE;
-pub use probes::Subject;
+use finding::MAX_PER_KIND;
+pub use probes::CheckInput;
 pub use repair::{RepairedText, apply};
 pub use scene_probe::SceneProbe;
 pub use table::{CHECKS, Check, rank};
 
 /// Codes of findings that explain why nothing, or only a single object, is visible.
-const EMPTIES: [&str; 7] =
+const EMPTY_PICTURE_CODES: [&str; 7] =
     ["camera-inside", "camera-away", "too-small", "too-narrow", "all-missed", "hidden-behind", "below-plane"];
 
 /// Causes, each with the codes of findings that follow from it and are then suppressed.
@@ -116,46 +116,49 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
 
 /// Returns all findings about a compiled scene, causes first. They include the diagnostics of the
 /// reader and the compiler.
-pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
-    let scout = SceneProbe::new(subject);
-    let mut found: Vec<Finding> = diagnostics.iter().cloned().map(Finding::from).collect();
-    found.iter_mut().for_each(|finding| words::complete(&scout, finding));
-    for check in CHECKS.iter().filter(|check| !physical::is_beside_the_point(&scout, check.code)) {
-        let of_kind = (check.find)(&scout).into_iter();
-        found.extend(of_kind.map(|finding| Finding { diagnostic: finding.diagnostic.code(check.code), ..finding }));
+pub fn check(input: &CheckInput, diagnostics: &Diagnostics) -> Vec<Finding> {
+    let scene_probe = SceneProbe::new(input);
+    let mut findings: Vec<Finding> = diagnostics.iter().cloned().map(Finding::from).collect();
+    findings.iter_mut().for_each(|finding| completion::complete(&scene_probe, finding));
+    for check in CHECKS.iter().filter(|check| !physical::does_not_apply(&scene_probe, check.code)) {
+        let of_kind = (check.find)(&scene_probe).into_iter();
+        findings.extend(of_kind.map(|finding| Finding { diagnostic: finding.diagnostic.code(check.code), ..finding }));
     }
     // Drop findings that only describe the picture if another finding explains it.
-    if found.iter().any(|finding| finding.whole && !finding.last) {
-        found.retain(|finding| !finding.last);
+    if findings.iter().any(|finding| finding.affects_whole_picture && !finding.only_describes) {
+        findings.retain(|finding| !finding.only_describes);
     }
     // If an attenuation keyword of another dialect was ignored, that is why the light does not
     // fade.
     let fades = |finding: &Finding| {
-        let word = finding.diagnostic.span.map(|span| scout.text(span)).unwrap_or_default();
+        let word = finding.diagnostic.span.map(|span| scene_probe.text(span)).unwrap_or_default();
         finding.diagnostic.code == "foreign-word" && ["attenuation", "falloff"].contains(&word.as_str())
     };
-    if found.iter().any(fades) && found.iter().any(|f| f.diagnostic.code == "no-falloff") {
-        found.retain(|finding| !["no-falloff", "light-divides", "not-finite"].contains(&finding.diagnostic.code));
-        for finding in found.iter_mut().filter(|finding| fades(finding)) {
-            (finding.diagnostic.severity, finding.whole) = (Severity::Warning, true);
+    if findings.iter().any(fades) && findings.iter().any(|f| f.diagnostic.code == "no-falloff") {
+        findings.retain(|finding| !["no-falloff", "light-divides", "not-finite"].contains(&finding.diagnostic.code));
+        for finding in findings.iter_mut().filter(|finding| fades(finding)) {
+            (finding.diagnostic.severity, finding.affects_whole_picture) = (Severity::Warning, true);
         }
     }
     // Drop findings that follow from a reported cause.
     for (cause, consequences) in CONSEQUENCES {
-        if found.iter().any(|finding| finding.diagnostic.code == *cause && finding.is_serious()) {
-            found.retain(|finding| !consequences.contains(&finding.diagnostic.code));
+        if findings.iter().any(|finding| finding.diagnostic.code == *cause && finding.is_serious()) {
+            findings.retain(|finding| !consequences.contains(&finding.diagnostic.code));
         }
     }
     // If nothing is visible, do not report individual invisible objects.
-    if found.iter().any(|finding| EMPTIES.contains(&finding.diagnostic.code) && finding.whole) {
-        found.retain(|finding| finding.diagnostic.code != "unseen");
+    if findings
+        .iter()
+        .any(|finding| EMPTY_PICTURE_CODES.contains(&finding.diagnostic.code) && finding.affects_whole_picture)
+    {
+        findings.retain(|finding| finding.diagnostic.code != "unseen");
     }
-    ordered(found)
+    ordered(findings)
 }
 
 /// Returns the diagnostics of the reader and the compiler as findings, for a scene that cannot be
 /// rendered.
-pub fn reported(diagnostics: &Diagnostics) -> Vec<Finding> {
+pub fn reader_findings(diagnostics: &Diagnostics) -> Vec<Finding> {
     ordered(diagnostics.iter().cloned().map(Finding::from).collect())
 }
 
@@ -163,39 +166,39 @@ pub fn reported(diagnostics: &Diagnostics) -> Vec<Finding> {
 /// a level they follow the order of the table (causes before consequences), and each kind appears
 /// once before any kind repeats. If a kind has many findings, the last one shown gives the number
 /// of the others.
-fn ordered(mut found: Vec<Finding>) -> Vec<Finding> {
+fn ordered(mut findings: Vec<Finding>) -> Vec<Finding> {
     let level = |finding: &Finding| match finding.diagnostic.severity {
         Severity::Error => 0,
-        Severity::Warning if finding.last => 3,
-        Severity::Warning if finding.whole => 1,
+        Severity::Warning if finding.only_describes => 3,
+        Severity::Warning if finding.affects_whole_picture => 1,
         Severity::Warning => 2,
         Severity::Note => 4,
     };
     // Errors keep their order, because the first may cause the others.
     let rank = |finding: &Finding| if level(finding) == 0 { 0 } else { table::rank(finding.diagnostic.code) };
-    found.sort_by_key(|finding| (level(finding), rank(finding)));
+    findings.sort_by_key(|finding| (level(finding), rank(finding)));
     let mut reported: Vec<(u8, &str)> = Vec::new();
-    found.sort_by_cached_key(|finding| {
+    findings.sort_by_cached_key(|finding| {
         let kind = (level(finding), finding.diagnostic.code);
         let again = kind.0 > 0 && reported.contains(&kind);
         reported.push(kind);
         (level(finding), again, rank(finding))
     });
-    let mut kept: Vec<Finding> = Vec::with_capacity(found.len());
+    let mut result: Vec<Finding> = Vec::with_capacity(findings.len());
     let mut more = 0;
-    for finding in found {
+    for finding in findings {
         let alike = |other: &&Finding| {
             let (a, b) = (&finding.diagnostic, &other.diagnostic);
             a.code == b.code && a.severity == b.severity && a.severity != Severity::Error
         };
-        let known = kept.iter().rev().take_while(alike).count();
-        if known >= MAX_ALIKE && !finding.diagnostic.code.is_empty() {
+        let known = result.iter().rev().take_while(alike).count();
+        if known >= MAX_PER_KIND && !finding.diagnostic.code.is_empty() {
             more += 1;
-            finding::count_more(kept.last_mut(), more, &finding);
+            finding::count_more(result.last_mut(), more, &finding);
         } else {
             more = 0;
-            kept.push(finding);
+            result.push(finding);
         }
     }
-    kept
+    result
 }

@@ -6,16 +6,17 @@ use durer_diag::{Diagnostic, Severity, Span};
 use durer_formats::course::place::values;
 
 /// Reports `define` statements whose name is never used.
-pub(super) fn unused_define(scout: &SceneProbe) -> Vec<Finding> {
+pub(super) fn unused_define(scene_probe: &SceneProbe) -> Vec<Finding> {
     // Definitions in included files form a library and need not be used.
-    let file = scout.subject.scene.camera_span.file;
-    let Some(bytes) = scout.subject.files.bytes(file) else { return Vec::new() };
-    let files = (0..).map_while(|i| scout.subject.files.bytes(i).map(|bytes| (i, bytes)));
-    let used: Vec<String> = files.flat_map(|(i, bytes)| values(bytes, i, "use")).map(|span| scout.text(span)).collect();
+    let file = scene_probe.input.scene.camera_span.file;
+    let Some(bytes) = scene_probe.input.files.bytes(file) else { return Vec::new() };
+    let files = (0..).map_while(|i| scene_probe.input.files.bytes(i).map(|bytes| (i, bytes)));
+    let used: Vec<String> =
+        files.flat_map(|(i, bytes)| values(bytes, i, "use")).map(|span| scene_probe.text(span)).collect();
     let defined = values(bytes, file, "define");
-    let unused: Vec<&Span> = defined.iter().filter(|span| !used.contains(&scout.text(**span))).collect();
+    let unused: Vec<&Span> = defined.iter().filter(|span| !used.contains(&scene_probe.text(**span))).collect();
     let say = |span: &&Span| {
-        let name = scout.text(**span);
+        let name = scene_probe.text(**span);
         let mut diagnostic = Diagnostic::note(format!("`{name}` is defined and never used"))
             .at(**span)
             .effect("it is not in the picture: `define` only gives it a name")

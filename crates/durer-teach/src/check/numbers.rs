@@ -9,9 +9,9 @@ use durer_render::render::explain::{explain, explain_ray};
 use durer_scene::sampler::SampleId;
 
 /// Reports the first sample that is not finite, and the chain of terms that leads to the cause.
-pub(super) fn not_finite(scout: &SceneProbe) -> Vec<Finding> {
-    let (world, job) = (scout.world(), scout.subject.job);
-    let (name, tree) = match scout.subject.rejected {
+pub(super) fn not_finite(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let (world, job) = (scene_probe.world(), scene_probe.input.job);
+    let (name, tree) = match scene_probe.input.rejected {
         Some((x, y, sample)) => {
             let light = explain(world, job, x, y).ok().and_then(|pixel| {
                 let own = pixel.samples.into_iter().find(|own| own.sample == sample)?;
@@ -19,7 +19,7 @@ pub(super) fn not_finite(scout: &SceneProbe) -> Vec<Finding> {
             });
             (format!("pixel {x},{y} (sample {sample})"), light)
         }
-        None => match scout.probes.iter().find(|probe| !probe.color.is_finite()) {
+        None => match scene_probe.probes.iter().find(|probe| !probe.color.is_finite()) {
             Some(probe) => (
                 format!("pixel {},{}", probe.pixel.0, probe.pixel.1),
                 explain_ray(world, job, &probe.ray, SampleId::default()),
@@ -27,47 +27,53 @@ pub(super) fn not_finite(scout: &SceneProbe) -> Vec<Finding> {
             None => return Vec::new(),
         },
     };
-    let bad = scout.probes.iter().filter(|probe| !probe.color.is_finite()).count();
+    let bad = scene_probe.probes.iter().filter(|probe| !probe.color.is_finite()).count();
     let mut steps = Vec::new();
     let mut place = None;
     if let Some(tree) = &tree {
-        path(scout, &tree.root, &mut steps, &mut place);
+        path(scene_probe, &tree.root, &mut steps, &mut place);
     }
     let share = match bad {
         0 => "such samples are left out, which leaves specks or black pixels".to_string(),
-        n => format!("{} of the picture is left out and stays black", super::finding::percent(n, scout.probes.len())),
+        n => format!(
+            "{} of the picture is left out and stays black",
+            super::finding::percent(n, scene_probe.probes.len())
+        ),
     };
     let mut diagnostic = Diagnostic::warning(format!("the light of {name} is NaN or infinite")).effect(share);
     if !steps.is_empty() {
         diagnostic = diagnostic.help(format!("the cause: {}", steps.join(" -> ")));
     }
     diagnostic.span = place;
-    vec![Finding::from(diagnostic).whole(bad * 4 > scout.probes.len())]
+    vec![Finding::from(diagnostic).affecting_whole_picture(bad * 4 > scene_probe.probes.len())]
 }
 
 /// Follows the trace tree from a term down to the first term that is not finite.
-fn path(scout: &SceneProbe, node: &TraceNode, steps: &mut Vec<String>, place: &mut Option<Span>) {
-    let names = scout.names();
+fn path(scene_probe: &SceneProbe, node: &TraceNode, steps: &mut Vec<String>, place: &mut Option<Span>) {
+    let names = scene_probe.names();
     match &node.kind {
         TermKind::Ray { hit: Some(hit), .. } => {
             steps.push(format!("a ray that hits {}", names.object(hit.object)));
-            *place = Some(scout.object_span(hit.object));
+            *place = Some(scene_probe.object_span(hit.object));
         }
         TermKind::Ray { hit: None, .. } => steps.push("a ray that hits nothing".into()),
         TermKind::Light { light, distance, .. } => {
-            *place = super::lights::place(scout, *light).or(*place);
-            let arrives =
-                if finite(node.scale) { String::new() } else { format!(", {} of it arrives", shown(node.scale)) };
+            *place = super::lights::span(scene_probe, *light).or(*place);
+            let arrives = if finite(node.scale) {
+                String::new()
+            } else {
+                format!(", {} of it arrives", format_value(node.scale))
+            };
             steps.push(format!("{}, {distance} away{arrives}", names.light(*light)));
         }
         TermKind::Ambient { .. } => {
-            steps.push(format!("ambient light {} times colour {}", shown(node.factor), shown(node.value)))
+            steps.push(format!("ambient light {} times colour {}", format_value(node.factor), format_value(node.value)))
         }
         TermKind::Highlight { base, exponent, .. } => {
             steps.push(format!("highlight {base} to the power of {exponent}"))
         }
         TermKind::Diffuse { cosine } => {
-            steps.push(format!("diffuse light, N·L = {cosine}, colour {}", shown(node.value)))
+            steps.push(format!("diffuse light, N·L = {cosine}, colour {}", format_value(node.value)))
         }
         TermKind::Secondary { here, there, .. } => {
             steps.push(format!("mirrored or transmitted light, from index {here} to {there}"))
@@ -75,7 +81,7 @@ fn path(scout: &SceneProbe, node: &TraceNode, steps: &mut Vec<String>, place: &m
         _ => {}
     }
     if let Some(next) = node.terms.iter().find(|term| !finite(term.contribution())) {
-        path(scout, next, steps, place);
+        path(scene_probe, next, steps, place);
     }
 }
 
@@ -83,6 +89,6 @@ fn finite(value: TermValue) -> bool {
     value.numbers().iter().all(|x| x.is_finite())
 }
 
-fn shown(value: TermValue) -> String {
+fn format_value(value: TermValue) -> String {
     value.numbers().iter().map(f32::to_string).collect::<Vec<_>>().join(" ")
 }

@@ -1,7 +1,7 @@
 //! Checks of objects: degenerate, squashed and duplicate ones.
 
 use super::faces::overlapping;
-use super::finding::{Finding, MAX_SOUGHT, number};
+use super::finding::{Finding, MAX_FINDINGS, number};
 use super::scene_probe::SceneProbe;
 use super::shapes::{plane, shape, triangle};
 use super::visibility::Visibility;
@@ -14,10 +14,10 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A box is squashed if its smallest side is less than this share of its other sides.
-const SQUASHED: f32 = 1e-4;
+const SQUASHED_RATIO: f32 = 1e-4;
 
 /// Reports triangles of the scene file that have zero area.
-pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
+pub(super) fn degenerate(scene_probe: &SceneProbe) -> Vec<Finding> {
     let flat = |object: &&Object| {
         triangle(object).is_some_and(|corners| {
             let [a, b, c] = corners.map(|corner| corner.as_dvec3());
@@ -29,17 +29,17 @@ pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
             .at(object.span)
             .effect("it is invisible")
             .help("are two of its vertices equal?");
-        Finding::from(diagnostic).whole(scout.world().objects().len() == 1)
+        Finding::from(diagnostic).affecting_whole_picture(scene_probe.world().objects().len() == 1)
     };
-    scout.world().objects().iter().filter(flat).map(say).collect()
+    scene_probe.world().objects().iter().filter(flat).map(say).collect()
 }
 
 /// Returns solids that a few hundred test rays all miss.
-pub(super) fn empty_solids(scout: &SceneProbe) -> Vec<u32> {
-    let world = scout.world();
+pub(super) fn empty_solids(scene_probe: &SceneProbe) -> Vec<u32> {
+    let world = scene_probe.world();
     let empty = |&(i, object): &(usize, &Object)| {
         let Geometry::Solid(_) = &object.geometry else { return false };
-        let Some(bounds) = object.bounds().filter(|_| scout.visibilities()[i] != Visibility::Seen) else {
+        let Some(bounds) = object.bounds().filter(|_| scene_probe.visibilities()[i] != Visibility::Visible) else {
             return false;
         };
         let size = bounds.size();
@@ -55,15 +55,15 @@ pub(super) fn empty_solids(scout: &SceneProbe) -> Vec<u32> {
         !(0..3).any(|axis| (0..144).any(|cell| met(axis, cell % 12, cell / 12)))
     };
     let few = world.objects().len() <= 100;
-    world.objects().iter().enumerate().filter(|_| few).filter(empty).map(|(i, _)| i as u32).take(MAX_SOUGHT).collect()
+    world.objects().iter().enumerate().filter(|_| few).filter(empty).map(|(i, _)| i as u32).take(MAX_FINDINGS).collect()
 }
 
 /// Returns objects without a surface: empty solids, and triangles and meshes with zero area.
-pub(super) fn nothing_of(scout: &SceneProbe) -> Vec<u32> {
-    let mut nothing = empty_solids(scout);
+pub(super) fn without_surface(scene_probe: &SceneProbe) -> Vec<u32> {
+    let mut nothing = empty_solids(scene_probe);
     let flat = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).length_squared() == 0.0;
-    let without = scout.world().objects().iter().enumerate().filter(|(i, object)| {
-        scout.visibilities()[*i] != Visibility::Seen
+    let without = scene_probe.world().objects().iter().enumerate().filter(|(i, object)| {
+        scene_probe.visibilities()[*i] != Visibility::Visible
             && match &object.geometry {
                 Geometry::Primitive(_) => triangle(object).is_some_and(flat),
                 Geometry::Mesh(tree) => (0..tree.mesh.len().min(1000)).all(|i| flat(tree.mesh.corners(i as u32))),
@@ -75,26 +75,26 @@ pub(super) fn nothing_of(scout: &SceneProbe) -> Vec<u32> {
 }
 
 /// Reports empty solids.
-pub(super) fn empty_solid(scout: &SceneProbe) -> Vec<Finding> {
+pub(super) fn empty_solid(scene_probe: &SceneProbe) -> Vec<Finding> {
     let say = |object: u32| {
-        let diagnostic = Diagnostic::warning(format!("the {} is empty", scout.object(object)))
-            .at(scout.object_span(object))
+        let diagnostic = Diagnostic::warning(format!("the {} is empty", scene_probe.object(object)))
+            .at(scene_probe.object_span(object))
             .effect("it is invisible")
             .help("a subtracted part covers the whole first part, or the parts of an intersection do not overlap");
-        Finding::from(diagnostic).whole(scout.seen().next().is_none())
+        Finding::from(diagnostic).affecting_whole_picture(scene_probe.hits().next().is_none())
     };
-    empty_solids(scout).into_iter().map(say).collect()
+    empty_solids(scene_probe).into_iter().map(say).collect()
 }
 
 /// Reports objects that a transform makes flat, or nearly flat.
-pub(super) fn squashed(scout: &SceneProbe) -> Vec<Finding> {
-    let mut found = Vec::new();
-    for object in scout.world().objects() {
+pub(super) fn squashed(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for object in scene_probe.world().objects() {
         let (Some(to_world), Some(bounds)) = (&object.to_world, object.bounds()) else { continue };
         let stretched = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| to_world.vector(axis).length());
         let (least, most) =
             (stretched.iter().copied().fold(f32::MAX, f32::min), stretched.iter().copied().fold(0.0, f32::max));
-        let thin = least < SQUASHED * most && !bounds.is_empty();
+        let thin = least < SQUASHED_RATIO * most && !bounds.is_empty();
         if !thin && most > 1e-6 {
             continue;
         }
@@ -104,12 +104,18 @@ pub(super) fn squashed(scout: &SceneProbe) -> Vec<Finding> {
             .at(object.span)
             .effect("it looks like a line, or is invisible")
             .help("check the `Scale` and `UniformScale` around it");
-        found.push(Finding::from(diagnostic));
+        findings.push(Finding::from(diagnostic));
     }
-    found.extend(
-        scout.subject.scene.root.iter().flat_map(|root| &root.objects).flat_map(|object| squashed_parts(object, false)),
+    findings.extend(
+        scene_probe
+            .input
+            .scene
+            .root
+            .iter()
+            .flat_map(|root| &root.objects)
+            .flat_map(|object| squashed_parts(object, false)),
     );
-    found
+    findings
 }
 
 /// Reports parts of solids that their own scale makes almost flat.
@@ -123,15 +129,15 @@ fn squashed_parts(object: &Written, within: bool) -> Vec<Finding> {
         ObjectKind::Group(group) => group.objects.iter().flat_map(|inner| squashed_parts(inner, within)).collect(),
         ObjectKind::Solid(_, parts) => parts.iter().flat_map(|part| squashed_parts(part, true)).collect(),
         ObjectKind::Transform(ops, inner) => {
-            let mut found = squashed_parts(inner, within);
-            if within && ops.iter().map(least).product::<f32>() < SQUASHED {
+            let mut findings = squashed_parts(inner, within);
+            if within && ops.iter().map(least).product::<f32>() < SQUASHED_RATIO {
                 let diagnostic = Diagnostic::warning("a scale makes this part of a solid almost disappear")
                     .at(object.span)
                     .effect("the solid is invisible, or the part has no effect")
                     .help("check the `Scale` and `UniformScale` in it");
-                found.push(Finding::from(diagnostic));
+                findings.push(Finding::from(diagnostic));
             }
-            found
+            findings
         }
         _ => Vec::new(),
     }
@@ -159,17 +165,17 @@ pub(super) fn same(a: &Object, b: &Object) -> bool {
 }
 
 /// Reports objects that coincide with another object.
-pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
-    let objects = scout.world().objects();
+pub(super) fn duplicates(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let objects = scene_probe.world().objects();
     let mut places: HashMap<[u32; 6], Vec<usize>> = HashMap::new();
-    let mut found = Vec::new();
-    found.extend(in_plane(scout));
+    let mut findings = Vec::new();
+    findings.extend(in_plane(scene_probe));
     // Identical surfaces are reported below. If the materials are equal, it does not matter which
     // face is visible.
     let differ =
         |&(a, b): &(usize, usize)| objects[a].material != objects[b].material && !same(&objects[a], &objects[b]);
-    let faces = overlapping(scout).into_iter().filter(differ).take(MAX_SOUGHT);
-    found.extend(faces.map(|(a, b)| pair(scout, a, b)));
+    let faces = overlapping(scene_probe).into_iter().filter(differ).take(MAX_FINDINGS);
+    findings.extend(faces.map(|(a, b)| coincidence(scene_probe, a, b)));
     for (i, object) in objects.iter().enumerate() {
         // All unbounded objects have the same key.
         let key = object.bounds().map_or([0; 6], |b| {
@@ -179,27 +185,27 @@ pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
         });
         let there = places.entry(key).or_default();
         // Compare with the first 16 only, which is cheap even if many objects are at one place.
-        if found.len() >= MAX_SOUGHT {
+        if findings.len() >= MAX_FINDINGS {
             break;
         }
         if let Some(&first) = there.iter().take(16).find(|&&first| same(&objects[first], object)) {
-            found.push(pair(scout, first, i));
+            findings.push(coincidence(scene_probe, first, i));
         }
         there.push(i);
     }
-    found
+    findings
 }
 
 /// Reports flat objects that lie in a plane, where rounding decides which of the two is visible.
-fn in_plane(scout: &SceneProbe) -> Vec<Finding> {
-    let objects = scout.world().objects();
+fn in_plane(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let objects = scene_probe.world().objects();
     let planes: Vec<(usize, &Plane)> = objects
         .iter()
         .enumerate()
         .filter(|(_, object)| object.to_world.is_none())
         .filter_map(|(i, object)| Some((i, plane(object)?)))
         .collect();
-    let mut found = Vec::new();
+    let mut findings = Vec::new();
     for (i, object) in objects.iter().enumerate() {
         let polygons = shape(object).map_or(Vec::new(), Shape::polygons);
         let [corners] = &polygons[..] else { continue };
@@ -208,24 +214,24 @@ fn in_plane(scout: &SceneProbe) -> Vec<Finding> {
             let off = |p: Vec3| (p.dot(plane.normal) - plane.offset).abs() / plane.normal.length();
             corners.iter().all(|&p| off(p) <= 1e-5 * (1e-3 + p.abs().max_element()))
         };
-        if found.len() >= MAX_SOUGHT {
+        if findings.len() >= MAX_FINDINGS {
             break;
         }
-        if let Some((plane, _)) = planes.iter().take(MAX_SOUGHT).find(|(_, plane)| lies_in(plane)) {
-            found.push(pair(scout, *plane, i));
+        if let Some((plane, _)) = planes.iter().take(MAX_FINDINGS).find(|(_, plane)| lies_in(plane)) {
+            findings.push(coincidence(scene_probe, *plane, i));
         }
     }
-    found
+    findings
 }
 
-fn pair(scout: &SceneProbe, first: usize, second: usize) -> Finding {
-    let objects = scout.world().objects();
+fn coincidence(scene_probe: &SceneProbe, first: usize, second: usize) -> Finding {
+    let objects = scene_probe.world().objects();
     let [a, b]: [Span; 2] = [objects[first].span, objects[second].span];
     let alike = objects[first].material == objects[second].material;
     let diagnostic = Diagnostic::warning(format!(
         "the {} coincides with the {}",
-        scout.object(second as u32),
-        scout.object(first as u32)
+        scene_probe.object(second as u32),
+        scene_probe.object(first as u32)
     ))
     .at(b)
     .related(a, "the same surface")

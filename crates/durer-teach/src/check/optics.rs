@@ -1,29 +1,29 @@
 //! Checks of layered materials under path tracing: thin films, scattering bodies, dispersion, and
 //! paths too short for glass.
 
-use super::finding::{Finding, MAX_SOUGHT, number, percent};
+use super::finding::{Finding, MAX_FINDINGS, number, percent};
 use super::layers::{layers, thickness};
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Walls;
-use durer_scene::scene::{Material as Written, Spanned};
+use durer_scene::scene::{Material as ParsedMaterial, Spanned};
 use durer_scene::spectrum::ColorMode;
 
 /// Thickness in micrometres above which a thin film shows no interference colours.
 const THICKEST_FILM: f32 = 10.0;
 /// Mean free path, as a multiple of a body's thickness, above which the body hardly scatters light.
-const LONGEST_WAY: f32 = 30.0;
+const MAX_MEAN_FREE_PATH: f32 = 30.0;
 /// Minimum deviation of the index of refraction from 1 that visibly bends light.
-const BENDS: f32 = 1e-3;
+const MIN_IOR_DIFFERENCE: f32 = 1e-3;
 
 /// A layered material that an object uses: index, description in the scene file, and parameters.
-type Used<'s> = (usize, &'s Spanned<Written>, &'s PrincipledMaterial);
+type Used<'s> = (usize, &'s Spanned<ParsedMaterial>, &'s PrincipledMaterial);
 
 /// Reports thin films that are too thick to show colours, usually because a value in nanometres was
 /// written instead of micrometres.
-pub(super) fn thick_film(scout: &SceneProbe) -> Vec<Finding> {
-    let say = |(index, written, m): Used| {
+pub(super) fn thick_film(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let say = |(index, material, m): Used| {
         if m.thin_film_weight <= 0.0 || m.thin_film_thickness <= THICKEST_FILM {
             return None;
         }
@@ -32,18 +32,18 @@ pub(super) fn thick_film(scout: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic::warning(format!("the thin film on material {index} is {thick} micrometres thick"))
             .effect("it shows no colours: only a film about as thick as a wavelength of light does")
             .help(format!("`thinFilmThickness` is in micrometres; for {thick} nm, write `thinFilmThickness {thin}`"))
-            .fix_at(scout.value(written.span, &["thinFilmThickness"]), thin);
-        Some(Finding::from(scout.at_value(diagnostic, written.span, &["thinFilmThickness"])))
+            .fix_at(scene_probe.field_span(material.span, &["thinFilmThickness"]), thin);
+        Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &["thinFilmThickness"])))
     };
-    layers(scout).into_iter().filter_map(say).collect()
+    layers(scene_probe).into_iter().filter_map(say).collect()
 }
 
 /// Reports scattering bodies that are much thinner than their mean free path.
-pub(super) fn wide_scatter(scout: &SceneProbe) -> Vec<Finding> {
-    let say = |(index, written, m): Used| {
-        let thick = thickness(scout, index)?;
+pub(super) fn wide_scatter(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let say = |(index, material, m): Used| {
+        let thick = thickness(scene_probe, index)?;
         let way = m.subsurface_radius * m.subsurface_radius_scale.max_element();
-        if m.subsurface_weight <= 0.0 || m.transmission_weight >= 1.0 || way <= LONGEST_WAY * thick {
+        if m.subsurface_weight <= 0.0 || m.transmission_weight >= 1.0 || way <= MAX_MEAN_FREE_PATH * thick {
             return None;
         }
         let (radius, less) = (number(m.subsurface_radius), number(0.1 * thick));
@@ -54,25 +54,25 @@ pub(super) fn wide_scatter(scout: &SceneProbe) -> Vec<Finding> {
                 number(thick)
             ))
             .help(format!("`subsurfaceRadius` is in scene units: try `subsurfaceRadius {less}`"))
-            .fix_at(scout.value(written.span, &["subsurfaceRadius"]), less);
-        Some(Finding::from(scout.at_value(diagnostic, written.span, &["subsurfaceRadius"])))
+            .fix_at(scene_probe.field_span(material.span, &["subsurfaceRadius"]), less);
+        Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &["subsurfaceRadius"])))
     };
-    if scout.is_physical() { layers(scout).into_iter().filter_map(say).collect() } else { Vec::new() }
+    if scene_probe.is_physical() { layers(scene_probe).into_iter().filter_map(say).collect() } else { Vec::new() }
 }
 
 /// Reports dispersive glass in a picture that is not rendered spectrally.
-pub(super) fn no_spectrum(scout: &SceneProbe) -> Vec<Finding> {
-    let transport = scout.subject.job.method.path_options();
+pub(super) fn no_spectrum(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let transport = scene_probe.input.job.method.path_options();
     if transport.is_none_or(|transport| transport.color == ColorMode::Spectral) {
         return Vec::new();
     }
-    let say = |(index, written, m): Used| {
+    let say = |(index, material, m): Used| {
         if m.transmission_dispersion_scale <= 0.0 || m.transmission_weight < 0.5 || m.walls == Walls::Thin {
             return None;
         }
         // Ignore dispersion that comes from a preset or a model, because it may not be meant to be
         // visible.
-        let value = scout.value(written.span, &["transmissionDispersionScale"])?;
+        let value = scene_probe.field_span(material.span, &["transmissionDispersionScale"])?;
         let diagnostic =
             Diagnostic::note(format!("material {index} has dispersion, but the picture is not rendered spectrally"))
                 .at(value)
@@ -80,15 +80,15 @@ pub(super) fn no_spectrum(scout: &SceneProbe) -> Vec<Finding> {
                 .help("use `--color spectral`");
         Some(Finding::from(diagnostic))
     };
-    layers(scout).into_iter().filter_map(say).take(MAX_SOUGHT).collect()
+    layers(scene_probe).into_iter().filter_map(say).take(MAX_FINDINGS).collect()
 }
 
 /// Reports glass and mirrors that need more bounces than the paths have.
-pub(super) fn short_paths(scout: &SceneProbe) -> Vec<Finding> {
-    let bounces = scout.subject.job.settings.bounces;
-    let say = |(index, written, m): Used| {
-        let rays = scout.material_rays()[index];
-        let bends = m.walls != Walls::Thin && (m.specular_ior - 1.0).abs() > BENDS;
+pub(super) fn short_paths(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let bounces = scene_probe.input.job.settings.bounces;
+    let say = |(index, material, m): Used| {
+        let rays = scene_probe.material_rays()[index];
+        let bends = m.walls != Walls::Thin && (m.specular_ior - 1.0).abs() > MIN_IOR_DIFFERENCE;
         let glass = m.transmission_weight > 0.5 && m.base_metalness < 0.5 && m.opacity > 0.5;
         let mirror = m.base_metalness > 0.9 && m.specular_roughness < 0.2;
         let (least, what) = match (glass, mirror) {
@@ -104,8 +104,8 @@ pub(super) fn short_paths(scout: &SceneProbe) -> Vec<Finding> {
         let level = if bounces == 1 { "1 bounce" } else { "no bounces" };
         let message = format!("material {index} is {what}, but paths have {level}");
         let diagnostic = Diagnostic::warning(message)
-            .at(written.span)
-            .label(format!("on {} of the visible surfaces", percent(rays, scout.seen().count())))
+            .at(material.span)
+            .label(format!("on {} of the visible surfaces", percent(rays, scene_probe.hits().count())))
             .effect(match glass {
                 true => "light cannot leave it: it is black, or nearly black",
                 false => "its reflections are black",
@@ -113,5 +113,5 @@ pub(super) fn short_paths(scout: &SceneProbe) -> Vec<Finding> {
             .help("set `--bounces 16`, or omit `--bounces`");
         Some(Finding::from(diagnostic))
     };
-    layers(scout).into_iter().filter_map(say).take(1).collect()
+    layers(scene_probe).into_iter().filter_map(say).take(1).collect()
 }

@@ -1,21 +1,21 @@
 //! Checks of patterns that are not visible: only one part shows, or cells are smaller than a pixel.
 
-use super::finding::{Finding, MAX_SOUGHT, number, percent};
+use super::finding::{Finding, MAX_FINDINGS, number, percent};
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
 use durer_render::world::{Geometry, Material, World};
 use durer_scene::material::{ColorNoise, PatternMaterial};
 use durer_scene::math::Vec3;
-use durer_scene::scene::Material as Written;
+use durer_scene::scene::Material as ParsedMaterial;
 
 /// Number of steps per pixel at which a pattern is evaluated.
 const STEPS: u32 = 24;
 /// Number of changes within a pixel above which a pattern is only noise.
 const MAX_CHANGES: usize = 3;
 /// A pattern is invisible if its cells are this many times wider than the scene.
-const COARSEST: f32 = 3.0;
+const MAX_CELL_SIZE: f32 = 3.0;
 /// Minimum number of visible points needed for a conclusion.
-const FEWEST: usize = 20;
+const MIN_POINTS: usize = 20;
 
 /// Solid pattern or colour noise of a material, evaluated to find out if its pattern is visible in
 /// the picture. `Solid` carries the matrix to pattern space and
@@ -35,47 +35,47 @@ impl PatternSampler<'_> {
         }
     }
 
-    fn at(&self, place: Vec3) -> f32 {
+    fn at(&self, point: Vec3) -> f32 {
         match self {
             PatternSampler::Solid(solid, to_pattern, conic_rings) => {
-                solid.share(to_pattern.transform_point3(place.as_dvec3()).as_vec3(), *conic_rings)
+                solid.share(to_pattern.transform_point3(point.as_dvec3()).as_vec3(), *conic_rings)
             }
             PatternSampler::Noise(noise) => {
                 let range = noise.color1 - noise.color2;
                 let most = range.abs().max_element().max(1e-6);
-                (noise.color(place) - noise.color2).abs().max_element() / most
+                (noise.color(point) - noise.color2).abs().max_element() / most
             }
         }
     }
 }
 
 /// Reports patterns that show only one part, or only noise.
-pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
-    let world = scout.world();
-    let mut found = Vec::new();
-    for (number, written) in scout.subject.scene.materials.iter().enumerate().take(MAX_SOUGHT) {
+pub(super) fn scale(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
+    let mut findings = Vec::new();
+    for (number, material) in scene_probe.input.scene.materials.iter().enumerate().take(MAX_FINDINGS) {
         let Some(look) = PatternSampler::of(world, number as u32) else { continue };
         // Use direct hits only: a pattern nested in another shows only in places.
-        let places: Vec<(Vec3, f32)> = scout
-            .seen()
-            .filter(|(_, seen)| seen.material as usize == number)
-            .map(|(probe, seen)| (probe.ray.at(seen.t), seen.t * probe.ray.dir.length()))
+        let points: Vec<(Vec3, f32)> = scene_probe
+            .hits()
+            .filter(|(_, hit)| hit.material as usize == number)
+            .map(|(probe, hit)| (probe.ray.at(hit.t), hit.t * probe.ray.dir.length()))
             .collect();
-        if places.len() < FEWEST {
+        if points.len() < MIN_POINTS {
             continue;
         }
-        let shares: Vec<f32> = places.iter().map(|(place, _)| look.at(*place)).collect();
+        let shares: Vec<f32> = points.iter().map(|(point, _)| look.at(*point)).collect();
         let (least, most) = shares.iter().fold((f32::MAX, f32::MIN), |(a, b), s| (a.min(*s), b.max(*s)));
-        let width = pixel(scout);
+        let width = pixel(scene_probe);
         let across = [Vec3::new(0.8, 0.36, 0.48), Vec3::new(-0.48, 0.8, 0.36)];
-        let noisy = |&(place, away): &(Vec3, f32)| {
+        let noisy = |&(point, away): &(Vec3, f32)| {
             across.iter().all(|way| {
-                let step = |i: u32| look.at(place + *way * (width * away * i as f32 / STEPS as f32)) > 0.5;
+                let step = |i: u32| look.at(point + *way * (width * away * i as f32 / STEPS as f32)) > 0.5;
                 (1..STEPS).filter(|&i| step(i) != step(i - 1)).count() > MAX_CHANGES
             })
         };
-        let fine = places.iter().filter(|place| noisy(place)).count();
-        let (message, effect, help) = if let Some((message, help)) = without_change(scout, &look, &written.value) {
+        let fine = points.iter().filter(|point| noisy(point)).count();
+        let (message, effect, help) = if let Some((message, help)) = why_uniform(scene_probe, &look, &material.value) {
             (message, "the pattern is invisible: one colour, or a few large patches", help)
         } else if matches!(look, PatternSampler::Solid(PatternMaterial::Mix(_) | PatternMaterial::TwoSided(_), ..)) {
             continue;
@@ -83,14 +83,14 @@ pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
             (
                 "only one part of this pattern is in the picture".to_string(),
                 "the pattern is invisible: a single colour",
-                match &written.value {
-                    Written::Solid(PatternMaterial::Checkerboard(_), _) => {
+                match &material.value {
+                    ParsedMaterial::Solid(PatternMaterial::Checkerboard(_), _) => {
                         "its cells are larger than the visible scene: check the `Scale` of its `Transform`"
                     }
                     _ => "check its `frequency`, `amplitude` and `Transform`",
                 },
             )
-        } else if fine * 10 > places.len() * 9 {
+        } else if fine * 10 > points.len() * 9 {
             (
                 "this pattern is finer than a pixel".to_string(),
                 "it looks like noise or averages to one colour",
@@ -99,16 +99,20 @@ pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
         } else {
             continue;
         };
-        let mut diagnostic = Diagnostic::warning(message).at(written.span).effect(effect).help(help);
-        diagnostic =
-            diagnostic.label(format!("on {} of the visible surfaces", percent(places.len(), scout.seen().count())));
-        found.push(Finding::from(diagnostic));
+        let mut diagnostic = Diagnostic::warning(message).at(material.span).effect(effect).help(help);
+        diagnostic = diagnostic
+            .label(format!("on {} of the visible surfaces", percent(points.len(), scene_probe.hits().count())));
+        findings.push(Finding::from(diagnostic));
     }
-    found
+    findings
 }
 
 /// Explains from the scene description why a pattern does not vary, if possible.
-fn without_change(scout: &SceneProbe, look: &PatternSampler, written: &Written) -> Option<(String, &'static str)> {
+fn why_uniform(
+    scene_probe: &SceneProbe,
+    look: &PatternSampler,
+    material: &ParsedMaterial,
+) -> Option<(String, &'static str)> {
     let PatternSampler::Solid(solid, to_pattern, _) = look else { return None };
     if let PatternMaterial::Mix(mix) = solid {
         let message = format!("the `share` of this mix is {}", number(mix.share));
@@ -116,54 +120,54 @@ fn without_change(scout: &SceneProbe, look: &PatternSampler, written: &Written) 
         let shows_one = mix.share <= 0.0 || mix.share >= 1.0 && mix.share_texture.is_none();
         return shows_one.then_some((message, help));
     }
-    if !matches!(solid, PatternMaterial::Checkerboard(_)) || !matches!(written, Written::Solid(..)) {
+    if !matches!(solid, PatternMaterial::Checkerboard(_)) || !matches!(material, ParsedMaterial::Solid(..)) {
         return None;
     }
     let cell = to_pattern.inverse().matrix3;
     let cell = cell.x_axis.length().min(cell.y_axis.length()).min(cell.z_axis.length()) as f32;
     // A scene of unbounded objects has no size to compare with.
-    let size = match scout.world().bounds() {
+    let size = match scene_probe.world().bounds() {
         bounds if bounds.is_empty() => return None,
         bounds => bounds.size().max_element(),
     };
     let message =
         format!("the cells of this pattern are {} wide, and all objects together {}", number(cell), number(size));
     let help = "its cells are larger than the visible scene: check the `Scale` of its `Transform`";
-    (cell > COARSEST * size).then_some((message, help))
+    (cell > MAX_CELL_SIZE * size).then_some((message, help))
 }
 
 /// Reports textures that show a single colour because the image has only one colour, or because all
 /// vertices of a mesh have the same texture coordinates.
-pub(super) fn flat_texture(scout: &SceneProbe) -> Vec<Finding> {
-    let world = scout.world();
-    let mut found = Vec::new();
-    for (number, written) in scout.subject.scene.materials.iter().enumerate().take(MAX_SOUGHT) {
+pub(super) fn flat_texture(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
+    let mut findings = Vec::new();
+    for (number, material) in scene_probe.input.scene.materials.iter().enumerate().take(MAX_FINDINGS) {
         let Some(Material::Phong(phong)) = world.materials().get(number) else { continue };
         let Some(texture) = phong.texture.and_then(|texture| world.textures().get(texture as usize)) else { continue };
         let own = || world.objects().iter().filter(|object| object.material as usize == number);
         let is_still =
             |geometry: &Geometry| matches!(geometry, Geometry::Mesh(tree) if tree.mesh.constant_uv().is_some());
         let one_place = own().find(|object| is_still(&object.geometry));
-        let (message, help) = if scout.material_rays()[number] == 0 {
+        let (message, help) = if scene_probe.material_rays()[number] == 0 {
             continue;
         } else if texture.is_flat() {
             (format!("the texture of material {number} has only one colour"), "is it the right image?")
         } else if let Some(object) = one_place {
-            let name = scout.text(object.span);
+            let name = scene_probe.text(object.span);
             let message = format!("all corners of the `{name}` have the same texture coordinates");
             (message, "the `vt` lines of its file are all equal: export its texture coordinates")
         } else {
             continue;
         };
         let diagnostic = Diagnostic::warning(message).effect("its texture is invisible").help(help);
-        found.push(Finding::from(scout.at_value(diagnostic, written.span, &["texture"])));
+        findings.push(Finding::from(scene_probe.at_value(diagnostic, material.span, &["texture"])));
     }
-    found
+    findings
 }
 
 /// Estimates the width of a pixel at distance 1.
-fn pixel(scout: &SceneProbe) -> f32 {
-    let [a, b] = [0, scout.probes.len() - 1].map(|i| &scout.probes[i]);
+fn pixel(scene_probe: &SceneProbe) -> f32 {
+    let [a, b] = [0, scene_probe.probes.len() - 1].map(|i| &scene_probe.probes[i]);
     let (p, q) = (a.pixel, b.pixel);
     let apart = (p.0.abs_diff(q.0).pow(2) + p.1.abs_diff(q.1).pow(2)) as f32;
     (a.ray.dir.normalize_or_zero() - b.ray.dir.normalize_or_zero()).length() / apart.sqrt().max(1.0)

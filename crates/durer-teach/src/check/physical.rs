@@ -12,7 +12,7 @@ use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::Material;
 
 /// Codes of checks for local lighting, which do not apply to path tracing.
-const OF_LOCAL_LIGHT: &[&str] = &[
+const LOCAL_LIGHT_CHECKS: &[&str] = &[
     "light-divides",
     "light-inside",
     "light-blocked",
@@ -27,18 +27,18 @@ const OF_LOCAL_LIGHT: &[&str] = &[
 ];
 
 /// Codes of those checks that can explain a black path-traced picture.
-const OF_DARKNESS: &[&str] = &["light-inside", "light-blocked", "light-behind", "light-faint"];
+const DARKNESS_CHECKS: &[&str] = &["light-inside", "light-blocked", "light-behind", "light-faint"];
 
 /// Returns true if a check for local lighting does not apply to the scene.
-pub(super) fn is_beside_the_point(scout: &SceneProbe, code: &str) -> bool {
-    let says_why = || OF_DARKNESS.contains(&code) && scout.is_dark();
-    scout.is_physical() && OF_LOCAL_LIGHT.contains(&code) && !says_why()
+pub(super) fn does_not_apply(scene_probe: &SceneProbe, code: &str) -> bool {
+    let says_why = || DARKNESS_CHECKS.contains(&code) && scene_probe.is_dark();
+    scene_probe.is_physical() && LOCAL_LIGHT_CHECKS.contains(&code) && !says_why()
 }
 
 /// Reports a scene in which nothing emits light.
-pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
-    let world = scout.world();
-    let scaled = scout.subject.scene.background.environment_scale != Some(Vec3::ZERO);
+pub(super) fn no_emitter(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
+    let scaled = scene_probe.input.scene.background.environment_scale != Some(Vec3::ZERO);
     let dark_sky = (world.environment().is_none() || !scaled)
         && world.cube_map().is_none()
         && (world.background() == Color::ZERO || world.is_dark());
@@ -53,11 +53,15 @@ pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
             .iter()
             .any(|object| matches!(world.materials().get(object.material as usize), Some(Compiled::Mix(..))))
             && world.materials().iter().any(|material| radiance(material).is_some());
-    if !scout.is_physical() || !dark_sky || emits || world.lights().iter().any(|light| light.color() != Color::ZERO) {
+    if !scene_probe.is_physical()
+        || !dark_sky
+        || emits
+        || world.lights().iter().any(|light| light.color() != Color::ZERO)
+    {
         return Vec::new();
     }
     // If a material was meant to emit, report that material.
-    let emitter = scout.subject.scene.materials.iter().enumerate().find(|(_, material)| match &material.value {
+    let emitter = scene_probe.input.scene.materials.iter().enumerate().find(|(_, material)| match &material.value {
         Material::Principled(layers) => layers.emission_luminance > 0.0,
         _ => false,
     });
@@ -71,14 +75,14 @@ pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
             true => "it multiplies `emissionLuminance`; for example, `emissionColor 1 1 1` is white light",
             false => "is a `MaterialIndex` wrong? Indices start at 0",
         });
-        let diagnostic = scout.at_value(diagnostic, material.span, &["emissionColor", "emissionLuminance"]);
-        return vec![Finding::from(diagnostic).whole(true)];
+        let diagnostic = scene_probe.at_value(diagnostic, material.span, &["emissionColor", "emissionLuminance"]);
+        return vec![Finding::from(diagnostic).affecting_whole_picture(true)];
     }
     let ambient = match world.ambient() == Color::ZERO {
         true => "",
         false => "; `ambientLight` has no effect on paths",
     };
-    let format = scout.subject.files.name(0).and_then(scene_format_for);
+    let format = scene_probe.input.files.name(0).and_then(scene_format_for);
     let (surface, help) = match format.and_then(|format| format.light_hint) {
         Some(words) => ("emissive surface", format!("{words}; lights that are reported as left out emit nothing")),
         None => (
@@ -91,23 +95,25 @@ pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
     let message =
         format!("nothing emits light in this scene: it has no light and no {surface}, and the background is black");
     let diagnostic = Diagnostic::warning(message).effect("the picture is black").help(help);
-    vec![Finding::from(diagnostic).whole(true)]
+    vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }
 
 /// Reports point lights inside glass: paths from outside cannot reach them.
-pub(super) fn lamp_in_glass(scout: &SceneProbe) -> Vec<Finding> {
-    let world = scout.world();
-    if !matches!(scout.subject.job.method, IntegratorKind::Path(_)) {
+pub(super) fn light_in_glass(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
+    if !matches!(scene_probe.input.job.method, IntegratorKind::Path(_)) {
         return Vec::new();
     }
     let lights =
         world.lights().iter().enumerate().filter_map(|(number, light)| Some((number, light.inverse_square()?.0)));
     let enclosed = lights.filter_map(|(number, place)| {
         let glass = world.glass_around(place).find(|&(_, ior)| ior != 1.0)?.0;
-        let message =
-            format!("light {number} is inside the {}: its light can only leave by refraction", scout.object(glass));
+        let message = format!(
+            "light {number} is inside the {}: its light can only leave by refraction",
+            scene_probe.object(glass)
+        );
         let diagnostic = Diagnostic::warning(message)
-            .at(scout.object_span(glass))
+            .at(scene_probe.object_span(glass))
             .effect("paths cannot find it: it lights nothing outside")
             .help("use `--integrator photons`, or replace the light by a sphere with `emissionLuminance`");
         Some(Finding::from(diagnostic))
@@ -116,12 +122,12 @@ pub(super) fn lamp_in_glass(scout: &SceneProbe) -> Vec<Finding> {
 }
 
 /// Reports scattering parameters of layered materials that have no effect.
-pub(super) fn without_effect(scout: &SceneProbe) -> Vec<Finding> {
-    if !scout.is_physical() {
+pub(super) fn without_effect(scene_probe: &SceneProbe) -> Vec<Finding> {
+    if !scene_probe.is_physical() {
         return Vec::new();
     }
-    let mut found = Vec::new();
-    for material in &scout.subject.scene.materials {
+    let mut findings = Vec::new();
+    for material in &scene_probe.input.scene.materials {
         let Material::Principled(m) = &material.value else { continue };
         let word = if m.transmission_scatter != Vec3::ZERO && m.transmission_depth == 0.0 {
             Some((
@@ -143,8 +149,8 @@ pub(super) fn without_effect(scout: &SceneProbe) -> Vec<Finding> {
         if let Some((word, effect, help)) = word {
             let message = format!("`{word}` has no effect in this material");
             let diagnostic = Diagnostic::warning(message).at(material.span).effect(effect).help(help);
-            found.push(Finding::from(diagnostic));
+            findings.push(Finding::from(diagnostic));
         }
     }
-    found
+    findings
 }

@@ -11,7 +11,7 @@ const MAX_REJECTED: f64 = 0.001;
 /// An obvious fault of a rendered picture, such as black everywhere, after which `durer render`
 /// suggests `durer check`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Oddity {
+pub enum PictureFault {
     /// The whole picture is black.
     Black,
     /// The whole picture has one colour.
@@ -22,14 +22,14 @@ pub enum Oddity {
     NotFinite,
 }
 
-impl Oddity {
+impl PictureFault {
     /// Returns the fault as a predicate for the subject `the picture`.
-    pub fn words(self) -> &'static str {
+    pub fn description(self) -> &'static str {
         match self {
-            Oddity::Black => "is completely black",
-            Oddity::OneColor => "has only one colour",
-            Oddity::White => "is mostly white",
-            Oddity::NotFinite => "lacks samples that were NaN or infinite",
+            PictureFault::Black => "is completely black",
+            PictureFault::OneColor => "has only one colour",
+            PictureFault::White => "is mostly white",
+            PictureFault::NotFinite => "lacks samples that were NaN or infinite",
         }
     }
 }
@@ -44,37 +44,37 @@ pub struct PictureScan {
     differs: bool,
     pixels: usize,
     /// Number of pixels that are brighter than white.
-    cut: usize,
+    clipped: usize,
 }
 
 impl PictureScan {
     /// Creates a scan without pixels. `exposure` is the factor for their values.
     pub fn new(exposure: f32) -> Self {
-        PictureScan { exposure, first: None, differs: false, pixels: 0, cut: 0 }
+        PictureScan { exposure, first: None, differs: false, pixels: 0, clipped: 0 }
     }
 
     /// Adds pixels.
     pub fn add(&mut self, pixels: &[Color]) {
         let exposure = self.exposure;
-        let shown = |color: &Color| (exposure * *color).clamp(Color::ZERO, Color::ONE);
-        let Some(first) = self.first.or(pixels.first().map(shown)) else { return };
+        let clamped = |color: &Color| (exposure * *color).clamp(Color::ZERO, Color::ONE);
+        let Some(first) = self.first.or(pixels.first().map(clamped)) else { return };
         self.first = Some(first);
-        let differs = |pixel: &Color| (shown(pixel) - first).abs().max_element() > 0.5 / 255.0;
+        let differs = |pixel: &Color| (clamped(pixel) - first).abs().max_element() > 0.5 / 255.0;
         self.differs = self.differs || pixels.iter().any(differs);
         self.pixels += pixels.len();
-        self.cut += pixels.iter().filter(|pixel| exposure * pixel.min_element() > 1.001).count();
+        self.clipped += pixels.iter().filter(|pixel| exposure * pixel.min_element() > 1.001).count();
     }
 
     /// Returns the fault of the pixels added so far, if there is one.
-    pub fn oddity(&self, statistics: &Statistics) -> Option<Oddity> {
+    pub fn fault(&self, statistics: &Statistics) -> Option<PictureFault> {
         if self.pixels > 1 && !self.differs {
             let first = self.first.unwrap_or(Color::ZERO);
-            return Some(if first.max_element() < 0.5 / 255.0 { Oddity::Black } else { Oddity::OneColor });
+            return Some(if first.max_element() < 0.5 / 255.0 { PictureFault::Black } else { PictureFault::OneColor });
         }
         if statistics.rejected as f64 > MAX_REJECTED * (statistics.samples + statistics.rejected) as f64 {
-            return Some(Oddity::NotFinite);
+            return Some(PictureFault::NotFinite);
         }
-        (self.cut as f32 > MAX_WHITE * self.pixels as f32).then_some(Oddity::White)
+        (self.clipped as f32 > MAX_WHITE * self.pixels as f32).then_some(PictureFault::White)
     }
 }
 
@@ -83,28 +83,28 @@ mod tests {
     use super::*;
 
     /// Adds the pixels in pieces of two.
-    fn oddity(pixels: &[f32], exposure: f32, statistics: &Statistics) -> Option<Oddity> {
+    fn oddity(pixels: &[f32], exposure: f32, statistics: &Statistics) -> Option<PictureFault> {
         let mut looks = PictureScan::new(exposure);
         let colors: Vec<Color> = pixels.iter().map(|&v| Color::splat(v)).collect();
         colors.chunks(2).for_each(|piece| looks.add(piece));
-        looks.oddity(statistics)
+        looks.fault(statistics)
     }
 
     #[test]
     fn faulty_pictures_are_recognized() {
         let judged = |pixels: &[f32]| oddity(pixels, 1.0, &Statistics::default());
-        assert_eq!(judged(&[0.0; 9]), Some(Oddity::Black));
-        assert_eq!(judged(&[0.3; 9]), Some(Oddity::OneColor));
-        assert_eq!(judged(&[1.5, 2.0, 9.0]), Some(Oddity::OneColor));
-        assert_eq!(judged(&[1.5, 2.0, 0.1]), Some(Oddity::White));
+        assert_eq!(judged(&[0.0; 9]), Some(PictureFault::Black));
+        assert_eq!(judged(&[0.3; 9]), Some(PictureFault::OneColor));
+        assert_eq!(judged(&[1.5, 2.0, 9.0]), Some(PictureFault::OneColor));
+        assert_eq!(judged(&[1.5, 2.0, 0.1]), Some(PictureFault::White));
         assert_eq!(judged(&[0.0, 0.5, 1.0]), None);
         // White itself is not clipped.
         assert_eq!(judged(&[1.0, 1.0, 0.1]), None);
         // Daylight in cd/m^2 is white unscaled and fine with an exposure.
         let day = [900.0, 2000.0, 7000.0];
-        assert_eq!(oddity(&day, 1.0, &Statistics::default()), Some(Oddity::OneColor));
+        assert_eq!(oddity(&day, 1.0, &Statistics::default()), Some(PictureFault::OneColor));
         assert_eq!(oddity(&day, 1e-4, &Statistics::default()), None);
         let lost = Statistics { samples: 90, rejected: 10, ..Statistics::default() };
-        assert_eq!(oddity(&[0.0, 0.5], 1.0, &lost), Some(Oddity::NotFinite));
+        assert_eq!(oddity(&[0.0, 0.5], 1.0, &lost), Some(PictureFault::NotFinite));
     }
 }

@@ -18,15 +18,15 @@ use rayon::prelude::*;
 /// Number of rays along the larger side of the picture. It is reduced if there are many lights,
 /// because each hit evaluates every light.
 const RAYS: u32 = 48;
-const FEWEST_RAYS: u32 = 6;
-const MAX_QUESTIONS: u32 = 1 << 20;
+const MIN_RAYS: u32 = 6;
+const MAX_LIGHT_EVALUATIONS: u32 = 1 << 20;
 /// Maximum depth and minimum throughput of secondary rays.
 const BOUNCES: u32 = 4;
 const MIN_WEIGHT: f32 = 1.0 / 64.0;
 
 /// A compiled scene to be checked, with its source, its dialect and the options of the render.
 #[derive(Clone, Copy, Debug)]
-pub struct Subject<'a> {
+pub struct CheckInput<'a> {
     /// The parsed scene.
     pub scene: &'a Scene,
     /// The compiled scene.
@@ -50,7 +50,7 @@ pub(super) struct Probe {
     pub pixel: (u32, u32),
     pub ray: Ray,
     pub color: Color,
-    pub seen: Option<ProbeHit>,
+    pub hit: Option<ProbeHit>,
 }
 
 /// First surface hit by a probe's camera ray, and the light at that point.
@@ -61,46 +61,48 @@ pub(super) struct ProbeHit {
     pub t: f32,
     pub from_behind: bool,
     /// True if the ray hit a back that is not shaded.
-    pub black: bool,
+    pub unshaded_back: bool,
     pub has_uv: bool,
     /// Contribution of the ambient light.
     pub ambient: Color,
-    pub lit: Vec<LightContribution>,
+    pub lights: Vec<LightContribution>,
 }
 
 /// Contribution of one light at a probe's hit, and the object that occludes the light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LightContribution {
     pub light: usize,
-    /// N·L (`cosine`), and the light that would arrive without occlusion (`arrives`).
+    /// N·L (`cosine`), and the light that would arrive without occlusion (`unoccluded`).
     pub cosine: f32,
-    pub arrives: Color,
+    pub unoccluded: Color,
     /// First object that occludes the light, if any.
     pub blocker: Option<u32>,
     /// Contribution to the pixel's colour.
-    pub adds: Color,
+    pub contribution: Color,
 }
 
 /// A scene to be checked and the results of a coarse grid of camera rays.
 #[derive(Debug)]
 pub struct ProbeGrid<'a> {
-    pub(super) subject: Subject<'a>,
+    pub(super) input: CheckInput<'a>,
     pub(super) raster: Raster,
     pub(super) probes: Vec<Probe>,
 }
 
 impl<'a> ProbeGrid<'a> {
     /// Traces the probes of a scene.
-    pub(super) fn new(subject: &Subject<'a>) -> Self {
-        let Job { width, height, settings, .. } = *subject.job;
+    pub(super) fn new(input: &CheckInput<'a>) -> Self {
+        let Job { width, height, settings, .. } = *input.job;
         let larger = width.max(height);
-        let lights = subject.world.lights().len().max(1) as u32;
-        let rays =
-            (FEWEST_RAYS..RAYS).take_while(|rays| rays * rays * lights <= MAX_QUESTIONS).last().unwrap_or(FEWEST_RAYS)
-                + 1;
+        let lights = input.world.lights().len().max(1) as u32;
+        let rays = (MIN_RAYS..RAYS)
+            .take_while(|rays| rays * rays * lights <= MAX_LIGHT_EVALUATIONS)
+            .last()
+            .unwrap_or(MIN_RAYS)
+            + 1;
         let [columns, rows] =
             [width, height].map(|side| ((u64::from(side) * u64::from(rays)).div_ceil(larger.into()) as u32).max(1));
-        let raster = raster(subject.world, columns, rows);
+        let raster = raster(input.world, columns, rows);
         let job = Job {
             settings: RenderSettings {
                 bounces: settings.bounces.min(BOUNCES),
@@ -109,40 +111,40 @@ impl<'a> ProbeGrid<'a> {
             },
             // The checks use the terms of Whitted's method.
             method: IntegratorKind::WHITTED,
-            ..subject.job.clone()
+            ..input.job.clone()
         };
-        let places: Vec<(u32, u32)> = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))).collect();
+        let pixels: Vec<(u32, u32)> = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))).collect();
         let probe = |&place: &(u32, u32)| {
-            let ray = center_ray(subject.world, &raster, place)?;
+            let ray = center_ray(input.world, &raster, place)?;
             let at =
                 |i: u32, of: u32, size: u32| ((2 * u64::from(i) + 1) * u64::from(size) / (2 * u64::from(of))) as u32;
             let pixel = (at(place.0, columns, width), at(place.1, rows, height));
-            Some(Probe::of(pixel, ray, &explain_ray(subject.world, &job, &ray, SampleId::default())?))
+            Some(Probe::of(pixel, ray, &explain_ray(input.world, &job, &ray, SampleId::default())?))
         };
-        let probes = places.par_iter().filter_map(probe).collect();
-        ProbeGrid { subject: *subject, raster, probes }
+        let probes = pixels.par_iter().filter_map(probe).collect();
+        ProbeGrid { input: *input, raster, probes }
     }
 
     /// Returns the larger side of the picture in pixels.
-    pub(super) fn larger(&self) -> f32 {
-        self.subject.job.width.max(self.subject.job.height) as f32
+    pub(super) fn larger_side(&self) -> f32 {
+        self.input.job.width.max(self.input.job.height) as f32
     }
 
     /// Returns the compiled scene.
     pub(super) fn world(&self) -> &'a World {
-        self.subject.world
+        self.input.world
     }
 
     /// Iterates over the rays that hit something.
-    pub(super) fn seen(&self) -> impl Iterator<Item = (&Probe, &ProbeHit)> {
-        self.probes.iter().filter_map(|probe| Some((probe, probe.seen.as_ref()?)))
+    pub(super) fn hits(&self) -> impl Iterator<Item = (&Probe, &ProbeHit)> {
+        self.probes.iter().filter_map(|probe| Some((probe, probe.hit.as_ref()?)))
     }
 
     /// Returns for each material the number of rays that hit it, directly or as part of a mix.
     pub(super) fn count_rays(&self) -> Vec<usize> {
         let materials = self.world().materials();
         let (mut direct, mut all) = (vec![0; materials.len()], vec![0; materials.len()]);
-        self.seen().for_each(|(_, seen)| direct[seen.material as usize] += 1);
+        self.hits().for_each(|(_, hit)| direct[hit.material as usize] += 1);
         for (whole, count) in direct.iter().enumerate().filter(|(_, count)| **count > 0) {
             // Count a part once even if it occurs several times in the mix.
             let (mut parts, mut known) = (vec![whole], vec![false; materials.len()]);
@@ -161,7 +163,7 @@ impl<'a> ProbeGrid<'a> {
 
     /// Returns true if the job uses path tracing.
     pub(super) fn is_physical(&self) -> bool {
-        self.subject.job.method.path_options().is_some()
+        self.input.job.method.path_options().is_some()
     }
 
     /// Returns true if an object is transparent.
@@ -174,14 +176,14 @@ impl<'a> ProbeGrid<'a> {
 
     /// Returns the naming of the scene's objects and materials in messages.
     pub(super) fn names(&self) -> SceneNames<'a> {
-        SceneNames { files: self.subject.files, scene: self.subject.scene, world: self.subject.world }
+        SceneNames { files: self.input.files, scene: self.input.scene, world: self.input.world }
     }
 
     /// Names an object by its keyword and line. An object of a model is named by its own name and
     /// position.
     pub(super) fn object(&self, number: u32) -> String {
         let span = self.object_span(number);
-        let (line, column) = self.subject.files.position(span).unwrap_or_default();
+        let (line, column) = self.input.files.position(span).unwrap_or_default();
         match self.names().name_without_keyword(number) {
             Some(name) => format!("{name} at {line}:{column}"),
             None => format!("`{}` of line {line}", self.text(span)),
@@ -195,50 +197,50 @@ impl<'a> ProbeGrid<'a> {
 
     /// Returns the keyword of the grammar that the scene uses: the course's first grammar or the
     /// node grammar.
-    pub(super) fn word(&self, classic: &'static str, nodes: &'static str) -> &'static str {
-        if self.subject.dialect == Dialect::F23 { nodes } else { classic }
+    pub(super) fn keyword_of_grammar(&self, classic: &'static str, nodes: &'static str) -> &'static str {
+        if self.input.dialect == Dialect::F23 { nodes } else { classic }
     }
 
     /// Returns the text at a span.
     pub(super) fn text(&self, span: Span) -> String {
-        let bytes = self.subject.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));
+        let bytes = self.input.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));
         String::from_utf8_lossy(bytes.unwrap_or_default()).into_owned()
     }
 
     /// Returns the span of a field's value in the block that starts at `block`; the first of
     /// `fields` that is present counts.
-    pub(super) fn value(&self, block: Span, fields: &[&str]) -> Option<Span> {
-        let bytes = self.subject.files.bytes(block.file)?;
+    pub(super) fn field_span(&self, block: Span, fields: &[&str]) -> Option<Span> {
+        let bytes = self.input.files.bytes(block.file)?;
         fields.iter().find_map(|field| place::value(bytes, block, field))
     }
 
     /// Places a diagnostic at a field's value, or at the block's keyword if the field is not
     /// present.
     pub(super) fn at_value(&self, diagnostic: Diagnostic, block: Span, fields: &[&str]) -> Diagnostic {
-        diagnostic.at(self.value(block, fields).unwrap_or(block))
+        diagnostic.at(self.field_span(block, fields).unwrap_or(block))
     }
 }
 
 impl ProbeHit {
     /// Returns the contribution of the light with the given index.
-    pub fn by(&self, light: usize) -> Option<&LightContribution> {
-        self.lit.get(light).filter(|lit| lit.light == light)
+    pub fn contribution(&self, light: usize) -> Option<&LightContribution> {
+        self.lights.get(light).filter(|lit| lit.light == light)
     }
 }
 
 impl Probe {
     fn of(pixel: (u32, u32), ray: Ray, tree: &Tree) -> Self {
-        let mut probe = Probe { pixel, ray, color: tree.sum(), seen: None };
+        let mut probe = Probe { pixel, ray, color: tree.sum(), hit: None };
         let TermKind::Ray { hit: Some(hit), .. } = &tree.root.kind else { return probe };
         let mut seen = ProbeHit {
             object: hit.object,
             material: hit.material,
             t: hit.t,
             from_behind: hit.from_behind,
-            black: hit.black,
+            unshaded_back: hit.black,
             has_uv: hit.uv.is_some(),
             ambient: Color::ZERO,
-            lit: Vec::new(),
+            lights: Vec::new(),
         };
         for term in &tree.root.terms {
             match &term.kind {
@@ -246,25 +248,25 @@ impl Probe {
                 // A mix of materials has one term per light for each part.
                 TermKind::Light { light, to_light, shadow, .. } => {
                     let adds = tree.color(term.contribution());
-                    match seen.lit.last_mut().filter(|lit| lit.light == *light) {
-                        Some(lit) => lit.adds += adds,
-                        None => seen.lit.push(LightContribution {
+                    match seen.lights.last_mut().filter(|lit| lit.light == *light) {
+                        Some(lit) => lit.contribution += adds,
+                        None => seen.lights.push(LightContribution {
                             light: *light,
                             cosine: hit.n.dot(*to_light),
-                            arrives: tree.color(term.scale),
+                            unoccluded: tree.color(term.scale),
                             blocker: shadow
                                 .as_ref()
                                 .filter(|s| s.share.equals(0.0))
                                 .and_then(|s| s.blocker)
                                 .map(|b| b.0),
-                            adds,
+                            contribution: adds,
                         }),
                     }
                 }
                 _ => {}
             }
         }
-        probe.seen = Some(seen);
+        probe.hit = Some(seen);
         probe
     }
 }

@@ -9,14 +9,14 @@ pub struct RepairedText {
     /// The new text.
     pub bytes: Vec<u8>,
     /// Indices of the findings whose edits were applied.
-    pub mended: Vec<usize>,
+    pub fixed: Vec<usize>,
 }
 
 /// Applies the edits of findings to a file. Skips a finding if its edits overlap earlier ones or
 /// are in another file.
 pub fn apply(bytes: &[u8], file: u32, findings: &[Finding]) -> RepairedText {
     let mut edits: Vec<&Edit> = Vec::new();
-    let mut mended = Vec::new();
+    let mut fixed = Vec::new();
     for (i, finding) in findings.iter().enumerate() {
         let inside = |edit: &Edit| {
             let Edit { span, .. } = edit;
@@ -28,7 +28,7 @@ pub fn apply(bytes: &[u8], file: u32, findings: &[Finding]) -> RepairedText {
         let apart = all.windows(2).all(|pair| pair[0].span.end < pair[1].span.start);
         if !finding.diagnostic.fix.is_empty() && apart && finding.diagnostic.fix.iter().all(inside) {
             edits = all;
-            mended.push(i);
+            fixed.push(i);
         }
     }
     let (mut text, mut at) = (Vec::with_capacity(bytes.len()), 0);
@@ -38,5 +38,5 @@ pub fn apply(bytes: &[u8], file: u32, findings: &[Finding]) -> RepairedText {
         at = edit.span.end as usize;
     }
     text.extend_from_slice(&bytes[at..]);
-    RepairedText { bytes: text, mended }
+    RepairedText { bytes: text, fixed }
 }

@@ -1,10 +1,10 @@
 //! Lazily computed results that several checks use.
 
-use super::aim::{Aim, aim};
-use super::brightness::{brightest, light};
+use super::aim::{BeamMiss, beam_miss};
+use super::brightness::{brightest, exposed_colors};
 use super::mesh_files::{MeshFile, files};
-use super::probes::{Probe, ProbeGrid, Subject};
-use super::verdict::{Verdict, verdicts};
+use super::probes::{CheckInput, Probe, ProbeGrid};
+use super::verdict::{LightVerdict, verdicts};
 use super::visibility::{Visibility, visibilities};
 use durer_scene::math::Color;
 use std::ops::Deref;
@@ -19,8 +19,8 @@ const DARK: f32 = 0.02;
 pub struct SceneProbe<'a> {
     grid: ProbeGrid<'a>,
     visibilities: OnceLock<Vec<Visibility>>,
-    verdicts: OnceLock<Vec<Verdict>>,
-    aims: OnceLock<Vec<Option<Aim>>>,
+    verdicts: OnceLock<Vec<LightVerdict>>,
+    aims: OnceLock<Vec<Option<BeamMiss>>>,
     light: OnceLock<(Vec<usize>, Vec<Color>)>,
     meshes: OnceLock<Vec<MeshFile<'a>>>,
     material_rays: OnceLock<Vec<usize>>,
@@ -36,9 +36,9 @@ impl<'a> Deref for SceneProbe<'a> {
 
 impl<'a> SceneProbe<'a> {
     /// Traces the probes of a scene.
-    pub fn new(subject: &Subject<'a>) -> Self {
+    pub fn new(input: &CheckInput<'a>) -> Self {
         SceneProbe {
-            grid: ProbeGrid::new(subject),
+            grid: ProbeGrid::new(input),
             visibilities: OnceLock::new(),
             verdicts: OnceLock::new(),
             aims: OnceLock::new(),
@@ -54,24 +54,24 @@ impl<'a> SceneProbe<'a> {
     }
 
     /// Returns the verdict on each light, by index.
-    pub(super) fn verdicts(&self) -> &[Verdict] {
+    pub(super) fn verdicts(&self) -> &[LightVerdict] {
         self.verdicts.get_or_init(|| verdicts(self, self.aims()))
     }
 
     /// Returns for each light how its beam misses the visible points; `None` if it does not.
-    pub(super) fn aims(&self) -> &[Option<Aim>] {
+    pub(super) fn aims(&self) -> &[Option<BeamMiss>] {
         let lights = 0..self.world().lights().len();
-        self.aims.get_or_init(|| lights.map(|light| aim(self, light)).collect())
+        self.aims.get_or_init(|| lights.map(|light| beam_miss(self, light)).collect())
     }
 
     /// Returns exposed colours of the picture: one for each probe, or with path tracing the mean of
     /// a few samples for some of them.
-    pub(super) fn light(&self) -> &[Color] {
+    pub(super) fn exposed_colors(&self) -> &[Color] {
         &self.lit().1
     }
 
     fn lit(&self) -> &(Vec<usize>, Vec<Color>) {
-        self.light.get_or_init(|| light(self))
+        self.light.get_or_init(|| exposed_colors(self))
     }
 
     /// Iterates over the probes whose exposed colours are known, with their colours.
@@ -82,7 +82,7 @@ impl<'a> SceneProbe<'a> {
 
     /// Returns true if a path-traced picture is black, or nearly so.
     pub(super) fn is_dark(&self) -> bool {
-        self.is_physical() && !self.light().is_empty() && brightest(self.light()) < DARK
+        self.is_physical() && !self.exposed_colors().is_empty() && brightest(self.exposed_colors()) < DARK
     }
 
     /// Returns the mesh files of the scene.

@@ -1,17 +1,17 @@
 //! Checks for parts of solids that have no effect.
 
-use super::finding::{Finding, MAX_SOUGHT};
+use super::finding::{Finding, MAX_FINDINGS};
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
 use durer_scene::math::Aabb;
 use durer_scene::scene::{CsgOperation, ObjectKind, extent};
 
 /// Reports subtracted parts whose bounds do not overlap those of the first part.
-pub(super) fn idle_part(scout: &SceneProbe) -> Vec<Finding> {
-    let scene = scout.subject.scene;
-    let mut found = Vec::new();
+pub(super) fn part_without_effect(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let scene = scene_probe.input.scene;
+    let mut findings = Vec::new();
     let mut all: Vec<&durer_scene::scene::Object> = scene.root.iter().flat_map(|root| &root.objects).collect();
-    while let Some(object) = all.pop().filter(|_| found.len() < MAX_SOUGHT) {
+    while let Some(object) = all.pop().filter(|_| findings.len() < MAX_FINDINGS) {
         match &object.node {
             ObjectKind::Group(group) => all.extend(&group.objects),
             ObjectKind::Transform(_, inner) => all.push(inner),
@@ -33,11 +33,11 @@ pub(super) fn idle_part(scout: &SceneProbe) -> Vec<Finding> {
                         .related(parts[0].span, "it does not overlap this")
                         .effect("it has no effect: it cuts no hole")
                         .help("move it into the first part: check its position and the transforms around it");
-                    found.push(Finding::from(diagnostic));
+                    findings.push(Finding::from(diagnostic));
                 }
             }
             _ => {}
         }
     }
-    found
+    findings
 }

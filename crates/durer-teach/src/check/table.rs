@@ -3,8 +3,8 @@
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
 use super::{
-    air, area_lights, beams, colors, exposure, extent, facing, fading, hidden, layers, lens, lights, mesh, method,
-    names, numbers, objects, optics, patterns, physical, solid, unseen, view, year,
+    area_lights, attenuation, beams, colors, exposure, extent, facing, fog, hidden, integrator, invisible, layers,
+    lens, lights, mesh, names, numbers, objects, optics, patterns, physical, quirks, solid, view,
 };
 
 /// A kind of finding with its stable code and the function that searches for it; a row of
@@ -49,12 +49,12 @@ checks! {
     "far-origin": "a scene so far from the origin that single precision cannot resolve its shapes", lens::far_origin;
     "epsilon": "a scene smaller than the distance at which this year's program starts shadow rays", lens::below_epsilon;
     "camera-inside": "a camera inside an object", view::inside;
-    "camera-away": "a camera that looks past everything", view::away;
+    "camera-away": "a camera that looks past everything", view::looks_elsewhere;
     "up-parallel": "a camera whose `up` is parallel to its `direction`", reported;
     "too-small": "objects that together are too small in the picture", extent::too_small;
     "too-narrow": "a picture that shows a tiny part of the scene", extent::too_narrow;
     "empty-solid": "an empty solid", objects::empty_solid;
-    "idle-part": "a part of a solid without effect", solid::idle_part;
+    "idle-part": "a part of a solid without effect", solid::part_without_effect;
     "wide-aperture": "an aperture that is too large for a lens", lens::wide_aperture;
     "out-of-focus": "a lens that focuses where there is nothing", lens::out_of_focus;
     "eyes-apart": "eyes that are too far apart", lens::eyes_apart;
@@ -63,23 +63,23 @@ checks! {
     "plane-through": "a plane that passes through the middle of most objects", view::plane_through;
     "upside-down": "a camera whose `up` points into the ground", view::upside_down;
     "edge-on": "a plane seen edge-on", lens::edge_on;
-    "long-up": "a camera's `up` that is used as written, without unit length", year::long_up;
-    "stretched": "a picture that is not square, with a program that stretches it", year::stretched;
-    "plane-normal": "a plane whose normal does not have unit length", year::plane_normal;
+    "long-up": "a camera's `up` that is used as written, without unit length", quirks::long_up;
+    "stretched": "a picture that is not square, with a program that stretches it", quirks::stretched;
+    "plane-normal": "a plane whose normal does not have unit length", quirks::plane_normal;
     "out-of-scale": "an object far larger or smaller than most", extent::out_of_scale;
     // Lights.
-    "wrong-integrator": "light of a kind that the integrator does not support", method::wrong_integrator;
-    "black-sky": "an environment that is multiplied by 0", method::black_sky;
+    "wrong-integrator": "light of a kind that the integrator does not support", integrator::wrong_integrator;
+    "black-sky": "an environment that is multiplied by 0", integrator::black_sky;
     "no-light": "no light", reported;
     "no-emitter": "a path-traced scene in which nothing emits light", physical::no_emitter;
-    "fog-away": "fog that no camera ray passes through", air::away;
-    "thick-fog": "fog that blocks all light", air::thick_fog;
-    "lamp-turned": "an area light that faces away from everything visible", area_lights::turned;
+    "fog-away": "fog that no camera ray passes through", fog::away;
+    "thick-fog": "fog that blocks all light", fog::thick_fog;
+    "lamp-turned": "an area light that faces away from everything visible", area_lights::facing_away;
     "lamp-blocked": "an area light that is occluded from everything visible", area_lights::blocked;
     "lamp-in-glass": "an area light inside glass, which paths hit only by chance", area_lights::in_glass;
     "no-depth": "medium parameters that have no effect", physical::without_effect;
     "black-light": "a light without colour", reported;
-    "light-divides": "a light whose falloff is zero, which causes a division by zero", fading::divides;
+    "light-divides": "a light whose falloff is zero, which causes a division by zero", attenuation::invalid_divisor;
     "no-falloff": "a light without `falloff`, where the old program divides by it", reported;
     "light-away": "a spotlight or photometric light that misses everything visible", beams::away;
     "light-narrow": "a spotlight whose cone contains almost nothing", beams::narrow;
@@ -87,30 +87,30 @@ checks! {
     "light-inside": "a light inside an object", lights::inside;
     "light-blocked": "a light that an object blocks from everything visible", lights::blocked;
     "light-behind": "a light that all visible surfaces face away from", lights::behind;
-    "light-faint": "a light that fades before it arrives", fading::faint;
+    "light-faint": "a light that fades before it arrives", attenuation::faint;
     "inner-angle": "a spotlight whose inner cone is wider than the outer", beams::inner_angle;
     // Colours.
     "color-range": "a colour above 1", colors::too_large;
-    "full-ambient": "ambient light so strong that it leaves no range for the lights", year::full_ambient;
-    "pow-zero": "a highlight with an exponent near 0, which covers everything", year::pow_zero;
-    "no-exponent": "a highlight colour without an exponent", year::no_exponent;
-    "tiny-highlight": "a highlight smaller than a pixel", year::tiny_highlight;
-    "same-parts": "a pattern with two equal parts", year::same_parts;
+    "full-ambient": "ambient light so strong that it leaves no range for the lights", quirks::full_ambient;
+    "pow-zero": "a highlight with an exponent near 0, which covers everything", quirks::pow_zero;
+    "no-exponent": "a highlight colour without an exponent", quirks::no_exponent;
+    "tiny-highlight": "a highlight smaller than a pixel", quirks::tiny_highlight;
+    "same-parts": "a pattern with two equal parts", quirks::same_parts;
     "pattern-scale": "a pattern that shows only one part, or is finer than a pixel", patterns::scale;
     "material-index": "a `MaterialIndex` without a material", reported;
     "no-material": "objects before any `MaterialIndex`", reported;
-    "not-there": "a material of opacity 0", layers::not_there;
+    "not-there": "a material of opacity 0", layers::zero_opacity;
     "black-material": "a material that reflects no light", colors::black;
     "light-cancelled": "a light whose colour the materials do not reflect", lights::cancelled;
     "negative-color": "a colour below zero", colors::negative;
     "no-bounces": "mirrors or glass without secondary rays", colors::no_bounces;
-    "dull-glass": "glass whose colour absorbs all light", colors::dull_glass;
-    "nothing-mirrored": "mirrors that have nothing to reflect", method::nothing_mirrored;
+    "dull-glass": "glass whose colour absorbs all light", colors::opaque_glass;
+    "nothing-mirrored": "mirrors that have nothing to reflect", integrator::nothing_mirrored;
     "thick-film": "a thin film that is too thick to show colours", optics::thick_film;
     "wide-scatter": "a scattering object much thinner than the mean free path of light in it", optics::wide_scatter;
     "no-spectrum": "glass with dispersion in a picture that is not rendered spectrally", optics::no_spectrum;
     "odd-index": "glass with an impossible index of refraction", colors::odd_index;
-    "same-color": "objects with the colour of the background", colors::camouflaged;
+    "same-color": "objects with the colour of the background", colors::background_colored;
     "no-coordinates": "a texture on an object without texture coordinates", colors::no_coordinates;
     "flat-texture": "a texture that shows only one colour", patterns::flat_texture;
     // Shapes and meshes.
@@ -118,24 +118,24 @@ checks! {
     "turned-triangle": "triangles that face the opposite way from their neighbours", facing::turned_triangles;
     "winding": "triangles of a mesh with the opposite winding to their neighbours", mesh::winding;
     "inside-out": "a closed mesh whose normals point inwards", mesh::inside_out;
-    "odd-normals": "normals of a mesh file that contradict its faces, are missing or have zero length", mesh::given_normals;
-    "misread-mesh": "a mesh file that this year's program reads with a missing line or different normals", mesh::misread;
-    "flat-field": "a height field that is flat", unseen::flat_field;
+    "odd-normals": "normals of a mesh file that contradict its faces, are missing or have zero length", mesh::file_normals;
+    "misread-mesh": "a mesh file that this year's program reads with a missing line or different normals", mesh::quirky_files;
+    "flat-field": "a height field that is flat", invisible::flat_field;
     "open-mesh": "a mesh with holes through which its inside is visible", mesh::holes;
     "degenerate-mesh": "triangles of a mesh without area", mesh::degenerate;
     "degenerate-triangle": "a triangle without area", objects::degenerate;
-    "mesh-quads": "faces that this year's program cannot read", year::quads;
+    "mesh-quads": "faces that this year's program cannot read", quirks::quads;
     "open-glass": "a glass object that is not closed", mesh::open_glass;
     "squashed": "an object that its transforms make flat or tiny", objects::squashed;
-    "same-place": "two objects with coinciding surfaces", objects::twice;
-    "light-twice": "a light that is defined twice", lights::twice;
+    "same-place": "two objects with coinciding surfaces", objects::duplicates;
+    "light-twice": "a light that is defined twice", lights::duplicates;
     // The picture.
     "not-finite": "samples that are NaN or infinite", numbers::not_finite;
     "depth-range": "a depth range that contains no depth of the picture", exposure::depth_range;
     "too-bright": "more light than an 8-bit picture can show", exposure::too_bright;
-    "mostly-black": "lights that reach hardly any of the visible surfaces", method::mostly_black;
+    "mostly-black": "lights that reach hardly any of the visible surfaces", integrator::mostly_black;
     "too-dark": "hardly any light", exposure::too_dark;
-    "all-missed": "no ray hits anything, although the camera looks at the scene", view::missed;
+    "all-missed": "no ray hits anything, although the camera looks at the scene", view::empty_view;
     "one-color": "a picture of one colour, from an unknown cause", exposure::one_color;
     // Odd, but mostly harmless.
     "dialect": "the dialect that was detected for the scene", reported;
@@ -144,8 +144,8 @@ checks! {
     "foreign-word": "a word from the dialect of another year", reported;
     "portability": "a scene that the official program of that year would reject", reported;
     "comment": "a comment that does not begin with `#`", reported;
-    "tiny": "an object smaller than a pixel", unseen::tiny;
-    "unseen": "objects outside the picture, or hidden", unseen::unseen;
+    "tiny": "an object smaller than a pixel", invisible::tiny;
+    "unseen": "objects outside the picture, or hidden", invisible::invisible;
     "unused-define": "a definition that is never used", names::unused_define;
     "unused-material": "a material that no object uses", colors::unused;
     "mesh-file": "a part of a mesh file that was ignored", reported;

@@ -1,7 +1,7 @@
 //! Tests of parts of the checks that no scene covers on its own.
 
+use super::containment::containing_objects;
 use super::mesh_files::topology::Topology;
-use super::within::around;
 use super::*;
 use durer_diag::{Diagnostic, Span};
 use durer_formats::course::place;
@@ -31,7 +31,7 @@ fn torus(rows: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
 fn sound_mesh_is_closed_and_faces_outwards() {
     let (positions, triangles) = torus(24);
     let topology = Topology::of(&positions, &triangles);
-    assert!(topology.is_closed() && topology.turned.is_empty() && topology.degenerate.is_empty());
+    assert!(topology.is_closed() && topology.reversed.is_empty() && topology.degenerate.is_empty());
     // A torus with radii R and r encloses 2 pi^2 R r^2; its polygons enclose slightly less.
     let exact = 2.0 * std::f64::consts::PI * std::f64::consts::PI * 3.0;
     let volume = topology.volume / 6.0;
@@ -42,7 +42,7 @@ fn sound_mesh_is_closed_and_faces_outwards() {
     assert!(Topology::of(&apart, &own).is_closed());
     let inside_out: Vec<[u32; 3]> = triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
     let turned = Topology::of(&positions, &inside_out);
-    assert!(turned.is_closed() && turned.turned.is_empty() && turned.volume < 0.0);
+    assert!(turned.is_closed() && turned.reversed.is_empty() && turned.volume < 0.0);
 }
 
 #[test]
@@ -56,7 +56,7 @@ fn reversed_triangles_are_found() {
         turned.sort_unstable();
         turned.dedup();
         turned.iter().for_each(|&i| triangles[i as usize].swap(1, 2));
-        assert_eq!(Topology::of(&positions, &triangles).turned, turned);
+        assert_eq!(Topology::of(&positions, &triangles).reversed, turned);
     }
 }
 
@@ -67,11 +67,11 @@ fn open_and_shared_edges_are_counted() {
     for taken in 1..4 {
         triangles.remove(taken * 40);
         let topology = Topology::of(&positions, &triangles);
-        assert_eq!((topology.open, topology.crowded), (3 * taken, 0));
+        assert_eq!((topology.open, topology.non_manifold), (3 * taken, 0));
     }
     let first = triangles[0];
     triangles.push(first);
-    assert_eq!(Topology::of(&positions, &triangles).crowded, 3);
+    assert_eq!(Topology::of(&positions, &triangles).non_manifold, 3);
     triangles.push([5, 5, 9]);
     triangles.push([7, 8, 7]);
     let last = triangles.len() as u32 - 1;
@@ -103,7 +103,7 @@ fn points_are_inside_the_objects_around_them() {
             }
             let truly = shape.inside(local.as_dvec3()) == Some(true);
             inside += usize::from(truly);
-            assert_eq!(!around(&world, point).is_empty(), truly, "{shape:?} at {local}");
+            assert_eq!(!containing_objects(&world, point).is_empty(), truly, "{shape:?} at {local}");
         }
     }
     assert!(inside > 100);
@@ -148,14 +148,15 @@ fn edits_are_applied_unless_they_overlap() {
     ];
     let repaired = apply(text, 0, &findings);
     assert_eq!(String::from_utf8(repaired.bytes).unwrap(), "numObjects 2 radius 1 center 5 5 5");
-    assert_eq!(repaired.mended, [0, 1]);
+    assert_eq!(repaired.fixed, [0, 1]);
     assert_eq!(apply(text, 1, &findings).bytes, text);
 }
 
 #[test]
 fn causes_come_before_consequences() {
-    let finding =
-        |severity: fn(&'static str) -> Diagnostic, code, whole| Finding::from(severity("odd").code(code)).whole(whole);
+    let finding = |severity: fn(&'static str) -> Diagnostic, code, whole| {
+        Finding::from(severity("odd").code(code)).affecting_whole_picture(whole)
+    };
     let (error, warning, note) = (|m| Diagnostic::error(m), |m| Diagnostic::warning(m), |m| Diagnostic::note(m));
     let found = ordered(vec![
         finding(note, "unused-material", false),

@@ -1,9 +1,9 @@
 //! Determines what each light contributes to the visible points, and why some contribute nothing.
 
-use super::aim::Aim;
+use super::aim::BeamMiss;
+use super::containment::containing_objects;
 use super::probes::{LightContribution, ProbeGrid, ProbeHit};
 use super::shapes::point;
-use super::within::around;
 use durer_render::world::Material;
 use durer_scene::camera::Projection;
 use durer_scene::light::{Illuminate as _, Light};
@@ -12,21 +12,21 @@ use durer_scene::math::{Color, Ray, Vec3};
 /// Half a step of an eight-bit value. Smaller contributions are invisible.
 pub(super) const VISIBLE: f32 = 1.0 / 512.0;
 /// Maximum number of lights that are examined. Further lights count as working.
-pub(super) const MAX_JUDGED: usize = 500;
+pub(super) const MAX_LIGHTS: usize = 500;
 /// Share of the visible points below which a light counts as contributing nothing.
-const SHARE: f32 = 0.002;
+const MIN_LIT_SHARE: f32 = 0.002;
 /// Share of shadowed points above which a light is blocked; only points that face the light count.
 const MAX_BLOCKED: f32 = 0.95;
 /// Minimum share of the points facing a light that a roof over all objects must shadow.
-const ROOFED: f32 = 0.6;
+const MIN_ROOF_SHADOW: f32 = 0.6;
 /// Total light below which the lights are practically invisible.
-const MAX_WEAK: f32 = 0.06;
+const MIN_TOTAL_LIGHT: f32 = 0.06;
 /// Cosine below which light grazes a surface.
 pub(super) const GRAZING: f32 = 0.08;
 
 /// Result of examining a light: whether it contributes to the visible points and, if not, why not.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Verdict {
+pub(super) enum LightVerdict {
     /// The light contributes to the picture, or no visible point could receive its light.
     Works,
     /// The light's colour is black.
@@ -48,44 +48,45 @@ pub(super) enum Verdict {
 }
 
 /// Examines each light of the world and returns the verdicts by index.
-pub(super) fn verdicts(grid: &ProbeGrid, aims: &[Option<Aim>]) -> Vec<Verdict> {
-    let judged = |light| if light < MAX_JUDGED { verdict(grid, light, aims) } else { Verdict::Works };
-    let mut verdicts: Vec<Verdict> = (0..grid.world().lights().len()).map(judged).collect();
+pub(super) fn verdicts(grid: &ProbeGrid, aims: &[Option<BeamMiss>]) -> Vec<LightVerdict> {
+    let judged = |light| if light < MAX_LIGHTS { verdict(grid, light, aims) } else { LightVerdict::Works };
+    let mut verdicts: Vec<LightVerdict> = (0..grid.world().lights().len()).map(judged).collect();
     if let Some(most) = weak_together(grid, &verdicts) {
-        verdicts.iter_mut().for_each(|verdict| *verdict = Verdict::Faint(most));
+        verdicts.iter_mut().for_each(|verdict| *verdict = LightVerdict::Faint(most));
     }
     if cancelled_together(grid, &verdicts) {
-        verdicts.iter_mut().for_each(|verdict| *verdict = Verdict::Cancelled);
+        verdicts.iter_mut().for_each(|verdict| *verdict = LightVerdict::Cancelled);
     }
     verdicts
 }
 
 /// Returns the light that arrives if there are at most three lights and all of them together are
 /// almost invisible.
-fn weak_together(grid: &ProbeGrid, verdicts: &[Verdict]) -> Option<f32> {
-    if verdicts.is_empty() || verdicts.len() > 3 || verdicts.iter().any(|verdict| *verdict != Verdict::Works) {
+fn weak_together(grid: &ProbeGrid, verdicts: &[LightVerdict]) -> Option<f32> {
+    if verdicts.is_empty() || verdicts.len() > 3 || verdicts.iter().any(|verdict| *verdict != LightVerdict::Works) {
         return None;
     }
     let most = |of: fn(&LightContribution) -> Color| {
-        let sums = grid.seen().map(|(_, seen)| seen.lit.iter().map(of).sum::<Color>().max_element());
+        let sums = grid.hits().map(|(_, hit)| hit.lights.iter().map(of).sum::<Color>().max_element());
         sums.fold(0.0, f32::max)
     };
-    let (arrives, adds) = (most(|lit| lit.arrives), most(|lit| lit.adds));
-    (arrives > 0.0 && arrives < MAX_WEAK && adds < MAX_WEAK).then_some(arrives)
+    let (arrives, adds) = (most(|lit| lit.unoccluded), most(|lit| lit.contribution));
+    (arrives > 0.0 && arrives < MIN_TOTAL_LIGHT && adds < MIN_TOTAL_LIGHT).then_some(arrives)
 }
 
 /// Returns true if almost all surfaces that the lights reach absorb their colour.
-fn cancelled_together(grid: &ProbeGrid, verdicts: &[Verdict]) -> bool {
+fn cancelled_together(grid: &ProbeGrid, verdicts: &[LightVerdict]) -> bool {
     let materials = grid.world().materials();
-    if !verdicts.contains(&Verdict::Works) || verdicts.iter().any(|v| !matches!(v, Verdict::Works | Verdict::Cancelled))
+    if !verdicts.contains(&LightVerdict::Works)
+        || verdicts.iter().any(|v| !matches!(v, LightVerdict::Works | LightVerdict::Cancelled))
     {
         return false;
     }
     let (mut reached, mut lost) = (0, 0);
-    for (_, seen) in grid.seen() {
-        let Some(Material::Phong(phong)) = materials.get(seen.material as usize) else { return false };
-        let lit = seen.lit.iter().filter(|lit| lit.cosine > 0.05 && lit.blocker.is_none());
-        let arrives: Color = lit.map(|lit| lit.arrives).sum();
+    for (_, hit) in grid.hits() {
+        let Some(Material::Phong(phong)) = materials.get(hit.material as usize) else { return false };
+        let lit = hit.lights.iter().filter(|lit| lit.cosine > 0.05 && lit.blocker.is_none());
+        let arrives: Color = lit.map(|lit| lit.unoccluded).sum();
         if arrives.max_element() < 0.1 || phong.diffuse.max_element() < 0.1 || phong.texture.is_some() {
             continue;
         }
@@ -95,74 +96,75 @@ fn cancelled_together(grid: &ProbeGrid, verdicts: &[Verdict]) -> bool {
     reached > 20 && lost * 10 > reached * 8
 }
 
-fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
+fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<BeamMiss>]) -> LightVerdict {
     let light = &grid.world().lights()[number];
     // Clear glass shows what is behind it, not the light that reaches it.
-    let clear = |seen: &ProbeHit| match &grid.world().materials()[seen.material as usize] {
+    let clear = |hit: &ProbeHit| match &grid.world().materials()[hit.material as usize] {
         Material::Phong(phong) => phong.transparent.min_element() > 0.5 && phong.diffuse.max_element() < 0.1,
         Material::Mix(..) => false,
     };
-    let lit = grid.seen().filter(|(_, seen)| !clear(seen));
-    let all: Vec<&LightContribution> = lit.filter_map(|(_, seen)| seen.by(number)).collect();
+    let lit = grid.hits().filter(|(_, hit)| !clear(hit));
+    let all: Vec<&LightContribution> = lit.filter_map(|(_, hit)| hit.contribution(number)).collect();
     if light.color() == Color::ZERO {
-        return Verdict::Black;
+        return LightVerdict::Black;
     }
     let odd = |lit: &&LightContribution| {
-        !lit.arrives.is_finite() || lit.arrives.min_element() < 0.0 && light.color().min_element() >= 0.0
+        !lit.unoccluded.is_finite() || lit.unoccluded.min_element() < 0.0 && light.color().min_element() >= 0.0
     };
-    if divisor(light) == Some(Vec3::ZERO) || all.iter().any(odd) {
-        return Verdict::Divides;
+    if attenuation(light) == Some(Vec3::ZERO) || all.iter().any(odd) {
+        return LightVerdict::Divides;
     }
     if aims[number].is_some() {
-        return Verdict::Missing;
+        return LightVerdict::Missing;
     }
-    let visible = all.iter().filter(|lit| lit.adds.abs().max_element() > VISIBLE).count();
+    let visible = all.iter().filter(|lit| lit.contribution.abs().max_element() > VISIBLE).count();
     // If there are only a few lights, each of them is probably meant to be visible.
-    let most = all.iter().map(|lit| lit.adds.abs().max_element()).fold(0.0, f32::max);
-    let arrives = all.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
+    let most = all.iter().map(|lit| lit.contribution.abs().max_element()).fold(0.0, f32::max);
+    let arrives = all.iter().map(|lit| lit.unoccluded.abs().max_element()).fold(0.0, f32::max);
     if grid.world().lights().len() <= 3 && most > VISIBLE && most < 6.0 * VISIBLE && arrives < 12.0 * VISIBLE {
-        return Verdict::Faint(arrives);
+        return LightVerdict::Faint(arrives);
     }
-    let is_blocked = nearly_blocked(&all) || roofed(grid, number);
-    if all.is_empty() || visible as f32 > SHARE * all.len() as f32 && !is_blocked {
-        return Verdict::Works;
+    let is_blocked = nearly_blocked(&all) || is_under_roof(grid, number);
+    if all.is_empty() || visible as f32 > MIN_LIT_SHARE * all.len() as f32 && !is_blocked {
+        return LightVerdict::Works;
     }
     if let Some(point) = point(light)
         && let Some(&object) =
-            around(grid.world(), point.position).iter().find(|&&object| keeps_light(grid, object, &all))
+            containing_objects(grid.world(), point.position).iter().find(|&&object| encloses_light(grid, object, &all))
     {
-        return Verdict::Inside(object);
+        return LightVerdict::Inside(object);
     }
     let facing: Vec<&&LightContribution> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
     let blocked: Vec<u32> = facing.iter().filter_map(|lit| lit.blocker).collect();
     if facing.len() - blocked.len() > all.len() / 50 && !is_blocked {
-        let most = facing.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
+        let most = facing.iter().map(|lit| lit.unoccluded.abs().max_element()).fold(0.0, f32::max);
         // At grazing angles a surface is dark whatever its colour.
-        let colored = |seen: &ProbeHit| match &grid.world().materials()[seen.material as usize] {
+        let colored = |hit: &ProbeHit| match &grid.world().materials()[hit.material as usize] {
             // Mirrors and other surfaces without diffuse reflection do not absorb a light's colour.
             Material::Phong(phong) => phong.diffuse.max_element() >= 0.05,
             Material::Mix(..) => true,
         };
-        let lit = grid.seen().filter(|(_, seen)| !clear(seen) && colored(seen));
-        let lit = lit.filter_map(|(_, seen)| seen.by(number));
+        let lit = grid.hits().filter(|(_, hit)| !clear(hit) && colored(hit));
+        let lit = lit.filter_map(|(_, hit)| hit.contribution(number));
         let lit = lit.filter(|lit| lit.blocker.is_none() && lit.cosine > GRAZING);
-        let (full, lost) = lit
-            .filter(|lit| lit.arrives.abs().max_element() > 4.0 * VISIBLE)
-            .fold((0, 0), |(n, lost), lit| (n + 1, lost + usize::from(lit.adds.abs().max_element() <= VISIBLE)));
+        let (full, lost) =
+            lit.filter(|lit| lit.unoccluded.abs().max_element() > 4.0 * VISIBLE).fold((0, 0), |(n, lost), lit| {
+                (n + 1, lost + usize::from(lit.contribution.abs().max_element() <= VISIBLE))
+            });
         let dull = facing.iter().filter(|lit| lit.blocker.is_none() && lit.cosine > GRAZING).count() > 4 && full == 0;
         return match most < 4.0 * VISIBLE {
-            true => Verdict::Faint(most),
-            false if full > 4 && lost * 10 > full * 9 => Verdict::Cancelled,
-            false if full > 0 || dull => Verdict::Works,
-            false => Verdict::Behind,
+            true => LightVerdict::Faint(most),
+            false if full > 4 && lost * 10 > full * 9 => LightVerdict::Cancelled,
+            false if full > 0 || dull => LightVerdict::Works,
+            false => LightVerdict::Behind,
         };
     }
     match main_blocker(grid, number, &blocked)
         .filter(|_| blocked.len() * 5 > all.len())
         .or_else(|| behind_plane(grid, light))
     {
-        Some(object) => Verdict::Blocked(object),
-        None => Verdict::Behind,
+        Some(object) => LightVerdict::Blocked(object),
+        None => LightVerdict::Behind,
     }
 }
 
@@ -176,10 +178,10 @@ fn nearly_blocked(all: &[&LightContribution]) -> bool {
 
 /// Returns true if one object shadows all other bounded objects that face a light, and most of the
 /// remaining points.
-fn roofed(grid: &ProbeGrid, light: usize) -> bool {
+fn is_under_roof(grid: &ProbeGrid, light: usize) -> bool {
     let objects = grid.world().objects();
     let facing = || {
-        let all = grid.seen().filter_map(|(_, seen)| Some((seen.object, seen.by(light)?)));
+        let all = grid.hits().filter_map(|(_, hit)| Some((hit.object, hit.contribution(light)?)));
         all.filter(|(_, lit)| lit.cosine > GRAZING)
     };
     let blockers: Vec<u32> = facing().filter_map(|(_, lit)| lit.blocker).collect();
@@ -188,20 +190,20 @@ fn roofed(grid: &ProbeGrid, light: usize) -> bool {
     let items = || facing().filter(|(object, _)| *object != roof && objects[*object as usize].bounds().is_some());
     let (count, covered) = (items().count(), items().filter(under).count());
     let (all, dark) = (facing().count(), facing().filter(|(_, lit)| lit.blocker == Some(roof)).count());
-    count > 20 && covered as f32 > MAX_BLOCKED * count as f32 && dark as f32 > ROOFED * all as f32
+    count > 20 && covered as f32 > MAX_BLOCKED * count as f32 && dark as f32 > MIN_ROOF_SHADOW * all as f32
 }
 
 /// Returns the object that blocks a light at the most points. Several objects can block the same
 /// point.
 fn main_blocker(grid: &ProbeGrid, light: usize, blocked: &[u32]) -> Option<u32> {
     let (common, emitter) = (most_common(blocked)?, &grid.world().lights()[light]);
-    let places = grid.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.blocker.is_some()));
+    let places = grid.hits().filter(|(_, seen)| seen.contribution(light).is_some_and(|lit| lit.blocker.is_some()));
     let mut all = Vec::new();
     for (probe, seen) in places.step_by((blocked.len() / 60).max(1)) {
-        let place = probe.ray.at(seen.t).as_dvec3();
-        let seen = emitter.illuminate(place);
+        let point = probe.ray.at(seen.t).as_dvec3();
+        let seen = emitter.illuminate(point);
         let reach = if seen.distance.is_finite() { seen.distance } else { f32::INFINITY };
-        let ray = Ray { t_min: 1e-3, t_max: 0.999 * reach, ..Ray::new(place.as_vec3(), seen.to_light) };
+        let ray = Ray { t_min: 1e-3, t_max: 0.999 * reach, ..Ray::new(point.as_vec3(), seen.to_light) };
         let mut hit: Vec<u32> = grid.world().all_hits(&ray).take(16).map(|hit| hit.object).collect();
         hit.sort_unstable();
         hit.dedup();
@@ -219,14 +221,14 @@ fn behind_plane(grid: &ProbeGrid, light: &Light) -> Option<u32> {
     let world = grid.world();
     let way = world.camera().pose().center - point.position;
     let hit = world.closest(&Ray { t_max: 1.0, ..Ray::new(point.position, way) }, &mut ())?;
-    let is_seen = grid.seen().any(|(_, seen)| seen.object == hit.object);
+    let is_seen = grid.hits().any(|(_, seen)| seen.object == hit.object);
     (is_seen && world.objects()[hit.object as usize].bounds().is_none()).then_some(hit.object)
 }
 
 /// Returns true if an object around a light lets no light escape: it blocks the light, shadows are
 /// off, or no visible surface faces the light.
-fn keeps_light(grid: &ProbeGrid, object: u32, all: &[&LightContribution]) -> bool {
-    let shadows = grid.subject.job.settings.shadows;
+fn encloses_light(grid: &ProbeGrid, object: u32, all: &[&LightContribution]) -> bool {
+    let shadows = grid.input.job.settings.shadows;
     let blocks = all.iter().any(|lit| lit.blocker == Some(object));
     blocks || !shadows || all.iter().all(|lit| lit.cosine <= 1e-3)
 }
@@ -239,6 +241,6 @@ pub(super) fn most_common(objects: &[u32]) -> Option<u32> {
 }
 
 /// Returns the three attenuation coefficients of a point light.
-pub(super) fn divisor(light: &Light) -> Option<Vec3> {
+pub(super) fn attenuation(light: &Light) -> Option<Vec3> {
     point(light)?.attenuation
 }

@@ -1,13 +1,13 @@
 //! Checks of the camera's position and direction.
 
+use super::containment::containing_objects;
 use super::finding::{Finding, number, vector};
-use super::hidden::{ground, plane_before};
-use super::lights::all_fail;
+use super::hidden::{plane_before, world_plane};
+use super::lights::none_contributes;
 use super::scene_probe::SceneProbe;
 use super::shapes::plane;
-use super::verdict::Verdict;
-use super::visibility::{Visibility, aims, has_eye, pixels};
-use super::within::around;
+use super::verdict::LightVerdict;
+use super::visibility::{Visibility, has_eye, is_in_view, pixels};
 use durer_diag::{Diagnostic, Severity};
 use durer_formats::course::place::section;
 use durer_render::world::{Material, Object};
@@ -16,46 +16,52 @@ use durer_scene::math::{Aabb, Color, Vec3, fp};
 use durer_scene::scene::{Group, ObjectKind};
 
 /// Reports a scene without objects.
-pub(super) fn no_objects(scout: &SceneProbe) -> Vec<Finding> {
+pub(super) fn no_objects(scene_probe: &SceneProbe) -> Vec<Finding> {
     // `empty-solid` reports solids that are empty.
     let solid = |object: &ObjectKind| matches!(object, ObjectKind::Solid(..));
-    let empty = |root: &&Group| scout.world().objects().is_empty() && !root.objects.iter().any(|o| solid(&o.node));
-    let Some(root) = scout.subject.scene.root.as_ref().filter(empty) else { return Vec::new() };
+    let empty =
+        |root: &&Group| scene_probe.world().objects().is_empty() && !root.objects.iter().any(|o| solid(&o.node));
+    let Some(root) = scene_probe.input.scene.root.as_ref().filter(empty) else { return Vec::new() };
     // Models and JSON scenes have no `Group` keyword.
-    let file = scout.subject.scene.camera_span.file;
-    let group = scout.subject.files.bytes(file).is_some_and(|bytes| section(bytes, file, "Group").is_some());
+    let file = scene_probe.input.scene.camera_span.file;
+    let group = scene_probe.input.files.bytes(file).is_some_and(|bytes| section(bytes, file, "Group").is_some());
     let diagnostic = match group && root.objects.is_empty() {
         true => Diagnostic::warning("the scene has no objects: its group is empty").help("add objects to the `Group`"),
         false => Diagnostic::warning("the scene has no surfaces"),
     };
-    vec![Finding::from(diagnostic.effect("every ray misses, so the picture shows only the background")).whole(true)]
+    vec![
+        Finding::from(diagnostic.effect("every ray misses, so the picture shows only the background"))
+            .affecting_whole_picture(true),
+    ]
 }
 
 /// Reports objects that contain the camera, except rooms.
-pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
-    if !has_eye(scout) {
+pub(super) fn inside(scene_probe: &SceneProbe) -> Vec<Finding> {
+    if !has_eye(scene_probe) {
         return Vec::new();
     }
-    let pose = scout.world().camera().pose();
-    let (rays, physical) = (scout.probes.len(), scout.is_physical());
-    let mut found = Vec::new();
-    for object in around(scout.world(), pose.center) {
-        let own = scout.seen().filter(|(_, seen)| seen.object == object).count();
+    let pose = scene_probe.world().camera().pose();
+    let (rays, physical) = (scene_probe.probes.len(), scene_probe.is_physical());
+    let mut findings = Vec::new();
+    for object in containing_objects(scene_probe.world(), pose.center) {
+        let own = scene_probe.hits().filter(|(_, hit)| hit.object == object).count();
         // A room contains light and other objects.
-        let dark = !physical && all_fail(scout) && scout.verdicts().contains(&Verdict::Blocked(object));
+        let dark = !physical
+            && none_contributes(scene_probe)
+            && scene_probe.verdicts().contains(&LightVerdict::Blocked(object));
         // If backs are not shaded, walls seen from behind are not those of a room.
-        let backs = scout.seen().filter(|(_, seen)| seen.object == object && seen.from_behind).count();
-        let walls = !physical && !scout.subject.job.settings.shade_back && backs * 50 > rays;
-        let swallowed = super::extent::swallows_wrongly(scout, object) || is_alone(scout, object);
+        let backs = scene_probe.hits().filter(|(_, hit)| hit.object == object && hit.from_behind).count();
+        let walls = !physical && !scene_probe.input.job.settings.shade_back && backs * 50 > rays;
+        let swallowed = super::extent::encloses_camera_wrongly(scene_probe, object) || is_alone(scene_probe, object);
         if own * 100 < rays * 99 && !dark && !walls && !swallowed {
             continue;
         }
-        let Some(bounds) = scout.world().objects()[object as usize].bounds() else { continue };
-        let name = scout.object(object);
-        let outside = leave(bounds, pose.center, -pose.direction);
+        let Some(bounds) = scene_probe.world().objects()[object as usize].bounds() else { continue };
+        let name = scene_probe.object(object);
+        let outside = point_outside(bounds, pose.center, -pose.direction);
         let diagnostic = Diagnostic::warning(format!("the camera is inside the {name}"))
             .label("this point is inside it")
-            .related(scout.object_span(object), "around the camera")
+            .related(scene_probe.object_span(object), "around the camera")
             .effect(match dark {
                 _ if swallowed && own * 100 < rays * 99 => "it surrounds the camera, so its inside is visible",
                 _ if walls && own * 100 < rays * 99 => "its walls are visible from behind, and that side gets no \
@@ -63,7 +69,7 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
                 true => "it blocks the light; everything visible is in its shadow",
                 false => "only its inside is visible",
             })
-            .help(match super::extent::times_larger(scout, object) {
+            .help(match super::extent::times_larger(scene_probe, object) {
                 Some(times) => format!(
                     "it is {} times larger than all other objects: make it smaller, or move the camera out to `center {}`",
                     number(times),
@@ -74,37 +80,37 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
                     vector(outside)
                 ),
             });
-        let diagnostic = scout.at_value(diagnostic, scout.subject.scene.camera_span, &["center"]);
-        found.push(Finding::from(diagnostic).whole(true));
+        let diagnostic = scene_probe.at_value(diagnostic, scene_probe.input.scene.camera_span, &["center"]);
+        findings.push(Finding::from(diagnostic).affecting_whole_picture(true));
     }
-    found
+    findings
 }
 
 /// Returns true if an object that contains the camera is the only bounded one, is seen only from
 /// behind, and fills much of the picture.
-fn is_alone(scout: &SceneProbe, object: u32) -> bool {
-    let world = scout.world();
+fn is_alone(scene_probe: &SceneProbe, object: u32) -> bool {
+    let world = scene_probe.world();
     let ended = world.objects().iter().filter(|object| object.bounds().is_some()).count();
     let textured = match world.materials().get(world.objects()[object as usize].material as usize) {
         Some(Material::Phong(phong)) => phong.texture.is_some() || phong.emission.is_some(),
         _ => true,
     };
-    let own = scout.seen().filter(|(_, seen)| seen.object == object);
-    let (all, backs) = own.fold((0, 0), |(all, backs), (_, seen)| (all + 1, backs + usize::from(seen.from_behind)));
-    ended == 1 && !scout.is_physical() && !textured && all == backs && all * 4 > scout.probes.len()
+    let own = scene_probe.hits().filter(|(_, hit)| hit.object == object);
+    let (all, backs) = own.fold((0, 0), |(all, backs), (_, hit)| (all + 1, backs + usize::from(hit.from_behind)));
+    ended == 1 && !scene_probe.is_physical() && !textured && all == backs && all * 4 > scene_probe.probes.len()
 }
 
 /// Returns a point outside a box, beyond the exit of a ray that starts inside it.
-fn leave(bounds: Aabb, from: Vec3, direction: Vec3) -> Vec3 {
+fn point_outside(bounds: Aabb, from: Vec3, direction: Vec3) -> Vec3 {
     let direction = direction.normalize_or(Vec3::Z);
-    let way = bounds.clip(from, direction).map_or(0.0, |(_, leave)| leave);
-    from + 1.5 * way * direction
+    let distance = bounds.clip(from, direction).map_or(0.0, |(_, leave)| leave);
+    from + 1.5 * distance * direction
 }
 
 /// Returns the region that the camera should look at: the bounds of all bounded objects, or
 /// otherwise the nearest point of a plane.
-pub(super) fn target(scout: &SceneProbe) -> Option<Aabb> {
-    let (world, eye) = (scout.world(), scout.world().camera().pose().center);
+pub(super) fn target(scene_probe: &SceneProbe) -> Option<Aabb> {
+    let (world, eye) = (scene_probe.world(), scene_probe.world().camera().pose().center);
     let bounds = world.bounds();
     if !bounds.is_empty() {
         return Some(bounds);
@@ -120,16 +126,16 @@ pub(super) fn target(scout: &SceneProbe) -> Option<Aabb> {
 }
 
 /// Returns true if no bounded object is in the picture.
-fn all_outside(scout: &SceneProbe) -> bool {
-    let world = scout.world();
+fn all_outside(scene_probe: &SceneProbe) -> bool {
+    let world = scene_probe.world();
     let bounded = || {
         world
             .objects()
             .iter()
-            .zip(scout.visibilities())
+            .zip(scene_probe.visibilities())
             .filter(|(object, _)| object.bounds().is_some_and(|b| !b.is_empty()))
     };
-    let none = scout.seen().next().is_none();
+    let none = scene_probe.hits().next().is_none();
     match bounded().next() {
         Some(_) => bounded().all(|(_, sight)| *sight == Visibility::Outside),
         None => none && !world.objects().is_empty(),
@@ -137,37 +143,39 @@ fn all_outside(scout: &SceneProbe) -> bool {
 }
 
 /// Reports a camera whose picture shows no bounded object because it points elsewhere.
-pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
-    let Some(bounds) = target(scout).filter(|_| all_outside(scout)) else { return Vec::new() };
-    let (world, span) = (scout.world(), scout.subject.scene.camera_span);
+pub(super) fn looks_elsewhere(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let Some(bounds) = target(scene_probe).filter(|_| all_outside(scene_probe)) else { return Vec::new() };
+    let (world, span) = (scene_probe.world(), scene_probe.input.scene.camera_span);
     let (pose, center) = (world.camera().pose(), bounds.center());
     let mut ended = world.objects().iter().filter(|object| object.bounds().is_some()).peekable();
-    let behind = has_eye(scout) && ended.peek().is_some() && ended.all(|object| plane_before(scout, object).is_some());
-    if aims(scout, center) || behind {
+    let behind = has_eye(scene_probe)
+        && ended.peek().is_some()
+        && ended.all(|object| plane_before(scene_probe, object).is_some());
+    if is_in_view(scene_probe, center) || behind {
         return Vec::new();
     }
     // A field of view that is far too narrow can also miss the objects.
-    if aims_widely(scout, center) && !super::extent::too_narrow(scout).is_empty() {
+    if aims_widely(scene_probe, center) && !super::extent::too_narrow(scene_probe).is_empty() {
         return Vec::new();
     }
-    if let Some(diagnostic) = super::lens::shifted(scout, center) {
-        return vec![Finding::from(diagnostic).whole(true)];
+    if let Some(diagnostic) = super::lens::film_shift(scene_probe, center) {
+        return vec![Finding::from(diagnostic).affecting_whole_picture(true)];
     }
-    let hits = scout.seen().count();
+    let hits = scene_probe.hits().count();
     let effect = match hits {
         0 => "every ray misses, so the picture shows only the background".to_string(),
-        _ => format!("only {} is visible", only_seen(scout)),
+        _ => format!("only {} is visible", visible_objects(scene_probe)),
     };
     let mut diagnostic = Diagnostic::warning("the camera looks past everything").effect(effect);
-    if !has_eye(scout) {
+    if !has_eye(scene_probe) {
         let off = center - pose.center;
         let forward = world.camera_frame().forward;
         let across = off - off.dot(forward) * forward;
         let place = pose.center + across;
         diagnostic.message += &format!(": the center of the scene is {} away from its axis", number(across.length()));
-        diagnostic = diagnostic.help(format!("{}move it to `center {}`", nearest(scout), vector(place)));
-        let diagnostic = mended(scout, diagnostic, "center", place);
-        return vec![Finding::from(diagnostic).whole(true)];
+        diagnostic = diagnostic.help(format!("{}move it to `center {}`", nearest(scene_probe), vector(place)));
+        let diagnostic = with_field_edit(scene_probe, diagnostic, "center", place);
+        return vec![Finding::from(diagnostic).affecting_whole_picture(true)];
     }
     let to = center - pose.center;
     let angle = degrees(pose.direction, to);
@@ -177,25 +185,25 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
         return Vec::new();
     }
     diagnostic.message += &format!(": the center of the scene is {angle:.0} degrees off its direction");
-    let moved = super::places::moved(scout);
-    let first = moved.as_ref().map_or_else(|| nearest(scout), |(_, words)| words.clone() + "; or ");
+    let moved = super::transforms::moved_out_of_view(scene_probe);
+    let first = moved.as_ref().map_or_else(|| nearest(scene_probe), |(_, words)| words.clone() + "; or ");
     let mut help = format!("{first}turn it: `direction {}`", vector(to));
     let as_point = pose.direction - pose.center;
     if degrees(as_point, to) < 20.0 && angle > 20.0 {
         help += "; `direction` is a direction, not the point to look at";
     }
-    let diagnostic = match (moved, scout.value(span, &["direction"])) {
+    let diagnostic = match (moved, scene_probe.field_span(span, &["direction"])) {
         // Either the transform or the camera may be wrong.
         (Some((place, _)), _) => diagnostic.help(help).at(place).related(span, "the camera"),
-        (None, Some(_)) => mended(scout, diagnostic.help(help), "direction", to),
+        (None, Some(_)) => with_field_edit(scene_probe, diagnostic.help(help), "direction", to),
         (None, None) => diagnostic.help(help).at(span),
     };
-    vec![Finding::from(diagnostic).whole(true)]
+    vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }
 
 /// Returns true if a camera with a usual field of view would see a point.
-fn aims_widely(scout: &SceneProbe, place: Vec3) -> bool {
-    let world = scout.world();
+fn aims_widely(scene_probe: &SceneProbe, place: Vec3) -> bool {
+    let world = scene_probe.world();
     let to = place - world.camera().pose().center;
     match world.camera() {
         Camera::Perspective(_) => degrees(world.camera().pose().direction, to) < 20.0,
@@ -208,9 +216,9 @@ fn aims_widely(scout: &SceneProbe, place: Vec3) -> bool {
 }
 
 /// Adds the edit that replaces a vector field of the camera.
-fn mended(scout: &SceneProbe, diagnostic: Diagnostic, field: &str, value: Vec3) -> Diagnostic {
-    let span = scout.subject.scene.camera_span;
-    match scout.value(span, &[field]).filter(|_| value != Vec3::ZERO || field == "center") {
+fn with_field_edit(scene_probe: &SceneProbe, diagnostic: Diagnostic, field: &str, value: Vec3) -> Diagnostic {
+    let span = scene_probe.input.scene.camera_span;
+    match scene_probe.field_span(span, &[field]).filter(|_| value != Vec3::ZERO || field == "center") {
         Some(place) => diagnostic.at(place).fix(place, vector(value)),
         None => diagnostic.at(span),
     }
@@ -222,25 +230,25 @@ fn degrees(a: Vec3, b: Vec3) -> f32 {
 }
 
 /// Names the objects that are visible instead.
-fn only_seen(scout: &SceneProbe) -> String {
-    let mut objects: Vec<u32> = scout.seen().map(|(_, seen)| seen.object).collect();
+fn visible_objects(scene_probe: &SceneProbe) -> String {
+    let mut objects: Vec<u32> = scene_probe.hits().map(|(_, hit)| hit.object).collect();
     objects.sort_unstable();
     objects.dedup();
     match &objects[..] {
-        [one] => format!("the {}", scout.object(*one)),
+        [one] => format!("the {}", scene_probe.object(*one)),
         all => format!("{} unbounded objects", all.len()),
     }
 }
 
 /// Describes how far the closest ray passes from an object's bounding sphere.
-fn nearest(scout: &SceneProbe) -> String {
-    let world = scout.world();
+fn nearest(scene_probe: &SceneProbe) -> String {
+    let world = scene_probe.world();
     let balls = world.objects().iter().enumerate().filter_map(|(i, object)| {
         let bounds = object.bounds().filter(|bounds| !bounds.is_empty())?;
         Some((i as u32, bounds.center(), 0.5 * bounds.size().length()))
     });
     let misses = balls.take(500).flat_map(|(i, center, radius)| {
-        scout.probes.iter().map(move |probe| {
+        scene_probe.probes.iter().map(move |probe| {
             let to = center - probe.ray.origin;
             let along = to.dot(probe.ray.dir).max(probe.ray.t_min);
             (i, (to - along * probe.ray.dir).length() - radius)
@@ -248,40 +256,42 @@ fn nearest(scout: &SceneProbe) -> String {
     });
     match misses.min_by(|a, b| a.1.total_cmp(&b.1)) {
         Some((object, by)) if by > 0.0 => {
-            format!("the nearest ray misses the {1} by {0}; ", number(by), scout.object(object))
+            format!("the nearest ray misses the {1} by {0}; ", number(by), scene_probe.object(object))
         }
         _ => String::new(),
     }
 }
 
 /// Reports an empty picture although the camera looks at the centre of the objects.
-pub(super) fn missed(scout: &SceneProbe) -> Vec<Finding> {
-    let world = scout.world();
-    if scout.seen().next().is_some() || world.objects().is_empty() {
+pub(super) fn empty_view(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
+    if scene_probe.hits().next().is_some() || world.objects().is_empty() {
         return Vec::new();
     }
     // Probes can miss objects that are visible.
-    let hit = scout.visibilities().contains(&Visibility::Seen);
-    let Some(bounds) = target(scout).filter(|bounds| !hit && aims(scout, bounds.center())) else { return Vec::new() };
+    let hit = scene_probe.visibilities().contains(&Visibility::Visible);
+    let Some(bounds) = target(scene_probe).filter(|bounds| !hit && is_in_view(scene_probe, bounds.center())) else {
+        return Vec::new();
+    };
     let mut diagnostic = Diagnostic::warning("every ray misses, although the camera looks at the center of the scene")
         .effect("the picture shows only the background")
-        .at(scout.subject.scene.camera_span);
-    let size = pixels(scout, bounds);
+        .at(scene_probe.input.scene.camera_span);
+    let size = pixels(scene_probe, bounds);
     diagnostic.help = Some(match size {
         Some(size) if size < 12.0 => return Vec::new(),
-        _ => format!("{}is there a hole in the middle, or is it seen edge-on?", nearest(scout)),
+        _ => format!("{}is there a hole in the middle, or is it seen edge-on?", nearest(scene_probe)),
     });
-    vec![Finding::from(diagnostic).last()]
+    vec![Finding::from(diagnostic).only_describing()]
 }
 
 /// Reports planes that cut most objects in the middle, for example a floor whose normal is along
 /// the wrong axis.
-pub(super) fn plane_through(scout: &SceneProbe) -> Vec<Finding> {
-    let world = scout.world();
+pub(super) fn plane_through(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
     let boxes: Vec<[Vec3; 8]> =
-        world.objects().iter().filter_map(|o| Some(o.bounds()?.corners())).take(super::finding::MAX_SOUGHT).collect();
+        world.objects().iter().filter_map(|o| Some(o.bounds()?.corners())).take(super::finding::MAX_FINDINGS).collect();
     let through = |&number: &u32| {
-        let Some((n, d)) = ground(scout, number) else { return false };
+        let Some((n, d)) = world_plane(scene_probe, number) else { return false };
         let clear = match world.materials().get(world.objects()[number as usize].material as usize) {
             Some(Material::Phong(phong)) => phong.transparent != Color::ZERO,
             _ => false,
@@ -296,11 +306,11 @@ pub(super) fn plane_through(scout: &SceneProbe) -> Vec<Finding> {
     };
     let say = |number: u32| {
         // Objects can be sunk into a floor on purpose.
-        let floor = ground(scout, number).is_some_and(|(n, _)| n.dot(world.camera_frame().up).abs() > 0.8);
+        let floor = world_plane(scene_probe, number).is_some_and(|(n, _)| n.dot(world.camera_frame().up).abs() > 0.8);
         let severity = if floor { Severity::Note } else { Severity::Warning };
-        let message = format!("the {} passes through the middle of most objects", scout.object(number));
+        let message = format!("the {} passes through the middle of most objects", scene_probe.object(number));
         let diagnostic = Diagnostic { severity, ..Diagnostic::warning(message) }
-            .at(scout.object_span(number))
+            .at(scene_probe.object_span(number))
             .effect("only the parts in front of it are visible")
             .help("a floor should be below the objects: which axis points up? Check its `normal`, its `offset` and the rotations around it");
         Finding::from(diagnostic)
@@ -309,29 +319,29 @@ pub(super) fn plane_through(scout: &SceneProbe) -> Vec<Finding> {
 }
 
 /// Reports a camera whose `up` points into the ground on which all objects stand.
-pub(super) fn upside_down(scout: &SceneProbe) -> Vec<Finding> {
-    let world = scout.world();
+pub(super) fn upside_down(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
     let (eye, objects) = (world.camera().pose().center, world.bounds());
-    let mut planes = (0..world.objects().len() as u32).filter_map(|i| Some((i, ground(scout, i)?)));
+    let mut planes = (0..world.objects().len() as u32).filter_map(|i| Some((i, world_plane(scene_probe, i)?)));
     let (Some((number, (n, d))), None) = (planes.next(), planes.next()) else { return Vec::new() };
     let (n, d) = if eye.dot(n) < d { (-n, -d) } else { (n, d) };
     let height = |p: &Vec3| p.dot(n) - d;
     let size = objects.size().max_element();
     let stand = !objects.is_empty() && objects.corners().iter().all(|p| height(p) > -0.1 * size);
     let pose = world.camera().pose();
-    let seen = scout.seen().any(|(_, seen)| seen.object == number);
+    let hit = scene_probe.hits().any(|(_, hit)| hit.object == number);
     // A ceiling with objects hanging from it would look the same. Objects that touch the plane show
     // that it is the ground.
     let lowest = objects.corners().iter().map(height).fold(f32::INFINITY, f32::min);
-    if !stand || !seen || lowest > 0.3 * size || world.camera_frame().up.dot(n) > -0.3 || pose.up.dot(n) > 0.1 {
+    if !stand || !hit || lowest > 0.3 * size || world.camera_frame().up.dot(n) > -0.3 || pose.up.dot(n) > 0.1 {
         return Vec::new();
     }
     let turned = vector(if pose.up.dot(n) < -0.5 { -pose.up } else { n });
-    let span = scout.subject.scene.camera_span;
+    let span = scene_probe.input.scene.camera_span;
     let diagnostic = Diagnostic::warning("the picture is upside down: the camera's `up` points into the ground")
-        .related(scout.object_span(number), "the ground")
+        .related(scene_probe.object_span(number), "the ground")
         .effect("objects hang from it")
         .help(format!("`up` points to the upper edge of the picture: `up {turned}`"))
-        .fix_at(scout.value(span, &["up"]), turned);
-    vec![Finding::from(scout.at_value(diagnostic, span, &["up"]))]
+        .fix_at(scene_probe.field_span(span, &["up"]), turned);
+    vec![Finding::from(scene_probe.at_value(diagnostic, span, &["up"]))]
 }

@@ -10,7 +10,7 @@ use durer_scene::math::{Aabb, Ray, Vec2, Vec3};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Visibility {
     /// Some of the object is in the picture.
-    Seen,
+    Visible,
     /// The object projects into the picture, but this object hides it.
     Hidden(u32),
     /// The object is outside the picture.
@@ -28,16 +28,16 @@ const MAX_CORNERS: usize = 40;
 pub(super) fn visibilities(grid: &ProbeGrid) -> Vec<Visibility> {
     let objects = grid.world().objects();
     let mut visibilities = vec![Visibility::Unknown; objects.len()];
-    grid.seen().for_each(|(_, seen)| visibilities[seen.object as usize] = Visibility::Seen);
+    grid.hits().for_each(|(_, hit)| visibilities[hit.object as usize] = Visibility::Visible);
     for (i, object) in objects.iter().enumerate().take(MAX_OBJECTS) {
-        if visibilities[i] != Visibility::Seen {
-            visibilities[i] = sight(grid, i as u32, object);
+        if visibilities[i] != Visibility::Visible {
+            visibilities[i] = visibility_of(grid, i as u32, object);
         }
     }
     visibilities
 }
 
-fn sight(grid: &ProbeGrid, number: u32, object: &Object) -> Visibility {
+fn visibility_of(grid: &ProbeGrid, number: u32, object: &Object) -> Visibility {
     let points = points(object);
     if points.is_empty() {
         return Visibility::Unknown;
@@ -45,7 +45,7 @@ fn sight(grid: &ProbeGrid, number: u32, object: &Object) -> Visibility {
     let mut sight = Visibility::Outside;
     for ray in points.iter().flat_map(|&point| rays_to(grid, point)) {
         match grid.world().closest(&ray, &mut ()) {
-            Some(hit) if hit.object == number => return Visibility::Seen,
+            Some(hit) if hit.object == number => return Visibility::Visible,
             Some(hit) => sight = Visibility::Hidden(hit.object),
             None => {}
         }
@@ -55,15 +55,15 @@ fn sight(grid: &ProbeGrid, number: u32, object: &Object) -> Visibility {
 
 /// Returns the camera rays to a point; none if it projects outside the picture.
 pub(super) fn rays_to(grid: &ProbeGrid, point: Vec3) -> Vec<Ray> {
-    let (world, mut places) = (grid.world(), Vec::new());
-    world.camera().project(world.camera_frame(), point, Vec2::splat(0.5), &mut |place| places.push(place));
-    let corner = corner(grid);
-    let inside = places.into_iter().filter(|place| place.abs().cmple(corner).all());
+    let (world, mut points) = (grid.world(), Vec::new());
+    world.camera().project(world.camera_frame(), point, Vec2::splat(0.5), &mut |place| points.push(place));
+    let corner = picture_corner(grid);
+    let inside = points.into_iter().filter(|place| place.abs().cmple(corner).all());
     inside.filter_map(|place| world.camera().ray(world.camera_frame(), &CameraSample::at(place))).collect()
 }
 
 /// Returns the upper right corner of the picture in the camera's coordinates.
-pub(super) fn corner(grid: &ProbeGrid) -> Vec2 {
+pub(super) fn picture_corner(grid: &ProbeGrid) -> Vec2 {
     grid.raster.point(Vec2::new(grid.raster.width as f32, 0.0)).abs()
 }
 
@@ -72,13 +72,13 @@ pub(super) fn corner(grid: &ProbeGrid) -> Vec2 {
 pub(super) fn points(object: &Object) -> Vec<Vec3> {
     let to_world = |p: Vec3| object.world_point(p);
     if let Some(corners) = triangle(object) {
-        return within(corners).map(to_world).to_vec();
+        return triangle_points(corners).map(to_world).to_vec();
     }
     match &object.geometry {
         Geometry::Mesh(tree) => {
             let count = tree.mesh.len();
             let each = (0..count).step_by((count / MAX_CORNERS).max(1));
-            each.map(|i| to_world(within(tree.mesh.corners(i as u32))[0])).collect()
+            each.map(|i| to_world(triangle_points(tree.mesh.corners(i as u32))[0])).collect()
         }
         Geometry::Primitive(_) | Geometry::Solid(_) => {
             let Some(bounds) = object.bounds().filter(|bounds| !bounds.is_empty()) else { return Vec::new() };
@@ -92,34 +92,34 @@ pub(super) fn points(object: &Object) -> Vec<Vec3> {
 }
 
 /// Returns the centre of a triangle, and points near its corners.
-fn within([a, b, c]: [Vec3; 3]) -> [Vec3; 4] {
+fn triangle_points([a, b, c]: [Vec3; 3]) -> [Vec3; 4] {
     let middle = (a + b + c) / 3.0;
     [middle, a.lerp(middle, 0.1), b.lerp(middle, 0.1), c.lerp(middle, 0.1)]
 }
 
 /// Returns true if a point is in the camera's view, ignoring occlusion.
-pub(super) fn aims(grid: &ProbeGrid, place: Vec3) -> bool {
-    !rays_to(grid, place).is_empty()
+pub(super) fn is_in_view(grid: &ProbeGrid, point: Vec3) -> bool {
+    !rays_to(grid, point).is_empty()
 }
 
 /// Returns the larger side of a box's projection in pixels; `None` if some corner does not project
 /// to exactly one point.
 pub(super) fn pixels(grid: &ProbeGrid, bounds: Aabb) -> Option<f32> {
-    let (world, job) = (grid.world(), grid.subject.job);
+    let (world, job) = (grid.world(), grid.input.job);
     let mut around: Option<(Vec2, Vec2)> = None;
     let mut unseen = 0;
     for point in bounds.corners() {
-        let mut places = Vec::new();
-        world.camera().project(world.camera_frame(), point, Vec2::splat(0.5), &mut |place| places.push(place));
-        unseen += usize::from(places.len() != 1);
-        for place in places {
+        let mut points = Vec::new();
+        world.camera().project(world.camera_frame(), point, Vec2::splat(0.5), &mut |place| points.push(place));
+        unseen += usize::from(points.len() != 1);
+        for place in points {
             let (min, max) = around.unwrap_or((place, place));
             around = Some((min.min(place), max.max(place)));
         }
     }
     let (min, max) = around.filter(|_| unseen == 0)?;
     // The larger side of the picture spans 2 units.
-    Some((max - min).max_element() / (2.0 * corner(grid).max_element()) * job.width.max(job.height) as f32)
+    Some((max - min).max_element() / (2.0 * picture_corner(grid).max_element()) * job.width.max(job.height) as f32)
 }
 
 /// Returns true if all camera rays start at the camera's position. The rays of the other cameras

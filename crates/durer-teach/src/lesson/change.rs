@@ -1,6 +1,6 @@
 //! The difference between two pictures of a lesson step.
 
-use super::stage::{Stage, percent};
+use super::stage::{LessonScene, percent};
 use durer_image::{Image, Layer, LayerKind, Transfer};
 use durer_scene::math::Vec3;
 
@@ -59,7 +59,7 @@ impl Change {
     }
 
     /// Describes the change in a sentence.
-    pub(super) fn words(&self, stage: &Stage) -> String {
+    pub(super) fn words(&self, stage: &LessonScene) -> String {
         let (share, ((x, y), by)) = (percent(self.changed, self.pixels), self.most);
         let [lighter, darker] = [self.lighter, self.changed - self.lighter].map(|n| percent(n, self.pixels));
         let ways = match (self.light, self.lighter, self.changed) {

@@ -17,7 +17,7 @@ pub use change::Change;
 use durer_image::{Layer, Transfer};
 use durer_render::render::{Control, RenderError};
 use stage::LessonPicture;
-pub use stage::{OWN_SCENE, OWN_SCENE_NAME, Stage};
+pub use stage::{LessonScene, OWN_SCENE, OWN_SCENE_NAME};
 pub use topics::{Glass, PathSettings, Shot, ShotOptions, SourcePlace, TOPICS, Topic};
 
 /// A rendered picture of a lesson step and its caption.
@@ -38,11 +38,11 @@ pub struct Step {
     /// Title of the step.
     pub title: String,
     /// True if the pictures show the built-in scene, because the user's scene lacks the effect.
-    pub ours: bool,
+    pub uses_built_in_scene: bool,
     /// Reason why the user's scene lacks the effect.
-    pub lacking: &'static str,
+    pub missing_because: &'static str,
     /// True if the step continues the previous step's topic.
-    pub goes_on: bool,
+    pub continues_topic: bool,
     /// The picture before the step; `None` if there is nothing to compare with.
     pub before: Option<Picture>,
     /// The picture after the step.
@@ -52,22 +52,22 @@ pub struct Step {
     /// The difference between the two pictures.
     pub change: Option<Change>,
     /// Effect of the step in this scene, in one or two sentences.
-    pub words: String,
+    pub effect: String,
 }
 
 /// Renders the steps of the lesson for a scene, one topic at a time.
 #[derive(Debug)]
 pub struct Teacher {
     /// The scene of the lesson, and the built-in scene.
-    stages: [Stage; 2],
+    stages: [LessonScene; 2],
     transfer: Transfer,
 }
 
 impl Teacher {
     /// Creates a teacher for a scene. `transfer` is the curve after which pictures are compared.
-    pub fn new(stage: Stage, transfer: Transfer) -> Self {
-        let ours = Stage::ours(stage.size());
-        Teacher { stages: [stage, ours], transfer }
+    pub fn new(stage: LessonScene, transfer: Transfer) -> Self {
+        let uses_built_in_scene = LessonScene::built_in(stage.size());
+        Teacher { stages: [stage, uses_built_in_scene], transfer }
     }
 
     /// Renders the steps of a topic. There is at least one step, unless a path-tracing topic has no
@@ -76,19 +76,21 @@ impl Teacher {
     /// # Errors
     /// [`RenderError`].
     pub fn steps(&mut self, topic: &'static Topic, control: &Control) -> Result<Vec<Step>, RenderError> {
-        if topic.is_of_paths() {
+        if topic.needs_path_tracing() {
             let stage = &mut self.stages[0];
-            let shown =
+            let picture =
                 if stage.has_paths() { steps(topic, stage, self.transfer, false, control)? } else { Vec::new() };
-            return Ok(marked(shown, topic.lacking));
+            return Ok(with_reason(picture, topic.lacking));
         }
-        let unknown = self.stages[0].method_lacks(topic);
-        let lacking = self.stages[0].year_lacks(topic.name).or(unknown).unwrap_or(topic.lacking);
+        let unknown = self.stages[0].unsupported_by_method(topic);
+        let missing_because = self.stages[0].unsupported_by_dialect(topic.name).or(unknown).unwrap_or(topic.lacking);
         let stages = [false, true].into_iter().zip(&mut self.stages);
-        for (ours, stage) in stages.filter(|(ours, _)| *ours || unknown.is_none()) {
-            let steps = steps(topic, stage, self.transfer, ours, control)?;
+        for (uses_built_in_scene, stage) in
+            stages.filter(|(uses_built_in_scene, _)| *uses_built_in_scene || unknown.is_none())
+        {
+            let steps = steps(topic, stage, self.transfer, uses_built_in_scene, control)?;
             if !steps.is_empty() {
-                return Ok(marked(steps, lacking));
+                return Ok(with_reason(steps, missing_because));
             }
         }
         // Not reached: a test checks that the built-in scene shows every topic.
@@ -97,53 +99,53 @@ impl Teacher {
 }
 
 /// Sets why the steps use the built-in scene, and which of them continue the previous step.
-fn marked(steps: Vec<Step>, lacking: &'static str) -> Vec<Step> {
-    steps.into_iter().enumerate().map(|(i, step)| Step { lacking, goes_on: i > 0, ..step }).collect()
+fn with_reason(steps: Vec<Step>, missing_because: &'static str) -> Vec<Step> {
+    steps.into_iter().enumerate().map(|(i, step)| Step { missing_because, continues_topic: i > 0, ..step }).collect()
 }
 
 /// Renders the steps of a topic in a scene; none if the first step makes no visible change.
 fn steps(
     topic: &'static Topic,
-    stage: &mut Stage,
+    stage: &mut LessonScene,
     transfer: Transfer,
-    ours: bool,
+    uses_built_in_scene: bool,
     control: &Control,
 ) -> Result<Vec<Step>, RenderError> {
-    let one = |shown: &LessonPicture, shot: &Shot| Picture { caption: shot.caption, layer: shown.layer.clone() };
+    let one = |picture: &LessonPicture, shot: &Shot| Picture { caption: shot.caption, layer: picture.layer.clone() };
     let mut steps: Vec<Step> = Vec::new();
     let mut last: Option<(&Shot, LessonPicture)> = None;
     for shot in topic.shots {
-        let shown = stage.show(shot, control)?;
+        let picture = stage.render(shot, control)?;
         let many = topic.shots.len() > 2;
         let title = if many { format!("{}: {}", topic.title, shot.caption) } else { topic.title.to_string() };
         let step = |before, change, words| Step {
             topic,
             title: title.clone(),
-            ours,
-            lacking: topic.lacking,
-            goes_on: false,
+            uses_built_in_scene,
+            missing_because: topic.lacking,
+            continues_topic: false,
             before,
-            after: one(&shown, shot),
-            plan: (shot.value == Some("rays")).then(|| plan::plan(stage)),
+            after: one(&picture, shot),
+            plan: (shot.aov == Some("rays")).then(|| plan::plan(stage)),
             change,
-            words,
+            effect: words,
         };
         if topic.shots.len() == 1 {
             // A single picture of another quantity is not compared.
-            let words = stage.facts(shot, &shown);
+            let words = stage.describe(shot, &picture);
             steps.extend(words.map(|words| step(None, None, words)));
         } else if let Some((before_shot, before)) = &last {
-            let change = Change::new(&before.layer, &shown.layer, transfer);
+            let change = Change::new(&before.layer, &picture.layer, transfer);
             if !change.is_seen() {
                 if steps.is_empty() {
                     return Ok(steps);
                 }
                 continue;
             }
-            let words = change.words(stage) + &noise(before, &shown);
+            let words = change.words(stage) + &noise(before, &picture);
             steps.push(step(Some(one(before, before_shot)), Some(change), words));
         }
-        last = Some((shot, shown));
+        last = Some((shot, picture));
     }
     Ok(steps)
 }

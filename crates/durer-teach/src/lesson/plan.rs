@@ -1,6 +1,6 @@
 //! Draws a plan view of the camera rays through the picture's middle row.
 
-use super::stage::Stage;
+use super::stage::LessonScene;
 use durer_render::render::center_ray;
 use durer_scene::math::{Aabb, Vec2, Vec3};
 use std::fmt::Write;
@@ -13,7 +13,7 @@ const MAX_BOXES: usize = 200;
 const SIZE: f32 = 400.0;
 
 /// Draws an SVG file with a box around each object and rays up to their hits.
-pub(super) fn plan(stage: &Stage) -> String {
+pub(super) fn plan(stage: &LessonScene) -> String {
     let (world, (width, height)) = (&stage.world, stage.size());
     let frame = world.camera_frame();
     // Camera space seen from above: right is to the right, forward is up.

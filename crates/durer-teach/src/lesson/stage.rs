@@ -1,7 +1,7 @@
 //! A scene whose pictures can leave out parts of the light or include a common mistake.
 
 use super::topics::{Glass, PathSettings, Shot, ShotOptions, Topic};
-use crate::mistakes::{SceneVariant, of_name};
+use crate::mistakes::{SceneVariant, mistake_by_name};
 use durer_diag::{Diagnostics, Files};
 use durer_formats::Decoder;
 use durer_formats::course::{self, ReadOptions};
@@ -30,7 +30,7 @@ pub const OWN_SCENE_NAME: &str = "our-scene.txt";
 const SAMPLES: u32 = 16;
 
 /// Number of pictures cached for later steps.
-const KEPT: usize = 4;
+const MAX_CACHED: usize = 4;
 
 /// A picture rendered for the lesson, with the values before tone mapping and an estimate of the
 /// noise.
@@ -44,7 +44,7 @@ pub(super) struct LessonPicture {
 
 /// A scene of the lesson, compiled and ready to render with parts of its light switched off.
 #[derive(Debug)]
-pub struct Stage {
+pub struct LessonScene {
     scene: Scene,
     files: Files,
     pub(super) world: World,
@@ -55,20 +55,20 @@ pub struct Stage {
     materials: Vec<Material>,
     rules: DialectRules,
     /// Recent pictures, since a step often starts with the last picture of the previous one.
-    made: Vec<(Shot, LessonPicture)>,
+    cache: Vec<(Shot, LessonPicture)>,
 }
 
-impl Stage {
+impl LessonScene {
     /// Creates a stage for a compiled scene. Ignores the job's crop and AOVs.
     pub fn new(scene: Scene, files: Files, world: World, job: Job) -> Self {
         let (lights, ambient) = (world.lights().to_vec(), world.ambient());
         let (materials, rules) = (world.materials().to_vec(), world.rules().clone());
         let job = Job { crop: None, color: true, aovs: Vec::new(), ..job };
-        Stage { scene, files, world, job, lights, ambient, materials, rules, made: Vec::new() }
+        LessonScene { scene, files, world, job, lights, ambient, materials, rules, cache: Vec::new() }
     }
 
     /// Loads the built-in scene, to be rendered at a given size.
-    pub(super) fn ours((width, height): (u32, u32)) -> Self {
+    pub(super) fn built_in((width, height): (u32, u32)) -> Self {
         let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
         let file = files.add(OWN_SCENE_NAME, OWN_SCENE.as_bytes().into());
         let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
@@ -77,11 +77,11 @@ impl Stage {
         let resources = Resources::new(&source, &Decoder, &mut files);
         let world = compile(&scene, Dialect::Durer.rules(), AccelKind::Bvh, resources, &mut diagnostics);
         let world = world.expect("the lesson's own scene is valid");
-        Stage::new(scene, files, world, Job { width, height, ..Job::default() })
+        LessonScene::new(scene, files, world, Job { width, height, ..Job::default() })
     }
 
     /// Returns the reason if the scene's dialect does not support the effect of a topic.
-    pub(super) fn year_lacks(&self, topic: &str) -> Option<&'static str> {
+    pub(super) fn unsupported_by_dialect(&self, topic: &str) -> Option<&'static str> {
         let (highlights, secondary) = (self.rules.highlight, self.rules.secondary);
         match topic {
             "specular" if highlights == Highlight::None => Some("this year's program has no highlights"),
@@ -107,22 +107,22 @@ impl Stage {
     }
 
     /// Renders the picture of a shot.
-    pub(super) fn show(&mut self, shot: &Shot, control: &Control) -> Result<LessonPicture, RenderError> {
-        let same = |made: &&(Shot, LessonPicture)| (made.0.value, made.0.look) == (shot.value, shot.look);
-        if let Some((_, shown)) = self.made.iter().find(same) {
-            return Ok(shown.clone());
+    pub(super) fn render(&mut self, shot: &Shot, control: &Control) -> Result<LessonPicture, RenderError> {
+        let same = |cached: &&(Shot, LessonPicture)| (cached.0.aov, cached.0.options) == (shot.aov, shot.options);
+        if let Some((_, picture)) = self.cache.iter().find(same) {
+            return Ok(picture.clone());
         }
-        let shown = match shot.value {
+        let picture = match shot.aov {
             Some("rays") => self.directions()?,
             value => {
-                let look = self.carried(shot.look);
-                self.arrange(&look);
+                let options = self.with_method(shot.options);
+                self.apply(&options);
                 let color = value.is_none();
-                let noise = look.paths.map(|_| "variance");
+                let noise = options.paths.map(|_| "variance");
                 let aovs: Vec<_> = value.into_iter().chain(noise).filter_map(Aov::from_name).collect();
-                let settings = self.settings(&look);
-                let sampling = self.sampling(&look);
-                let method = self.method(&look);
+                let settings = self.settings(&options);
+                let sampling = self.sampling(&options);
+                let method = self.method(&options);
                 let mut job = Job { color, aovs, settings, sampling, method, ..self.job.clone() };
                 let mut rendered = render(&self.world, &job, control)?;
                 if value == Some("depth") && job.depth_range.is_none() {
@@ -138,14 +138,14 @@ impl Stage {
             }
         };
         // Drop older pictures, which are not needed again.
-        self.made.drain(..self.made.len().saturating_sub(KEPT - 1));
-        self.made.push((*shot, shown.clone()));
-        Ok(shown)
+        self.cache.drain(..self.cache.len().saturating_sub(MAX_CACHED - 1));
+        self.cache.push((*shot, picture.clone()));
+        Ok(picture)
     }
 
     /// Applies the lights, materials and mistake of a shot to the world.
-    fn arrange(&mut self, look: &ShotOptions) {
-        let (lights, ambient) = match look.lights {
+    fn apply(&mut self, options: &ShotOptions) {
+        let (lights, ambient) = match options.lights {
             true => (self.lights.clone(), self.ambient),
             false => (Vec::new(), Color::ONE),
         };
@@ -153,9 +153,9 @@ impl Stage {
         (own.lights, own.ambient) = (lights, ambient);
         own.set_rules(self.rules.clone());
         // The mistakes of the lesson change only the rules.
-        if let Some(mistake) = look.mistake.and_then(of_name) {
+        if let Some(mistake) = options.mistake.and_then(mistake_by_name) {
             let mut variant = SceneVariant::new(&self.scene, self.world.clone(), self.job.settings);
-            (mistake.make)(&mut variant, 0.0);
+            (mistake.apply)(&mut variant, 0.0);
             let own = self.world.edit();
             own.set_rules(variant.world.rules().clone());
             own.shading = *variant.world.shading_rules();
@@ -164,35 +164,35 @@ impl Stage {
         own.materials = self.materials.clone();
         for material in &mut own.materials {
             let Material::Phong(phong) = material else { continue };
-            phong.highlight = phong.highlight.filter(|_| look.highlights);
+            phong.highlight = phong.highlight.filter(|_| options.highlights);
             // Flat colour includes textures, even if the dialect does not apply ambient light to
             // them.
-            phong.ambient = phong.ambient.filter(|_| look.lights);
-            if phong.fresnel && look.glass != Glass::Fresnel {
+            phong.ambient = phong.ambient.filter(|_| options.lights);
+            if phong.fresnel && options.glass != Glass::Fresnel {
                 (phong.fresnel, phong.reflective) = (false, Color::ZERO);
             }
-            if let (Some(own), Some(PathSettings { disperses: false, .. })) = (&mut phong.principled, look.paths) {
+            if let (Some(own), Some(PathSettings { disperses: false, .. })) = (&mut phong.principled, options.paths) {
                 Arc::make_mut(own).definition.transmission_dispersion_scale = 0.0;
             }
         }
     }
 
-    fn settings(&self, look: &ShotOptions) -> RenderSettings {
+    fn settings(&self, options: &ShotOptions) -> RenderSettings {
         let all = self.job.settings;
         RenderSettings {
-            bounces: look.bounces.min(all.bounces),
-            shadows: look.shadows && all.shadows,
-            refraction: all.refraction && look.glass != Glass::None,
+            bounces: options.bounces.min(all.bounces),
+            shadows: options.shadows && all.shadows,
+            refraction: all.refraction && options.glass != Glass::None,
             ..all
         }
     }
 
     /// Returns Whitted's method, or path tracing with the options of the job.
-    fn method(&self, look: &ShotOptions) -> IntegratorKind {
-        let Some(carriage) = look.paths else { return IntegratorKind::WHITTED };
+    fn method(&self, options: &ShotOptions) -> IntegratorKind {
+        let Some(settings) = options.paths else { return IntegratorKind::WHITTED };
         let own = self.job.method.path_options().unwrap_or_default();
-        let transport = PathOptions { direct: carriage.direct, color: carriage.color, ..own };
-        match (carriage.photons, self.job.method) {
+        let transport = PathOptions { direct: settings.direct, color: settings.color, ..own };
+        match (settings.photons, self.job.method) {
             (false, _) => IntegratorKind::Path(transport),
             (true, IntegratorKind::Photons(photons)) => {
                 IntegratorKind::Photons(PhotonParameters { transport, corrected: false, ..photons })
@@ -208,17 +208,17 @@ impl Stage {
 
     /// Returns the options of a shot. Switches to path tracing if Whitted's method would show no
     /// light: for direct light, both methods show the same step.
-    fn carried(&self, look: ShotOptions) -> ShotOptions {
-        match self.needs_paths() && look.lights && look.paths.is_none() && look.bounces == 0 {
-            true => ShotOptions { paths: Some(PathSettings::PLAIN), sampled: true, ..look },
-            false => look,
+    fn with_method(&self, options: ShotOptions) -> ShotOptions {
+        match self.needs_paths() && options.lights && options.paths.is_none() && options.bounces == 0 {
+            true => ShotOptions { paths: Some(PathSettings::PLAIN), sampled: true, ..options },
+            false => options,
         }
     }
 
     /// Returns the reason if a topic needs Whitted's method, which does not support the scene's
     /// lights.
-    pub(super) fn method_lacks(&self, topic: &Topic) -> Option<&'static str> {
-        let bounces = topic.shots.iter().any(|shot| shot.look.bounces > 0 && shot.look.paths.is_none());
+    pub(super) fn unsupported_by_method(&self, topic: &Topic) -> Option<&'static str> {
+        let bounces = topic.shots.iter().any(|shot| shot.options.bounces > 0 && shot.options.paths.is_none());
         (self.needs_paths() && bounces).then_some(
             "its light comes from emissive surfaces or the environment, which Whitted's method does not support",
         )
@@ -229,8 +229,8 @@ impl Stage {
         self.job.method.path_options().is_some()
     }
 
-    fn sampling(&self, look: &ShotOptions) -> Sampling {
-        match (look.sampled, self.job.sampling) {
+    fn sampling(&self, options: &ShotOptions) -> Sampling {
+        match (options.sampled, self.job.sampling) {
             (false, _) => Sampling::Center,
             (true, Sampling::Center) => Sampling::Filtered { samples: SAMPLES, filter: Filter::default() },
             (true, sampling) => sampling,
@@ -265,9 +265,9 @@ impl Stage {
 
     /// Describes in a sentence a picture that is not compared with another; `None` if it shows
     /// nothing worth describing.
-    pub(super) fn facts(&self, shot: &Shot, shown: &LessonPicture) -> Option<String> {
-        let values = &shown.values.pixels;
-        match shot.value {
+    pub(super) fn describe(&self, shot: &Shot, picture: &LessonPicture) -> Option<String> {
+        let values = &picture.values.pixels;
+        match shot.aov {
             Some("rays") => {
                 let middle = values[self.size().0 as usize * (self.size().1 / 2) as usize + self.size().0 as usize / 2];
                 let seen = values.iter().filter(|dir| **dir != Vec3::ZERO);
@@ -306,7 +306,7 @@ impl Stage {
             }
             _ => {
                 let mut colors: Vec<_> =
-                    shown.layer.image.pixels.iter().map(|p| p.to_array().map(f32::to_bits)).collect();
+                    picture.layer.image.pixels.iter().map(|p| p.to_array().map(f32::to_bits)).collect();
                 colors.sort_unstable();
                 colors.dedup();
                 let count = colors.len();

@@ -14,29 +14,29 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-fn stage(scene: &str, size: u32) -> Stage {
+fn stage(scene: &str, size: u32) -> LessonScene {
     let (mut files, mut findings) = Default::default();
     let options = LoadOptions { accel: AccelKind::Bvh, ..LoadOptions::default() };
     let loaded = load(&root().join("scenes").join(scene), &options, &mut files, &mut findings).unwrap().unwrap();
     let world = loaded.compile(&options, &mut files, &mut findings).unwrap();
     let sampling = Sampling::Filtered { samples: 4, filter: Filter::default() };
-    Stage::new(loaded.scene, files, world, Job { width: size, height: size, sampling, ..Job::default() })
+    LessonScene::new(loaded.scene, files, world, Job { width: size, height: size, sampling, ..Job::default() })
 }
 
-fn lesson(stage: Stage) -> Vec<Step> {
+fn lesson(stage: LessonScene) -> Vec<Step> {
     let mut teacher = Teacher::new(stage, Transfer::Srgb);
     TOPICS.iter().flat_map(|topic| teacher.steps(topic, &Control::default()).unwrap()).collect()
 }
 
 #[test]
 fn built_in_scene_shows_every_topic() {
-    let mut ours = Stage::ours((64, 48));
-    for topic in TOPICS.iter().filter(|topic| !topic.is_of_paths()) {
+    let mut ours = LessonScene::built_in((64, 48));
+    for topic in TOPICS.iter().filter(|topic| !topic.needs_path_tracing()) {
         let steps = steps(topic, &mut ours, Transfer::Srgb, true, &Control::default()).unwrap();
         // Mirrors show other mirrors, which show mirrors again.
         let least = if topic.name == "reflection" { 3 } else { 1 };
         assert!(steps.len() >= least, "{}: {}", topic.name, steps.len());
-        assert!(steps.iter().all(|step| step.words.ends_with('.')));
+        assert!(steps.iter().all(|step| step.effect.ends_with('.')));
     }
 }
 
@@ -61,7 +61,7 @@ fn lesson_ends_with_the_final_picture_and_is_deterministic() {
 fn built_in_scene_replaces_a_scene_without_the_effect() {
     let ours = |scene: &str| -> Vec<&str> {
         let steps = lesson(stage(scene, 48));
-        steps.iter().filter(|step| step.ours).map(|step| step.topic.name).collect()
+        steps.iter().filter(|step| step.uses_built_in_scene).map(|step| step.topic.name).collect()
     };
     assert_eq!(ours("whitted.txt"), ["transforms"]);
     let transforms = ours("transforms.txt");
@@ -75,7 +75,7 @@ fn of_paths(scene: &str) -> Vec<Step> {
         IntegratorKind::Photons(PhotonParameters { count: 20_000, radius: Some(0.1), ..PhotonParameters::default() });
     stage.job.sampling = Sampling::Filtered { samples: 8, filter: Filter::default() };
     let mut teacher = Teacher::new(stage, Transfer::Srgb);
-    let topics = TOPICS.iter().filter(|topic| topic.is_of_paths());
+    let topics = TOPICS.iter().filter(|topic| topic.needs_path_tracing());
     topics.flat_map(|topic| teacher.steps(topic, &Control::default()).unwrap()).collect()
 }
 
@@ -88,7 +88,7 @@ fn path_steps_appear_only_in_scenes_that_show_them() {
     };
     let cornell = of_paths("cornell-box.txt");
     assert_eq!(names(&cornell), ["soft-shadows", "bounces", "mis"]);
-    assert!(cornell.iter().all(|step| !step.ours && step.words.contains("Its noise")));
+    assert!(cornell.iter().all(|step| !step.uses_built_in_scene && step.effect.contains("Its noise")));
     // Each further bounce only adds light.
     let bounces = cornell.iter().filter(|step| step.topic.name == "bounces").map(|step| step.change.as_ref().unwrap());
     assert!(bounces.clone().count() >= 3 && bounces.clone().all(|change| change.lighter == change.changed));
@@ -96,7 +96,7 @@ fn path_steps_appear_only_in_scenes_that_show_them() {
     // The sun is a light without a visible extent.
     assert_eq!(names(&of_paths("prism.txt")).last(), Some(&"spectrum"));
     // Whitted's method has no path-tracing steps.
-    assert!(lesson(stage("whitted.txt", 24)).iter().all(|step| !step.topic.is_of_paths()));
+    assert!(lesson(stage("whitted.txt", 24)).iter().all(|step| !step.topic.needs_path_tracing()));
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn multiple_importance_sampling_has_less_noise_than_either_strategy() {
         (IntegratorKind::PATH, Sampling::Filtered { samples: 64, filter: Filter::default() });
     let topic = TOPICS.iter().find(|topic| topic.name == "mis").unwrap();
     let noise: Vec<f64> =
-        topic.shots.iter().map(|shot| plates.show(shot, &Control::default()).unwrap().noise.unwrap()).collect();
+        topic.shots.iter().map(|shot| plates.render(shot, &Control::default()).unwrap().noise.unwrap()).collect();
     // The error of light sampling alone comes from rare bright samples, most of which are missing
     // in so few samples.
     assert!(noise[2] < 0.95 * noise[0] && noise[2] < 0.5 * noise[1], "{noise:?}");
@@ -114,7 +114,7 @@ fn multiple_importance_sampling_has_less_noise_than_either_strategy() {
 
 #[test]
 fn acne_makes_lit_surfaces_darker() {
-    let mut ours = Stage::ours((64, 48));
+    let mut ours = LessonScene::built_in((64, 48));
     let topic = TOPICS.iter().find(|topic| topic.name == "epsilon").unwrap();
     let steps = steps(topic, &mut ours, Transfer::Srgb, true, &Control::default()).unwrap();
     let change = steps[0].change.as_ref().unwrap();
@@ -148,10 +148,10 @@ fn moved_normals_are_transformed_by_the_matrix_itself() {
 #[test]
 fn distances_are_those_of_the_rays_that_hit() {
     let mut stage = stage("whitted.txt", 24);
-    let words = |stage: &mut Stage| {
+    let words = |stage: &mut LessonScene| {
         let topic = TOPICS.iter().find(|topic| topic.name == "distance").unwrap();
         let steps = steps(topic, stage, Transfer::Srgb, false, &Control::default()).unwrap();
-        steps[0].words.clone()
+        steps[0].effect.clone()
     };
     let text = "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }
         Lights { DirectionalLight { direction 0 -1 -1 color 1 1 1 } }
@@ -168,7 +168,7 @@ fn distances_are_those_of_the_rays_that_hit() {
 /// The Cornell box is lit by an area light. Its direct light is path traced, and mirrors are shown
 /// in the built-in scene.
 #[test]
-fn a_scene_without_lights_of_whitteds_method_is_shown_by_paths() {
+fn scene_without_whitted_lights_uses_path_tracing() {
     let mut stage = stage("cornell-box.txt", 32);
     stage.job.method = IntegratorKind::PATH;
     stage.job.sampling = Sampling::Filtered { samples: 4, filter: Filter::default() };
@@ -179,11 +179,11 @@ fn a_scene_without_lights_of_whitteds_method_is_shown_by_paths() {
     };
     let diffuse = of("diffuse");
     let most = diffuse[0].after.layer.image.pixels.iter().map(|pixel| pixel.max_element()).fold(0.0, f32::max);
-    assert!(!diffuse[0].ours && most > 0.3, "{most}");
+    assert!(!diffuse[0].uses_built_in_scene && most > 0.3, "{most}");
     let mirrors = of("reflection");
     assert!(
-        mirrors[0].ours && mirrors[0].lacking.contains("Whitted's method does not support"),
+        mirrors[0].uses_built_in_scene && mirrors[0].missing_because.contains("Whitted's method does not support"),
         "{}",
-        mirrors[0].lacking
+        mirrors[0].missing_because
     );
 }

@@ -56,15 +56,15 @@ pub enum Glass {
     Fresnel,
 }
 
-/// One picture of a topic, to be rendered by a [`Stage`](super::stage::Stage).
+/// One picture of a topic, to be rendered by a [`LessonScene`](super::stage::LessonScene).
 #[derive(Clone, Copy, Debug)]
 pub struct Shot {
     /// Short caption.
     pub caption: &'static str,
     /// `rays`, or an AOV of [`durer_render::film::aov::AOVS`]; `None` for colour.
-    pub value: Option<&'static str>,
+    pub aov: Option<&'static str>,
     /// Parts of the light to show.
-    pub look: ShotOptions,
+    pub options: ShotOptions,
 }
 
 /// A reference from the lesson to the source code: a file, relative to the root of the repository,
@@ -99,8 +99,8 @@ pub struct Topic {
 impl Topic {
     /// Returns true for topics of path tracing, which are shown only for scenes rendered by path
     /// tracing.
-    pub fn is_of_paths(&self) -> bool {
-        self.shots.iter().any(|shot| shot.look.paths.is_some())
+    pub fn needs_path_tracing(&self) -> bool {
+        self.shots.iter().any(|shot| shot.options.paths.is_some())
     }
 }
 
@@ -109,11 +109,11 @@ const fn at(file: &'static str, symbol: &'static str) -> SourcePlace {
 }
 
 const fn value(caption: &'static str, value: &'static str) -> Shot {
-    Shot { caption, value: Some(value), look: FLAT }
+    Shot { caption, aov: Some(value), options: FLAT }
 }
 
 const fn color(caption: &'static str, look: ShotOptions) -> Shot {
-    Shot { caption, value: None, look }
+    Shot { caption, aov: None, options: look }
 }
 
 const FLAT: ShotOptions = ShotOptions {
@@ -129,19 +129,19 @@ const FLAT: ShotOptions = ShotOptions {
 const DIFFUSE: ShotOptions = ShotOptions { lights: true, ..FLAT };
 const SPECULAR: ShotOptions = ShotOptions { highlights: true, ..DIFFUSE };
 const SHADOWS: ShotOptions = ShotOptions { shadows: true, ..SPECULAR };
-const SPECKLED: ShotOptions = ShotOptions { mistake: Some("epsilon-0"), ..SHADOWS };
+const SHADOW_ACNE: ShotOptions = ShotOptions { mistake: Some("epsilon-0"), ..SHADOWS };
 const fn mirrors(bounces: u32) -> ShotOptions {
     ShotOptions { bounces, ..SHADOWS }
 }
 const MIRRORS: ShotOptions = mirrors(u32::MAX);
 const GLASS: ShotOptions = ShotOptions { glass: Glass::Transmits, ..MIRRORS };
 const FRESNEL: ShotOptions = ShotOptions { glass: Glass::Fresnel, ..GLASS };
-const MOVED: ShotOptions = ShotOptions { mistake: Some("normals-moved"), ..FRESNEL };
+const NORMALS_MOVED: ShotOptions = ShotOptions { mistake: Some("normals-moved"), ..FRESNEL };
 const SAMPLED: ShotOptions = ShotOptions { sampled: true, ..FRESNEL };
 
 /// Options for path tracing with many samples.
-const fn paths(bounces: u32, carriage: PathSettings) -> ShotOptions {
-    ShotOptions { bounces, sampled: true, paths: Some(carriage), ..FRESNEL }
+const fn paths(bounces: u32, settings: PathSettings) -> ShotOptions {
+    ShotOptions { bounces, sampled: true, paths: Some(settings), ..FRESNEL }
 }
 const BOTH: PathSettings = PathSettings::PLAIN;
 const fn straight(direct: DirectSampling) -> ShotOptions {
@@ -286,7 +286,10 @@ pub static TOPICS: [Topic; 18] = [
             at("crates/durer-bvh/src/math/rounding.rs", "fn gamma"),
             at("crates/durer-scene/src/dialect.rs", "epsilon: Option<f32>"),
         ],
-        shots: &[color("rays from the rounded point, t > 0", SPECKLED), color("rays that leave the surface", SHADOWS)],
+        shots: &[
+            color("rays from the rounded point, t > 0", SHADOW_ACNE),
+            color("rays that leave the surface", SHADOWS),
+        ],
         lacking: "its shadow rays happen to miss their own surfaces, or there are none",
     },
     Topic {
@@ -352,7 +355,7 @@ pub static TOPICS: [Topic; 18] = [
             at("crates/durer-render/src/world/object.rs", "fn surface"),
             at("crates/durer-scene/src/dialect/quirk.rs", "MovedNormals"),
         ],
-        shots: &[color("normals by M", MOVED), color("normals by the inverse transpose of M", FRESNEL)],
+        shots: &[color("normals by M", NORMALS_MOVED), color("normals by the inverse transpose of M", FRESNEL)],
         lacking: "none of its visible objects is sheared or scaled non-uniformly",
     },
     Topic {

@@ -6,10 +6,10 @@
 mod hits;
 
 use super::bugs::{
-    Ambient, Attenuation, Ball, BehindOrigin, Bugs, Cosine, Fresnel, Glass, HalfVector, HitChoice, LightSum, Mirror,
-    Normals, PointLightDirection, Reach, ShadowDirection,
+    Ambient, Attenuation, BehindOrigin, Bugs, Cosine, Fresnel, Glass, HalfVector, HitChoice, LightSum, Mirror, Normals,
+    PointLightDirection, ShadowDirection, ShadowRayEnd, SphereNormal,
 };
-use super::variant::{TaughtShapes, taught_shapes};
+use super::variant::{CourseShape, course_shape};
 use durer_render::integrator::media::MediumStack;
 use durer_render::integrator::media::MediumTransition;
 use durer_render::integrator::spawn::{spawn_ray, to_light};
@@ -62,7 +62,7 @@ impl<'w> BuggyTracer<'w> {
             let reaching = Ray64 { rounded: Ray { t_min: from, ..rest.rounded }, ..rest };
             let Some((hit, t)) = self.closest(&reaching) else { break };
             let mut at = self.world.interaction(self.own_ray(ray, hit.object), hit);
-            if self.bugs.pick == HitChoice::MovedDirection {
+            if self.bugs.hit_choice == HitChoice::MovedDirection {
                 (at.ray, at.surface.position, at.surface.rounding_error) = (*ray, ray.rounded.at(t), Vec3::ZERO);
             }
             match self.right.transition(&at, &path.media) {
@@ -90,17 +90,17 @@ impl<'w> BuggyTracer<'w> {
         if t != hit.t {
             (surface.position, surface.rounding_error) = (ray.rounded.at(t), Vec3::ZERO);
         }
-        if let (Geometry::Mesh(tree), true) = (&object.geometry, bugs.long_mixed)
+        if let (Geometry::Mesh(tree), true) = (&object.geometry, bugs.unnormalized_mesh_normals)
             && let Some(mixed) = tree.mesh.interpolated_normal(hit.part, hit.uv)
         {
             // Only the length of the interpolated normal is needed: rotations and uniform scales
             // preserve it.
             surface.n_shade *= mixed.length();
         }
-        if let (Geometry::Mesh(tree), true) = (&object.geometry, bugs.mixed_otherwise > 0) {
+        if let (Geometry::Mesh(tree), true) = (&object.geometry, bugs.normal_permutation > 0) {
             const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [0, 2, 1], [2, 1, 0]];
             let weights = [1.0 - hit.uv.x - hit.uv.y, hit.uv.x, hit.uv.y];
-            let [_, u, v] = ORDERS[bugs.mixed_otherwise.min(5)].map(|i| weights[i]);
+            let [_, u, v] = ORDERS[bugs.normal_permutation.min(5)].map(|i| weights[i]);
             if let Some(mixed) = tree.mesh.interpolated_normal(hit.part, Vec2::new(u, v)) {
                 let world = object.to_world.as_ref().map_or(mixed, |to_world| to_world.unnormalized_normal(mixed));
                 surface.n_shade = world.normalize_or(surface.n_shade);
@@ -109,31 +109,33 @@ impl<'w> BuggyTracer<'w> {
         if bugs.flat {
             surface.n_shade = surface.n_geo;
         }
-        if let (Some(to_world), true) = (&object.to_world, bugs.normals != Normals::Right) {
+        if let (Some(to_world), true) = (&object.to_world, bugs.normals != Normals::Correct) {
             let local = to_world.inverse_normal(surface.n_shade);
             surface.n_shade = match bugs.normals {
-                Normals::Right => surface.n_shade,
+                Normals::Correct => surface.n_shade,
                 Normals::Local => local,
                 Normals::Long => to_world.unnormalized_normal(local),
                 Normals::ByInverse => to_world.inverse_ray(&Ray::new(Vec3::ZERO, local)).dir.normalize_or(local),
             };
         }
-        if let (Geometry::Primitive(Primitive::Sphere(sphere)), ball @ (Ball::Position | Ball::Long)) =
-            (&object.geometry, bugs.balls)
+        if let (Geometry::Primitive(Primitive::Sphere(sphere)), ball @ (SphereNormal::Position | SphereNormal::Long)) =
+            (&object.geometry, bugs.sphere_normals)
         {
             let to_world = object.to_world.as_ref();
             let local = to_world.map_or(surface.position, |to_world| to_world.inverse_point(surface.position));
             surface.n_shade = match (ball, to_world) {
-                (Ball::Position, Some(to_world)) => to_world.normal((local + object.center).normalize_or_zero()),
-                (Ball::Position, None) => (local + object.center).normalize_or_zero(),
+                (SphereNormal::Position, Some(to_world)) => {
+                    to_world.normal((local + object.center).normalize_or_zero())
+                }
+                (SphereNormal::Position, None) => (local + object.center).normalize_or_zero(),
                 (_, Some(_)) => surface.n_shade,
                 (_, None) => surface.n_shade * sphere.radius,
             };
         }
-        let is_turned = match taught_shapes(&object.geometry) {
-            Some(TaughtShapes::Mesh | TaughtShapes::Triangle) => bugs.triangles_turned,
-            Some(TaughtShapes::Sphere) => bugs.spheres_turned,
-            Some(TaughtShapes::Plane) => bugs.planes_turned,
+        let is_turned = match course_shape(&object.geometry) {
+            Some(CourseShape::Mesh | CourseShape::Triangle) => bugs.triangles_turned,
+            Some(CourseShape::Sphere) => bugs.spheres_turned,
+            Some(CourseShape::Plane) => bugs.planes_turned,
             None => false,
         };
         if is_turned {
@@ -172,21 +174,21 @@ impl<'w> BuggyTracer<'w> {
             let mut any = world.lights().is_empty();
             let mut greatest = Color::ZERO;
             for (number, light) in world.lights().iter().enumerate() {
-                let seen = self.illuminated(light, surface.point());
+                let li = self.illuminated(light, surface.point());
                 let casts = bugs.shadows.only_light.is_none_or(|only| only == number);
-                let visible = if casts { self.visible(surface, number, &seen, path.first) } else { Color::ONE };
+                let visible = if casts { self.visible(surface, number, &li, path.first) } else { Color::ONE };
                 let visible = if bugs.shadows.later_too && blocked { Color::ZERO } else { visible };
                 blocked |= visible == Color::ZERO;
-                let visible = visible.max(Color::splat(bugs.shadows.left));
+                let visible = visible.max(Color::splat(bugs.shadows.remaining_light));
                 let visible = if bugs.shadows.inverted { Color::ONE - visible } else { visible };
                 any |= visible != Color::ZERO;
-                let replaced = bugs.sum == LightSum::LastSeen && visible != Color::ZERO;
+                let replaced = bugs.sum == LightSum::LastUnoccluded && visible != Color::ZERO;
                 if bugs.sum == LightSum::LastOnly || replaced {
                     color = ambient_seen;
                 }
                 let before = color;
                 for (part, &diffuse) in parts.iter().zip(&diffuse) {
-                    let direct = |diffuse| self.direct(part.phong, diffuse, n, ray.dir(), light, &seen);
+                    let direct = |diffuse| self.direct(part.phong, diffuse, n, ray.dir(), light, &li);
                     if bugs.shadows.diffuse_left && visible != Color::ONE {
                         color += part.share * (Color::ONE - visible) * (direct(diffuse) - direct(Color::ZERO));
                     }
@@ -242,74 +244,74 @@ impl<'w> BuggyTracer<'w> {
 
     /// Returns the incident light, including mistakes in its direction and attenuation.
     fn illuminated(&self, light: &Light, point: DVec3) -> LightLiSample {
-        let mut seen = light.illuminate(point);
+        let mut li = light.illuminate(point);
         if self.bugs.lights.all_negated {
-            seen.to_light = -seen.to_light;
+            li.to_light = -li.to_light;
         }
         match light {
             Light::Directional(_) => {
                 if self.bugs.lights.negated {
-                    seen.to_light = -seen.to_light;
+                    li.to_light = -li.to_light;
                 }
             }
             Light::Point(point) => {
-                let d = seen.distance;
-                match self.bugs.lights.fading {
-                    Attenuation::Right => {}
+                let d = li.distance;
+                match self.bugs.lights.attenuation {
+                    Attenuation::Correct => {}
                     Attenuation::Multiplied => {
                         let a = point.attenuation.unwrap_or(Vec3::X);
-                        seen.color = point.color * (a.x + a.y * d + a.z * d * d);
+                        li.color = point.color * (a.x + a.y * d + a.z * d * d);
                     }
-                    Attenuation::Linear => seen.color = point.color / d,
-                    Attenuation::Square => seen.color = point.color / (d * d),
+                    Attenuation::Linear => li.color = point.color / d,
+                    Attenuation::Square => li.color = point.color / (d * d),
                     Attenuation::SquaredTwice => {
                         let a = point.attenuation.unwrap_or(Vec3::X);
-                        seen.color = point.color / (a.x + a.y * d * d + a.z * d * d * d * d);
+                        li.color = point.color / (a.x + a.y * d * d + a.z * d * d * d * d);
                     }
                     Attenuation::Root => {
                         let a = point.attenuation.unwrap_or(Vec3::X);
-                        seen.color = point.color / (a.x + a.y * d + a.z * d * d).sqrt();
+                        li.color = point.color / (a.x + a.y * d + a.z * d * d).sqrt();
                     }
                 }
                 match self.bugs.lights.points {
-                    PointLightDirection::Right => {}
-                    PointLightDirection::Negated => seen.to_light = -seen.to_light,
-                    PointLightDirection::Position => seen.to_light = point.position.normalize_or(seen.to_light),
+                    PointLightDirection::Correct => {}
+                    PointLightDirection::Negated => li.to_light = -li.to_light,
+                    PointLightDirection::Position => li.to_light = point.position.normalize_or(li.to_light),
                     PointLightDirection::PositionAlone => {
                         let (a, d) = (point.attenuation.unwrap_or(Vec3::X), point.position.length());
-                        seen.to_light = point.position.normalize_or(seen.to_light);
-                        (seen.color, seen.distance) = (point.color / (a.x + a.y * d + a.z * d * d), d);
+                        li.to_light = point.position.normalize_or(li.to_light);
+                        (li.color, li.distance) = (point.color / (a.x + a.y * d + a.z * d * d), d);
                     }
                     PointLightDirection::FromEye(whole) => {
                         let way = point.position - self.world.camera().pose().center;
-                        seen.to_light = way.normalize_or(seen.to_light);
+                        li.to_light = way.normalize_or(li.to_light);
                         if whole {
                             let (a, d) = (point.attenuation.unwrap_or(Vec3::X), way.length());
-                            (seen.color, seen.distance) = (point.color / (a.x + a.y * d + a.z * d * d), d);
+                            (li.color, li.distance) = (point.color / (a.x + a.y * d + a.z * d * d), d);
                         }
                     }
-                    PointLightDirection::MinusPosition => seen.to_light = -point.position.normalize_or(seen.to_light),
+                    PointLightDirection::MinusPosition => li.to_light = -point.position.normalize_or(li.to_light),
                 }
             }
             // The course's programs have neither kind of light.
             Light::Spot(_) | Light::Photometric(_) => {}
         }
-        seen
+        li
     }
 
     /// Returns the light vector used in products; it is unit length unless a mistake changes that.
-    fn light_vector(&self, light: &Light, seen: &LightLiSample) -> Vec3 {
+    fn light_vector(&self, light: &Light, li: &LightLiSample) -> Vec3 {
         match light {
-            Light::Directional(sun) if self.bugs.lights.long => seen.to_light * sun.direction.length(),
-            Light::Point(_) if self.bugs.lights.long_points => seen.to_light * seen.distance,
-            Light::Directional(_) | Light::Point(_) | Light::Spot(_) | Light::Photometric(_) => seen.to_light,
+            Light::Directional(sun) if self.bugs.lights.long => li.to_light * sun.direction.length(),
+            Light::Point(_) if self.bugs.lights.long_points => li.to_light * li.distance,
+            Light::Directional(_) | Light::Point(_) | Light::Spot(_) | Light::Photometric(_) => li.to_light,
         }
     }
 
     /// Returns the diffuse term and the highlight due to one light.
-    fn direct(&self, phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, light: &Light, seen: &LightLiSample) -> Color {
+    fn direct(&self, phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, light: &Light, li: &LightLiSample) -> Color {
         let bugs = self.bugs.highlights;
-        let to_light = self.light_vector(light, seen);
+        let to_light = self.light_vector(light, li);
         let view = if bugs.eye_negated { -view } else { view };
         let cosine = n.dot(to_light);
         let factor = match self.bugs.cosine {
@@ -330,7 +332,7 @@ impl<'w> BuggyTracer<'w> {
         let mut color = factor * if plain { Color::ONE } else { diffuse };
         if self.bugs.diffuse_lightless {
             // Cancels the multiplication by `seen.color` at the end.
-            color /= seen.color.max(Color::splat(1e-6));
+            color /= li.color.max(Color::splat(1e-6));
         }
         if let Some((specular, exponent, model)) = phong.highlight {
             let half = |sum: Vec3| match bugs.half {
@@ -354,43 +356,43 @@ impl<'w> BuggyTracer<'w> {
                 let specular = if bugs.bare { Color::ONE } else { specular };
                 let specular = if bugs.times_diffuse { specular * diffuse } else { specular };
                 if bugs.lightless {
-                    return color * seen.color + strength * specular;
+                    return color * li.color + strength * specular;
                 }
                 color += strength * specular;
             }
         }
-        color * seen.color
+        color * li.color
     }
 
     /// Returns the fraction of a light that reaches a surface, per channel; 0 in full shadow.
-    fn visible(&self, surface: &SurfacePoint, light: usize, seen: &LightLiSample, first: bool) -> Color {
+    fn visible(&self, surface: &SurfacePoint, light: usize, li: &LightLiSample, first: bool) -> Color {
         let bugs = self.bugs.shadows;
         let unshadowed = self.bugs.bounces.unshadowed && !first;
-        if !self.settings.shadows || unshadowed || seen.color == Color::ZERO {
+        if !self.settings.shadows || unshadowed || li.color == Color::ZERO {
             return Color::ONE;
         }
         let rules = self.world.shading_rules();
         let way = rules.epsilon.and_then(|_| self.world.course_light_direction(light, surface.position));
-        let seen = match way {
-            Some((to_light, distance)) => &LightLiSample { to_light, distance, color: seen.color },
-            None => seen,
+        let li = match way {
+            Some((to_light, distance)) => &LightLiSample { to_light, distance, color: li.color },
+            None => li,
         };
         let reach = match (bugs.endless, rules.epsilon.is_some()) {
             (true, _) => f32::INFINITY,
-            (false, true) => seen.distance,
-            (false, false) => seen.distance * (1.0 - gamma(16)),
+            (false, true) => li.distance,
+            (false, false) => li.distance * (1.0 - gamma(16)),
         };
-        let reach = match bugs.reach {
-            _ if seen.distance.is_infinite() => reach,
-            Reach::Right => reach,
-            Reach::One => 1.0,
-            Reach::Squared => seen.distance * seen.distance,
+        let reach = match bugs.ray_end {
+            _ if li.distance.is_infinite() => reach,
+            ShadowRayEnd::Correct => reach,
+            ShadowRayEnd::One => 1.0,
+            ShadowRayEnd::Squared => li.distance * li.distance,
         };
-        let reach = if bugs.short && seen.distance.is_infinite() { 1.0 } else { reach };
+        let reach = if bugs.short && li.distance.is_infinite() { 1.0 } else { reach };
         let epsilon = bugs.epsilon.map(Epsilon::MinT).or(rules.epsilon);
-        let way = match bugs.way {
-            ShadowDirection::Light => seen.to_light,
-            ShadowDirection::Away => -seen.to_light,
+        let way = match bugs.direction {
+            ShadowDirection::Light => li.to_light,
+            ShadowDirection::Away => -li.to_light,
             ShadowDirection::Normal => surface.n_shade,
         };
         let mut ray = to_light(surface, way, reach, epsilon);
@@ -418,7 +420,7 @@ impl<'w> BuggyTracer<'w> {
             if share == Color::ZERO {
                 break;
             }
-            ray = spawn_ray(&blocker.surface, seen.to_light, ray.rounded.t_max - hit.t, epsilon);
+            ray = spawn_ray(&blocker.surface, li.to_light, ray.rounded.t_max - hit.t, epsilon);
         }
         Color::ZERO
     }
@@ -456,7 +458,7 @@ impl<'w> BuggyTracer<'w> {
         let n = if ray.dir().dot(n) < 0.0 { n } else { n_geo };
         let MediumTransition { ior_front, ior_behind, behind, .. } = transition;
         let eta = match bugs.glass {
-            Glass::Right
+            Glass::Correct
             | Glass::Straight
             | Glass::Outward
             | Glass::RootAdded
@@ -464,7 +466,7 @@ impl<'w> BuggyTracer<'w> {
             | Glass::NoRoot
             | Glass::Unsquared => ior_front / ior_behind,
             Glass::Inverted | Glass::Exchanged => ior_behind / ior_front,
-            Glass::NotSwapped => 1.0 / ior,
+            Glass::IndicesNotSwapped => 1.0 / ior,
         };
         let mirrored = mirrored(ray.dir(), n, bugs.mirror);
         let rules = self.world.shading_rules();
@@ -557,7 +559,7 @@ impl<'w> BuggyTracer<'w> {
 /// Returns the direction of a reflected ray, computed correctly or with a mistake.
 fn mirrored(d: Vec3, n: Vec3, how: Mirror) -> Vec3 {
     match how {
-        Mirror::Right => reflect(d, n),
+        Mirror::Correct => reflect(d, n),
         Mirror::Negated => -reflect(d, n),
         Mirror::Along => d - d.dot(n) * n,
         Mirror::Plus => d + 2.0 * d.dot(n) * n,

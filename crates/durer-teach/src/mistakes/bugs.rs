@@ -14,14 +14,14 @@ pub enum HitChoice {
     /// The last intersection with any surface.
     Last,
     /// The hit of the object that is last in the file.
-    LastWritten,
+    LastInFile,
     /// The hit of the object that is first in the file.
-    FirstWritten,
+    FirstInFile,
     /// The nearest hit, but with the far side of spheres.
     FarSpheres,
     /// `FarthestObject`, but with the farthest triangle of meshes.
     FarthestTriangle,
-    /// `LastWritten`, but with the last triangle of meshes.
+    /// `LastInFile`, but with the last triangle of meshes.
     LastTriangle,
     /// The nearest hit, except that spheres are not hit from inside.
     NearRoots,
@@ -50,10 +50,10 @@ pub enum Roots {
 
 /// Formula for the normal of a sphere at a point p.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Ball {
+pub enum SphereNormal {
     /// norm(p - center), which is correct.
     #[default]
-    Right,
+    Correct,
     /// norm(p).
     Position,
     /// p - center.
@@ -65,7 +65,7 @@ pub enum Ball {
 pub enum Normals {
     /// Inverse transpose, normalised, which is correct.
     #[default]
-    Right,
+    Correct,
     /// No transform.
     Local,
     /// Inverse transpose, not normalised.
@@ -79,7 +79,7 @@ pub enum Normals {
 pub enum Ambient {
     /// Multiplied by the diffuse colour and added once, which is correct.
     #[default]
-    Right,
+    Correct,
     /// Added once for each light.
     EachLight,
     /// Not multiplied by the diffuse colour.
@@ -138,7 +138,7 @@ pub enum BehindOrigin {
 pub enum LightSum {
     /// Sum, clamped only when the pixel is written, which is correct.
     #[default]
-    Right,
+    Correct,
     /// The sum is clamped to 1 after each light.
     ClampedEach,
     /// Each light's contribution is clamped to 1.
@@ -148,7 +148,7 @@ pub enum LightSum {
     /// Each light replaces the previous ones.
     LastOnly,
     /// Each light that is not in shadow replaces the previous ones.
-    LastSeen,
+    LastUnoccluded,
     /// Maximum of the lights, for each channel.
     Greatest,
     /// Maximum of the lights and the ambient light, for each channel.
@@ -160,7 +160,7 @@ pub enum LightSum {
 pub enum Attenuation {
     /// Divided by the scene's polynomial, which is correct.
     #[default]
-    Right,
+    Correct,
     /// Multiplied by the scene's polynomial.
     Multiplied,
     /// Divided by d.
@@ -178,7 +178,7 @@ pub enum Attenuation {
 pub enum PointLightDirection {
     /// L = norm(position - p), which is correct.
     #[default]
-    Right,
+    Correct,
     /// L = norm(p - position).
     Negated,
     /// L = norm(position).
@@ -196,7 +196,7 @@ pub enum PointLightDirection {
 pub enum Mirror {
     /// d - 2 (d·N) N, which is correct.
     #[default]
-    Right,
+    Correct,
     /// The correct direction, negated.
     Negated,
     /// d - (d·N) N: along the surface.
@@ -212,11 +212,11 @@ pub enum Mirror {
 pub enum Glass {
     /// Snell's law, which is correct.
     #[default]
-    Right,
+    Correct,
     /// The ratio of the indices is inverted.
     Inverted,
     /// The ratio for entering is also used when the ray leaves.
-    NotSwapped,
+    IndicesNotSwapped,
     /// The ray is not refracted.
     Straight,
     /// The outward normal is also used when the ray leaves.
@@ -238,7 +238,7 @@ pub enum Glass {
 pub enum Fresnel {
     /// Schlick's approximation, which is correct.
     #[default]
-    Right,
+    Correct,
     /// R0 at every angle.
     Constant,
     /// None: the reflected and the transmitted ray both have weight 1.
@@ -267,7 +267,7 @@ pub struct LightBugs {
     /// L of point lights is not normalised.
     pub long_points: bool,
     /// Attenuation of point lights.
-    pub fading: Attenuation,
+    pub attenuation: Attenuation,
     /// Direction to point lights.
     pub points: PointLightDirection,
 }
@@ -311,10 +311,10 @@ pub enum ShadowDirection {
 
 /// End of the shadow rays in a student's tracer, for a point light at distance d.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Reach {
+pub enum ShadowRayEnd {
     /// At d, which is correct.
     #[default]
-    Right,
+    Correct,
     /// At 1.
     One,
     /// At d²: `t` ends at d although the ray direction has length d.
@@ -331,7 +331,7 @@ pub struct ShadowBugs {
     /// Start distance of shadow rays, if different.
     pub epsilon: Option<f32>,
     /// Fraction of a light that remains in its shadow.
-    pub left: f32,
+    pub remaining_light: f32,
     /// If one light is blocked, all later lights are missing too.
     pub later_too: bool,
     /// If any light is blocked, the ambient light is missing.
@@ -341,7 +341,7 @@ pub struct ShadowBugs {
     /// Transparent objects cast no shadows.
     pub no_glass: bool,
     /// Direction of shadow rays.
-    pub way: ShadowDirection,
+    pub direction: ShadowDirection,
     /// A light contributes where it is blocked, instead of where it is visible.
     pub inverted: bool,
     /// Shadow rays to directional lights end at distance 1.
@@ -353,7 +353,7 @@ pub struct ShadowBugs {
     /// Shadow rays start at the eye.
     pub from_eye: bool,
     /// End of the shadow rays to point lights.
-    pub reach: Reach,
+    pub ray_end: ShadowRayEnd,
     /// If one light is blocked, all direct light is missing; with `true`, also reflected and
     /// transmitted light.
     pub black: Option<bool>,
@@ -399,7 +399,7 @@ pub struct SecondaryBugs {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bugs {
     /// The hit that is used along a ray.
-    pub pick: HitChoice,
+    pub hit_choice: HitChoice,
     /// Rays for which hits behind the origin count, if any.
     pub behind: Option<BehindOrigin>,
     /// The colour that each ray returns is clamped to 1.
@@ -409,7 +409,7 @@ pub struct Bugs {
     /// Transform of normals.
     pub normals: Normals,
     /// Interpolated vertex normals are not normalised.
-    pub long_mixed: bool,
+    pub unnormalized_mesh_normals: bool,
     /// Meshes are shaded with one normal per triangle.
     pub flat: bool,
     /// Triangle normals are negated.
@@ -419,7 +419,7 @@ pub struct Bugs {
     /// Plane normals are negated.
     pub planes_turned: bool,
     /// Permutation of the vertex normals of a triangle; 0 is the correct order.
-    pub mixed_otherwise: usize,
+    pub normal_permutation: usize,
     /// Shading normals are flipped to face the eye.
     pub faced: bool,
     /// How ambient light is added.
@@ -435,7 +435,7 @@ pub struct Bugs {
     /// The diffuse term is multiplied by the diffuse colour twice.
     pub diffuse_twice: bool,
     /// Normals of spheres.
-    pub balls: Ball,
+    pub sphere_normals: SphereNormal,
     /// Colour of camera rays that miss; with `true`, other rays return it too.
     pub sky: Option<(Color, bool)>,
     /// Mistakes in lights.
@@ -455,7 +455,7 @@ pub struct Bugs {
 pub enum Aspect {
     /// The side that the dialect's program uses.
     #[default]
-    Right,
+    Correct,
     /// The smaller side spans the field of view.
     Smaller,
     /// The smaller side is scaled by the reciprocal of the correct factor.
@@ -466,7 +466,7 @@ pub enum Aspect {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraBugs {
     /// Position of the sample in the pixel; (0.5, 0.5) is the centre.
-    pub place: Vec2,
+    pub sample_position: Vec2,
     /// Factor for the position on the picture plane.
     pub scale: f32,
     /// How the field of view applies to non-square pictures.
@@ -480,7 +480,7 @@ pub struct CameraBugs {
 pub enum RayCount {
     /// The number set in the job.
     #[default]
-    Right,
+    Correct,
     /// One ray through the centre.
     One,
     /// A regular grid of 4 by 4 rays.
@@ -489,7 +489,7 @@ pub enum RayCount {
 
 impl Default for CameraBugs {
     fn default() -> Self {
-        CameraBugs { place: Vec2::splat(0.5), scale: 1.0, aspect: Aspect::Right, rays: RayCount::Right }
+        CameraBugs { sample_position: Vec2::splat(0.5), scale: 1.0, aspect: Aspect::Correct, rays: RayCount::Correct }
     }
 }
 
@@ -499,7 +499,7 @@ impl CameraBugs {
         let (w, h) = (width as f32, height as f32);
         let ratio = w.max(h) / w.min(h);
         let aspect = match self.aspect {
-            Aspect::Right => Vec2::ONE,
+            Aspect::Correct => Vec2::ONE,
             Aspect::Smaller => Vec2::splat(ratio),
             Aspect::Turned if w > h => Vec2::new(1.0, ratio * ratio),
             Aspect::Turned => Vec2::new(ratio * ratio, 1.0),
@@ -513,7 +513,7 @@ impl CameraBugs {
 pub enum OutputBug {
     /// None: the transfer curve is correct.
     #[default]
-    Right,
+    Correct,
     /// The value times this number, modulo 256.
     Wrapped(u16),
     /// Divided by the brightest value in the picture.
@@ -521,7 +521,7 @@ pub enum OutputBug {
     /// Rounded instead of truncated, or the reverse.
     OtherRounding,
     /// Raised to the reciprocal of this power; 0 stands for the sRGB curve.
-    CurveMore(f32),
+    ExtraCurve(f32),
     /// c / (1 + c).
     Toned,
     /// Multiplied by this factor.
@@ -534,20 +534,20 @@ pub enum OutputBug {
     /// Quantised to this many levels.
     Steps(u32),
     /// Raised to this power; 0 stands for omitting the sRGB curve, or applying its inverse.
-    CurveLess(f32),
+    MissingCurve(f32),
 }
 
 /// How a student's program rearranges the pixels and channels of a picture, for example by
 /// mirroring it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PictureTurn {
+pub struct PixelOrder {
     /// Columns and rows are exchanged, if the picture is square.
     pub exchange: bool,
     /// The order of the columns is reversed.
     pub columns_back: bool,
     /// The order of the rows is reversed.
     pub rows_back: bool,
-    /// Order of the channels, as an index into [`PictureTurn::ORDERS`]: 0 is unchanged, 1 exchanges
+    /// Order of the channels, as an index into [`PixelOrder::ORDERS`]: 0 is unchanged, 1 exchanges
     /// red and blue.
     pub channels: u8,
     /// Shift of the picture in pixels, to the right and down.
@@ -560,7 +560,7 @@ pub struct PictureTurn {
     pub halved: bool,
 }
 
-impl PictureTurn {
+impl PixelOrder {
     /// Source channels of red, green and blue, for each order.
     pub const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [2, 1, 0], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1]];
 

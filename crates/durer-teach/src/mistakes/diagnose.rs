@@ -1,10 +1,10 @@
 //! Finds the mistakes that explain a picture, by rendering with each mistake of the table, alone
 //! and in pairs.
 
-use super::bugs::PictureTurn;
+use super::bugs::PixelOrder;
+use super::fit::{Fit, difference, differing, fit, sampled};
+use super::input::{Diagnosis, DiagnosisInput, Explanation, MAX_DIFFERENCE, prepare, values};
 use super::pictures::View;
-use super::question::{Diagnosis, DiagnosisInput, Explanation, MAX_OFF, prepared, values};
-use super::search::{Fit, difference, differing, fit, sampled};
 use super::speckles;
 use super::table::{Formulas, MISTAKES, Mistake, Values};
 use super::variant::SceneVariant;
@@ -13,27 +13,28 @@ use durer_scene::math::Vec3;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Number of pixels per trial: `FEW` for all mistakes, then `COARSE` and `FULL` for the best ones.
-const FEW: usize = 400;
-const COARSE: usize = 1600;
-const FULL: usize = 16_000;
+/// Number of pixels per trial: `FEW_PIXELS` for all mistakes, then `COARSE_PIXELS` and
+/// `FULL_PIXELS` for the best ones.
+const FEW_PIXELS: usize = 400;
+const COARSE_PIXELS: usize = 1600;
+const FULL_PIXELS: usize = 16_000;
 /// Number of pixels in the first round of pairs, and number of pairs that are kept after each
 /// round.
-const FEWEST: usize = 72;
-const KEPT: [usize; 3] = [200, 30, 8];
-/// Maximum number of mistakes that are tried at `COARSE` pixels.
+const PAIR_PIXELS: usize = 72;
+const PAIRS_PER_ROUND: [usize; 3] = [200, 30, 8];
+/// Maximum number of mistakes that are tried at `COARSE_PIXELS`.
 const MAX_SINGLES: usize = 60;
 /// Number of pixels above which the brightest value is not computed and acne is not checked.
-const WHOLE: usize = 160_000;
+const MAX_FULL_PIXELS: usize = 160_000;
 /// Number of best trials whose value is refined and which are paired with all other mistakes.
-const BEST: usize = 12;
-/// Only the `CLOSEST` best trials are tried at `FULL` pixels, and those that explain more than
+const MAX_BEST: usize = 12;
+/// Only the `CLOSEST` best trials are tried at `FULL_PIXELS`, and those that explain more than
 /// `CLOSE`.
 const CLOSE: f64 = 0.8;
 const CLOSEST: usize = 5;
 /// Half a step of an eight-bit value, and minimum number of pixels that must show another rounding.
-const HALF: f32 = 0.5 / 255.0;
-const FEWEST_ROUNDED: usize = 30;
+const HALF_STEP: f32 = 0.5 / 255.0;
+const MIN_ROUNDED: usize = 30;
 /// Maximum number of pairs that are tried.
 const MAX_PAIRS: usize = 3000;
 
@@ -41,7 +42,7 @@ const MAX_PAIRS: usize = 3000;
 #[derive(Clone, Debug)]
 struct Trial {
     mistakes: Vec<(&'static Mistake, f32)>,
-    made: Vec<Vec3>,
+    rendered: Vec<Vec3>,
     fit: Fit,
 }
 
@@ -55,7 +56,7 @@ struct Pixels {
 }
 
 impl Trial {
-    fn named(&self) -> Explanation {
+    fn explanation(&self) -> Explanation {
         let Fit { explained, matched } = self.fit;
         Explanation { mistakes: self.mistakes.clone(), explained, matched }
     }
@@ -69,13 +70,13 @@ impl Explanation {
 
 impl Pixels {
     /// Keeps only the marked pixels.
-    fn keep(&mut self, kept: &[bool]) {
-        fn of<T>(list: &mut Vec<T>, kept: &[bool]) {
-            let mut keep = kept.iter();
+    fn keep(&mut self, keep_flags: &[bool]) {
+        fn of<T>(list: &mut Vec<T>, keep_flags: &[bool]) {
+            let mut keep = keep_flags.iter();
             list.retain(|_| *keep.next().unwrap_or(&true));
         }
-        of(&mut self.places, kept);
-        [&mut self.reference, &mut self.test, &mut self.base].into_iter().for_each(|list| of(list, kept));
+        of(&mut self.places, keep_flags);
+        [&mut self.reference, &mut self.test, &mut self.base].into_iter().for_each(|list| of(list, keep_flags));
     }
 }
 
@@ -87,19 +88,19 @@ struct Search<'a> {
 }
 
 /// Tries all mistakes of Whitted's method. `progress` receives values from 0 to 1.
-pub fn diagnose(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diagnosis {
-    Diagnosis { formulas: Formulas::of(question.scene, question.world.rules()), ..all_tried(question, progress) }
+pub fn diagnose(input: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diagnosis {
+    Diagnosis { formulas: Formulas::of(input.scene, input.world.rules()), ..all_tried(input, progress) }
 }
 
-fn all_tried(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diagnosis {
-    let (width, height) = (question.job.width, question.job.height);
-    let (reference, view, base) = prepared(question);
-    let test = values(question.test, view.scale, question.transfer);
+fn all_tried(input: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diagnosis {
+    let (width, height) = (input.job.width, input.job.height);
+    let (reference, view, base) = prepare(input);
+    let test = values(input.test, view.scale, input.transfer);
     // A picture of a single colour could be explained by any mistake that erases the picture.
     if test.iter().all(|pixel| *pixel == test[0]) {
-        return Diagnosis { off: off(question), ..Diagnosis::default() };
+        return Diagnosis { reference_difference: reference_difference(input), ..Diagnosis::default() };
     }
-    let mut search = Search { question, view, base };
+    let mut search = Search { question: input, view, base };
 
     let pixels = |search: &Search, most: usize| -> Pixels {
         let chosen = sampled(width, &reference, &test, most);
@@ -109,21 +110,25 @@ fn all_tried(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diag
         Pixels { places, reference: of(&reference), test: of(&test), base }
     };
     let all: Vec<(u32, u32)> = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).collect();
-    let light = match all.len() <= WHOLE {
+    let light = match all.len() <= MAX_FULL_PIXELS {
         true => search.view.light(&search.base, &all),
         false => Vec::new(),
     };
-    search.view.brightest = light.iter().map(|light| light.max_element()).fold(0.0, f32::max).max(1e-6);
-    let mut full = pixels(&search, FULL);
+    search.view.max_value = light.iter().map(|light| light.max_element()).fold(0.0, f32::max).max(1e-6);
+    let mut full = pixels(&search, FULL_PIXELS);
     let steady = search.steady(&full);
     full.keep(&steady);
     let off = differing(&full.base, &full.reference) as f64 / full.base.len().max(1) as f64;
     progress(0.1);
-    if off > MAX_OFF {
-        return Diagnosis { off, ..Diagnosis::default() };
+    if off > MAX_DIFFERENCE {
+        return Diagnosis { reference_difference: off, ..Diagnosis::default() };
     }
     if difference(&full.reference, &full.test) == 0.0 {
-        return Diagnosis { off, named: search.rounding(&full).into_iter().collect(), ..Diagnosis::default() };
+        return Diagnosis {
+            reference_difference: off,
+            explanations: search.rounding(&full).into_iter().collect(),
+            ..Diagnosis::default()
+        };
     }
     let few = |most: usize| {
         let mut pixels = pixels(&search, most);
@@ -131,15 +136,15 @@ fn all_tried(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diag
         pixels.keep(&steady);
         pixels
     };
-    let (some, coarse) = (few(FEW), few(COARSE));
+    let (some, coarse) = (few(FEW_PIXELS), few(COARSE_PIXELS));
     let mut singles = search.trials(search.singles(), &some);
     // Drop mistakes that have no effect in this scene.
-    singles.retain(|trial| differing(&trial.made, &some.base) > 0);
+    singles.retain(|trial| differing(&trial.rendered, &some.base) > 0);
     progress(0.2);
     let mut better = search.trials(best(&mut singles, MAX_SINGLES), &coarse);
     sort(&mut better);
     progress(0.3);
-    let refined = better.iter().take(BEST).map(|trial| search.refined(trial, &some, &coarse));
+    let refined = better.iter().take(MAX_BEST).map(|trial| search.refined(trial, &some, &coarse));
     let close = refined.chain(best_matched(&better).map(|trial| trial.mistakes.clone())).collect();
     let mut close = search.trials(close, &coarse);
     sort(&mut close);
@@ -148,29 +153,45 @@ fn all_tried(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diag
     let trials = search.trials(close.map(|(_, trial)| trial.mistakes).collect(), &full);
     progress(0.5);
     let tried = tried(&trials);
-    let single = decided(trials, &full, &Thresholds::NEARLY);
-    if single.first().is_some_and(|named| Thresholds::CLEAR.passes(&named.fit())) {
-        return Diagnosis { off, named: single, tried, ..Diagnosis::default() };
+    let single = accepted_explanations(trials, &full, &Thresholds::NEARLY);
+    if single.first().is_some_and(|explanations| Thresholds::CLEAR.passes(&explanations.fit())) {
+        return Diagnosis {
+            reference_difference: off,
+            explanations: single,
+            closest_trials: tried,
+            ..Diagnosis::default()
+        };
     }
     if let Some(share) = search.acne(&all, &reference, &test) {
-        return Diagnosis { off, named: vec![share], tried, ..Diagnosis::default() };
+        return Diagnosis {
+            reference_difference: off,
+            explanations: vec![share],
+            closest_trials: tried,
+            ..Diagnosis::default()
+        };
     }
     progress(0.6);
-    let (pairs, tried_pairs) = search.pairs(&better, &singles, [&few(FEWEST), &some, &coarse, &full]);
+    let (pairs, tried_pairs) = search.pairs(&better, &singles, [&few(PAIR_PIXELS), &some, &coarse, &full]);
     progress(1.0);
     // Two mistakes always explain more than one, so a pair must explain much more.
-    let rest = |named: &[Explanation]| named.first().map_or(1.0, |named| 1.0 - named.explained);
-    let named = if rest(&pairs) < 0.35 * rest(&single) { pairs } else { single };
+    let rest =
+        |explanations: &[Explanation]| explanations.first().map_or(1.0, |explanations| 1.0 - explanations.explained);
+    let explanations = if rest(&pairs) < 0.35 * rest(&single) { pairs } else { single };
     let tried = [tried, tried_pairs].concat();
-    match named.first().is_none_or(|named| Thresholds::SINGLE.passes(&named.fit())) {
-        true => Diagnosis { off, named, tried, ..Diagnosis::default() },
-        false => Diagnosis { off, nearly: named.into_iter().next(), tried, ..Diagnosis::default() },
+    match explanations.first().is_none_or(|explanations| Thresholds::SINGLE.passes(&explanations.fit())) {
+        true => Diagnosis { reference_difference: off, explanations, closest_trials: tried, ..Diagnosis::default() },
+        false => Diagnosis {
+            reference_difference: off,
+            nearly: explanations.into_iter().next(),
+            closest_trials: tried,
+            ..Diagnosis::default()
+        },
     }
 }
 
 /// Returns up to eight explanations, best first.
 fn tried(trials: &[Trial]) -> Vec<Explanation> {
-    let mut all: Vec<Explanation> = trials.iter().map(Trial::named).collect();
+    let mut all: Vec<Explanation> = trials.iter().map(Trial::explanation).collect();
     all.sort_by(|a, b| b.explained.total_cmp(&a.explained));
     all.truncate(8);
     all
@@ -178,12 +199,12 @@ fn tried(trials: &[Trial]) -> Vec<Explanation> {
 
 /// Returns the share of the pixels, estimated from a sample, in which a render of the scene differs
 /// from the reference.
-pub fn off(question: &DiagnosisInput) -> f64 {
-    let (reference, view, base) = prepared(question);
-    let places = sampled(question.job.width, &reference, &reference, 2 * FEW);
-    let width = question.job.width;
-    let chosen: Vec<(u32, u32)> = places.iter().map(|&i| (i as u32 % width, i as u32 / width)).collect();
-    let of: Vec<Vec3> = places.iter().map(|&i| reference[i]).collect();
+pub fn reference_difference(input: &DiagnosisInput) -> f64 {
+    let (reference, view, base) = prepare(input);
+    let pixels = sampled(input.job.width, &reference, &reference, 2 * FEW_PIXELS);
+    let width = input.job.width;
+    let chosen: Vec<(u32, u32)> = pixels.iter().map(|&i| (i as u32 % width, i as u32 / width)).collect();
+    let of: Vec<Vec3> = pixels.iter().map(|&i| reference[i]).collect();
     differing(&view.picture(&base, &chosen), &of) as f64 / of.len().max(1) as f64
 }
 
@@ -200,16 +221,16 @@ impl<'a> Search<'a> {
     fn steady(&self, pixels: &Pixels) -> Vec<bool> {
         let aside = |by: f32| {
             let mut variant = self.base.clone();
-            variant.aim.place += by;
+            variant.camera_bugs.sample_position += by;
             variant
         };
         let mut other = self.base.clone();
         other.change_rules(|rules| rules.epsilon = Some(rules.epsilon.map_or(1e-4, |epsilon| 8.0 * epsilon)));
         let mut steady = vec![true; pixels.places.len()];
         for variant in [aside(0.004), aside(-0.004), other] {
-            let made = self.view.picture(&variant, &pixels.places);
-            for ((steady, made), base) in steady.iter_mut().zip(&made).zip(&pixels.base) {
-                *steady &= differing(&[*made], &[*base]) == 0;
+            let rendered = self.view.picture(&variant, &pixels.places);
+            for ((steady, rendered), base) in steady.iter_mut().zip(&rendered).zip(&pixels.base) {
+                *steady &= differing(&[*rendered], &[*base]) == 0;
             }
         }
         // If most pixels are at edges, use all pixels.
@@ -224,20 +245,20 @@ impl<'a> Search<'a> {
     fn trial(&self, mistakes: Vec<(&'static Mistake, f32)>, pixels: &Pixels) -> Trial {
         let mut variant = self.base.clone();
         for (mistake, value) in &mistakes {
-            (mistake.make)(&mut variant, *value);
+            (mistake.apply)(&mut variant, *value);
         }
-        let mut made = self.view.picture(&variant, &pixels.places);
+        let mut rendered = self.view.picture(&variant, &pixels.places);
         // If the reference differs from the rendered scene at a pixel, add the change caused by the
         // mistake to the reference.
-        if variant.turn == PictureTurn::default() {
-            for ((made, base), reference) in made.iter_mut().zip(&pixels.base).zip(&pixels.reference) {
+        if variant.pixel_order == PixelOrder::default() {
+            for ((rendered, base), reference) in rendered.iter_mut().zip(&pixels.base).zip(&pixels.reference) {
                 if differing(&[*base], &[*reference]) > 0 {
-                    *made = *reference + (*made - *base);
+                    *rendered = *reference + (*rendered - *base);
                 }
             }
         }
-        let fit = fit(&pixels.reference, &pixels.test, &made);
-        Trial { mistakes, made, fit }
+        let fit = fit(&pixels.reference, &pixels.test, &rendered);
+        Trial { mistakes, rendered, fit }
     }
 
     /// Returns a mistake with the value that fits best. Searches at few pixels, and rounds the
@@ -272,7 +293,7 @@ impl<'a> Search<'a> {
         singles: &[Trial],
         rounds: [&Pixels; 4],
     ) -> (Vec<Explanation>, Vec<Explanation>) {
-        let mut first: Vec<&Trial> = best_of.iter().take(BEST).chain(best_matched(best_of)).collect();
+        let mut first: Vec<&Trial> = best_of.iter().take(MAX_BEST).chain(best_matched(best_of)).collect();
         first.dedup_by_key(|trial| trial.mistakes[0].0.name);
         let mut known = BTreeSet::new();
         let mut pairs: Vec<Vec<(&'static Mistake, f32)>> = Vec::new();
@@ -291,8 +312,8 @@ impl<'a> Search<'a> {
         }
         pairs.truncate(MAX_PAIRS);
         let full = rounds[3];
-        for (pixels, kept) in rounds.into_iter().zip(KEPT) {
-            pairs = best(&mut self.trials(pairs, pixels), kept);
+        for (pixels, keep_flags) in rounds.into_iter().zip(PAIRS_PER_ROUND) {
+            pairs = best(&mut self.trials(pairs, pixels), keep_flags);
         }
         let alone = |mistakes: &[(&'static Mistake, f32)]| {
             let of = |one: &(&'static Mistake, f32)| self.trial(vec![*one], full).fit.explained;
@@ -300,39 +321,40 @@ impl<'a> Search<'a> {
         };
         let trials = self.trials(pairs, full);
         let tried = tried(&trials);
-        let mut named = decided(trials, full, &Thresholds::PAIR);
+        let mut explanations = accepted_explanations(trials, full, &Thresholds::PAIR);
         // Keep a pair only if both mistakes are needed.
-        named.retain(|named| 1.0 - alone(&named.mistakes) > 2.0 * (1.0 - named.explained) + 0.002);
-        (named, tried)
+        explanations
+            .retain(|explanations| 1.0 - alone(&explanations.mistakes) > 2.0 * (1.0 - explanations.explained) + 0.002);
+        (explanations, tried)
     }
 
     /// If values differ by only 1/255, checks whether they are rounded instead of truncated, or the
     /// reverse.
     fn rounding(&self, pixels: &Pixels) -> Option<Explanation> {
-        let mistake = super::table::of_name("other-rounding")?;
-        let made = self.trial(vec![(mistake, 0.0)], pixels).made;
-        let differs = |a: &Vec3, b: &Vec3| (*a - *b).abs().max_element() > HALF;
+        let mistake = super::table::mistake_by_name("other-rounding")?;
+        let rendered = self.trial(vec![(mistake, 0.0)], pixels).rendered;
+        let differs = |a: &Vec3, b: &Vec3| (*a - *b).abs().max_element() > HALF_STEP;
         let (mut either, mut agree) = (0_usize, 0_usize);
-        for ((r, t), m) in pixels.reference.iter().zip(&pixels.test).zip(&made) {
+        for ((r, t), m) in pixels.reference.iter().zip(&pixels.test).zip(&rendered) {
             if differs(r, t) || differs(r, m) {
                 either += 1;
                 agree += usize::from(!differs(t, m));
             }
         }
         let share = agree as f64 / either.max(1) as f64;
-        let fits = self.view.scale == Scale::Display && agree >= FEWEST_ROUNDED && share > Thresholds::FITTED.matched;
+        let fits = self.view.scale == Scale::Display && agree >= MIN_ROUNDED && share > Thresholds::FITTED.matched;
         fits.then(|| Explanation { mistakes: vec![(mistake, 0.0)], explained: share, matched: share })
     }
 
     /// Checks if the picture shows acne, that is, rays that hit the surface they start from.
     fn acne(&self, all: &[(u32, u32)], reference: &[Vec3], test: &[Vec3]) -> Option<Explanation> {
         let lights = self.base.world.lights().len();
-        if all.len() > WHOLE || !(1..=4).contains(&lights) || !self.base.settings.shadows {
+        if all.len() > MAX_FULL_PIXELS || !(1..=4).contains(&lights) || !self.base.settings.shadows {
             return None;
         }
         let width = self.question.job.width as usize;
-        let differ = speckles::speckled(reference, test, width)?;
-        let places: Vec<(u32, u32)> = differ.iter().map(|&i| all[i]).collect();
+        let differ = speckles::isolated_pixels(reference, test, width)?;
+        let pixels: Vec<(u32, u32)> = differ.iter().map(|&i| all[i]).collect();
         // With acne, reflected rays return nothing or hit their own surface again.
         let bounces = if self.base.settings.bounces > 0 { 3 } else { 1 };
         let dark = |of: u32| {
@@ -345,11 +367,11 @@ impl<'a> Search<'a> {
             }
             variant.world.edit().lights =
                 (0..lights).filter(|i| off >> i & 1 == 0).map(|i| variant.world.lights()[i].clone()).collect();
-            self.view.picture(&variant, &places)
+            self.view.picture(&variant, &pixels)
         };
         let shadowed: Vec<Vec<Vec3>> = (1..bounces << lights).map(dark).collect();
         let share = speckles::share(test, &differ, &shadowed)?;
-        let mistake = super::table::of_name("epsilon-0")?;
+        let mistake = super::table::mistake_by_name("epsilon-0")?;
         Some(Explanation { mistakes: vec![(mistake, 0.0)], explained: share, matched: share })
     }
 }
@@ -403,18 +425,18 @@ impl Thresholds {
 
 /// Returns the explanations that pass the thresholds; none if no trial does, or if trials with
 /// different pictures fit almost equally well.
-fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Thresholds) -> Vec<Explanation> {
+fn accepted_explanations(mut trials: Vec<Trial>, pixels: &Pixels, thresholds: &Thresholds) -> Vec<Explanation> {
     sort(&mut trials);
     trials.dedup_by(|a, b| a.mistakes.len() == b.mistakes.len() && same(&a.mistakes, &b.mistakes));
     let passes = |trial: &Trial| {
         let is_fitted = trial.mistakes.iter().any(|(mistake, value)| mistake.is_fitted(*value));
-        if is_fitted { Thresholds::FITTED.passes(&trial.fit) } else { bars.passes(&trial.fit) }
+        if is_fitted { Thresholds::FITTED.passes(&trial.fit) } else { thresholds.passes(&trial.fit) }
     };
     let Some(best) = trials.iter().find(|trial| passes(trial)) else { return Vec::new() };
     let total = difference(&pixels.reference, &pixels.test);
     let equal = |other: &Trial| {
-        differing(&best.made, &other.made) * 2000 <= pixels.places.len()
-            && difference(&best.made, &other.made) <= 0.01 * total
+        differing(&best.rendered, &other.rendered) * 2000 <= pixels.places.len()
+            && difference(&best.rendered, &other.rendered) <= 0.01 * total
     };
     let rest = |trial: &Trial| 1.0 - trial.fit.explained;
     // Only near-perfect fits rival a perfect fit.
@@ -430,19 +452,20 @@ fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Thresholds) -> Vec<Ex
     if rivals.len() > 2 || rivals.iter().any(|rival| !passes(rival)) {
         return Vec::new();
     }
-    let mut named: Vec<Explanation> = Vec::new();
+    let mut explanations: Vec<Explanation> = Vec::new();
     for trial in trials.iter().filter(|trial| equal(trial)).chain(rivals) {
         // Report a mistake only once, even if several values fit.
-        if !named.iter().any(|named| one_kind(&named.mistakes, &trial.mistakes)) {
-            named.push(trial.named());
+        if !explanations.iter().any(|explanations| one_kind(&explanations.mistakes, &trial.mistakes)) {
+            explanations.push(trial.explanation());
         }
     }
     // Prefer mistakes whose value was not fitted.
-    let plain = |named: &Explanation| !named.mistakes.iter().any(|(mistake, value)| mistake.is_fitted(*value));
-    if named.iter().any(plain) {
-        named.retain(plain);
+    let plain =
+        |explanations: &Explanation| !explanations.mistakes.iter().any(|(mistake, value)| mistake.is_fitted(*value));
+    if explanations.iter().any(plain) {
+        explanations.retain(plain);
     }
-    named
+    explanations
 }
 
 /// Returns true if two explanations differ only in the values of their mistakes.

@@ -8,11 +8,11 @@
 mod buggy_tracer;
 pub mod bugs;
 mod diagnose;
-mod path_habits;
+mod fit;
+mod input;
+mod path_bugs;
 mod paths;
 mod pictures;
-mod question;
-mod search;
 mod speckles;
 mod table;
 mod variant;
@@ -21,25 +21,25 @@ mod variant;
 mod tests;
 
 pub use buggy_tracer::BuggyTracer;
-pub use path_habits::Paths;
-pub use question::{Diagnosis, DiagnosisInput, Explanation};
-pub use table::{Formulas, MISTAKES, Mistake, Values, of_name};
+pub use input::{Diagnosis, DiagnosisInput, Explanation};
+pub use path_bugs::PathBugs;
+pub use table::{Formulas, MISTAKES, Mistake, Values, mistake_by_name};
 pub use variant::SceneVariant;
 
 /// Finds the mistakes that explain a picture, with the method of the job. `reported` receives the
 /// progress, from 0 to 1.
-pub fn diagnose(question: &DiagnosisInput, reported: &(dyn Fn(f64) + Sync)) -> Diagnosis {
-    match question.job.method.path_options() {
-        Some(_) => paths::diagnose(question, reported),
-        None => diagnose::diagnose(question, reported),
+pub fn diagnose(input: &DiagnosisInput, reported: &(dyn Fn(f64) + Sync)) -> Diagnosis {
+    match input.job.method.path_options() {
+        Some(_) => paths::diagnose(input, reported),
+        None => diagnose::diagnose(input, reported),
     }
 }
 
 /// Returns the share of the reference in which a render of the scene differs from it: share of a
 /// sample of pixels or, with path tracing, of the blocks that differ by more than noise.
-pub fn off(question: &DiagnosisInput) -> f64 {
-    match question.job.method.path_options() {
-        Some(_) => paths::off(question),
-        None => diagnose::off(question),
+pub fn off(input: &DiagnosisInput) -> f64 {
+    match input.job.method.path_options() {
+        Some(_) => paths::off(input),
+        None => diagnose::reference_difference(input),
     }
 }

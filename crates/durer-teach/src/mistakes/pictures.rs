@@ -1,6 +1,6 @@
 //! Renders selected pixels of a scene variant.
 
-use super::bugs::{OutputBug, PictureTurn, RayCount};
+use super::bugs::{OutputBug, PixelOrder, RayCount};
 use super::{BuggyTracer, SceneVariant};
 use durer_image::Transfer;
 use durer_image::compare::{Scale, linear_to_srgb, srgb_to_linear};
@@ -19,12 +19,12 @@ pub(super) struct View<'j> {
     /// Transfer curve for display values.
     pub transfer: Transfer,
     /// Maximum value of the correct picture.
-    pub brightest: f32,
+    pub max_value: f32,
 }
 
 impl View<'_> {
     /// Renders pixels in linear light.
-    pub fn light(&self, variant: &SceneVariant, places: &[(u32, u32)]) -> Vec<Color> {
+    pub fn light(&self, variant: &SceneVariant, pixels: &[(u32, u32)]) -> Vec<Color> {
         let raster = variant.raster(self.job.width, self.job.height);
         let tracer = BuggyTracer::new(&variant.world, variant.settings, &variant.bugs);
         let samples = sample_places(&variant.world, self.job);
@@ -37,8 +37,8 @@ impl View<'_> {
                 weights += weight;
             };
             let corner = Vec2::new(x as f32, y as f32);
-            match variant.aim.rays {
-                RayCount::Right => samples(x, y, &mut add),
+            match variant.camera_bugs.rays {
+                RayCount::Correct => samples(x, y, &mut add),
                 RayCount::One => add(corner + 0.5, Vec2::splat(0.5), 1.0),
                 RayCount::Sixteen => (0..16_u8).for_each(|i| {
                     let part = Vec2::new(f32::from(i % 4), f32::from(i / 4));
@@ -47,7 +47,7 @@ impl View<'_> {
             }
             sum / weights
         };
-        places.par_iter().with_min_len(16).map(pixel).collect()
+        pixels.par_iter().with_min_len(16).map(pixel).collect()
     }
 
     /// Converts linear light to file values, including output mistakes.
@@ -56,16 +56,17 @@ impl View<'_> {
     }
 
     /// Renders pixels of a variant and returns their file values.
-    pub fn picture(&self, variant: &SceneVariant, places: &[(u32, u32)]) -> Vec<Vec3> {
+    pub fn picture(&self, variant: &SceneVariant, pixels: &[(u32, u32)]) -> Vec<Vec3> {
         let (width, height) = (self.job.width, self.job.height);
-        let sources: Vec<(u32, u32)> = places.iter().map(|place| variant.turn.source(width, height, *place)).collect();
+        let sources: Vec<(u32, u32)> =
+            pixels.iter().map(|pixel| variant.pixel_order.source(width, height, *pixel)).collect();
         let mut values = self.values(variant.output, &self.light(variant, &sources));
-        for (value, place) in values.iter_mut().zip(places) {
-            if variant.turn.is_empty(width, height, *place) {
+        for (value, pixel) in values.iter_mut().zip(pixels) {
+            if variant.pixel_order.is_empty(width, height, *pixel) {
                 *value = Vec3::ZERO;
             }
         }
-        let order = PictureTurn::ORDERS[usize::from(variant.turn.channels).min(5)];
+        let order = PixelOrder::ORDERS[usize::from(variant.pixel_order.channels).min(5)];
         values.iter_mut().for_each(|value| *value = order.map(|channel| value[channel]).into());
         values
     }
@@ -75,7 +76,7 @@ impl View<'_> {
         let light = if light.is_finite() { light.min(Color::splat(1e6)) } else { light };
         let light = if output == OutputBug::Toned { light.map(|v| v / (1.0 + v.max(0.0))) } else { light };
         let light = match output {
-            OutputBug::Scaled => light / self.brightest,
+            OutputBug::Scaled => light / self.max_value,
             OutputBug::Times(factor) => light * factor,
             OutputBug::Negative => Color::ONE - light.clamp(Color::ZERO, Color::ONE),
             OutputBug::Grey(how) => Color::splat(grey(how, light.clamp(Color::ZERO, Color::ONE))),
@@ -92,7 +93,7 @@ impl View<'_> {
             (OutputBug::OtherRounding, Transfer::Course) => Transfer::Linear,
             (OutputBug::OtherRounding, Transfer::Linear) => Transfer::Course,
             // Without the curve, the file has linear values.
-            (OutputBug::CurveLess(0.0), Transfer::Srgb) => Transfer::Linear,
+            (OutputBug::MissingCurve(0.0), Transfer::Srgb) => Transfer::Linear,
             (_, transfer) => transfer,
         };
         if let (OutputBug::Wrapped(most), true) = (output, transfer != Transfer::Srgb) {
@@ -105,10 +106,10 @@ impl View<'_> {
         let curved = |v: f32| if transfer == Transfer::Srgb { linear_to_srgb(v.clamp(0.0, 1.0)) } else { v.max(0.0) };
         let plain = if transfer == Transfer::Course { Transfer::Course } else { Transfer::Linear };
         match output {
-            OutputBug::CurveMore(0.0) => eight(plain, light.map(|v| linear_to_srgb(curved(v)))),
-            OutputBug::CurveMore(power) => eight(plain, light.map(|v| fp::pow(curved(v), 1.0 / power))),
-            OutputBug::CurveLess(power) if power > 0.0 => eight(plain, light.map(|v| fp::pow(curved(v), power))),
-            OutputBug::CurveLess(_) if self.transfer != Transfer::Srgb => {
+            OutputBug::ExtraCurve(0.0) => eight(plain, light.map(|v| linear_to_srgb(curved(v)))),
+            OutputBug::ExtraCurve(power) => eight(plain, light.map(|v| fp::pow(curved(v), 1.0 / power))),
+            OutputBug::MissingCurve(power) if power > 0.0 => eight(plain, light.map(|v| fp::pow(curved(v), power))),
+            OutputBug::MissingCurve(_) if self.transfer != Transfer::Srgb => {
                 eight(plain, light.map(|v| srgb_to_linear(curved(v))))
             }
             _ => eight(transfer, light),

@@ -1,18 +1,18 @@
 //! Detects acne: specks where rays hit the surface that they start from, which depends on rounding.
 
-use super::search::SEEN;
+use super::fit::VISIBLE;
 use durer_scene::math::Vec3;
 
 /// Minimum share of the specks that must be as dark as in shadow.
-const MOST: f64 = 0.94;
+const MIN_MATCHING: f64 = 0.94;
 /// Minimum share of neighbouring pairs of which only one pixel is a speck: a constant, plus a term
 /// for the borders of a few regions with the same number of pixels. A single disc has 2.3 / √count.
-const BROKEN: f64 = 0.06;
-const BORDERS: f64 = 4.0;
+const MIN_ISOLATED: f64 = 0.06;
+const BORDER_TERM: f64 = 4.0;
 
 /// Returns the indices of the differing pixels if they are isolated specks rather than regions.
-pub(super) fn speckled(reference: &[Vec3], test: &[Vec3], width: usize) -> Option<Vec<usize>> {
-    let differs = |i: usize| (reference[i] - test[i]).abs().max_element() > SEEN;
+pub(super) fn isolated_pixels(reference: &[Vec3], test: &[Vec3], width: usize) -> Option<Vec<usize>> {
+    let differs = |i: usize| (reference[i] - test[i]).abs().max_element() > VISIBLE;
     let all: Vec<bool> = (0..reference.len()).map(differs).collect();
     let differ: Vec<usize> = (0..all.len()).filter(|i| all[*i]).collect();
     // Regions have an interior; specks consist mostly of borders.
@@ -27,17 +27,17 @@ pub(super) fn speckled(reference: &[Vec3], test: &[Vec3], width: usize) -> Optio
             }
         }
     }
-    let speckled = broken as f64 > (BROKEN + BORDERS / (differ.len().max(1) as f64).sqrt()) * pairs as f64;
+    let speckled = broken as f64 > (MIN_ISOLATED + BORDER_TERM / (differ.len().max(1) as f64).sqrt()) * pairs as f64;
     (differ.len() * 500 > reference.len() && speckled).then_some(differ)
 }
 
 /// Returns the share of the differing pixels that are as dark as in the shadow of some lights, if
-/// it is at least `MOST`. `shadowed` has the values of these pixels in pictures with one or more
+/// it is at least `MIN_MATCHING`. `shadowed` has the values of these pixels in pictures with one or more
 /// lights off.
 pub(super) fn share(test: &[Vec3], differ: &[usize], shadowed: &[Vec<Vec3>]) -> Option<f64> {
     let alike =
-        |(at, &i): (usize, &usize)| shadowed.iter().any(|dark| (dark[at] - test[i]).abs().max_element() <= SEEN);
+        |(at, &i): (usize, &usize)| shadowed.iter().any(|dark| (dark[at] - test[i]).abs().max_element() <= VISIBLE);
     let of_kind = differ.iter().enumerate().filter(|of| alike(*of)).count();
     let share = of_kind as f64 / differ.len().max(1) as f64;
-    (share >= MOST).then_some(share)
+    (share >= MIN_MATCHING).then_some(share)
 }

@@ -82,17 +82,17 @@ fn every_row_has_a_unique_name_and_a_lesson_step() {
     for mistake in MISTAKES.iter().copied().flatten() {
         assert!(names.insert(mistake.name), "{} exists twice", mistake.name);
         assert!(TOPICS.iter().any(|topic| topic.name == mistake.step), "{}: no step {}", mistake.name, mistake.step);
-        assert!(!mistake.words.ends_with('.') && mistake.right != mistake.wrong, "{}", mistake.name);
+        assert!(!mistake.description.ends_with('.') && mistake.right != mistake.wrong, "{}", mistake.name);
     }
 }
 
 /// Renders the eight-bit picture of a variant; also returns its brightest value.
-fn picture(variant: &SceneVariant, job: &Job, brightest: f32) -> (Picture, f32) {
+fn picture(variant: &SceneVariant, job: &Job, max_value: f32) -> (Picture, f32) {
     let places: Vec<(u32, u32)> = job.whole().pixel_positions().collect();
-    let view = View { job, scale: Scale::Display, transfer: Transfer::Course, brightest };
-    let brightest = view.light(variant, &places).iter().map(|light| light.max_element()).fold(0.0, f32::max);
+    let view = View { job, scale: Scale::Display, transfer: Transfer::Course, max_value };
+    let max_value = view.light(variant, &places).iter().map(|light| light.max_element()).fold(0.0, f32::max);
     let image = Image::from_pixels(job.width, job.height, view.picture(variant, &places)).unwrap();
-    (Picture { image, scale: Scale::Display }, brightest)
+    (Picture { image, scale: Scale::Display }, max_value)
 }
 
 fn found(names: &[(&str, f32)]) -> Diagnosis {
@@ -104,14 +104,14 @@ fn found_in(text: &str, job: Job, names: &[(&str, f32)]) -> Diagnosis {
     let right = SceneVariant::new(&scene, world, job.settings);
     let mut wrong = right.clone();
     for (name, value) in names {
-        (super::of_name(name).unwrap().make)(&mut wrong, *value);
+        (super::mistake_by_name(name).unwrap().apply)(&mut wrong, *value);
     }
-    let (reference, brightest) = picture(&right, &job, 1.0);
-    let (test, _) = picture(&wrong, &job, brightest);
+    let (reference, max_value) = picture(&right, &job, 1.0);
+    let (test, _) = picture(&wrong, &job, max_value);
     let transfer = Transfer::Course;
-    let question =
+    let input =
         DiagnosisInput { scene: &scene, world: &right.world, job: &job, transfer, reference: &reference, test: &test };
-    diagnose(&question, &|_| {})
+    diagnose(&input, &|_| {})
 }
 
 #[test]
@@ -120,19 +120,19 @@ fn mistakes_are_named_alone_and_in_pairs() {
         ["no-ambient", "no-highlights", "light-negated", "no-shadows", "mirror-negated", "normals-local", "not-bent"]
     {
         let diagnosis = found(&[(name, 0.0)]);
-        let named = &diagnosis.named;
+        let named = &diagnosis.explanations;
         assert!(named.iter().any(|n| n.mistakes.len() == 1 && n.mistakes[0].0.name == name), "{name}: {diagnosis:#?}");
     }
     let diagnosis = found(&[("exponent", 3.0)]);
-    let (mistake, value) = diagnosis.named[0].mistakes[0];
+    let (mistake, value) = diagnosis.explanations[0].mistakes[0];
     assert!(mistake.name == "exponent" && (value - 3.0).abs() < 0.1, "{diagnosis:?}");
     let diagnosis = found(&[("no-shadows", 0.0), ("no-ambient", 0.0)]);
-    let names: BTreeSet<&str> = diagnosis.named[0].mistakes.iter().map(|m| m.0.name).collect();
+    let names: BTreeSet<&str> = diagnosis.explanations[0].mistakes.iter().map(|m| m.0.name).collect();
     assert_eq!(names, BTreeSet::from(["no-ambient", "no-shadows"]));
 }
 
 /// The most common mistakes, each with its value.
-const USUAL: [(&str, f32); 49] = [
+const COMMON: [(&str, f32); 49] = [
     ("no-ambient", 0.0),
     ("no-diffuse", 0.0),
     ("no-highlights", 0.0),
@@ -188,7 +188,7 @@ const USUAL: [(&str, f32); 49] = [
 fn each_usual_mistake_is_named() {
     let mut wrong = Vec::new();
     let mut judge = |text: &str, job: Job, name: &str, value: f32| {
-        let named = found_in(text, job, &[(name, value)]).named;
+        let named = found_in(text, job, &[(name, value)]).explanations;
         if !named.iter().any(|n| n.mistakes.len() == 1 && n.mistakes[0].0.name == name) {
             let messages: Vec<Vec<_>> =
                 named.iter().map(|n| n.mistakes.iter().map(|m| (m.0.name, m.1)).collect()).collect();
@@ -197,7 +197,7 @@ fn each_usual_mistake_is_named() {
     };
     // Make the scene bright enough to clamp, with little glass, so that every term is visible.
     let bright = SCENE.replace("0.6 0.5 0.5", "1.1 1.0 1.0");
-    for (name, value) in USUAL {
+    for (name, value) in COMMON {
         judge(&bright, job(), name, value);
     }
     let ceiling = SCENE.replace("numObjects 4", "numObjects 5 MaterialIndex 0 Plane { normal 0 -1 0 offset -5 }");
@@ -213,7 +213,7 @@ fn each_usual_mistake_is_named() {
 }
 
 /// Further mistakes that are common in this course.
-const FURTHER: [(&str, f32); 21] = [
+const ALSO_COMMON: [(&str, f32); 21] = [
     ("sphere-normals", 0.0),
     ("sphere-roots", 0.0),
     ("triangle-test", 1.0),
@@ -241,8 +241,8 @@ const FURTHER: [(&str, f32); 21] = [
 fn each_further_mistake_is_named() {
     let bright = SCENE.replace("0.6 0.5 0.5", "1.1 1.0 1.0");
     let mut wrong = Vec::new();
-    for (name, value) in FURTHER {
-        let named = found_in(&bright, job(), &[(name, value)]).named;
+    for (name, value) in ALSO_COMMON {
+        let named = found_in(&bright, job(), &[(name, value)]).explanations;
         if !named.iter().any(|n| n.mistakes.len() == 1 && n.mistakes[0].0.name == name) {
             let messages: Vec<Vec<_>> =
                 named.iter().map(|n| n.mistakes.iter().map(|m| (m.0.name, m.1)).collect()).collect();
@@ -268,7 +268,7 @@ fn unrelated_pictures_match_no_mistake() {
         diagnose(&DiagnosisInput { scene: &scene, world: &right.world, job: &job, transfer, reference, test }, &|_| {})
     };
     let diagnosis = ask(&reference, &other);
-    assert!(diagnosis.is_of_scene() && diagnosis.named.is_empty(), "{:?}", diagnosis.named);
+    assert!(diagnosis.reference_matches_scene() && diagnosis.explanations.is_empty(), "{:?}", diagnosis.explanations);
     let diagnosis = ask(&other, &reference);
-    assert!(!diagnosis.is_of_scene() && diagnosis.named.is_empty());
+    assert!(!diagnosis.reference_matches_scene() && diagnosis.explanations.is_empty());
 }

@@ -1,7 +1,7 @@
 //! A scene with its rules and the mistakes with which it is rendered.
 
-use super::bugs::{Bugs, CameraBugs, OutputBug, PictureTurn};
-use super::path_habits::Paths;
+use super::bugs::{Bugs, CameraBugs, OutputBug, PixelOrder};
+use super::path_bugs::PathBugs;
 use durer_bvh::BuildQuality;
 use durer_render::compile::rules::matrix_rules;
 use durer_render::compile::{self, AccelKind};
@@ -31,13 +31,13 @@ pub struct SceneVariant<'s> {
     /// Mistakes of the Whitted tracer.
     pub bugs: Bugs,
     /// Mistakes in camera rays.
-    pub aim: CameraBugs,
+    pub camera_bugs: CameraBugs,
     /// Mistake in the output values.
     pub output: OutputBug,
     /// Mistakes in the order of pixels and channels.
-    pub turn: PictureTurn,
+    pub pixel_order: PixelOrder,
     /// Mistakes of the path tracer.
-    pub paths: Paths,
+    pub paths: PathBugs,
 }
 
 /// Returns true if some light in the scene file has three attenuation coefficients.
@@ -50,11 +50,11 @@ pub fn three_factors(scene: &Scene) -> bool {
 }
 
 /// Factor by which a triangle is extended if the test of one side is missing.
-const WIDE: f32 = 100.0;
+const EXTENSION: f32 = 100.0;
 
 /// Kind of shape that the course's programs implement, and whose intersection mistakes can affect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TaughtShapes {
+pub enum CourseShape {
     /// `Sphere`.
     Sphere,
     /// `Plane`.
@@ -66,14 +66,14 @@ pub enum TaughtShapes {
 }
 
 /// Returns the course's kind of a geometry; `None` if the course's programs do not have it.
-pub fn taught_shapes(geometry: &Geometry) -> Option<TaughtShapes> {
+pub fn course_shape(geometry: &Geometry) -> Option<CourseShape> {
     match geometry {
-        Geometry::Mesh(_) => Some(TaughtShapes::Mesh),
+        Geometry::Mesh(_) => Some(CourseShape::Mesh),
         Geometry::Solid(_) => None,
         Geometry::Primitive(shape) => match shape {
-            Primitive::Sphere(_) => Some(TaughtShapes::Sphere),
-            Primitive::Plane(_) => Some(TaughtShapes::Plane),
-            Primitive::Triangle(_) => Some(TaughtShapes::Triangle),
+            Primitive::Sphere(_) => Some(CourseShape::Sphere),
+            Primitive::Plane(_) => Some(CourseShape::Plane),
+            Primitive::Triangle(_) => Some(CourseShape::Triangle),
             Primitive::Cuboid(_)
             | Primitive::Cylinder(_)
             | Primitive::Cone(_)
@@ -93,14 +93,16 @@ impl<'s> SceneVariant<'s> {
     /// Creates a variant without mistakes.
     pub fn new(scene: &'s Scene, world: World, settings: RenderSettings) -> Self {
         let (bugs, aim, output, turn, paths) = Default::default();
-        SceneVariant { scene, world, settings, bugs, aim, output, turn, paths }
+        SceneVariant { scene, world, settings, bugs, camera_bugs: aim, output, pixel_order: turn, paths }
     }
 
     /// Returns the camera ray of a pixel. `place` is a position in pixels from the upper left
     /// corner.
     pub fn ray(&self, raster: &Raster, (x, y): (u32, u32), place: Vec2, lens: Vec2) -> Option<Ray> {
-        let point =
-            |place: Vec2| raster.point(place + self.aim.place - 0.5) * self.aim.factor(raster.width, raster.height);
+        let point = |place: Vec2| {
+            raster.point(place + self.camera_bugs.sample_position - 0.5)
+                * self.camera_bugs.factor(raster.width, raster.height)
+        };
         let pixel = point(Vec2::new(x as f32, y as f32) + 0.5);
         self.world.camera().ray(self.world.camera_frame(), &CameraSample { point: point(place), pixel, lens })
     }
@@ -128,7 +130,7 @@ impl<'s> SceneVariant<'s> {
     }
 
     /// Recomputes the camera basis from the rules.
-    pub fn reframe(&mut self) {
+    pub fn update_camera_basis(&mut self) {
         self.world.edit().frame = CameraBasis::of(self.world.camera(), self.world.camera_rules());
     }
 
@@ -150,7 +152,7 @@ impl<'s> SceneVariant<'s> {
     }
 
     /// Switches all highlights from Blinn's model to Phong's, or the reverse.
-    pub fn other_highlights(&mut self) {
+    pub fn swap_highlight_model(&mut self) {
         let behind = self.world.rules().has(Quirk::HighlightBehind);
         self.phongs(|phong| {
             if let Some((_, _, model)) = &mut phong.highlight {
@@ -172,9 +174,9 @@ impl<'s> SceneVariant<'s> {
         }
         let behind = self.world.rules().has(Quirk::HighlightBehind) && form == 0.0;
         let model = if form == 2.0 { HighlightModel::Blinn } else { HighlightModel::Phong { behind } };
-        for (written, material) in self.scene.materials.iter().zip(&mut self.world.edit().materials) {
-            if let (scene::Material::Phong(written, _), Material::Phong(phong)) = (&written.value, material) {
-                let PhongMaterial { specular_color, shininess, .. } = **written;
+        for (parsed, material) in self.scene.materials.iter().zip(&mut self.world.edit().materials) {
+            if let (scene::Material::Phong(parsed, _), Material::Phong(phong)) = (&parsed.value, material) {
+                let PhongMaterial { specular_color, shininess, .. } = **parsed;
                 phong.highlight = Some((specular_color, shininess.unwrap_or(0.0), model));
             }
         }
@@ -188,27 +190,27 @@ impl<'s> SceneVariant<'s> {
             Highlight::Phong => HighlightModel::Phong { behind },
             Highlight::Blinn | Highlight::ByKeyword => HighlightModel::Blinn,
         };
-        for (written, material) in self.scene.materials.iter().zip(&mut self.world.edit().materials) {
-            if let (scene::Material::Phong(written, _), Material::Phong(phong)) = (&written.value, material) {
-                let exponent = written.exponent.or(written.shininess).unwrap_or(1.0);
+        for (parsed, material) in self.scene.materials.iter().zip(&mut self.world.edit().materials) {
+            if let (scene::Material::Phong(parsed, _), Material::Phong(phong)) = (&parsed.value, material) {
+                let exponent = parsed.exponent.or(parsed.shininess).unwrap_or(1.0);
                 phong.highlight.get_or_insert((Color::ZERO, exponent, model));
             }
         }
     }
 
     /// Recomputes the transforms of all objects with `product`.
-    pub fn place(&mut self, product: Product) {
+    pub fn set_transforms(&mut self, product: Product) {
         let rules = matrix_rules(self.world.rules());
-        let mut places = Vec::new();
+        let mut transforms = Vec::new();
         if let Some(root) = &self.scene.root {
-            placed(root, DAffine3::IDENTITY, &|ops| product(ops, rules), &mut places);
+            object_transforms(root, DAffine3::IDENTITY, &|ops| product(ops, rules), &mut transforms);
         }
         // Compilation splits solids into pieces; do nothing if objects and transforms do not
         // correspond.
-        if places.len() != self.world.objects().len() {
+        if transforms.len() != self.world.objects().len() {
             return;
         }
-        for (object, place) in self.world.edit().objects.iter_mut().zip(places) {
+        for (object, place) in self.world.edit().objects.iter_mut().zip(transforms) {
             if !matches!(object.geometry, Geometry::Solid(_)) {
                 object.set_transform(place);
             }
@@ -246,19 +248,19 @@ impl<'s> SceneVariant<'s> {
 
     /// Extends every triangle beyond the side opposite a corner, as if the test of that side were
     /// missing.
-    pub fn wedges(&mut self, corner: usize) {
+    pub fn extend_beyond_side(&mut self, corner: usize) {
         for object in &mut self.world.edit().objects {
             match &mut object.geometry {
                 Geometry::Primitive(shape) => {
                     if let Primitive::Triangle(triangle) = shape {
                         let all = triangle.corners();
-                        let [vertex0, vertex1, vertex2] = all.map(|p| all[corner] + WIDE * (p - all[corner]));
+                        let [vertex0, vertex1, vertex2] = all.map(|p| all[corner] + EXTENSION * (p - all[corner]));
                         *triangle = Triangle { vertex0, vertex1, vertex2 };
                     }
                 }
                 Geometry::Mesh(tree) => {
                     *tree =
-                        Arc::new(MeshTree::new(tree.mesh.with_scaled_triangles(corner, WIDE), BuildQuality::Balanced))
+                        Arc::new(MeshTree::new(tree.mesh.with_scaled_triangles(corner, EXTENSION), BuildQuality::Balanced))
                 }
                 Geometry::Solid(_) => {}
             }
@@ -274,18 +276,23 @@ impl<'s> SceneVariant<'s> {
 }
 
 /// Collects the matrices of all objects, in the order of compilation.
-fn placed(group: &Group, to_world: DAffine3, product: &dyn Fn(&[MatrixOp]) -> DAffine3, places: &mut Vec<DAffine3>) {
+fn object_transforms(
+    group: &Group,
+    to_world: DAffine3,
+    product: &dyn Fn(&[MatrixOp]) -> DAffine3,
+    transforms: &mut Vec<DAffine3>,
+) {
     fn one(
         object: &scene::Object,
         to_world: DAffine3,
         product: &dyn Fn(&[MatrixOp]) -> DAffine3,
-        places: &mut Vec<DAffine3>,
+        transforms: &mut Vec<DAffine3>,
     ) {
         match &object.node {
-            ObjectKind::Group(group) => placed(group, to_world, product, places),
-            ObjectKind::Transform(ops, inner) => one(inner, to_world * product(ops), product, places),
-            _ => places.push(to_world),
+            ObjectKind::Group(group) => object_transforms(group, to_world, product, transforms),
+            ObjectKind::Transform(ops, inner) => one(inner, to_world * product(ops), product, transforms),
+            _ => transforms.push(to_world),
         }
     }
-    group.objects.iter().for_each(|object| one(object, to_world, product, places));
+    group.objects.iter().for_each(|object| one(object, to_world, product, transforms));
 }

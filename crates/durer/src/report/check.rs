@@ -19,7 +19,7 @@ pub fn finding(finding: &Finding, files: &Files) -> Value {
             Severity::Warning => "warning",
             Severity::Note => "note",
         },
-        "whole": finding.whole,
+        "whole": finding.affects_whole_picture,
         "message": d.message,
         "label": d.label,
         "effect": d.effect,

@@ -109,20 +109,20 @@ fn distinctive_words_decide_the_guess() {
     )
     .note();
     assert_eq!(note.message, "read as f12a5: `refractionIndex` is a word of f12a5");
-    let hint = Hint { set: Dialect::F16 as u8, why: "the output is a PNG file".into(), weak: false };
+    let hint = Hint { set: Dialect::F16 as u8, reason: "the output is a PNG file".into(), weak: false };
     let guess = guess(b"PerspectiveCamera { }", 0, &[hint], &|_| false);
     assert_eq!((guess.dialect, guess.others.len()), (Dialect::F16, 0));
-    assert_eq!((guess.by_words, guess.is_hinted()), (Dialect::F12a4, true));
+    assert_eq!((guess.by_keywords, guess.changed_by_hints()), (Dialect::F12a4, true));
     assert!(guess.note().message.ends_with("the output is a PNG file"));
 }
 
 #[test]
 fn weak_hints_choose_among_the_years_that_fit_and_rule_none_out() {
-    let hint = |set, weak| Hint { set, why: "of a reason".into(), weak };
+    let hint = |set, weak| Hint { set, reason: "of a reason".into(), weak };
     let (shadows, png) = (hint(set::ALL & !set::F12A4, false), hint(set::F16 | set::F23, true));
     let scene = b"PerspectiveCamera { } Materials { Material { shininess 3 } }";
     let found = guess(scene, 0, std::slice::from_ref(&png), &|_| false);
-    assert_eq!((found.dialect, found.by_words), (Dialect::F16, Dialect::F12a4));
+    assert_eq!((found.dialect, found.by_keywords), (Dialect::F16, Dialect::F12a4));
     assert_eq!(found.fitting, [Dialect::F12a4, Dialect::F12a5, Dialect::F16]);
     // The order of the hints does not matter.
     for hints in [[png.clone(), shadows.clone()], [shadows, png.clone()]] {

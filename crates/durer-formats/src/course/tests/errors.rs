@@ -325,7 +325,7 @@ fn repeated_and_foreign_words_give_one_warning() {
 }
 
 #[test]
-fn a_colour_of_the_web_is_told_at_its_own_place() {
+fn web_colour_is_reported_at_its_value() {
     let text = "Materials { Material { diffuseColor #b38033\n specularColor 1 1 1 } } Group { }";
     let messages = findings(text, Dialect::Durer).join("\n");
     assert!(messages.contains("`diffuseColor` needs number 1 of 3, but `#b38033` begins a comment"), "{messages}");
@@ -336,7 +336,7 @@ fn a_colour_of_the_web_is_told_at_its_own_place() {
 }
 
 #[test]
-fn a_count_that_is_given_twice_is_told() {
+fn repeated_count_is_reported() {
     let text = "Group { numObjects 1 numObjects 1 Sphere { center 0 0 0 radius 1 } }";
     let messages = findings(text, Dialect::Durer).join("\n");
     assert!(messages.contains("`numObjects` is given twice; the last counts"), "{messages}");

@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::Decoder;
-use crate::course::random::Random;
+use crate::course::random::SceneGenerator;
 use crate::folder::FolderSource;
 use durer_render::compile::{AccelKind, Resources, compile};
 
@@ -43,7 +43,7 @@ fn every_prefix_of_a_scene() {
 #[test]
 fn changed_bytes() {
     let (_folder, source) = folder();
-    let mut random = Random::seeded(3);
+    let mut random = SceneGenerator::seeded(3);
     for i in 0..12_000 {
         let (dialect, text) = SMALL[i % SMALL.len()];
         let mut bytes = text.as_bytes().to_vec();
@@ -64,7 +64,7 @@ fn changed_bytes() {
 #[test]
 fn words_removed_doubled_and_moved() {
     let (_folder, source) = folder();
-    let mut random = Random::seeded(4);
+    let mut random = SceneGenerator::seeded(4);
     for i in 0..12_000 {
         let (dialect, text) = SMALL[i % SMALL.len()];
         let mut words: Vec<&str> = text.split_ascii_whitespace().collect();
@@ -90,7 +90,7 @@ fn words_removed_doubled_and_moved() {
 #[test]
 fn random_scenes_compile_without_panic() {
     let (_folder, source) = folder();
-    let mut random = Random::seeded(5);
+    let mut random = SceneGenerator::seeded(5);
     for _ in 0..500 {
         for dialect in Dialect::ALL {
             let scene = random.scene(dialect);

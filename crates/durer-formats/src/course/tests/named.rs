@@ -6,14 +6,14 @@ use durer_scene::material::Pattern;
 use durer_scene::scene::{Material, Object, ObjectKind};
 
 const HEAD: &str = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 30 } Background { color 0 0 0 }\n";
-const PAINTS: &str = "Materials { PhongMaterial red { diffuseColor 1 0 0 } PhongMaterial blue { diffuseColor 0 0 1 } Mix both { materialIndex blue materialIndex red } }\n";
+const MATERIALS: &str = "Materials { PhongMaterial red { diffuseColor 1 0 0 } PhongMaterial blue { diffuseColor 0 0 1 } Mix both { materialIndex blue materialIndex red } }\n";
 
 fn ours(text: &str) -> Scene {
-    clean(&format!("{HEAD}{PAINTS}{text}"), Dialect::Durer)
+    clean(&format!("{HEAD}{MATERIALS}{text}"), Dialect::Durer)
 }
 
 fn refused(text: &str) -> Vec<String> {
-    let (scene, found) = read_as(format!("{HEAD}{PAINTS}{text}").as_bytes(), Dialect::Durer, false);
+    let (scene, found) = read_as(format!("{HEAD}{MATERIALS}{text}").as_bytes(), Dialect::Durer, false);
     assert!(scene.is_none(), "{text}");
     found
 }
@@ -100,7 +100,7 @@ fn wrong_names_are_errors() {
 #[test]
 fn included_file_replaces_its_include() {
     let files: [(&str, &[u8]); 9] = [
-        ("paints.txt", PAINTS.as_bytes()),
+        ("paints.txt", MATERIALS.as_bytes()),
         ("parts/ball.txt", b"# a ball\nSphere { center 0 0 0 radius 1 }"),
         ("parts/both.txt", b"include parts/ball.txt include parts/ball.txt"),
         ("a.txt", b"include b.txt"),

@@ -2,7 +2,7 @@
 
 use super::corpus::scenes;
 use super::*;
-use crate::course::random::Random;
+use crate::course::random::SceneGenerator;
 
 /// Compares bit for bit, except for spans, since `PartialEq` treats 0 and -0 as equal.
 #[track_caller]
@@ -38,7 +38,7 @@ fn course_scenes_round_trip_in_every_dialect() {
 
 #[test]
 fn random_scenes_round_trip_in_every_dialect() {
-    let mut random = Random::seeded(1);
+    let mut random = SceneGenerator::seeded(1);
     for i in 0..2000 {
         for dialect in Dialect::ALL {
             let scene = random.scene(dialect);
@@ -52,7 +52,7 @@ fn random_scenes_round_trip_in_every_dialect() {
 
 #[test]
 fn random_scenes_round_trip_as_json() {
-    let mut random = Random::seeded(2);
+    let mut random = SceneGenerator::seeded(2);
     for _ in 0..3000 {
         // JSON contains only hashes of meshes and pictures, so reading cannot restore them.
         let scene = Scene { assets: Default::default(), ..random.scene(Dialect::Durer) };
@@ -63,7 +63,7 @@ fn random_scenes_round_trip_as_json() {
 }
 
 #[test]
-fn scene_is_written_in_another_year_without_needless_words() {
+fn scene_is_written_in_another_dialect_without_defaults() {
     let scene = clean(SMALL[3].1, Dialect::F23);
     let text = write(&scene, Dialect::F12a5);
     // Defaults for which 2012 has no word are omitted.

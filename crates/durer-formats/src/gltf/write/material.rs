@@ -15,41 +15,41 @@ use serde_json::{Map, Value, json};
 use std::f32::consts::TAU;
 
 impl Writer<'_> {
-    /// Returns the index of the glTF material for a scene material; writes it on first use. `holes`
+    /// Returns the index of the glTF material for a scene material; writes it on first use. `has_alpha`
     /// is true if any vertex colour is not opaque.
-    pub(super) fn material(&mut self, number: u32, holes: bool) -> Option<usize> {
-        if let Some(known) = self.materials.get(&number) {
-            return *known;
+    pub(super) fn material(&mut self, number: u32, has_alpha: bool) -> Option<usize> {
+        if let Some(cached) = self.materials.get(&number) {
+            return *cached;
         }
         let scene = self.scene;
-        let made = match &scene.materials.get(number as usize)?.value {
-            Material::Principled(layers) => Some(self.layers(layers, holes)),
+        let index = match &scene.materials.get(number as usize)?.value {
+            Material::Principled(layers) => Some(self.layers(layers, has_alpha)),
             Material::Phong(phong, noise) => {
                 if noise.is_some() {
-                    self.left_out("glTF has no noise: the material's own colour is written");
+                    self.warn_lost("glTF has no noise: the material's own colour is written");
                 }
-                Some(self.layers(&alike(phong), holes))
+                Some(self.layers(&principled_of_phong(phong), has_alpha))
             }
             Material::Hair(hair) => {
-                self.left_out("glTF has no hair: a matte colour is written");
+                self.warn_lost("glTF has no hair: a matte colour is written");
                 let base_color = Fibre::new(hair).color();
                 let matte = PrincipledMaterial { base_color, specular_roughness: 1.0, ..PrincipledMaterial::default() };
-                Some(self.layers(&matte, holes))
+                Some(self.layers(&matte, has_alpha))
             }
             Material::Solid(solid, _) => {
-                self.left_out("glTF has no patterns of two materials: the first is written");
+                self.warn_lost("glTF has no patterns of two materials: the first is written");
                 let first = solid.materials()[0];
                 // A pattern refers only to earlier materials, so the recursion ends.
-                if first < number { self.material(first, holes) } else { None }
+                if first < number { self.material(first, has_alpha) } else { None }
                     .and_then(|at| self.lists.get("materials")?.get(at).cloned())
             }
         };
-        let made = made.map(|material| self.add("materials", material));
-        self.materials.insert(number, made);
-        made
+        let index = index.map(|material| self.add("materials", material));
+        self.materials.insert(number, index);
+        index
     }
 
-    fn layers(&mut self, m: &PrincipledMaterial, holes: bool) -> Value {
+    fn layers(&mut self, m: &PrincipledMaterial, has_alpha: bool) -> Value {
         let solid = m.walls == Walls::Solid;
         let clear = m.transmission_weight > 0.0;
         // In glTF both sides emit, unless the back side is culled.
@@ -69,11 +69,11 @@ impl Writer<'_> {
         let is_metal = m.base_metalness == 1.0 && !textured;
         let base = if is_metal { m.specular_weight.min(1.0) * base } else { base };
         let [r, g, b] = base.clamp(Vec3::ZERO, Vec3::ONE).to_array();
-        let (roughness, strength) = brushed(m);
+        let (roughness, strength) = gltf_roughness(m);
         let mut pbr = json!({
             "baseColorFactor": [r, g, b, m.opacity], "metallicFactor": m.base_metalness, "roughnessFactor": roughness,
         });
-        let mut blended = holes || m.opacity < 1.0;
+        let mut blended = has_alpha || m.opacity < 1.0;
         if let Some((info, mapping)) = self.texture(m.base_color_texture.as_ref()) {
             pbr["baseColorTexture"] = info;
             match mapping.cutoff {
@@ -168,20 +168,20 @@ impl Writer<'_> {
         for row in TEXTURE_FIELDS.iter().filter(|row| row.field != "base_color_texture") {
             let Some(name) = (row.texture_file)(m) else { continue };
             if !self.add_picture(m, row.field, name, &mut extensions) {
-                self.left_out(format!("glTF has no texture for `{}`: it is left out", row.field));
+                self.warn_lost(format!("glTF has no texture for `{}`: it is left out", row.field));
             }
         }
         if dark_backs && m.backs == Backs::Shown {
-            self.left_out("glTF has no one-sided emitters: the back side is left out");
+            self.warn_lost("glTF has no one-sided emitters: the back side is left out");
         }
         if is_metal && m.specular_color != Vec3::ONE {
-            self.left_out("glTF metals have no tint at grazing angles: it is left out");
+            self.warn_lost("glTF metals have no tint at grazing angles: it is left out");
         }
         if m.bump_texture.is_some() || m.opacity_texture.is_some() {
-            self.left_out("glTF has no bump or opacity textures: they are left out");
+            self.warn_lost("glTF has no bump or opacity textures: they are left out");
         }
         if (m.subsurface_weight > 0.0 && !sheet) || (clear && m.transmission_scatter != Vec3::ZERO) {
-            self.left_out("glTF has no subsurface scattering: it is left out");
+            self.warn_lost("glTF has no subsurface scattering: it is left out");
         }
         if !unlit
             && m.emission_luminance > 0.0
@@ -237,7 +237,7 @@ impl Writer<'_> {
 }
 
 /// Returns the roughness and the anisotropy strength as glTF defines them.
-fn brushed(m: &PrincipledMaterial) -> (f32, f32) {
+fn gltf_roughness(m: &PrincipledMaterial) -> (f32, f32) {
     let pictured = m.metallic_roughness_texture.is_some()
         || m.specular_roughness_texture.is_some()
         || m.specular_anisotropy_texture.is_some();
@@ -287,7 +287,7 @@ const EXTENSIONS: [&str; 13] = [
 
 /// Approximates a Phong material with OpenPBR: a sharp highlight becomes a low roughness, a strong
 /// mirror becomes a metal, and a transparent material becomes glass.
-fn alike(phong: &PhongMaterial) -> PrincipledMaterial {
+fn principled_of_phong(phong: &PhongMaterial) -> PrincipledMaterial {
     let diffuse = phong.diffuse_color.unwrap_or(Vec3::ONE);
     let sharp = phong.exponent.or(phong.shininess).filter(|_| phong.specular_color != Vec3::ZERO);
     // Source: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, 2007:

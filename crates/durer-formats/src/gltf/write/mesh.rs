@@ -16,19 +16,19 @@ impl Writer<'_> {
     /// Returns the index of the glTF mesh for a mesh with a material; writes it on first use.
     pub(super) fn mesh(&mut self, name: String, data: &MeshData, material: Option<u32>) -> Option<usize> {
         let key = (name, material);
-        if let Some(known) = self.meshes.get(&key) {
-            return Some(*known);
+        if let Some(cached) = self.meshes.get(&key) {
+            return Some(*cached);
         }
-        let geometry = match self.attributes.get(&key.0) {
-            Some(known) => known.clone(),
+        let geometry = match self.geometries.get(&key.0) {
+            Some(cached) => cached.clone(),
             None => {
-                let made = self.geometry(data);
-                self.attributes.insert(key.0.clone(), made.clone());
-                made
+                let converted = self.geometry(data);
+                self.geometries.insert(key.0.clone(), converted.clone());
+                converted
             }
         };
         let mut primitive = geometry?;
-        if let Some(number) = material.and_then(|number| self.material(number, has_holes(data))) {
+        if let Some(number) = material.and_then(|number| self.material(number, has_vertex_alpha(data))) {
             primitive["material"] = number.into();
         }
         let number = self.add("meshes", json!({ "primitives": [primitive] }));
@@ -101,20 +101,20 @@ impl Writer<'_> {
 }
 
 /// Returns true if any vertex colour is not opaque.
-fn has_holes(data: &MeshData) -> bool {
+fn has_vertex_alpha(data: &MeshData) -> bool {
     data.colors.iter().any(|color| color[3] < 1.0)
 }
 
 /// Builds an indexed vertex list. Returns a vertex index for each triangle corner, and for each
 /// vertex the indices of its position, texture coordinates and normal.
 fn welded(data: &MeshData, triangle_normals: &[[u32; 3]]) -> (Vec<u32>, Vec<[u32; 3]>) {
-    let (mut known, mut vertices) = (HashMap::new(), Vec::new());
+    let (mut cached, mut vertices) = (HashMap::new(), Vec::new());
     let own = |list: &[[u32; 3]], i: usize, k: usize| list.get(i).map_or(NO_INDEX, |corners| corners[k]);
     let mut order = Vec::with_capacity(3 * data.triangles.len());
     for (i, triangle) in data.triangles.iter().enumerate() {
         for (k, corner) in triangle.iter().enumerate() {
             let vertex = [*corner, own(&data.triangle_uvs, i, k), own(triangle_normals, i, k)];
-            order.push(*known.entry(vertex).or_insert_with(|| {
+            order.push(*cached.entry(vertex).or_insert_with(|| {
                 vertices.push(vertex);
                 vertices.len() as u32 - 1
             }));

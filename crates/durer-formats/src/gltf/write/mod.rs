@@ -11,8 +11,8 @@ mod picture;
 #[cfg(test)]
 mod tests;
 
-use crate::model::Output;
-use crate::packed::read_unpacked;
+use crate::gzip::read_decompressed;
+use crate::model::WriteContext;
 use base64::Engine;
 use durer_diag::{Diagnostic, Diagnostics};
 use durer_scene::camera::{Camera, Projection};
@@ -31,7 +31,7 @@ use std::sync::Arc;
 /// Writer that converts one scene to glTF and collects its JSON arrays and its binary buffer.
 struct Writer<'a> {
     scene: &'a Scene,
-    output: &'a Output<'a>,
+    output: &'a WriteContext<'a>,
     diagnostics: &'a mut Diagnostics,
     reported: BTreeSet<String>,
     buffer: Vec<u8>,
@@ -40,7 +40,7 @@ struct Writer<'a> {
     extensions: BTreeSet<&'static str>,
     /// Items that were already written, by their source: geometry, meshes with materials,
     /// materials, textures and images.
-    attributes: BTreeMap<String, Option<Value>>,
+    geometries: BTreeMap<String, Option<Value>>,
     meshes: BTreeMap<(String, Option<u32>), usize>,
     materials: BTreeMap<u32, Option<usize>>,
     textures: BTreeMap<String, Option<Value>>,
@@ -49,7 +49,7 @@ struct Writer<'a> {
 }
 
 /// Encodes a scene as binary glTF if the file name ends in `.glb`, otherwise as JSON.
-pub(crate) fn write(scene: &Scene, output: &Output, diagnostics: &mut Diagnostics) -> Vec<u8> {
+pub(crate) fn write(scene: &Scene, output: &WriteContext, diagnostics: &mut Diagnostics) -> Vec<u8> {
     let mut writer = Writer {
         scene,
         output,
@@ -58,7 +58,7 @@ pub(crate) fn write(scene: &Scene, output: &Output, diagnostics: &mut Diagnostic
         buffer: Vec::new(),
         lists: BTreeMap::new(),
         extensions: BTreeSet::new(),
-        attributes: BTreeMap::new(),
+        geometries: BTreeMap::new(),
         meshes: BTreeMap::new(),
         materials: BTreeMap::new(),
         textures: BTreeMap::new(),
@@ -79,7 +79,7 @@ pub(crate) fn write(scene: &Scene, output: &Output, diagnostics: &mut Diagnostic
 
 impl Writer<'_> {
     /// Warns about content that is lost or changed, once per message.
-    fn left_out(&mut self, message: impl Into<String>) {
+    fn warn_lost(&mut self, message: impl Into<String>) {
         let message = message.into();
         if self.reported.insert(message.clone()) {
             self.diagnostics.push(Diagnostic::warning(message).code("NO_COUNTERPART"));
@@ -132,13 +132,13 @@ impl Writer<'_> {
             ObjectKind::Primitive(primitive) => {
                 let Some(data) = primitive.to_mesh() else {
                     let name = DescribedKind::keyword(primitive, Dialect::Durer);
-                    self.left_out(format!("glTF has triangles only: `{name}` is left out"));
+                    self.warn_lost(format!("glTF has triangles only: `{name}` is left out"));
                     return None;
                 };
                 self.shown(format!("{primitive:?}"), &data, object.material)
             }
             ObjectKind::Voxels(..) | ObjectKind::HeightField(_) | ObjectKind::Solid(..) => {
-                self.left_out("glTF has triangles only: solids, grids and height fields are left out");
+                self.warn_lost("glTF has triangles only: solids, grids and height fields are left out");
                 None
             }
         }
@@ -154,11 +154,11 @@ impl Writer<'_> {
         if let Some(data) = self.scene.assets.meshes.get(name) {
             return Some(data.clone());
         }
-        let bytes = read_unpacked(self.output.source, name).ok()?;
+        let bytes = read_decompressed(self.output.source, name).ok()?;
         let mut own = Diagnostics::default();
         let data = crate::read_mesh(&bytes, 0, name, &mut own);
         if data.is_none() {
-            self.left_out(format!("the mesh `{name}` cannot be read"));
+            self.warn_lost(format!("the mesh `{name}` cannot be read"));
         }
         data.map(Arc::new)
     }
@@ -186,11 +186,11 @@ impl Writer<'_> {
                 let angle = match other {
                     Camera::Perspective(plain) => plain.angle,
                     Camera::ThinLens(lens) => {
-                        self.left_out("glTF cameras have no lens: depth of field and shift are left out");
+                        self.warn_lost("glTF cameras have no lens: depth of field and shift are left out");
                         lens.angle
                     }
                     _ => {
-                        self.left_out("glTF has no such camera: a perspective camera is written");
+                        self.warn_lost("glTF has no such camera: a perspective camera is written");
                         60.0
                     }
                 };
@@ -202,7 +202,7 @@ impl Writer<'_> {
             }
         };
         let camera = self.add("cameras", view);
-        let place = placed(pose.center, pose.direction, pose.up);
+        let place = look_transform(pose.center, pose.direction, pose.up);
         Some(self.add("nodes", json!({ "camera": camera, "matrix": columns(place) })))
     }
 
@@ -212,7 +212,7 @@ impl Writer<'_> {
         let (mut written, center, direction) = match light {
             Light::Point(point) => {
                 if point.attenuation != Some(Vec3::Z) {
-                    self.left_out("glTF lights fall off with the squared distance: other attenuation is left out");
+                    self.warn_lost("glTF lights fall off with the squared distance: other attenuation is left out");
                 }
                 (json!({ "type": "point" }), point.position, Vec3::NEG_Z)
             }
@@ -224,7 +224,7 @@ impl Writer<'_> {
                 (json!({ "type": "spot", "spot": cone }), spot.position, spot.direction)
             }
             Light::Photometric(_) => {
-                self.left_out("lights of this kind have no counterpart in glTF");
+                self.warn_lost("lights of this kind have no counterpart in glTF");
                 return None;
             }
         };
@@ -239,7 +239,7 @@ impl Writer<'_> {
         self.extensions.insert("KHR_lights_punctual");
         self.lights.push(written);
         let up = direction.normalize_or(Vec3::NEG_Z).any_orthogonal_vector();
-        let place = placed(center, direction, up);
+        let place = look_transform(center, direction, up);
         let light = json!({ "KHR_lights_punctual": { "light": self.lights.len() - 1 } });
         Some(self.add("nodes", json!({ "extensions": light, "matrix": columns(place) })))
     }
@@ -247,12 +247,12 @@ impl Writer<'_> {
     fn surroundings(&mut self) {
         let background = &self.scene.background;
         if background.environment.is_some() || background.sun().is_some() || background.cie_sky.is_some() {
-            self.left_out("glTF has no environment light: it is left out");
+            self.warn_lost("glTF has no environment light: it is left out");
         } else if background.color != Vec3::ZERO && background != &durer_scene::scene::Background::default() {
-            self.left_out("glTF has no background: its colour and light are left out");
+            self.warn_lost("glTF has no background: its colour and light are left out");
         }
         if self.scene.fog.is_some() {
-            self.left_out("glTF has no fog: it is left out");
+            self.warn_lost("glTF has no fog: it is left out");
         }
     }
 
@@ -321,7 +321,7 @@ fn columns(map: DAffine3) -> Value {
 }
 
 /// Returns the transform of a camera or light that looks along its -z axis, with y up.
-fn placed(center: Vec3, direction: Vec3, up: Vec3) -> DAffine3 {
+fn look_transform(center: Vec3, direction: Vec3, up: Vec3) -> DAffine3 {
     let back = -direction.as_dvec3().normalize_or(DVec3::NEG_Z);
     let right = up.as_dvec3().cross(back).normalize_or(back.any_orthonormal_vector());
     DAffine3 { matrix3: DMat3::from_cols(right, back.cross(right), back), translation: center.as_dvec3() }

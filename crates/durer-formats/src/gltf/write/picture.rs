@@ -1,7 +1,7 @@
 //! Writes textures: images, samplers and texture transforms.
 
 use super::Writer;
-use crate::pictures::{CHANGING, as_png};
+use crate::pictures::{CONVERSION_BYTES_PER_PIXEL, as_png};
 use durer_image::{self as image, Encoded, Transfer};
 use durer_scene::describe::FileName;
 use durer_scene::scene::{PictureBytes, TextureImage};
@@ -15,15 +15,15 @@ impl Writer<'_> {
     pub(super) fn texture(&mut self, name: Option<&FileName>) -> Option<(Value, Mapping)> {
         let name = name?;
         let picture = self.picture(name);
-        let made = match self.textures.get(&name.path) {
-            Some(known) => known.clone(),
+        let info = match self.textures.get(&name.path) {
+            Some(cached) => cached.clone(),
             None => {
-                let made = self.info(&picture);
-                self.textures.insert(name.path.clone(), made.clone());
-                made
+                let info = self.info(&picture);
+                self.textures.insert(name.path.clone(), info.clone());
+                info
             }
         };
-        Some((made?, picture.mapping))
+        Some((info?, picture.mapping))
     }
 
     /// Returns the picture named by a material: an asset, or a file with the default mapping.
@@ -45,8 +45,8 @@ impl Writer<'_> {
         let smaller = if mapping.mipmaps { 9987 } else { filter };
         let [s, t] = mapping.wrap.map(wrap);
         let sampler = json!({ "wrapS": s, "wrapT": t, "magFilter": filter, "minFilter": smaller });
-        let known = self.lists.get("samplers").and_then(|list| list.iter().position(|known| *known == sampler));
-        let sampler = known.unwrap_or_else(|| self.add("samplers", sampler));
+        let cached = self.lists.get("samplers").and_then(|list| list.iter().position(|cached| *cached == sampler));
+        let sampler = cached.unwrap_or_else(|| self.add("samplers", sampler));
         let index = self.add("textures", json!({ "source": source, "sampler": sampler }));
         let mut info = json!({ "index": index });
         if mapping.second {
@@ -66,7 +66,7 @@ impl Writer<'_> {
         let side = if a * d - b * c < 0.0 { -1.0 } else { 1.0 };
         let sy = side * (b * b + d * d).sqrt();
         if (a * b + c * d).abs() > 1e-4 * (sx * sy).abs() {
-            self.left_out("glTF textures cannot be sheared: the shear is left out");
+            self.warn_lost("glTF textures cannot be sheared: the shear is left out");
         }
         let turn = durer_scene::math::fp::atan2(-c, a);
         json!({ "offset": [x, y], "rotation": turn, "scale": [sx, sy] })
@@ -75,8 +75,8 @@ impl Writer<'_> {
     /// Returns the index of an image; writes it on first use.
     fn image(&mut self, bytes: &PictureBytes) -> Option<usize> {
         let (PictureBytes::File(name) | PictureBytes::Memory(name, _)) = bytes;
-        if let Some(known) = self.images.get(name) {
-            return *known;
+        if let Some(cached) = self.images.get(name) {
+            return *cached;
         }
         let found = match bytes {
             PictureBytes::Memory(_, bytes) => Some(bytes.clone()),
@@ -84,7 +84,7 @@ impl Writer<'_> {
         };
         let memory = self.output.memory;
         let Some((bytes, kind)) = found.and_then(|bytes| known_to_gltf(bytes, name, memory)) else {
-            self.left_out(format!("the picture `{name}` cannot be read"));
+            self.warn_lost(format!("the picture `{name}` cannot be read"));
             self.images.insert(name.clone(), None);
             return None;
         };
@@ -103,6 +103,7 @@ fn known_to_gltf(bytes: Arc<[u8]>, name: &str, memory: u64) -> Option<(Arc<[u8]>
     if bytes.starts_with(&[0xff, 0xd8, 0xff]) {
         return Some((bytes, "image/jpeg"));
     }
-    let image = Encoded::open(&bytes, name).ok()?.read_for(CHANGING, memory, image::decode_srgb).ok()?;
+    let image =
+        Encoded::open(&bytes, name).ok()?.read_for(CONVERSION_BYTES_PER_PIXEL, memory, image::decode_srgb).ok()?;
     Some((as_png(image, Transfer::Srgb)?, "image/png"))
 }

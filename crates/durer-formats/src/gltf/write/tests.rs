@@ -1,7 +1,7 @@
 //! Tests that written files read back as the same scene.
 
 use crate::folder::FolderSource;
-use crate::scene::{Output, SCENE_FORMATS};
+use crate::scene::{SCENE_FORMATS, WriteContext};
 use crate::testing::{folder, read_in};
 use durer::{LoadOptions, load_text};
 use durer_diag::{Diagnostics, Files};
@@ -23,7 +23,7 @@ fn again(scene: &Scene, name: &str) -> (Scene, Vec<String>) {
     let folder = folder(&[]);
     let source = FolderSource::new(folder.path());
     let mut messages = Diagnostics::default();
-    let output = Output { name, source: &source, normals: MeshNormals::Flat, memory: u64::MAX };
+    let output = WriteContext { name, source: &source, normals: MeshNormals::Flat, memory: u64::MAX };
     let write = SCENE_FORMATS.iter().find(|format| format.extensions.contains(&"glb")).unwrap().write.unwrap();
     let bytes = write(scene, &output, &mut messages);
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());

@@ -6,8 +6,8 @@
 use super::super::defs::MaterialDef;
 use super::super::params::Params;
 use super::super::state::Reader;
-use super::rough::Rough;
-use crate::disney::Matte;
+use super::rough::Roughness;
+use crate::disney::DiffuseConverter;
 use durer_diag::Span;
 use durer_scene::bsdf::fresnel::schlick_82;
 use durer_scene::material::PrincipledMaterial;
@@ -21,8 +21,8 @@ const SHEEN: f32 = 0.1;
 impl Reader<'_> {
     /// Converts `disney` to a mix of a base and a metal, or to one of them.
     pub(super) fn disney(&mut self, params: &Params, at: Span) -> MaterialDef {
-        let (color, picture) = self.colored(params, "color", 0.5);
-        let share = |reader: &Self, name, usual| reader.value(params, name, usual).clamp(0.0, 1.0);
+        let (color, picture) = self.color_or_texture(params, "color", 0.5);
+        let share = |reader: &Self, name, default| reader.value(params, name, default).clamp(0.0, 1.0);
         let roughness = share(self, "roughness", 0.5);
         let (anisotropic, metallic) = (share(self, "anisotropic", 0.0), share(self, "metallic", 0.0));
         let (sheen, tint) = (share(self, "sheen", 0.0), share(self, "sheentint", 0.5));
@@ -36,12 +36,12 @@ impl Reader<'_> {
             // Multiply each specular reflection by the colour once more.
             specular_color: color,
             specular_color_texture: picture,
-            specular_ior: self.old_index(params, 1.5),
+            specular_ior: self.index_parameter(params, 1.5),
             transmission_weight: through,
             transmission_color: color.map(|c| c.max(0.0).sqrt()),
             ..PrincipledMaterial::default()
         };
-        Rough::new(alphas).put(&mut m);
+        Roughness::new(alphas).apply(&mut m);
         if sheen > 0.0 {
             let hue = color / color.dot(LUMINANCE).max(1e-6);
             let fuzz = Vec3::ONE.lerp(hue, tint);
@@ -56,16 +56,16 @@ impl Reader<'_> {
             (m.coat_weight, m.coat_ior, m.coat_darkening) = (0.25 * clearcoat, 1.5, 0.0);
             m.coat_roughness = (0.1 + gloss * (0.001 - 0.1)).sqrt();
         }
-        params.known(&["speculartint", "clearcoatgloss"]);
+        params.mark_known(&["speculartint", "clearcoatgloss"]);
         if share(self, "flatness", 0.0) > 0.0 {
             let what = "`flatness` has no counterpart: the base stays diffuse";
-            self.report.once(params.place("flatness"), what);
+            self.report.unsupported_once(params.span("flatness"), what);
         }
         let distance = params.spectrum("scatterdistance").map_or(Color::ZERO, |spectrum| spectrum.pbrt_v3_color());
         let onwards = self.value(params, "difftrans", 1.0).clamp(0.0, 2.0);
-        let thin = params.truth("thin") == Some(true);
+        let thin = params.boolean("thin") == Some(true);
         if !thin && distance == Color::ZERO {
-            m.base_color = Matte::new(m.specular_ior, roughness).base(color);
+            m.base_color = DiffuseConverter::new(m.specular_ior, roughness).base(color);
         }
         if thin {
             m.walls = Walls::Thin;
@@ -79,7 +79,7 @@ impl Reader<'_> {
         }
         self.surface(&mut m, params, "bumpmap");
         if metallic == 0.0 {
-            return MaterialDef::Layers(Box::new(m), at);
+            return MaterialDef::Principled(Box::new(m), at);
         }
         // The other part is a metal: the colour times Schlick's reflectance for that colour.
         let mut metal = m.clone();
@@ -90,10 +90,10 @@ impl Reader<'_> {
         (metal.specular_color_texture, metal.fuzz_weight) = (None, 0.0);
         (metal.transmission_weight, metal.subsurface_weight) = (0.0, 0.0);
         if metallic == 1.0 {
-            return MaterialDef::Layers(Box::new(metal), at);
+            return MaterialDef::Principled(Box::new(metal), at);
         }
         let numbers = [metal, m].map(|layers| {
-            self.materials.push(MaterialDef::Layers(Box::new(layers), at));
+            self.materials.push(MaterialDef::Principled(Box::new(layers), at));
             self.materials.len() - 1
         });
         self.mix(numbers, metallic, at)

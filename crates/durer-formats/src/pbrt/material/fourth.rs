@@ -9,7 +9,7 @@ use super::super::medium::medium_of;
 use super::super::named;
 use super::super::params::{Kind, Params, Values};
 use super::super::state::Reader;
-use super::{below_skin, matte};
+use super::{matte, set_subsurface};
 use crate::shared_report::suggest;
 use durer_diag::Span;
 use durer_scene::bsdf::fresnel::{self, conductor_colors, schlick_82};
@@ -20,7 +20,7 @@ use durer_scene::material::principled::{Surroundings, Switch, Walls};
 use durer_scene::math::{Color, Vec3, fp};
 use durer_scene::spectrum::SpectrumSource;
 
-const KNOWN: [&str; 12] = [
+const MATERIALS: [&str; 12] = [
     "diffuse",
     "coateddiffuse",
     "conductor",
@@ -36,7 +36,7 @@ const KNOWN: [&str; 12] = [
 ];
 
 /// Materials of pbrt-v3, and the nearest materials of pbrt-v4.
-const OLD: [(&str, &str); 8] = [
+const V3_MATERIALS: [(&str, &str); 8] = [
     ("matte", "diffuse"),
     ("plastic", "coateddiffuse"),
     ("metal", "conductor"),
@@ -52,7 +52,7 @@ const OLD: [(&str, &str); 8] = [
 /// and a matte base.
 ///
 /// Source: `LayeredBxDF` in *Physically Based Rendering*, 4th edition, section 14.3.2.
-fn crossed(thickness: f32, ior: f32, base: f32) -> f32 {
+fn coat_transmittance(thickness: f32, ior: f32, base: f32) -> f32 {
     const STEPS: u16 = 64;
     let at = |i: u16| (f32::from(i) + 0.5) / f32::from(STEPS);
     // Cosine-weighted mean for diffuse light.
@@ -65,11 +65,11 @@ impl Reader<'_> {
     /// Returns GGX's alpha along u and v. The parameter names are for both directions, for u and
     /// for v.
     fn alphas(&self, params: &Params, [both, u, v]: [&'static str; 3], remapped: bool) -> [f32; 2] {
-        let usual = self.value(params, both, 0.0);
+        let default = self.value(params, both, 0.0);
         // Source: pbrt-v4 takes the square root if `remaproughness` is set.
         [u, v].map(|name| {
-            let written = self.value(params, name, usual).max(0.0);
-            if remapped { written.sqrt() } else { written }
+            let roughness = self.value(params, name, default).max(0.0);
+            if remapped { roughness.sqrt() } else { roughness }
         })
     }
 
@@ -81,7 +81,7 @@ impl Reader<'_> {
         let picture = if each {
             None
         } else {
-            self.changed(params, names[0], false, |x| if remapped { fourth(x) } else { x.max(0.0).sqrt() })
+            self.mapped_picture(params, names[0], false, |x| if remapped { fourth(x) } else { x.max(0.0).sqrt() })
         };
         match picture {
             Some(picture) => (Some(picture), [1.0; 2]),
@@ -91,17 +91,17 @@ impl Reader<'_> {
 
     /// Converts a pbrt-v4 material of type `kind`.
     pub(super) fn fourth(&mut self, kind: &str, params: &Params, at: Span) -> MaterialDef {
-        let remapped = params.truth("remaproughness").unwrap_or(true);
+        let remapped = params.boolean("remaproughness").unwrap_or(true);
         let mut m = PrincipledMaterial::default();
         const ROUGHNESS: [&str; 3] = ["roughness", "uroughness", "vroughness"];
         match kind {
             "diffuse" => {
-                let (color, picture) = self.colored(params, "reflectance", 0.5);
+                let (color, picture) = self.color_or_texture(params, "reflectance", 0.5);
                 m = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
-                params.left_out(&["sigma"], "the surface is Lambertian");
+                params.warn_unsupported(&["sigma"], "the surface is Lambertian");
             }
             "coateddiffuse" => {
-                let (color, picture) = self.colored(params, "reflectance", 0.5);
+                let (color, picture) = self.color_or_texture(params, "reflectance", 0.5);
                 m = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
                 let alphas;
                 (m.coat_roughness_texture, alphas) = self.roughness(params, ROUGHNESS, remapped);
@@ -137,11 +137,11 @@ impl Reader<'_> {
             "diffusetransmission" => {
                 let scale = params.float("scale").unwrap_or(1.0);
                 let [reflected, through] = ["reflectance", "transmittance"].map(|name| {
-                    let (color, picture) = self.colored(params, name, 0.25);
+                    let (color, picture) = self.color_or_texture(params, name, 0.25);
                     if picture.is_some() {
                         let what =
                             "diffuse transmission by a picture has no counterpart: its `scale` is used as the colour";
-                        self.report.once(params.place(name), what);
+                        self.report.unsupported_once(params.span(name), what);
                     }
                     scale * color
                 });
@@ -162,9 +162,9 @@ impl Reader<'_> {
                 [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
                 m.specular_ior = self.index(params, "eta", 1.33);
                 if params.get("reflectance").is_some() {
-                    let color = self.colored(params, "reflectance", 1.0);
+                    let color = self.color_or_texture(params, "reflectance", 1.0);
                     let path = params.spectrum("mfp").map_or(Vec3::ONE, |spectrum| spectrum.coefficient());
-                    below_skin(&mut m, params, color, path);
+                    set_subsurface(&mut m, params, color, path);
                 } else {
                     // The boundary refracts, and the medium inside scatters.
                     m.transmission_weight = 1.0;
@@ -172,39 +172,39 @@ impl Reader<'_> {
                 }
             }
             "measured" => {
-                params.known(&["filename"]);
+                params.mark_known(&["filename"]);
                 m = matte(Vec3::splat(0.5));
-                self.report.once(at, "measured materials have no counterpart: diffuse grey is used");
+                self.report.unsupported_once(at, "measured materials have no counterpart: diffuse grey is used");
             }
             "hair" => return self.hair(params, &["reflectance", "color"], at),
             "mix" => return self.mixed(params, at),
-            "interface" | "" | "none" => return MaterialDef::Nothing,
+            "interface" | "" | "none" => return MaterialDef::Interface,
             other => {
-                let old = OLD.iter().find(|row| row.0 == other);
+                let old = V3_MATERIALS.iter().find(|row| row.0 == other);
                 let help = match old {
                     Some((_, now)) => Some(format!("this is a pbrt-v3 material; the nearest in pbrt-v4 is `{now}`")),
-                    None => suggest(other, KNOWN),
+                    None => suggest(other, MATERIALS),
                 };
                 self.no_material(other, at, help, old.is_some());
-                return MaterialDef::Nothing;
+                return MaterialDef::Interface;
             }
         }
         m.energy_compensation = Switch::Off;
         // `eta` is the ratio across the surface, whatever the surrounding medium is.
         m.surroundings = Surroundings::Ignored;
         self.surface(&mut m, params, "displacement");
-        MaterialDef::Layers(Box::new(m), at)
+        MaterialDef::Principled(Box::new(m), at)
     }
 
     /// Reads an index of refraction, which may be a spectrum.
-    fn index(&self, params: &Params, name: &'static str, usual: f32) -> f32 {
+    fn index(&self, params: &Params, name: &'static str, default: f32) -> f32 {
         let index = match params.get(name).map(|param| param.kind) {
-            Some(Kind::Spectrum | Kind::Rgb) => params.spectrum(name).map_or(usual, |spectrum| spectrum.index()),
-            _ => self.value(params, name, usual),
+            Some(Kind::Spectrum | Kind::Rgb) => params.spectrum(name).map_or(default, |spectrum| spectrum.index()),
+            _ => self.value(params, name, default),
         };
         if index <= 0.0 {
-            self.report.bad(params.place(name), "an index of refraction must be more than 0");
-            return usual;
+            self.report.error(params.span(name), "an index of refraction must be more than 0");
+            return default;
         }
         index
     }
@@ -212,15 +212,19 @@ impl Reader<'_> {
     fn coat(&self, m: &mut PrincipledMaterial, [u, v]: [f32; 2], params: &Params) {
         (m.coat_weight, m.coat_roughness) = (1.0, (u.min(1.0) * v.min(1.0)).sqrt().sqrt());
         if u != v {
-            self.report.once(params.at, "an anisotropic coat has no counterpart: its mean roughness is used");
+            self.report
+                .unsupported_once(params.at, "an anisotropic coat has no counterpart: its mean roughness is used");
         }
         if params.get("albedo").is_some_and(|param| param.numbers().iter().any(|x| *x != 0.0)) {
-            self.report.once(params.place("albedo"), "a medium inside a coat has no counterpart: the coat is clear");
+            self.report.unsupported_once(
+                params.span("albedo"),
+                "a medium inside a coat has no counterpart: the coat is clear",
+            );
         }
         // The coat's thickness attenuates light that crosses it even if it contains no medium.
         let thickness = self.value(params, "thickness", 0.01).max(0.0);
-        m.coat_color = m.base_color.map(|base| crossed(thickness, m.coat_ior, base));
-        params.known(&["g", "maxdepth", "nsamples", "twosided"]);
+        m.coat_color = m.base_color.map(|base| coat_transmittance(thickness, m.coat_ior, base));
+        params.mark_known(&["g", "maxdepth", "nsamples", "twosided"]);
     }
 
     fn conductor(
@@ -236,10 +240,10 @@ impl Reader<'_> {
             Some(param) => {
                 if params.get(eta).is_some() || params.get(k).is_some() {
                     self.report
-                        .bad(param.at, format!("a conductor takes either `{reflectance}`, or `{eta}` and `{k}`"));
+                        .error(param.at, format!("a conductor takes either `{reflectance}`, or `{eta}` and `{k}`"));
                 }
-                let share = match self.pattern(params, reflectance, true, Vec3::splat(0.5)) {
-                    Texture::Even(color) => color,
+                let share = match self.texture_value(params, reflectance, true, Vec3::splat(0.5)) {
+                    Texture::Constant(color) => color,
                     Texture::Picture(picture, scale) => {
                         // The picture is the reflectance at normal incidence. Grazing reflection is
                         // not tinted.
@@ -254,9 +258,9 @@ impl Reader<'_> {
                 conductor_colors(&SpectrumSource::Rgb(Vec3::ONE), &SpectrumSource::Rgb(k), 1.0)
             }
             None => {
-                let given = |name, which| params.spectrum(name).or_else(|| copper(which));
+                let value = |name, which| params.spectrum(name).or_else(|| copper(which));
                 let grey = SpectrumSource::Rgb(Vec3::ONE);
-                conductor_colors(&given(eta, "eta").unwrap_or(grey.clone()), &given(k, "k").unwrap_or(grey), outside)
+                conductor_colors(&value(eta, "eta").unwrap_or(grey.clone()), &value(k, "k").unwrap_or(grey), outside)
             }
         };
         (m.base_metalness, m.base_color) = (1.0, f0);
@@ -265,20 +269,20 @@ impl Reader<'_> {
     }
 
     fn mixed(&mut self, params: &Params, at: Span) -> MaterialDef {
-        let share = self.pictured(params, "amount", 0.5, |amount| 1.0 - amount.clamp(0.0, 1.0));
+        let share = self.number_or_texture(params, "amount", 0.5, |amount| 1.0 - amount.clamp(0.0, 1.0));
         let Some(param) = params.get("materials") else {
-            self.report.bad(at, "a mix needs two names, `\"string materials\" [ \"a\" \"b\" ]`");
-            return MaterialDef::Nothing;
+            self.report.error(at, "a mix needs two names, `\"string materials\" [ \"a\" \"b\" ]`");
+            return MaterialDef::Interface;
         };
-        let Values::Texts(names) = &param.values else { return MaterialDef::Nothing };
+        let Values::Texts(names) = &param.values else { return MaterialDef::Interface };
         let [first, second] = names.as_slice() else {
-            self.report.bad(param.values_at, format!("a mix needs two materials, found {}", names.len()));
-            return MaterialDef::Nothing;
+            self.report.error(param.values_at, format!("a mix needs two materials, found {}", names.len()));
+            return MaterialDef::Interface;
         };
         let (Some(a), Some(b)) =
             (self.known_material(first, param.values_at), self.known_material(second, param.values_at))
         else {
-            return MaterialDef::Nothing;
+            return MaterialDef::Interface;
         };
         self.mix_by([a, b], share, at)
     }

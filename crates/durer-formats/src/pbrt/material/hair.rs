@@ -14,27 +14,28 @@ impl Reader<'_> {
     pub(super) fn hair(&self, params: &Params, names: &[&'static str], at: Span) -> MaterialDef {
         let given = names.iter().copied().find(|name| params.get(name).is_some());
         let absorption = params.spectrum("sigma_a").map(|spectrum| spectrum.coefficient().max(Vec3::ZERO));
-        let color =
-            given.filter(|_| absorption.is_none()).map(|name| match self.pattern(params, name, true, Vec3::ONE) {
-                Texture::Even(color) => color,
+        let color = given.filter(|_| absorption.is_none()).map(|name| {
+            match self.texture_value(params, name, true, Vec3::ONE) {
+                Texture::Constant(color) => color,
                 Texture::Picture(picture, scale) => {
                     self.mean_of(params, name, &picture).map_or(scale, |mean| mean * scale)
                 }
-            });
+            }
+        });
         let has_melanin = ["eumelanin", "pheomelanin"].iter().any(|name| params.get(name).is_some());
-        let usual = HairMaterial::default();
-        let brown = if has_melanin { 0.0 } else { usual.eumelanin };
-        let value = |name, usual| self.value(params, name, usual);
+        let default = HairMaterial::default();
+        let brown = if has_melanin { 0.0 } else { default.eumelanin };
+        let value = |name, default| self.value(params, name, default);
         MaterialDef::Hair(
             HairMaterial {
                 eumelanin: value("eumelanin", brown).max(0.0),
                 pheomelanin: value("pheomelanin", 0.0).max(0.0),
                 color: color.map(|color| color.clamp(Vec3::ZERO, Vec3::ONE)),
                 absorption,
-                longitudinal_roughness: value("beta_m", usual.longitudinal_roughness).clamp(0.0, 1.0),
-                azimuthal_roughness: value("beta_n", usual.azimuthal_roughness).clamp(0.0, 1.0),
-                scale_tilt: value("alpha", usual.scale_tilt).clamp(-45.0, 45.0),
-                ior: value("eta", usual.ior).clamp(1.0, 4.0),
+                longitudinal_roughness: value("beta_m", default.longitudinal_roughness).clamp(0.0, 1.0),
+                azimuthal_roughness: value("beta_n", default.azimuthal_roughness).clamp(0.0, 1.0),
+                scale_tilt: value("alpha", default.scale_tilt).clamp(-45.0, 45.0),
+                ior: value("eta", default.ior).clamp(1.0, 4.0),
             },
             at,
         )

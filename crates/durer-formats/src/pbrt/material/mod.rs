@@ -27,12 +27,12 @@ use durer_scene::texture::Mapping;
 use std::rc::Rc;
 
 /// Maximum depth of nested mixes.
-const DEEPEST: u32 = 32;
+const MAX_DEPTH: u32 = 32;
 
 impl MaterialDef {
     /// Returns the material of shapes without a `Material` directive.
-    pub fn usual() -> MaterialDef {
-        MaterialDef::Layers(Box::new(matte(Vec3::splat(0.5))), Span::default())
+    pub fn default_material() -> MaterialDef {
+        MaterialDef::Principled(Box::new(matte(Vec3::splat(0.5))), Span::default())
     }
 
     /// Returns the depth of nested mixes.
@@ -42,9 +42,9 @@ impl MaterialDef {
 
     fn is_pictured(&self) -> bool {
         match self {
-            MaterialDef::Layers(layers, _) => layers.has_textures(),
-            MaterialDef::Mix { pictured, .. } => *pictured,
-            MaterialDef::Hair(..) | MaterialDef::Nothing => false,
+            MaterialDef::Principled(layers, _) => layers.has_textures(),
+            MaterialDef::Mix { has_picture, .. } => *has_picture,
+            MaterialDef::Hair(..) | MaterialDef::Interface => false,
         }
     }
 }
@@ -56,7 +56,12 @@ fn matte(base_color: Color) -> PrincipledMaterial {
 
 /// Adds subsurface scattering with mean free path `path` and albedo `color`, which may be
 /// multiplied by a picture.
-fn below_skin(m: &mut PrincipledMaterial, params: &Params, (color, picture): (Color, Option<FileName>), path: Vec3) {
+fn set_subsurface(
+    m: &mut PrincipledMaterial,
+    params: &Params,
+    (color, picture): (Color, Option<FileName>),
+    path: Vec3,
+) {
     m.subsurface_weight = 1.0;
     (m.subsurface_color, m.subsurface_color_texture) = (color.min(Vec3::ONE), picture);
     m.subsurface_radius = params.float("scale").unwrap_or(1.0).max(1e-6);
@@ -68,13 +73,13 @@ impl Reader<'_> {
     /// Adds a material to the reader's list and returns its index.
     pub fn material(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) -> usize {
         let params = self.params(list, Some(MATERIAL), at);
-        let made = match self.language {
-            Language::Third => self.third(kind, &params, at),
-            Language::Fourth => self.fourth(kind, &params, at),
+        let material = match self.language {
+            Language::V3 => self.third(kind, &params, at),
+            Language::V4 => self.fourth(kind, &params, at),
         };
-        params.known(&["type", "remaproughness"]);
-        params.finish(&format!("the material `{kind}`"));
-        self.materials.push(made);
+        params.mark_known(&["type", "remaproughness"]);
+        params.warn_unused(&format!("the material `{kind}`"));
+        self.materials.push(material);
         self.materials.len() - 1
     }
 
@@ -82,11 +87,11 @@ impl Reader<'_> {
     pub fn make_named_material(&mut self, name: String, at: Span, list: Vec<Rc<Param>>) {
         let kind = list.iter().find(|param| param.name == "type" && param.kind == Kind::Text);
         let Some(kind) = kind.map(|param| param.text().to_string()) else {
-            return self.report.bad(at, format!("the material `{name}` needs a `\"string type\"`"));
+            return self.report.error(at, format!("the material `{name}` needs a `\"string type\"`"));
         };
         let number = self.material(&kind, at, list);
-        if self.named_materials.insert(name.clone(), number).is_some() && self.language == Language::Fourth {
-            self.report.bad(at, format!("the material `{name}` is already defined"));
+        if self.named_materials.insert(name.clone(), number).is_some() && self.language == Language::V4 {
+            self.report.error(at, format!("the material `{name}` is already defined"));
         }
     }
 
@@ -96,7 +101,7 @@ impl Reader<'_> {
             Some(number) => self.state.material = *number,
             None => {
                 let help = suggest(name, self.named_materials.keys().map(String::as_str));
-                self.report.bad_with(at, format!("unknown material `{name}`"), help);
+                self.report.error_with_help(at, format!("unknown material `{name}`"), help);
             }
         }
     }
@@ -104,7 +109,7 @@ impl Reader<'_> {
     /// Reports an unknown material. If it exists in the other language, the message points at the
     /// word that decided the language.
     fn no_material(&self, name: &str, at: Span, help: Option<String>, other: bool) {
-        let language = if self.language == Language::Third { "pbrt-v3" } else { "pbrt-v4" };
+        let language = if self.language == Language::V3 { "pbrt-v3" } else { "pbrt-v4" };
         let error = Diagnostic::error(format!("unknown material `{name}` in {language}")).code("bad-value").at(at);
         let error = match self.decided_by.filter(|_| other) {
             Some(by) => error.related(by, &format!("this word makes the file {language}")),
@@ -113,7 +118,7 @@ impl Reader<'_> {
         self.report.push(Diagnostic { help, ..error });
     }
 
-    /// Returns a mix of two materials by index; `MaterialDef::Nothing` if mixes are nested too
+    /// Returns a mix of two materials by index; `MaterialDef::Interface` if mixes are nested too
     /// deep.
     fn mix(&self, parts: [usize; 2], share: f32, at: Span) -> MaterialDef {
         self.mix_by(parts, (share, None), at)
@@ -123,22 +128,22 @@ impl Reader<'_> {
     fn mix_by(&self, parts: [usize; 2], (share, picture): (f32, Option<FileName>), at: Span) -> MaterialDef {
         let [first, second] = parts.map(|number| &self.materials[number]);
         let depth = 1 + first.depth().max(second.depth());
-        let pictured = first.is_pictured() || second.is_pictured() || picture.is_some();
-        if depth > DEEPEST {
-            self.report.bad(at, format!("mixes of materials are nested more than {DEEPEST} levels deep"));
-            return MaterialDef::Nothing;
+        let has_picture = first.is_pictured() || second.is_pictured() || picture.is_some();
+        if depth > MAX_DEPTH {
+            self.report.error(at, format!("mixes of materials are nested more than {MAX_DEPTH} levels deep"));
+            return MaterialDef::Interface;
         }
-        MaterialDef::Mix { parts, share, picture, depth, pictured, at }
+        MaterialDef::Mix { parts, share, picture, depth, has_picture, at }
     }
 
     /// Returns the index of a material that a mix names.
     fn known_material(&self, name: &str, at: Span) -> Option<usize> {
-        let found = self.named_materials.get(name).copied();
-        if found.is_none() {
+        let index = self.named_materials.get(name).copied();
+        if index.is_none() {
             let help = suggest(name, self.named_materials.keys().map(String::as_str));
-            self.report.bad_with(at, format!("no material `{name}` is defined before this"), help);
+            self.report.error_with_help(at, format!("no material `{name}` is defined before this"), help);
         }
-        found
+        index
     }
 
     /// Reads the normal map and the bump map of a material.
@@ -149,22 +154,27 @@ impl Reader<'_> {
                 m.normal_texture = Some(self.asset(TextureImage { bytes, mapping: Mapping::default() }, place));
             }
         }
-        if let Texture::Picture(picture, scale) = self.pattern(params, heights, false, Vec3::ZERO) {
-            (m.bump_texture, m.bump_height) = (Some(self.asset(picture, params.place(heights))), scale.x);
+        if let Texture::Picture(picture, scale) = self.texture_value(params, heights, false, Vec3::ZERO) {
+            (m.bump_texture, m.bump_height) = (Some(self.asset(picture, params.span(heights))), scale.x);
         }
     }
 
     /// Returns true if the current material or light has a picture.
     pub fn is_pictured(&self) -> bool {
-        let light = self.state.area.as_ref().is_some_and(|light| light.picture.is_some());
+        let light = self.state.area_light.as_ref().is_some_and(|light| light.picture.is_some());
         light || self.materials[self.state.material].is_pictured()
     }
 
     /// Returns the scene index of a material with emission and opacity; `None` for a material that
     /// is not rendered.
-    pub fn number(&mut self, made: usize, light: Option<(&AreaLight, Color)>, opacity: &Opacity) -> Option<u32> {
+    pub fn material_index(
+        &mut self,
+        material: usize,
+        light: Option<(&AreaLight, Color)>,
+        opacity: &Opacity,
+    ) -> Option<u32> {
         let key = (
-            made,
+            material,
             match light {
                 Some((light, color)) => {
                     format!(
@@ -177,12 +187,12 @@ impl Reader<'_> {
                 None => format!("{opacity:?}"),
             },
         );
-        if let Some(known) = self.numbers.get(&key) {
-            return *known;
+        if let Some(cached) = self.material_indices.get(&key) {
+            return *cached;
         }
-        let number = match &self.materials[made] {
-            MaterialDef::Nothing => None,
-            MaterialDef::Layers(layers, at) => {
+        let number = match &self.materials[material] {
+            MaterialDef::Interface => None,
+            MaterialDef::Principled(layers, at) => {
                 let (mut m, at) = (layers.clone(), *at);
                 m.opacity *= opacity.share.clamp(0.0, 1.0);
                 if opacity.picture.is_some() {
@@ -196,30 +206,32 @@ impl Reader<'_> {
             MaterialDef::Hair(hair, at) => {
                 let (hair, at) = (hair.clone(), *at);
                 if light.is_some() {
-                    self.report.once(at, "emission of hair has no counterpart: it is ignored");
+                    self.report.unsupported_once(at, "emission of hair has no counterpart: it is ignored");
                 }
                 if opacity.share < 1.0 || opacity.picture.is_some() {
-                    self.report.once(at, "opacity of hair has no counterpart: it is ignored");
+                    self.report.unsupported_once(at, "opacity of hair has no counterpart: it is ignored");
                 }
                 Some(self.scene_material(Material::Hair(hair), at))
             }
             MaterialDef::Mix { parts: [a, b], share, picture, at, .. } => {
                 let (a, b, share, share_texture, at) = (*a, *b, *share, picture.clone(), *at);
-                match (self.number(a, light, opacity), self.number(b, light, opacity)) {
+                match (self.material_index(a, light, opacity), self.material_index(b, light, opacity)) {
                     (Some(material1), Some(material2)) => {
                         let solid = PatternMaterial::from(Mix { material1, material2, share, share_texture });
                         Some(self.scene_material(Material::Solid(solid, Vec::new()), at))
                     }
                     (Some(only), None) | (None, Some(only)) => {
-                        self.report
-                            .once(at, "a mix with an invisible material has no counterpart: only the other is used");
+                        self.report.unsupported_once(
+                            at,
+                            "a mix with an invisible material has no counterpart: only the other is used",
+                        );
                         Some(only)
                     }
                     (None, None) => None,
                 }
             }
         };
-        self.numbers.insert(key, number);
+        self.material_indices.insert(key, number);
         number
     }
 
@@ -236,9 +248,10 @@ impl Reader<'_> {
         (m.emission_luminance, m.emission_color) = (most, color / most);
         if light.two_sided {
             match m.transmission_weight > 0.0 && m.walls == Walls::Solid {
-                true => {
-                    self.report.once(light.at, "two-sided emission of glass has no counterpart: it emits outwards only")
-                }
+                true => self.report.unsupported_once(
+                    light.at,
+                    "two-sided emission of glass has no counterpart: it emits outwards only",
+                ),
                 false => m.walls = Walls::Thin,
             }
         }

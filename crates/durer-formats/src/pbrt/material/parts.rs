@@ -5,7 +5,7 @@
 use super::super::defs::MaterialDef;
 use super::super::state::Reader;
 use super::matte;
-use super::rough::Rough;
+use super::rough::Roughness;
 use durer_diag::Span;
 use durer_scene::bsdf::fresnel::schlick_82;
 use durer_scene::describe::FileName;
@@ -14,18 +14,18 @@ use durer_scene::material::principled::Surroundings;
 use durer_scene::math::{Color, Vec3};
 
 /// Summand of a pbrt-v3 material: one or more lobes as an OpenPBR material.
-pub(super) struct Part {
+pub(super) struct Lobe {
     pub layers: PrincipledMaterial,
     /// Maximum reflectance of the part; determines its share of the mix.
-    pub most: f32,
+    pub max_reflectance: f32,
 }
 
 /// Returns a rough specular boundary over a black base.
-pub(super) fn glossy((color, picture): (Color, Option<FileName>), ior: f32, rough: &Rough) -> PrincipledMaterial {
+pub(super) fn glossy((color, picture): (Color, Option<FileName>), ior: f32, rough: &Roughness) -> PrincipledMaterial {
     let mut m = matte(Vec3::ZERO);
     (m.specular_weight, m.specular_ior) = (1.0, ior);
     (m.specular_color, m.specular_color_texture) = (color, picture);
-    rough.put(&mut m);
+    rough.apply(&mut m);
     m
 }
 
@@ -56,14 +56,14 @@ pub(super) fn oren_nayar(color: Color, degrees: f32) -> (Color, f32) {
 }
 
 /// Returns a metal with a given reflectance at normal incidence and at 82 degrees.
-pub(super) fn metallic(f0: Color, f82: Color, rough: &Rough) -> PrincipledMaterial {
+pub(super) fn metallic(f0: Color, f82: Color, rough: &Roughness) -> PrincipledMaterial {
     let mut m = PrincipledMaterial {
         base_metalness: 1.0,
         base_color: f0,
         specular_color: f82 / schlick_82(f0).max(Vec3::splat(1e-6)),
         ..PrincipledMaterial::default()
     };
-    rough.put(&mut m);
+    rough.apply(&mut m);
     m
 }
 
@@ -72,7 +72,7 @@ pub(super) fn glass(
     (reflected, reflected_picture): (Color, Option<FileName>),
     (through, through_picture): (Color, Option<FileName>),
     index: f32,
-    rough: Option<&Rough>,
+    rough: Option<&Roughness>,
 ) -> PrincipledMaterial {
     let mut m = PrincipledMaterial {
         transmission_weight: 1.0,
@@ -85,42 +85,42 @@ pub(super) fn glass(
         specular_roughness: 0.0,
         ..PrincipledMaterial::default()
     };
-    rough.into_iter().for_each(|rough| rough.put(&mut m));
+    rough.into_iter().for_each(|rough| rough.apply(&mut m));
     m
 }
 
 impl Reader<'_> {
     /// Returns a material that scatters like the sum of the parts.
-    pub(super) fn sum(&mut self, parts: Vec<Part>, at: Span) -> MaterialDef {
+    pub(super) fn sum(&mut self, parts: Vec<Lobe>, at: Span) -> MaterialDef {
         // Keep the opacity: a black material can still be partly transparent.
         let opacity =
             parts.first().map_or((1.0, None), |part| (part.layers.opacity, part.layers.opacity_texture.clone()));
         let black = PrincipledMaterial { opacity: opacity.0, opacity_texture: opacity.1, ..matte(Vec3::ZERO) };
-        let mut parts: Vec<Part> = parts.into_iter().filter(|part| part.most > 0.0).collect();
-        let whole: f32 = parts.iter().map(|part| part.most).sum();
-        let Some(last) = parts.pop() else { return MaterialDef::Layers(Box::new(black), at) };
+        let mut parts: Vec<Lobe> = parts.into_iter().filter(|part| part.max_reflectance > 0.0).collect();
+        let whole: f32 = parts.iter().map(|part| part.max_reflectance).sum();
+        let Some(last) = parts.pop() else { return MaterialDef::Principled(Box::new(black), at) };
         if parts.is_empty() {
-            return MaterialDef::Layers(Box::new(last.layers), at);
+            return MaterialDef::Principled(Box::new(last.layers), at);
         }
-        let layers = |part: Part| {
-            let (mut m, factor) = (part.layers, whole / part.most);
+        let layers = |part: Lobe| {
+            let (mut m, factor) = (part.layers, whole / part.max_reflectance);
             for color in [&mut m.base_color, &mut m.specular_color, &mut m.transmission_color, &mut m.subsurface_color]
             {
                 *color *= factor;
             }
-            MaterialDef::Layers(Box::new(m), at)
+            MaterialDef::Principled(Box::new(m), at)
         };
-        let mut rest = last.most;
-        let mut made = layers(last);
+        let mut rest = last.max_reflectance;
+        let mut material = layers(last);
         while let Some(part) = parts.pop() {
-            let share = part.most / (part.most + rest);
-            rest += part.most;
-            let numbers = [layers(part), made].map(|made| {
-                self.materials.push(made);
+            let share = part.max_reflectance / (part.max_reflectance + rest);
+            rest += part.max_reflectance;
+            let numbers = [layers(part), material].map(|material| {
+                self.materials.push(material);
                 self.materials.len() - 1
             });
-            made = self.mix(numbers, share, at);
+            material = self.mix(numbers, share, at);
         }
-        made
+        material
     }
 }

@@ -9,19 +9,19 @@ use durer_scene::material::principled::Switch;
 use durer_scene::math::fp;
 
 /// Roughness of a pbrt-v3 material: GGX's alpha, which a picture may multiply.
-pub(super) struct Rough {
+pub(super) struct Roughness {
     picture: Option<FileName>,
     /// GGX's alpha along u and v.
     pub alphas: [f32; 2],
 }
 
-impl Rough {
+impl Roughness {
     pub fn new(alphas: [f32; 2]) -> Self {
-        Rough { picture: None, alphas }
+        Roughness { picture: None, alphas }
     }
 
     /// Sets the roughness and anisotropy of a material.
-    pub fn put(&self, m: &mut PrincipledMaterial) {
+    pub fn apply(&self, m: &mut PrincipledMaterial) {
         m.energy_compensation = Switch::Off;
         m.specular_roughness_texture = self.picture.clone();
         [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(self.alphas);
@@ -39,10 +39,10 @@ pub(in crate::pbrt) fn alpha_of_roughness(roughness: f32) -> f32 {
 impl Reader<'_> {
     /// Reads the roughness from the parameter `both` for both directions, if it has one, or from
     /// one parameter for each direction.
-    pub(super) fn rough(&mut self, params: &Params, both: Option<&'static str>, each: bool, usual: f32) -> Rough {
+    pub(super) fn rough(&mut self, params: &Params, both: Option<&'static str>, each: bool, default: f32) -> Roughness {
         const EACH: [&str; 2] = ["uroughness", "vroughness"];
-        let remapped = params.truth("remaproughness").unwrap_or(true);
-        let alpha = |written: f32| if remapped { alpha_of_roughness(written) } else { written };
+        let remapped = params.boolean("remaproughness").unwrap_or(true);
+        let alpha = |roughness: f32| if remapped { alpha_of_roughness(roughness) } else { roughness };
         let names = if each { EACH.map(|name| params.get(name)) } else { [None; 2] };
         let texture = |i: usize| names[i].filter(|param| param.kind == Kind::Texture).map(|param| param.text());
         let pictured = match (names[0].is_some() || names[1].is_some(), both) {
@@ -50,29 +50,35 @@ impl Reader<'_> {
             (true, _) => None,
             (false, both) => both,
         };
-        let picture = pictured.and_then(|name| self.changed(params, name, false, |x| alpha(x).max(0.0).sqrt()));
+        let picture = pictured.and_then(|name| self.mapped_picture(params, name, false, |x| alpha(x).max(0.0).sqrt()));
         if let Some(picture) = picture {
-            return Rough { picture: Some(picture), alphas: [1.0; 2] };
+            return Roughness { picture: Some(picture), alphas: [1.0; 2] };
         }
-        let usual = both.map_or(usual, |name| self.value(params, name, usual));
+        let default = both.map_or(default, |name| self.value(params, name, default));
         let alphas = EACH.map(|name| {
-            let written = if each { self.value(params, name, usual) } else { usual };
-            alpha(written).max(1e-3)
+            let roughness = if each { self.value(params, name, default) } else { default };
+            alpha(roughness).max(1e-3)
         });
-        Rough::new(alphas)
+        Roughness::new(alphas)
     }
 
     /// Reads the roughness as the geometric mean of both directions, because a coat over a matte
     /// base is isotropic in Dürer. See [`Reader::rough`].
-    pub(super) fn even_rough(&mut self, params: &Params, both: Option<&'static str>, each: bool, usual: f32) -> Rough {
-        let rough = self.rough(params, both, each, usual);
+    pub(super) fn isotropic_roughness(
+        &mut self,
+        params: &Params,
+        both: Option<&'static str>,
+        each: bool,
+        default: f32,
+    ) -> Roughness {
+        let rough = self.rough(params, both, each, default);
         let [u, v] = rough.alphas;
         if u != v {
-            self.report.once(
+            self.report.unsupported_once(
                 params.at,
                 "an anisotropic coat over a matte base has no counterpart: its mean roughness is used",
             );
         }
-        Rough { alphas: [(u * v).sqrt(); 2], ..rough }
+        Roughness { alphas: [(u * v).sqrt(); 2], ..rough }
     }
 }

@@ -6,7 +6,7 @@
 use super::super::params::Params;
 use super::super::state::Reader;
 use super::matte;
-use super::parts::{Part, glossy};
+use super::parts::{Lobe, glossy};
 use durer_scene::bsdf::{albedo, fresnel};
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::{Vec3, fp};
@@ -23,10 +23,10 @@ const MEAN: f32 = 23.0 / 28.0;
 
 impl Reader<'_> {
     /// Converts `substrate` to a base and a coat, which are to be summed.
-    pub(super) fn substrate(&mut self, params: &Params) -> Vec<Part> {
-        let rough = self.even_rough(params, None, true, 0.1);
-        let (color, picture) = self.colored(params, "Kd", 0.5);
-        let (specular, specular_picture) = self.colored(params, "Ks", 0.5);
+    pub(super) fn substrate(&mut self, params: &Params) -> Vec<Lobe> {
+        let rough = self.isotropic_roughness(params, None, true, 0.1);
+        let (color, picture) = self.color_or_texture(params, "Kd", 0.5);
+        let (specular, specular_picture) = self.color_or_texture(params, "Ks", 0.5);
         let most = specular.max_element();
         let passing = Vec3::ONE - specular.min(Vec3::ONE);
         let base = PrincipledMaterial {
@@ -37,21 +37,21 @@ impl Reader<'_> {
             specular_roughness: ROUGHNESS,
             ..matte(color * passing * (MEAN / (1.0 - REFLECTED)))
         };
-        let base = Part { most: color.max_element(), layers: base };
+        let base = Lobe { max_reflectance: color.max_element(), layers: base };
         if most <= 0.0 {
             return vec![base];
         }
         let (f0, hue) = (most.min(0.98), specular / most);
-        let strength = blended(rough.alphas[0], f0);
+        let strength = coat_scale(rough.alphas[0], f0);
         let layers = glossy((strength * hue, specular_picture), fresnel::ior_of_reflectance(f0), &rough);
         // Use the mean reflectance over all directions, not that at normal incidence.
-        vec![base, Part { most: f0 + (1.0 - f0) / 21.0, layers }]
+        vec![base, Lobe { max_reflectance: f0 + (1.0 - f0) / 21.0, layers }]
     }
 }
 
 /// Returns the mean albedo of the coat, divided by that of microfacets of a dielectric with
 /// reflectance `f0` at normal incidence.
-pub(super) fn blended(alpha: f32, f0: f32) -> f32 {
+pub(super) fn coat_scale(alpha: f32, f0: f32) -> f32 {
     const POINTS: u16 = 4096;
     // Source: Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018.
     const STEPS: Vec3 = Vec3::new(0.819_172_5, 0.671_043_6, 0.549_700_5);

@@ -10,9 +10,9 @@ use super::super::language::NEW_MATERIALS;
 use super::super::medium::medium_of;
 use super::super::params::{Kind, Params};
 use super::super::state::Reader;
-use super::parts::{Part, glass, glossy, metallic, oren_nayar};
-use super::rough::Rough;
-use super::{below_skin, matte};
+use super::parts::{Lobe, glass, glossy, metallic, oren_nayar};
+use super::rough::Roughness;
+use super::{matte, set_subsurface};
 use crate::shared_report::suggest;
 use durer_diag::Span;
 use durer_scene::bsdf::fresnel::conductor_colors;
@@ -21,7 +21,7 @@ use durer_scene::material::principled::Walls;
 use durer_scene::math::{Color, Vec3};
 use durer_scene::spectrum::SpectrumSource;
 
-const KNOWN: [&str; 15] = [
+const MATERIALS: [&str; 15] = [
     "disney",
     "fourier",
     "glass",
@@ -48,17 +48,17 @@ const COPPER: [Vec3; 2] = [Vec3::new(0.200438, 0.924033, 1.102212), Vec3::new(3.
 
 impl Reader<'_> {
     /// Reads the index of refraction, `eta` or `index`.
-    pub(super) fn old_index(&self, params: &Params, usual: f32) -> f32 {
+    pub(super) fn index_parameter(&self, params: &Params, default: f32) -> f32 {
         let name = if params.get("eta").is_some() { "eta" } else { "index" };
         let index = match params.get(name).map(|param| param.kind) {
             Some(Kind::Spectrum | Kind::Rgb) => {
-                params.spectrum(name).map_or(usual, |spectrum| spectrum.pbrt_v3_color().y)
+                params.spectrum(name).map_or(default, |spectrum| spectrum.pbrt_v3_color().y)
             }
-            _ => self.value(params, name, usual),
+            _ => self.value(params, name, default),
         };
         if index <= 0.0 {
-            self.report.bad(params.place(name), "an index of refraction must be more than 0");
-            return usual;
+            self.report.error(params.span(name), "an index of refraction must be more than 0");
+            return default;
         }
         index
     }
@@ -67,7 +67,7 @@ impl Reader<'_> {
     pub(super) fn third(&mut self, kind: &str, params: &Params, at: Span) -> MaterialDef {
         let parts = match kind {
             "matte" => {
-                let (color, picture) = self.colored(params, "Kd", 0.5);
+                let (color, picture) = self.color_or_texture(params, "Kd", 0.5);
                 let degrees = self.value(params, "sigma", 0.0).clamp(0.0, 90.0);
                 let (color, roughness) = if degrees > 0.0 { oren_nayar(color, degrees) } else { (color, 0.0) };
                 let layers = PrincipledMaterial {
@@ -75,10 +75,10 @@ impl Reader<'_> {
                     base_diffuse_roughness: roughness,
                     ..matte(color)
                 };
-                vec![Part { layers, most: 1.0 }]
+                vec![Lobe { layers, max_reflectance: 1.0 }]
             }
             "plastic" => {
-                let rough = self.even_rough(params, Some("roughness"), false, 0.1);
+                let rough = self.isotropic_roughness(params, Some("roughness"), false, 0.1);
                 // pbrt uses an index of 1.5 outside and 1 inside, so the surface reflects as if
                 // seen from inside.
                 vec![self.lambert(params, "Kd", 0.25), self.gloss(params, "Ks", (0.25, 1.0 / 1.5), &rough)]
@@ -91,85 +91,86 @@ impl Reader<'_> {
                 let [eta, k] = ["eta", "k"].map(|name| params.spectrum(name).map(|spectrum| spectrum.pbrt_v3_color()));
                 let [eta, k] = [eta.unwrap_or(COPPER[0]), k.unwrap_or(COPPER[1])];
                 let [f0, f82] = conductor_colors(&SpectrumSource::Rgb(eta), &SpectrumSource::Rgb(k), 1.0);
-                vec![Part { layers: metallic(f0, f82, &rough), most: 1.0 }]
+                vec![Lobe { layers: metallic(f0, f82, &rough), max_reflectance: 1.0 }]
             }
             "mirror" => {
-                let (color, picture) = self.colored(params, "Kr", 0.9);
-                let most = color.max_element().clamp(1e-6, 1.0);
+                let (color, picture) = self.color_or_texture(params, "Kr", 0.9);
+                let max_reflectance = color.max_element().clamp(1e-6, 1.0);
                 // The reflectance is the same at all angles.
                 let m = PrincipledMaterial {
                     base_metalness: 1.0,
-                    base_color: color / most,
+                    base_color: color / max_reflectance,
                     base_color_texture: picture,
-                    specular_weight: most,
+                    specular_weight: max_reflectance,
                     specular_roughness: 0.0,
                     ..PrincipledMaterial::default()
                 };
-                vec![Part { layers: m, most: if color == Vec3::ZERO { 0.0 } else { 1.0 } }]
+                vec![Lobe { layers: m, max_reflectance: if color == Vec3::ZERO { 0.0 } else { 1.0 } }]
             }
             "glass" => {
-                let index = self.old_index(params, 1.5);
-                let (reflected, through) = (self.colored(params, "Kr", 1.0), self.colored(params, "Kt", 1.0));
+                let index = self.index_parameter(params, 1.5);
+                let (reflected, through) =
+                    (self.color_or_texture(params, "Kr", 1.0), self.color_or_texture(params, "Kt", 1.0));
                 let smooth = ["uroughness", "vroughness"].iter().all(|name| {
                     params.get(name).is_none_or(|param| param.kind != Kind::Texture && param.number() == 0.0)
                 });
                 let rough = if smooth { None } else { Some(self.rough(params, None, true, 0.0)) };
-                vec![Part { layers: glass(reflected, through, index, rough.as_ref()), most: 1.0 }]
+                vec![Lobe { layers: glass(reflected, through, index, rough.as_ref()), max_reflectance: 1.0 }]
             }
             "disney" => return self.disney(params, at),
-            "subsurface" | "kdsubsurface" => vec![self.below(kind, params)],
+            "subsurface" | "kdsubsurface" => vec![self.subsurface(kind, params)],
             "mix" => return self.mix_of_two(params, at),
             "hair" => return self.hair(params, &["color"], at),
-            "" | "none" => return MaterialDef::Nothing,
+            "" | "none" => return MaterialDef::Interface,
             "fourier" => {
-                params.known(&["bsdffile"]);
-                self.report.once(at, "measured materials have no counterpart: diffuse grey is used");
-                vec![Part { layers: matte(Vec3::splat(0.5)), most: 1.0 }]
+                params.mark_known(&["bsdffile"]);
+                self.report.unsupported_once(at, "measured materials have no counterpart: diffuse grey is used");
+                vec![Lobe { layers: matte(Vec3::splat(0.5)), max_reflectance: 1.0 }]
             }
             other => {
                 let is_new = NEW_MATERIALS.contains(&other);
-                let help = if is_new { Some("this is a pbrt-v4 material".into()) } else { suggest(other, KNOWN) };
+                let help = if is_new { Some("this is a pbrt-v4 material".into()) } else { suggest(other, MATERIALS) };
                 self.no_material(other, at, help, is_new);
-                return MaterialDef::Nothing;
+                return MaterialDef::Interface;
             }
         };
         let mut bent = Vec::with_capacity(parts.len());
-        for Part { mut layers, most } in parts {
+        for Lobe { mut layers, max_reflectance } in parts {
             self.surface(&mut layers, params, "bumpmap");
-            bent.push(Part { layers, most });
+            bent.push(Lobe { layers, max_reflectance });
         }
         self.sum(bent, at)
     }
 
     /// Returns the Lambertian lobe with the colour parameter `name`.
-    fn lambert(&mut self, params: &Params, name: &'static str, usual: f32) -> Part {
-        let (color, picture) = self.colored(params, name, usual);
+    fn lambert(&mut self, params: &Params, name: &'static str, default: f32) -> Lobe {
+        let (color, picture) = self.color_or_texture(params, name, default);
         let layers = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
-        Part { layers, most: color.max_element() }
+        Lobe { layers, max_reflectance: color.max_element() }
     }
 
     /// Returns the microfacet lobe with the colour parameter `name` and an index of refraction.
-    fn gloss(&mut self, params: &Params, name: &'static str, (usual, ior): (f32, f32), rough: &Rough) -> Part {
-        let color = self.colored(params, name, usual);
-        Part { most: color.0.max_element(), layers: glossy(color, ior, rough) }
+    fn gloss(&mut self, params: &Params, name: &'static str, (default, ior): (f32, f32), rough: &Roughness) -> Lobe {
+        let color = self.color_or_texture(params, name, default);
+        Lobe { max_reflectance: color.0.max_element(), layers: glossy(color, ior, rough) }
     }
 
-    fn uber(&mut self, params: &Params) -> Vec<Part> {
-        let rough = self.even_rough(params, Some("roughness"), true, 0.1);
-        let index = self.old_index(params, 1.5);
-        let smooth = Rough::new([0.0; 2]);
+    fn uber(&mut self, params: &Params) -> Vec<Lobe> {
+        let rough = self.isotropic_roughness(params, Some("roughness"), true, 0.1);
+        let index = self.index_parameter(params, 1.5);
+        let smooth = Roughness::new([0.0; 2]);
         let mut parts = vec![self.lambert(params, "Kd", 0.25), self.gloss(params, "Ks", (0.25, index), &rough)];
-        let (reflected, through) = (self.colored(params, "Kr", 0.0), self.colored(params, "Kt", 0.0));
+        let (reflected, through) = (self.color_or_texture(params, "Kr", 0.0), self.color_or_texture(params, "Kt", 0.0));
         parts.push(match through.0 == Vec3::ZERO {
-            true => Part { most: reflected.0.max_element(), layers: glossy(reflected, index, &smooth) },
+            true => Lobe { max_reflectance: reflected.0.max_element(), layers: glossy(reflected, index, &smooth) },
             false => {
-                let most = reflected.0.max_element().max(through.0.max_element());
-                Part { most, layers: glass(reflected, through, index, None) }
+                let max_reflectance = reflected.0.max_element().max(through.0.max_element());
+                Lobe { max_reflectance, layers: glass(reflected, through, index, None) }
             }
         });
-        let (share, picture) = match self.pattern(params, "opacity", true, Vec3::ONE) {
-            Texture::Even(color) => (self.grey(params, "opacity", color), None),
-            Texture::Picture(..) => (1.0, self.changed(params, "opacity", true, |x| x)),
+        let (share, picture) = match self.texture_value(params, "opacity", true, Vec3::ONE) {
+            Texture::Constant(color) => (self.grey(params, "opacity", color), None),
+            Texture::Picture(..) => (1.0, self.mapped_picture(params, "opacity", true, |x| x)),
         };
         for part in &mut parts {
             (part.layers.opacity, part.layers.opacity_texture) = (share, picture.clone());
@@ -178,11 +179,13 @@ impl Reader<'_> {
     }
 
     /// Returns diffuse reflection and transmission, with glossy microfacets on both sides.
-    fn translucent(&mut self, params: &Params) -> Vec<Part> {
+    fn translucent(&mut self, params: &Params) -> Vec<Lobe> {
         let rough = self.rough(params, Some("roughness"), false, 0.1);
-        let even = |reader: &mut Self, name, usual| reader.pattern(params, name, true, Vec3::splat(usual)).even();
+        let even = |reader: &mut Self, name, default| {
+            reader.texture_value(params, name, true, Vec3::splat(default)).constant()
+        };
         let [up, down] = ["reflect", "transmit"].map(|name| even(self, name, 0.5).unwrap_or(Vec3::splat(0.5)));
-        let (color, picture) = self.colored(params, "Kd", 0.25);
+        let (color, picture) = self.color_or_texture(params, "Kd", 0.25);
         let sum = |color: Color| color.element_sum().max(1e-6);
         let layers = PrincipledMaterial {
             subsurface_weight: 1.0,
@@ -193,47 +196,47 @@ impl Reader<'_> {
             walls: Walls::Thin,
             ..matte(Vec3::ZERO)
         };
-        let matte = Part { most: (color * (up + down)).max_element(), layers };
-        let (specular, picture) = self.colored(params, "Ks", 0.25);
+        let matte = Lobe { max_reflectance: (color * (up + down)).max_element(), layers };
+        let (specular, picture) = self.color_or_texture(params, "Ks", 0.25);
         let gloss = glossy((up * specular, picture.clone()), 1.5, &rough);
-        let mut parts = vec![matte, Part { most: (up * specular).max_element(), layers: gloss }];
+        let mut parts = vec![matte, Lobe { max_reflectance: (up * specular).max_element(), layers: gloss }];
         // The microfacets transmit light too; in Dürer, those of a thin sheet do not refract it.
         if (down * specular).max_element() > 0.0 {
             let what = "glossy transmission of `translucent` is not refracted here";
-            self.report.once(params.at, what);
+            self.report.unsupported_once(params.at, what);
             let mut through = super::matte(Vec3::ZERO);
             (through.specular_weight, through.specular_color) = (1.0, Vec3::ZERO);
             (through.transmission_weight, through.walls) = (1.0, Walls::Thin);
             (through.transmission_color, through.transmission_color_texture) = (down * specular, picture);
-            rough.put(&mut through);
-            parts.push(Part { most: (down * specular).max_element(), layers: through });
+            rough.apply(&mut through);
+            parts.push(Lobe { max_reflectance: (down * specular).max_element(), layers: through });
         }
         parts
     }
 
     /// Returns subsurface scattering below a refractive boundary.
-    fn below(&mut self, kind: &str, params: &Params) -> Part {
+    fn subsurface(&mut self, kind: &str, params: &Params) -> Lobe {
         let rough = self.rough(params, None, true, 0.0);
         let mut m = PrincipledMaterial::default();
-        rough.put(&mut m);
-        m.specular_ior = self.old_index(params, 1.33);
-        params.left_out(&["Kr", "Kt"], "the boundary is not tinted");
+        rough.apply(&mut m);
+        m.specular_ior = self.index_parameter(params, 1.33);
+        params.warn_unsupported(&["Kr", "Kt"], "the boundary is not tinted");
         if kind == "kdsubsurface" {
-            let color = self.colored(params, "Kd", 0.5);
+            let color = self.color_or_texture(params, "Kd", 0.5);
             let path = params.spectrum("mfp").map_or(Vec3::ONE, |spectrum| spectrum.pbrt_v3_color());
-            below_skin(&mut m, params, color, path);
+            set_subsurface(&mut m, params, color, path);
         } else {
             m.transmission_weight = 1.0;
             medium_of(params, "name").fill(&mut m);
         }
-        Part { layers: m, most: 1.0 }
+        Lobe { layers: m, max_reflectance: 1.0 }
     }
 
     /// Returns the mean of a colour, for a parameter that can only be a number in Dürer.
     fn grey(&self, params: &Params, name: &'static str, color: Color) -> f32 {
         if color.max_element() - color.min_element() > 1e-3 {
             let what = format!("a coloured `{name}` has no counterpart: its mean is used");
-            self.report.once(params.place(name), what);
+            self.report.unsupported_once(params.span(name), what);
         }
         color.element_sum() / 3.0
     }
@@ -241,21 +244,21 @@ impl Reader<'_> {
     /// Returns a mix of two named materials; `amount` is the share of the first.
     fn mix_of_two(&mut self, params: &Params, at: Span) -> MaterialDef {
         let share = |amount: f32| amount.clamp(0.0, 1.0);
-        let amount = match self.pattern(params, "amount", true, Vec3::splat(0.5)) {
-            Texture::Even(color) => (share(self.grey(params, "amount", color)), None),
-            Texture::Picture(..) => (1.0, self.changed(params, "amount", true, share)),
+        let amount = match self.texture_value(params, "amount", true, Vec3::splat(0.5)) {
+            Texture::Constant(color) => (share(self.grey(params, "amount", color)), None),
+            Texture::Picture(..) => (1.0, self.mapped_picture(params, "amount", true, share)),
         };
         let names = ["namedmaterial1", "namedmaterial2"].map(|name| (name, params.text(name).map(str::to_string)));
         let mut numbers = [0; 2];
-        for (number, (name, given)) in numbers.iter_mut().zip(names) {
-            let Some(given) = given else {
-                self.report.bad(at, format!("a mix needs `\"string {name}\"`"));
-                return MaterialDef::Nothing;
+        for (number, (name, value)) in numbers.iter_mut().zip(names) {
+            let Some(value) = value else {
+                self.report.error(at, format!("a mix needs `\"string {name}\"`"));
+                return MaterialDef::Interface;
             };
             let place = params.get(name).map_or(at, |param| param.values_at);
-            match self.known_material(&given, place) {
-                Some(found) => *number = found,
-                None => return MaterialDef::Nothing,
+            match self.known_material(&value, place) {
+                Some(index) => *number = index,
+                None => return MaterialDef::Interface,
             }
         }
         self.mix_by(numbers, amount, at)

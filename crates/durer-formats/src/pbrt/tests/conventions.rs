@@ -1,4 +1,4 @@
-use super::super::environment::{equal_area, of_equal_area};
+use super::super::environment::{equal_area, equal_area_direction};
 use super::super::named;
 use super::*;
 use durer_diag::Diagnostic;
@@ -246,20 +246,20 @@ fn equal_area_mapping_inverts_and_preserves_area() {
     let mut random = Random(9);
     for _ in 0..2000 {
         let place = Vec2::new(random.between(0.0, 1.0), random.between(0.0, 1.0));
-        let dir = of_equal_area(place);
+        let dir = equal_area_direction(place);
         assert!((dir.length() - 1.0).abs() < 1e-5);
         assert!((equal_area(dir) - place).length() < 1e-3, "{place} {dir} {}", equal_area(dir));
     }
     // The middle is +z, and the corners are -z. Areas are equal, so a quarter of all positions have
     // z > 1/2.
-    close(of_equal_area(Vec2::splat(0.5)), Vec3::Z);
-    close(of_equal_area(Vec2::ZERO), Vec3::NEG_Z);
-    close(of_equal_area(Vec2::new(1.0, 0.5)), Vec3::X);
-    close(of_equal_area(Vec2::new(0.5, 1.0)), Vec3::Y);
+    close(equal_area_direction(Vec2::splat(0.5)), Vec3::Z);
+    close(equal_area_direction(Vec2::ZERO), Vec3::NEG_Z);
+    close(equal_area_direction(Vec2::new(1.0, 0.5)), Vec3::X);
+    close(equal_area_direction(Vec2::new(0.5, 1.0)), Vec3::Y);
     let n = 200;
     let up = (0..n * n).filter(|i| {
         let place = Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) / n as f32;
-        of_equal_area(place).z > 0.5
+        equal_area_direction(place).z > 0.5
     });
     assert!((up.count() as f32 / (n * n) as f32 - 0.25).abs() < 2e-3);
 }
@@ -271,7 +271,7 @@ fn environment_picture_has_pbrt_orientation() {
     let pixels: Vec<Vec3> = (0..n * n)
         .map(|i| {
             let place = Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) / n as f32;
-            if of_equal_area(place).x > 0.9 { Vec3::new(3.0, 2.0, 1.0) } else { Vec3::ZERO }
+            if equal_area_direction(place).x > 0.9 { Vec3::new(3.0, 2.0, 1.0) } else { Vec3::ZERO }
         })
         .collect();
     let image = durer_image::Image::from_pixels(n, n, pixels).unwrap();

@@ -144,7 +144,7 @@ fn environment_has_z_up_and_x_at_left_edge() {
     let PictureBytes::Memory(name, bytes) = &scene.assets.pictures["sky.pfm#environment.pfm"].bytes else { panic!() };
     let encoded = durer_image::Encoded::open(bytes, name).unwrap();
     let sky = encoded.read(u64::MAX, durer_image::decode_linear).unwrap();
-    let at = |dir: [f64; 3]| crate::panorama::looked_up(&sky, dir.into());
+    let at = |dir: [f64; 3]| crate::panorama::nearest(&sky, dir.into());
     // +y is between the texels at 67.5 and at 112.5 degrees, both in longitude and from the pole.
     let y = at([0.0, 1.0, 0.001]);
     assert!((y.x / 2.0 - 1.5).abs() < 0.6 && (y.y - 1.5).abs() < 0.6, "{y}");

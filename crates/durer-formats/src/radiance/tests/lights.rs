@@ -21,7 +21,7 @@ fn intensity(scene: &Scene, dir: DVec3) -> f64 {
 }
 
 /// Returns the direction for an angle from straight down and an angle around the vertical axis.
-fn way(theta: f64, phi: f64) -> DVec3 {
+fn direction(theta: f64, phi: f64) -> DVec3 {
     let [(sin, cos), (s, c)] = [theta, phi].map(fp::sin_cos_degrees);
     DVec3::new(sin * c, sin * s, -cos)
 }
@@ -129,7 +129,7 @@ fn intensity_follows_the_table() {
         for (theta, phi) in
             [(1.0, 0.0), (5.0, 40.0), (29.0, 211.0), (31.0, 80.0), (62.0, 133.0), (115.0, 301.0), (170.0, 3.0)]
         {
-            let (found, wanted) = (intensity(&scene, way(theta, phi)), expected(theta, phi));
+            let (found, wanted) = (intensity(&scene, direction(theta, phi)), expected(theta, phi));
             assert!((found - wanted).abs() < 2e-3 * wanted.max(1.0), "{text} at {theta} {phi}: {found}, not {wanted}");
         }
     }
@@ -190,7 +190,7 @@ fn angles_may_have_an_offset() {
         let around: f64 = (phi + 90.0_f64).rem_euclid(360.0);
         let folded = if around > 180.0 { 360.0 - around } else { around };
         let expected = 4.0 * (1.0 + 0.01 * (folded + 20.0) + 0.04 * theta);
-        let found = intensity(&scene, way(theta, phi));
+        let found = intensity(&scene, direction(theta, phi));
         assert!((found / expected - 1.0).abs() < 2e-3, "{theta} {phi}: {found}, not {expected}");
     }
 }

@@ -7,13 +7,13 @@ use crate::check::finding::vector;
 use crate::check::probes::ProbeGrid;
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_formats::read_mesh;
-use durer_render::world::{Material, Object as Placed};
+use durer_render::world::{Material, Object as CompiledObject};
 use durer_scene::camera::Projection;
 use durer_scene::describe::FileName;
 use durer_scene::math::Aabb;
 use durer_scene::scene::{Group, Object, ObjectKind};
 use durer_scene::shape::MeshData;
-use normals::OddNormals;
+use normals::InvalidNormals;
 use topology::Topology;
 
 /// Size in bytes above which a mesh file is skipped, so that the checks stay interactive.
@@ -33,13 +33,13 @@ pub(in crate::check) struct MeshFile<'s> {
     pub(super) data: MeshData,
     pub(super) topology: Topology,
     /// Triangles whose file normals are wrong; `None` if the dialect ignores normals in files.
-    pub(super) odd_normals: Option<OddNormals>,
+    pub(super) odd_normals: Option<InvalidNormals>,
 }
 
 /// Returns all mesh files of a scene.
 pub(in crate::check) fn files<'s>(grid: &ProbeGrid<'s>) -> Vec<MeshFile<'s>> {
     let mut uses = Uses::new();
-    if let Some(root) = &grid.subject.scene.root {
+    if let Some(root) = &grid.input.scene.root {
         collect(root, &mut uses);
     }
     uses.into_iter().filter_map(|(name, objects)| read(grid, name, objects)).collect()
@@ -51,10 +51,10 @@ const MAX_MODEL: usize = 300_000;
 /// Returns the meshes of a scene that was read from a model file.
 pub(in crate::check) fn models<'s>(grid: &ProbeGrid<'s>) -> Vec<MeshFile<'s>> {
     let mut uses = Uses::new();
-    if let Some(root) = &grid.subject.scene.root {
+    if let Some(root) = &grid.input.scene.root {
         collect(root, &mut uses);
     }
-    let meshes = &grid.subject.scene.assets.meshes;
+    let meshes = &grid.input.scene.assets.meshes;
     let own = |(name, objects): (&'s FileName, Vec<&'s Object>)| {
         let data = meshes.get(&name.path).filter(|data| data.triangles.len() <= MAX_MODEL)?;
         Some(MeshFile::new(grid, name, u32::MAX, objects, MeshData::clone(data)))
@@ -83,7 +83,7 @@ fn collect_object<'s>(object: &'s Object, uses: &mut Uses<'s>) {
 }
 
 fn read<'s>(grid: &ProbeGrid<'s>, name: &'s FileName, objects: Vec<&'s Object>) -> Option<MeshFile<'s>> {
-    let files = grid.subject.files;
+    let files = grid.input.files;
     let file = (0..).take_while(|&i| files.name(i).is_some()).find(|&i| files.name(i) == Some(&name.path))?;
     let bytes = files.complete_bytes(file).filter(|bytes| bytes.len() <= MAX_BYTES)?;
     // The loader has already reported the file's errors.
@@ -94,21 +94,21 @@ fn read<'s>(grid: &ProbeGrid<'s>, name: &'s FileName, objects: Vec<&'s Object>) 
 impl<'s> MeshFile<'s> {
     fn new(grid: &ProbeGrid, name: &'s FileName, file: u32, objects: Vec<&'s Object>, data: MeshData) -> Self {
         let topology = Topology::of(&data.positions, &data.triangles);
-        let odd_normals = OddNormals::of(&data).filter(|_| grid.world().rules().file_normals);
+        let odd_normals = InvalidNormals::of(&data).filter(|_| grid.world().rules().file_normals);
         MeshFile { name, file, objects, data, topology, odd_normals }
     }
 }
 
 impl MeshFile<'_> {
     /// Returns true if a number of bad triangles is too small a fraction of the mesh to report.
-    pub(super) fn is_beyond_notice(&self, count: usize) -> bool {
+    pub(super) fn is_negligible(&self, count: usize) -> bool {
         count == 0 || (count as f32) <= NEGLIGIBLE * self.data.triangles.len() as f32
     }
 
     /// Returns the line in an OBJ file of the face that a triangle belongs to. A face of n vertices
     /// has n - 2 triangles.
     pub(super) fn face(&self, grid: &ProbeGrid, triangle: u32) -> Option<Span> {
-        let bytes = grid.subject.files.bytes(self.file)?;
+        let bytes = grid.input.files.bytes(self.file)?;
         let (mut start, mut before, mut found) = (0, 0, None);
         for line in bytes.split_inclusive(|b| *b == b'\n') {
             if line.starts_with(b"f ") || line.starts_with(b"f\t") {
@@ -150,28 +150,28 @@ impl MeshFile<'_> {
     }
 
     /// Iterates over the compiled objects that use the mesh.
-    pub(super) fn placed<'w>(&self, grid: &ProbeGrid<'w>) -> impl Iterator<Item = &'w Placed> {
-        grid.world().objects().iter().filter(|object| self.is_shown_at(object.span))
+    pub(super) fn compiled_objects<'w>(&self, grid: &ProbeGrid<'w>) -> impl Iterator<Item = &'w CompiledObject> {
+        grid.world().objects().iter().filter(|object| self.is_used_at(object.span))
     }
 
-    /// Returns true if the object at `place` in the scene file uses the mesh.
-    pub(super) fn is_shown_at(&self, place: Span) -> bool {
-        self.objects.iter().any(|object| object.span.start == place.start)
+    /// Returns true if the object at `span` in the scene file uses the mesh.
+    pub(super) fn is_used_at(&self, span: Span) -> bool {
+        self.objects.iter().any(|object| object.span.start == span.start)
     }
 
     /// Returns true if the camera is inside the mesh, for example in a room whose walls face
     /// inwards.
     pub(super) fn is_room(&self, grid: &ProbeGrid) -> bool {
         let eye = grid.world().camera().pose().center;
-        self.placed(grid).filter_map(Placed::bounds).any(|bounds| bounds.contains(eye))
+        self.compiled_objects(grid).filter_map(CompiledObject::bounds).any(|bounds| bounds.contains(eye))
     }
 
     /// Returns true if the mesh is the inner wall of a hollow glass object and so faces inwards.
     pub(super) fn is_hollow(&self, grid: &ProbeGrid) -> bool {
         let objects = grid.world().objects();
         let holds = |outer: &Aabb, inner: &Aabb| outer.contains(inner.min) && outer.contains(inner.max);
-        self.placed(grid).filter_map(|object| Some((object, object.bounds()?))).any(|(inner, bounds)| {
-            let around = |other: &Placed| {
+        self.compiled_objects(grid).filter_map(|object| Some((object, object.bounds()?))).any(|(inner, bounds)| {
+            let around = |other: &CompiledObject| {
                 other.span.start != inner.span.start && other.bounds().is_some_and(|outer| holds(&outer, &bounds))
             };
             self.glass(grid).is_some() && objects.iter().any(|other| other.material == inner.material && around(other))
@@ -180,8 +180,8 @@ impl MeshFile<'_> {
 
     /// Returns true if the mesh is closed and its normals point inwards.
     pub(super) fn is_inside_out(&self) -> bool {
-        let Topology { turned, volume, .. } = &self.topology;
-        let against = self.odd_normals.as_ref().is_some_and(OddNormals::is_against_all);
+        let Topology { reversed: turned, volume, .. } = &self.topology;
+        let against = self.odd_normals.as_ref().is_some_and(InvalidNormals::is_against_all);
         self.topology.is_nearly_closed() && turned.is_empty() && *volume != 0.0 && (*volume < 0.0) != against
     }
 }

@@ -6,9 +6,9 @@ use durer_scene::shape::mesh::NO_INDEX;
 /// Indices of the triangles of a mesh file whose vertex normals are missing, zero or opposed to the
 /// winding.
 #[derive(Debug, Default)]
-pub(in crate::check) struct OddNormals {
+pub(in crate::check) struct InvalidNormals {
     /// Triangles whose normals oppose their winding.
-    pub against: Vec<u32>,
+    pub opposed: Vec<u32>,
     /// Triangles without normals in a file where others have some.
     pub missing: Vec<u32>,
     /// Triangles with a normal of length zero.
@@ -17,10 +17,10 @@ pub(in crate::check) struct OddNormals {
     pub count: usize,
 }
 
-impl OddNormals {
+impl InvalidNormals {
     /// Examines the normals of a mesh as stored in its file; `None` if it has none.
-    pub fn of(data: &MeshData) -> Option<OddNormals> {
-        let mut odd_normals = OddNormals::default();
+    pub fn of(data: &MeshData) -> Option<InvalidNormals> {
+        let mut odd_normals = InvalidNormals::default();
         for (i, triangle) in data.triangles.iter().enumerate() {
             let [a, b, c] = triangle.map(|corner| data.positions[corner as usize].as_dvec3());
             let indices = data.triangle_normals.get(i).filter(|indices| !indices.contains(&NO_INDEX));
@@ -35,7 +35,7 @@ impl OddNormals {
             let face = (b - a).cross(c - a);
             // One smooth normal can point to the other side of the face, but not all three.
             if normals.iter().all(|normal| normal.dot(face) < 0.0) {
-                odd_normals.against.push(i as u32);
+                odd_normals.opposed.push(i as u32);
             }
         }
         (odd_normals.count > 0).then_some(odd_normals)
@@ -43,6 +43,6 @@ impl OddNormals {
 
     /// Returns true if the normals of nearly all triangles oppose their winding.
     pub fn is_against_all(&self) -> bool {
-        self.against.len() * 10 > self.count * 9
+        self.opposed.len() * 10 > self.count * 9
     }
 }

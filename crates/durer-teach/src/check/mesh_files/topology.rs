@@ -11,19 +11,19 @@ use std::collections::HashMap;
 pub(in crate::check) struct Topology {
     /// Triangles with zero area.
     pub degenerate: Vec<u32>,
-    /// Number of edges with one triangle (`open`), and with more than two (`crowded`).
+    /// Number of edges with one triangle (`open`), and with more than two (`non_manifold`).
     pub open: usize,
-    pub crowded: usize,
+    pub non_manifold: usize,
     /// Any such edge.
     pub some_edge: Option<[Vec3; 2]>,
     /// Triangles whose winding is opposite to that of most triangles in their connected piece.
-    pub turned: Vec<u32>,
+    pub reversed: Vec<u32>,
     /// Number of edges, and volume of the bounding box.
     pub edges: usize,
     pub box_volume: f64,
     /// Length of the sum of all area vectors, divided by the sum of their lengths; 0 for a closed
     /// surface.
-    pub opening: f64,
+    pub area_vector_sum: f64,
     /// Six times the signed enclosed volume, relative to the centre of the bounds if the mesh is
     /// open. Negative if triangles are clockwise seen from outside.
     pub volume: f64,
@@ -37,7 +37,7 @@ impl Topology {
     /// Computes the topology of triangles.
     pub fn of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Self {
         let mut topology = Topology::default();
-        let place = same_places(positions);
+        let vertex = merged_vertices(positions);
         let used = triangles.iter().flatten().map(|&corner| positions[corner as usize]);
         let bounds = Aabb::around(used);
         let anchor = if bounds.is_empty() { DVec3::ZERO } else { bounds.center().as_dvec3() };
@@ -55,23 +55,23 @@ impl Topology {
                 topology.degenerate.push(i as u32);
                 continue;
             }
-            let [a, b, c] = triangle.map(|corner| place[corner as usize]);
+            let [a, b, c] = triangle.map(|corner| vertex[corner as usize]);
             for (p, q) in [(a, b), (b, c), (c, a)].into_iter().filter(|(p, q)| p != q) {
                 edges.push((u64::from(p.min(q)) << 32 | u64::from(p.max(q)), p < q, i as u32));
             }
         }
-        topology.opening = sum.length() / area.max(f64::MIN_POSITIVE);
+        topology.area_vector_sum = sum.length() / area.max(f64::MIN_POSITIVE);
         edges.sort_unstable();
         for same in edges.chunk_by(|a, b| a.0 == b.0) {
             topology.edges += 1;
             topology.open += usize::from(same.len() == 1);
-            topology.crowded += usize::from(same.len() > 2);
+            topology.non_manifold += usize::from(same.len() > 2);
             if same.len() != 2 && topology.some_edge.is_none() {
                 topology.some_edge =
                     Some([(same[0].0 >> 32) as usize, same[0].0 as u32 as usize].map(|i| positions[i]));
             }
         }
-        topology.turned = turned(&edges, triangles.len());
+        topology.reversed = reversed_triangles(&edges, triangles.len());
         topology
     }
 
@@ -79,18 +79,18 @@ impl Topology {
     /// vase: its rims are short, its area vectors nearly sum to 0, and its volume is a fair share
     /// of its bounds.
     pub fn is_nearly_closed(&self) -> bool {
-        let short = self.crowded == 0 && self.open * 10 < self.edges;
-        self.is_closed() || short && self.opening < 0.25 && self.volume.abs() > 0.1 * self.box_volume
+        let short = self.non_manifold == 0 && self.open * 10 < self.edges;
+        self.is_closed() || short && self.area_vector_sum < 0.25 && self.volume.abs() > 0.1 * self.box_volume
     }
 
     /// Returns true if every edge belongs to exactly two triangles.
     pub fn is_closed(&self) -> bool {
-        self.open == 0 && self.crowded == 0
+        self.open == 0 && self.non_manifold == 0
     }
 }
 
 /// Returns for each vertex the index of the first vertex at the same position.
-fn same_places(positions: &[Vec3]) -> Vec<u32> {
+fn merged_vertices(positions: &[Vec3]) -> Vec<u32> {
     let mut first: HashMap<[u32; 3], u32> = HashMap::with_capacity(positions.len());
     positions.iter().enumerate().map(|(i, p)| *first.entry(position_key(*p)).or_insert(i as u32)).collect()
 }
@@ -98,7 +98,7 @@ fn same_places(positions: &[Vec3]) -> Vec<u32> {
 /// Returns the reversed triangles. Flood-fills across edges with two triangles: if both run along
 /// their edge in the same direction, their windings differ. In each connected piece the minority
 /// counts as reversed.
-fn turned(edges: &[Edge], count: usize) -> Vec<u32> {
+fn reversed_triangles(edges: &[Edge], count: usize) -> Vec<u32> {
     let pairs = || edges.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 2);
     if pairs().all(|same| same[0].1 != same[1].1) {
         return Vec::new();

@@ -2,7 +2,7 @@
 
 use super::BuggyTracer;
 use crate::mistakes::bugs::{BehindOrigin, HitChoice, Roots};
-use crate::mistakes::variant::{TaughtShapes, taught_shapes};
+use crate::mistakes::variant::{CourseShape, course_shape};
 use durer_render::world::{Geometry, Hit};
 use durer_scene::math::{Ray64, Vec2};
 use durer_scene::shape::Primitive;
@@ -18,18 +18,18 @@ impl BuggyTracer<'_> {
             let seen = hits.map(|hit| (hit, self.own_t(ray, &hit)));
             return seen.filter(|(_, t)| *t < ray.rounded.t_max).min_by(|a, b| a.1.total_cmp(&b.1));
         }
-        let hit = match self.bugs.pick {
+        let hit = match self.bugs.hit_choice {
             HitChoice::Nearest => self.world.closest(ray, &mut ()),
             HitChoice::Last => self.world.all_hits(ray).last(),
             HitChoice::FarthestObject => self.world.hits_of_each(ray).max_by(|a, b| a.t.total_cmp(&b.t)),
-            HitChoice::LastWritten => self.world.hits_of_each(ray).max_by_key(|hit| hit.object),
-            HitChoice::FirstWritten => self.world.hits_of_each(ray).min_by_key(|hit| hit.object),
+            HitChoice::LastInFile => self.world.hits_of_each(ray).max_by_key(|hit| hit.object),
+            HitChoice::FirstInFile => self.world.hits_of_each(ray).min_by_key(|hit| hit.object),
             HitChoice::FarthestTriangle => self.faces(ray).max_by(|a, b| a.t.total_cmp(&b.t)),
             HitChoice::LastTriangle => self.faces(ray).max_by_key(|hit| (hit.object, hit.part)),
             HitChoice::NearRoots => self.world.all_hits(ray).find(|hit| !self.leaves_sphere(ray, hit)),
             HitChoice::Fronts(triangles) => self.world.all_hits(ray).find(|hit| {
-                let kind = taught_shapes(&self.world.objects()[hit.object as usize].geometry);
-                let tested = !triangles || matches!(kind, Some(TaughtShapes::Triangle | TaughtShapes::Mesh));
+                let kind = course_shape(&self.world.objects()[hit.object as usize].geometry);
+                let tested = !triangles || matches!(kind, Some(CourseShape::Triangle | CourseShape::Mesh));
                 !tested || !self.world.interaction(ray, *hit).inside()
             }),
             HitChoice::FirstOfMesh => self.of_meshes(ray, |hit| hit.part),
@@ -45,7 +45,7 @@ impl BuggyTracer<'_> {
             HitChoice::FarSpheres => {
                 let far = |hit: Hit| {
                     let object = &self.world.objects()[hit.object as usize].geometry;
-                    let sphere = taught_shapes(object) == Some(TaughtShapes::Sphere);
+                    let sphere = course_shape(object) == Some(CourseShape::Sphere);
                     let mut rest = *ray;
                     rest.rounded.t_min = hit.t;
                     let beyond = |hit: &Hit| self.world.hits_of_each(&rest).find(|other| other.object == hit.object);
@@ -60,7 +60,7 @@ impl BuggyTracer<'_> {
     /// Returns the ray used for the intersection with an object.
     pub(super) fn own_ray(&self, ray: &Ray64, object: u32) -> Ray64 {
         let object = &self.world.objects()[object as usize];
-        if self.bugs.pick != HitChoice::MovedDirection || object.to_world.is_none() {
+        if self.bugs.hit_choice != HitChoice::MovedDirection || object.to_world.is_none() {
             return *ray;
         }
         // The wrong M^-1 (d, 1) equals M^-1 (d - t, 0), where t is the translation of M.
@@ -118,7 +118,7 @@ impl BuggyTracer<'_> {
     /// Returns true if a ray hits a sphere from inside.
     fn leaves_sphere(&self, ray: &Ray64, hit: &Hit) -> bool {
         let object = &self.world.objects()[hit.object as usize].geometry;
-        taught_shapes(object) == Some(TaughtShapes::Sphere) && self.world.interaction(ray, *hit).inside()
+        course_shape(object) == Some(CourseShape::Sphere) && self.world.interaction(ray, *hit).inside()
     }
 
     /// Returns the distance to a hit, measured in object space.
@@ -130,7 +130,7 @@ impl BuggyTracer<'_> {
     /// Returns true if the ray hits anything.
     pub(super) fn occluded(&self, ray: &Ray64) -> bool {
         let own_hits = matches!(
-            self.bugs.pick,
+            self.bugs.hit_choice,
             HitChoice::NearRoots | HitChoice::Fronts(_) | HitChoice::Roots(_) | HitChoice::MovedDirection
         );
         if self.bugs.local_unit || own_hits {

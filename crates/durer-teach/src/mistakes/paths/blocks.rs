@@ -1,7 +1,7 @@
 //! Means of a path-traced picture over blocks of pixels, with the variance due to noise.
 
-use super::walker::Walker;
-use crate::mistakes::path_habits::Mean;
+use super::walker::BuggyPathTracer;
+use crate::mistakes::path_bugs::PixelMean;
 use crate::mistakes::pictures::View;
 use crate::mistakes::variant::SceneVariant;
 use durer_render::render::sample_places;
@@ -10,9 +10,9 @@ use rayon::prelude::*;
 
 /// Number of blocks along the larger side, and maximum number of camera paths per picture.
 const BLOCKS: u32 = 20;
-const MOST_PATHS: u32 = 150_000;
+const MAX_PATHS: u32 = 150_000;
 /// Maximum number of samples per pixel.
-const MOST_SAMPLES: u32 = 64;
+const MAX_SAMPLES: u32 = 64;
 /// Variance due to rounding to eight bits.
 const ROUNDING: f64 = 1.0 / (12.0 * 255.0 * 255.0);
 
@@ -25,7 +25,7 @@ pub struct Blocks {
 
 /// Mean colour of each block of a picture, and the noise variance of that mean.
 #[derive(Clone, Debug)]
-pub struct Means {
+pub struct BlockMeans {
     pub mean: Vec<Vec3>,
     pub variance: Vec<f64>,
 }
@@ -35,7 +35,7 @@ impl Blocks {
     pub fn new(width: u32, height: u32, samples: u32) -> Self {
         let side = (width.max(height)).div_ceil(BLOCKS).max(2);
         let (columns, rows) = (width.div_ceil(side), height.div_ceil(side));
-        let most = (MOST_PATHS / (columns * rows) / samples.clamp(1, MOST_SAMPLES)).max(1) as usize;
+        let most = (MAX_PATHS / (columns * rows) / samples.clamp(1, MAX_SAMPLES)).max(1) as usize;
         let block = |i: u32| {
             let (x, y) = (i % columns * side, i / columns * side);
             let all: Vec<(u32, u32)> =
@@ -48,32 +48,32 @@ impl Blocks {
     }
 
     /// Returns the means of a finished picture; the variance includes only rounding.
-    pub fn of_picture(&self, width: u32, values: &[Vec3]) -> Means {
+    pub fn of_picture(&self, width: u32, values: &[Vec3]) -> BlockMeans {
         let mean = |block: &Vec<(u32, u32)>| {
             let sum: Vec3 = block.iter().map(|&(x, y)| values[(y * width + x) as usize]).sum();
             sum / block.len() as f32
         };
         let variance = self.pixels.iter().map(|block| ROUNDING / block.len() as f64).collect();
-        Means { mean: self.pixels.iter().map(mean).collect(), variance }
+        BlockMeans { mean: self.pixels.iter().map(mean).collect(), variance }
     }
 
     /// Renders a variant of the scene and returns the means of its blocks.
-    pub fn render(&self, view: &View, variant: &SceneVariant, seed: u64) -> Means {
-        let (walker, raster) = (Walker::new(variant), variant.raster(view.job.width, view.job.height));
+    pub fn render(&self, view: &View, variant: &SceneVariant, seed: u64) -> BlockMeans {
+        let (walker, raster) = (BuggyPathTracer::new(variant), variant.raster(view.job.width, view.job.height));
         let places = sample_places(&variant.world, view.job);
         let exposed = |light: Color| view.values(variant.output, &[light])[0];
         // Returns the value of a pixel and the variance of that value.
         let pixel = |&(x, y): &(u32, u32)| {
             let (mut all, mut weights) = (Vec::new(), 0.0);
             let mut add = |place: Vec2, lens: Vec2, weight: f32| {
-                if all.len() < MOST_SAMPLES as usize {
+                if all.len() < MAX_SAMPLES as usize {
                     let light = variant
                         .ray(&raster, (x, y), place, lens)
                         .map_or(Color::ZERO, |ray| walker.radiance(&ray, seed, (x, y), all.len() as u32));
-                    let light = match variant.paths.mean {
-                        Mean::Light => light,
-                        Mean::Clamped => light.clamp(Color::ZERO, Color::ONE),
-                        Mean::Shown => exposed(light),
+                    let light = match variant.paths.pixel_mean {
+                        PixelMean::Light => light,
+                        PixelMean::Clamped => light.clamp(Color::ZERO, Color::ONE),
+                        PixelMean::Shown => exposed(light),
                     };
                     all.push(weight * light);
                     weights += weight;
@@ -82,12 +82,12 @@ impl Blocks {
             places(x, y, &mut add);
             let count = all.len().max(1) as f32;
             let mean = all.iter().sum::<Color>() / weights.max(1e-6);
-            let value = if variant.paths.mean == Mean::Shown { mean } else { exposed(mean) };
+            let value = if variant.paths.pixel_mean == PixelMean::Shown { mean } else { exposed(mean) };
             // The standard error of the mean is converted to display values by a finite difference.
             let spread = all.iter().map(|light| (*light * count / weights.max(1e-6) - mean).length_squared());
             let error = (spread.sum::<f32>() / (count * (count - 1.0).max(1.0))).sqrt();
             let step = Color::splat(error / 3.0_f32.sqrt());
-            let moved = if variant.paths.mean == Mean::Shown { mean + step } else { exposed(mean + step) };
+            let moved = if variant.paths.pixel_mean == PixelMean::Shown { mean + step } else { exposed(mean + step) };
             (value, f64::from((moved - value).length_squared()).max(3.0 * ROUNDING))
         };
         let block = |block: &Vec<(u32, u32)>| {
@@ -97,13 +97,13 @@ impl Blocks {
             (mean, all.iter().map(|one| one.1).sum::<f64>() / f64::from(count * count))
         };
         let (mean, variance) = self.pixels.par_iter().map(block).unzip();
-        Means { mean, variance }
+        BlockMeans { mean, variance }
     }
 }
 
-impl Means {
+impl BlockMeans {
     /// Returns `other` with its variance increased by `ratio` times the variance of `self`.
-    pub fn lend(&self, mut other: Means, ratio: f64) -> Means {
+    pub fn with_noise_of(&self, mut other: BlockMeans, ratio: f64) -> BlockMeans {
         for (own, other) in self.variance.iter().zip(&mut other.variance) {
             *other += ratio * own;
         }
@@ -112,12 +112,12 @@ impl Means {
 
     /// Returns the squared difference of each block in excess of noise, and true if it is
     /// significant. `noise` is the variance of the difference of each block.
-    pub fn beyond(&self, other: &Means, noise: &[f64]) -> Vec<(f64, bool)> {
+    pub fn excess_difference(&self, other: &BlockMeans, noise: &[f64]) -> Vec<(f64, bool)> {
         let pairs = self.mean.iter().zip(&other.mean).zip(noise);
         pairs
             .map(|((a, b), noise)| {
                 let squared = f64::from((*a - *b).length_squared());
-                ((squared - noise).max(0.0), squared > SIGNIFICANT * noise + SEEN)
+                ((squared - noise).max(0.0), squared > MIN_SIGNIFICANCE * noise + INVISIBLE)
             })
             .collect()
     }
@@ -125,6 +125,6 @@ impl Means {
 
 /// Ratio of the squared difference to the noise variance above which a difference is significant;
 /// about 3.5 standard errors.
-const SIGNIFICANT: f64 = 12.0;
+const MIN_SIGNIFICANCE: f64 = 12.0;
 /// Squared difference that is invisible even without noise.
-const SEEN: f64 = 3.0 * (1.0 / 255.0) * (1.0 / 255.0);
+const INVISIBLE: f64 = 3.0 * (1.0 / 255.0) * (1.0 / 255.0);

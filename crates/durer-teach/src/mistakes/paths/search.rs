@@ -1,85 +1,88 @@
 //! Finds the path tracer mistake that explains a picture.
 
-use super::blocks::{Blocks, Means};
+use super::blocks::{BlockMeans, Blocks};
 use super::table::MISTAKES;
+use crate::mistakes::input::{Diagnosis, DiagnosisInput, Explanation, prepare, values};
 use crate::mistakes::pictures::View;
-use crate::mistakes::question::{Diagnosis, DiagnosisInput, Explanation, prepared, values};
 use crate::mistakes::table::{Formulas, Mistake};
 use crate::mistakes::variant::SceneVariant;
 use durer_scene::math::Vec3;
 
 /// Maximum share of blocks in which the reference may differ significantly from the rendered scene.
 /// Above it, no mistakes are tried.
-const MAX_OFF: f64 = 0.15;
+const MAX_DIFFERENCE: f64 = 0.15;
 /// Minimum share of differing blocks; fewer are attributed to noise.
-const LEAST: f64 = 0.02;
+const MIN_DIFFERENCE: f64 = 0.02;
 /// Minimum fit of an explanation: share of the squared difference, and share of the differing
 /// blocks.
-const EXPLAINED: f64 = 0.95;
-const MATCHED: f64 = 0.9;
+const MIN_EXPLAINED: f64 = 0.95;
+const MIN_MATCHED: f64 = 0.9;
 /// An explanation is a rival if its residual is at most this many times the residual of the best
 /// one.
-const RIVAL: f64 = 3.0;
+const RIVAL_RATIO: f64 = 3.0;
 /// Ratio of variances above which one picture counts as noisier than the other.
-const NOISIER: f64 = 1.5;
+const NOISE_RATIO: f64 = 1.5;
 
 /// One mistake with its value, its rendered block means, and how well those match the test picture.
 struct Trial {
     mistake: (&'static Mistake, f32),
-    made: Means,
+    rendered: BlockMeans,
     explained: f64,
     matched: f64,
 }
 
 /// Returns the share of the blocks in which a render of the scene differs from the reference by
 /// more than noise.
-pub fn off(question: &DiagnosisInput) -> f64 {
-    let (reference, view, base) = prepared(question);
-    let blocks = blocks(question);
-    let reference = blocks.of_picture(question.job.width, &reference);
-    let base = blocks.render(&view, &base, question.job.seed);
-    share_off(&base, &base.lend(reference, 1.0))
+pub fn off(input: &DiagnosisInput) -> f64 {
+    let (reference, view, base) = prepare(input);
+    let blocks = blocks(input);
+    let reference = blocks.of_picture(input.job.width, &reference);
+    let base = blocks.render(&view, &base, input.job.seed);
+    share_off(&base, &base.with_noise_of(reference, 1.0))
 }
 
-fn blocks(question: &DiagnosisInput) -> Blocks {
-    Blocks::new(question.job.width, question.job.height, question.job.sampling.samples())
+fn blocks(input: &DiagnosisInput) -> Blocks {
+    Blocks::new(input.job.width, input.job.height, input.job.sampling.samples())
 }
 
 /// Returns the variance of the difference of two pictures, for each block.
-fn noise(a: &Means, b: &Means) -> Vec<f64> {
+fn noise(a: &BlockMeans, b: &BlockMeans) -> Vec<f64> {
     a.variance.iter().zip(&b.variance).map(|(a, b)| a + b).collect()
 }
 
-fn share_off(base: &Means, reference: &Means) -> f64 {
-    let beyond = base.beyond(reference, &noise(base, reference));
+fn share_off(base: &BlockMeans, reference: &BlockMeans) -> f64 {
+    let beyond = base.excess_difference(reference, &noise(base, reference));
     beyond.iter().filter(|block| block.1).count() as f64 / beyond.len().max(1) as f64
 }
 
 /// Tries all mistakes of path tracers. `progress` receives values from 0 to 1.
-pub fn diagnose(question: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diagnosis {
-    let (reference_pixels, view, base) = prepared(question);
-    let test_pixels = values(question.test, view.scale, question.transfer);
-    let (width, seed) = (question.job.width, question.job.seed);
-    let blocks = blocks(question);
+pub fn diagnose(input: &DiagnosisInput, progress: &(dyn Fn(f64) + Sync)) -> Diagnosis {
+    let (reference_pixels, view, base) = prepare(input);
+    let test_pixels = values(input.test, view.scale, input.transfer);
+    let (width, seed) = (input.job.width, input.job.seed);
+    let blocks = blocks(input);
     let [reference, test] = [&reference_pixels, &test_pixels].map(|pixels| blocks.of_picture(width, pixels));
     let own = blocks.render(&view, &base, seed);
-    let reference = own.lend(reference, 1.0);
-    let test = own.lend(test, noise_ratio(&reference_pixels, &test_pixels, width as usize).clamp(0.2, 200.0));
+    let reference = own.with_noise_of(reference, 1.0);
+    let test = own.with_noise_of(test, noise_ratio(&reference_pixels, &test_pixels, width as usize).clamp(0.2, 200.0));
     progress(0.1);
     let off = share_off(&own, &reference);
-    let found =
-        Diagnosis { off, formulas: Formulas::of(question.scene, question.world.rules()), ..Diagnosis::default() };
-    if off > MAX_OFF {
-        return found;
+    let diagnosis = Diagnosis {
+        reference_difference: off,
+        formulas: Formulas::of(input.scene, input.world.rules()),
+        ..Diagnosis::default()
+    };
+    if off > MAX_DIFFERENCE {
+        return diagnosis;
     }
-    let total = own.beyond(&test, &noise(&own, &test));
+    let total = own.excess_difference(&test, &noise(&own, &test));
     let differing = total.iter().filter(|block| block.1).count();
-    if (differing as f64) < LEAST * total.len() as f64 {
-        return Diagnosis { remark: Some(of_noise(&reference_pixels, &test_pixels, width as usize)), ..found };
+    if (differing as f64) < MIN_DIFFERENCE * total.len() as f64 {
+        return Diagnosis { remark: Some(of_noise(&reference_pixels, &test_pixels, width as usize)), ..diagnosis };
     }
     let trials = trials(&view, &base, &blocks, &test, &own, seed, progress);
-    let named = decided(trials, &test);
-    Diagnosis { named, ..found }
+    let explanation = decided(trials, &test);
+    Diagnosis { explanations: explanation, ..diagnosis }
 }
 
 /// Renders the scene with each mistake and measures how much of the difference it explains.
@@ -87,8 +90,8 @@ fn trials(
     view: &View,
     base: &SceneVariant,
     blocks: &Blocks,
-    test: &Means,
-    own: &Means,
+    test: &BlockMeans,
+    own: &BlockMeans,
     seed: u64,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Vec<Trial> {
@@ -98,44 +101,45 @@ fn trials(
     let count = all.len();
     let trial = |(i, mistake): (usize, (&'static Mistake, f32))| {
         let mut variant = base.clone();
-        (mistake.0.make)(&mut variant, mistake.1);
-        let made = blocks.render(view, &variant, seed);
+        (mistake.0.apply)(&mut variant, mistake.1);
+        let rendered = blocks.render(view, &variant, seed);
         progress(0.1 + 0.9 * (i + 1) as f64 / count as f64);
-        let noise = noise(&made, test);
-        let (before, rest) = (own.beyond(test, &noise), made.beyond(test, &noise));
+        let noise = noise(&rendered, test);
+        let (before, rest) = (own.excess_difference(test, &noise), rendered.excess_difference(test, &noise));
         let sum = |beyond: &[(f64, bool)]| beyond.iter().map(|block| block.0).sum::<f64>();
         let (either, agree) = before.iter().zip(&rest).fold((0, 0), |(either, agree), (before, rest)| {
             (either + usize::from(before.1 || rest.1), agree + usize::from(before.1 && !rest.1))
         });
         let explained = 1.0 - sum(&rest) / sum(&before).max(1e-12);
-        Trial { mistake, made, explained, matched: f64::from(agree as u32) / f64::from((either as u32).max(1)) }
+        Trial { mistake, rendered, explained, matched: f64::from(agree as u32) / f64::from((either as u32).max(1)) }
     };
     all.into_iter().enumerate().map(trial).collect()
 }
 
 /// Returns the mistakes that explain the picture; none if no mistake fits or if the choice is
 /// ambiguous.
-fn decided(mut trials: Vec<Trial>, test: &Means) -> Vec<Explanation> {
+fn decided(mut trials: Vec<Trial>, test: &BlockMeans) -> Vec<Explanation> {
     trials.sort_by(|a, b| b.explained.total_cmp(&a.explained));
-    let passes = |trial: &&Trial| trial.explained >= EXPLAINED && trial.matched >= MATCHED;
+    let passes = |trial: &&Trial| trial.explained >= MIN_EXPLAINED && trial.matched >= MIN_MATCHED;
     let Some(best) = trials.iter().find(passes) else { return Vec::new() };
     let rest = |trial: &Trial| 1.0 - trial.explained;
     let rivals: Vec<&Trial> =
-        trials.iter().filter(passes).filter(|trial| rest(trial) <= RIVAL * rest(best) + 0.005).collect();
+        trials.iter().filter(passes).filter(|trial| rest(trial) <= RIVAL_RATIO * rest(best) + 0.005).collect();
     // If rivals have different pictures, naming one of them would be a guess.
     let alike = |other: &Trial| {
-        let noise: Vec<f64> = noise(&best.made, test);
-        best.made.beyond(&other.made, &noise).iter().filter(|block| block.1).count() * 20 <= test.mean.len()
+        let noise: Vec<f64> = noise(&best.rendered, test);
+        best.rendered.excess_difference(&other.rendered, &noise).iter().filter(|block| block.1).count() * 20
+            <= test.mean.len()
     };
     if rivals.len() > 3 || !rivals.iter().all(|rival| alike(rival)) {
         return Vec::new();
     }
-    let named = |trial: &&Trial| Explanation {
+    let explanation = |trial: &&Trial| Explanation {
         mistakes: vec![trial.mistake],
         explained: trial.explained,
         matched: trial.matched,
     };
-    rivals.iter().map(named).collect()
+    rivals.iter().map(explanation).collect()
 }
 
 /// Estimates the noise variance of a picture relative to that of the reference.
@@ -158,13 +162,13 @@ fn noise_ratio(reference: &[Vec3], test: &[Vec3], width: usize) -> f64 {
 fn of_noise(reference: &[Vec3], test: &[Vec3], width: usize) -> String {
     let ratio = noise_ratio(reference, test, width);
     let times = |ratio: f64| if ratio > 20.0 { "far more than ten".to_string() } else { format!("about {ratio:.1}") };
-    if ratio > NOISIER {
+    if ratio > NOISE_RATIO {
         format!(
             "the mean is correct, but the noise has {} times the variance of the reference (fewer samples, or lights \
              that paths hit only by chance)",
             times(ratio)
         )
-    } else if 1.0 / ratio > NOISIER {
+    } else if 1.0 / ratio > NOISE_RATIO {
         format!("the mean is correct, but the reference has {} times the variance (fewer samples)", times(1.0 / ratio))
     } else {
         "the difference is noise from different random numbers; no other difference can be measured".to_string()

@@ -1,6 +1,6 @@
 //! The table of mistakes of path tracers.
 
-use crate::mistakes::path_habits::{Chosen, Lacks, Mean, Sky, Slant};
+use crate::mistakes::path_bugs::{CosinePower, DirectionSampling, EnvironmentBug, MissingFactor, PixelMean};
 use crate::mistakes::table::{Mistake, Values, row};
 
 /// Common mistakes of path tracers; [`diagnose`](super::search::diagnose) tries all of them.
@@ -29,7 +29,7 @@ pub const MISTAKES: &[Mistake] = &[
         "the cosine at the surface {is left out|counts twice}",
         "throughput *= f * dot(n, wi) / pdf",
         "throughput *= f {/ pdf|* dot(n, wi) * dot(n, wi) / pdf}",
-        |v, twice| v.paths.slant = if twice == 0.0 { Slant::None } else { Slant::Twice },
+        |v, twice| v.paths.cosine_power = if twice == 0.0 { CosinePower::None } else { CosinePower::Twice },
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
@@ -48,8 +48,8 @@ pub const MISTAKES: &[Mistake] = &[
         "throughput *= f * dot(n, wi) / pdf",
         "throughput *= f * dot(n, wi)",
         |v, lights| match lights == 0.0 {
-            true => v.paths.chosen = Chosen::Undivided,
-            false => v.paths.lacks = Lacks::Density,
+            true => v.paths.direction_sampling = DirectionSampling::Undivided,
+            false => v.paths.missing_factor = MissingFactor::Density,
         },
     )
     .with(Values::Only(&[0.0, 1.0])),
@@ -59,7 +59,7 @@ pub const MISTAKES: &[Mistake] = &[
         "directions are uniform over the hemisphere, but divided by the pdf of cosine sampling",
         "uniform: pdf = 1 / (2 pi); by the cosine: pdf = cos / pi",
         "uniform directions with pdf = cos / pi",
-        |v, _| v.paths.chosen = Chosen::Uniform,
+        |v, _| v.paths.direction_sampling = DirectionSampling::Uniform,
     ),
     row(
         "path-local-frame",
@@ -67,7 +67,7 @@ pub const MISTAKES: &[Mistake] = &[
         "scattered directions are not transformed from the shading frame to world space",
         "wi = x t + y b + z n",
         "wi = (x, y, z)",
-        |v, _| v.paths.chosen = Chosen::LocalFrame,
+        |v, _| v.paths.direction_sampling = DirectionSampling::LocalFrame,
     ),
     row(
         "path-one-number",
@@ -75,7 +75,7 @@ pub const MISTAKES: &[Mistake] = &[
         "one random number is used for both dimensions of a direction",
         "u1 = random(), u2 = random()",
         "u1 = u2 = random()",
-        |v, _| v.paths.chosen = Chosen::OneNumber,
+        |v, _| v.paths.direction_sampling = DirectionSampling::OneNumber,
     ),
     row(
         "path-emission-twice",
@@ -91,7 +91,7 @@ pub const MISTAKES: &[Mistake] = &[
         "paths that survive Russian roulette are not divided by the survival probability",
         "if (random() >= q) break; throughput /= q",
         "if (random() >= q) break",
-        |v, _| v.paths.roulette = true,
+        |v, _| v.paths.undivided_roulette = true,
     ),
     row(
         "path-light-factor",
@@ -100,8 +100,8 @@ pub const MISTAKES: &[Mistake] = &[
         "L = f cos(n) Le cos(light) area / (d^2 probability)",
         "L = f cos(n) Le {cos(light) area / probability|area / (d^2 probability)|cos(light) / (d^2 probability)|cos(light) area / d^2}",
         |v, how| {
-            const ALL: [Lacks; 4] = [Lacks::Distance, Lacks::Cosine, Lacks::Area, Lacks::Choice];
-            v.paths.lacks = ALL[(how as usize).min(3)];
+            const ALL: [MissingFactor; 4] = [MissingFactor::Distance, MissingFactor::Cosine, MissingFactor::Area, MissingFactor::Choice];
+            v.paths.missing_factor = ALL[(how as usize).min(3)];
         },
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
@@ -119,7 +119,7 @@ pub const MISTAKES: &[Mistake] = &[
         "the environment is {upside down|sampled with a pdf that lacks sin(theta)}",
         "theta from the top, pdf = p(u, v) / (2 pi^2 sin(theta))",
         "{theta from the bottom|pdf = p(u, v) / (2 pi^2)}",
-        |v, how| v.paths.sky = if how == 0.0 { Sky::UpsideDown } else { Sky::NoSine },
+        |v, how| v.paths.environment = if how == 0.0 { EnvironmentBug::UpsideDown } else { EnvironmentBug::NoSine },
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
@@ -128,7 +128,7 @@ pub const MISTAKES: &[Mistake] = &[
         "samples are {clamped to 1|encoded for the screen} before they are averaged",
         "encode(sum of samples / n)",
         "{encode(sum of min(1, sample) / n)|sum of encode(sample) / n}",
-        |v, shown| v.paths.mean = if shown == 0.0 { Mean::Clamped } else { Mean::Shown },
+        |v, shown| v.paths.pixel_mean = if shown == 0.0 { PixelMean::Clamped } else { PixelMean::Shown },
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
@@ -147,7 +147,7 @@ pub const MISTAKES: &[Mistake] = &[
         "value = {c|srgb(srgb(c))} * 255",
         |v, more| {
             use crate::mistakes::bugs::OutputBug;
-            v.output = if more == 0.0 { OutputBug::CurveLess(0.0) } else { OutputBug::CurveMore(0.0) };
+            v.output = if more == 0.0 { OutputBug::MissingCurve(0.0) } else { OutputBug::ExtraCurve(0.0) };
         },
     )
     .with(Values::Only(&[0.0, 1.0])),

@@ -2,7 +2,7 @@
 //! heuristic. It uses the renderer's surfaces, BSDFs and emitters, and for scenes without fog it
 //! has the same expected value as the renderer's path tracer.
 
-use crate::mistakes::path_habits::{Chosen, Lacks, Paths, Sky, Slant};
+use crate::mistakes::path_bugs::{CosinePower, DirectionSampling, EnvironmentBug, MissingFactor, PathBugs};
 use crate::mistakes::variant::SceneVariant;
 use durer_render::integrator::media::MediumStack;
 use durer_render::integrator::spawn::{offset_bound, spawn_ray, to_point};
@@ -15,11 +15,11 @@ use durer_scene::spectrum::{ColorMode, Lanes, Spectrum};
 use std::f32::consts::PI;
 
 /// Random number generator (SplitMix64) for one sample of a pixel.
-struct Numbers(u64);
+struct SplitMix(u64);
 
-impl Numbers {
+impl SplitMix {
     fn new(seed: u64, (x, y): (u32, u32), sample: u32) -> Self {
-        let mut numbers = Numbers(seed ^ (u64::from(x) << 40 | u64::from(y) << 20 | u64::from(sample)));
+        let mut numbers = SplitMix(seed ^ (u64::from(x) << 40 | u64::from(y) << 20 | u64::from(sample)));
         numbers.next();
         numbers
     }
@@ -41,33 +41,33 @@ impl Numbers {
 
 /// Maximum survival probability of Russian roulette, and the depth at which roulette starts.
 const MAX_SURVIVAL: f32 = 0.95;
-const SURE: u32 = 3;
+const MIN_ROULETTE_DEPTH: u32 = 3;
 
 /// Simple path tracer that makes the mistakes of a [`SceneVariant`], as a student's program might.
-pub struct Walker<'w> {
+pub struct BuggyPathTracer<'w> {
     world: &'w World,
     settings: RenderSettings,
-    bugs: Paths,
+    bugs: PathBugs,
     right: Whitted<'w>,
     lanes: Lanes,
 }
 
-impl<'w> Walker<'w> {
+impl<'w> BuggyPathTracer<'w> {
     /// Creates a tracer for the world and the mistakes of a variant.
     pub fn new(variant: &'w SceneVariant) -> Self {
         let (world, settings) = (&variant.world, variant.settings);
         let right = Whitted { world, settings, cancel: None };
-        Walker { world, settings, bugs: variant.paths, right, lanes: Lanes::new(ColorMode::Rgb, 0.5) }
+        BuggyPathTracer { world, settings, bugs: variant.paths, right, lanes: Lanes::new(ColorMode::Rgb, 0.5) }
     }
 
     /// Returns the radiance along a camera ray for one sample of a pixel.
     pub fn radiance(&self, ray: &Ray, seed: u64, pixel: (u32, u32), sample: u32) -> Color {
-        let mut numbers = Numbers::new(seed, pixel, sample);
+        let mut numbers = SplitMix::new(seed, pixel, sample);
         let color = self.lanes.color(self.walk(ray.into(), &mut numbers));
         if color.is_finite() { color } else { Color::ZERO }
     }
 
-    fn walk(&self, mut ray: Ray64, numbers: &mut Numbers) -> Spectrum {
+    fn walk(&self, mut ray: Ray64, numbers: &mut SplitMix) -> Spectrum {
         let (world, lanes) = (self.world, &self.lanes);
         let mut media = MediumStack::around(world, ray.rounded.origin);
         let (mut throughput, mut sum) = (Spectrum::ONE, Spectrum::ZERO);
@@ -110,11 +110,11 @@ impl<'w> Walker<'w> {
             }
             let Some((wi, weight, pdf)) = self.scattered(&shading, numbers) else { return sum };
             throughput *= weight;
-            let survival = if depth < SURE { 1.0 } else { throughput.max_element().min(MAX_SURVIVAL) };
+            let survival = if depth < MIN_ROULETTE_DEPTH { 1.0 } else { throughput.max_element().min(MAX_SURVIVAL) };
             if numbers.next() >= survival {
                 return sum;
             }
-            if !self.bugs.roulette {
+            if !self.bugs.undivided_roulette {
                 throughput /= survival;
             }
             if pdf > 0.0 {
@@ -137,7 +137,7 @@ impl<'w> Walker<'w> {
     }
 
     fn turned(&self, dir: Vec3) -> Vec3 {
-        if self.bugs.sky == Sky::UpsideDown { Vec3::new(dir.x, -dir.y, dir.z) } else { dir }
+        if self.bugs.environment == EnvironmentBug::UpsideDown { Vec3::new(dir.x, -dir.y, dir.z) } else { dir }
     }
 
     fn background(&self, dir: Vec3, last: Option<(Receiver, f32)>, from_eye: bool) -> Spectrum {
@@ -174,13 +174,13 @@ impl<'w> Walker<'w> {
     }
 
     /// Returns the contribution of one light sample, including BSDF and cosine.
-    fn direct(&self, at: &SurfaceInteraction, shading: &Shading, to: &Receiver, numbers: &mut Numbers) -> Spectrum {
+    fn direct(&self, at: &SurfaceInteraction, shading: &Shading, to: &Receiver, numbers: &mut SplitMix) -> Spectrum {
         let emitters = self.world.emitters();
         let (choice, u) = (numbers.next(), numbers.pair());
         let Some(choice) = emitters.choose(self.world, to, choice) else { return Spectrum::ZERO };
         let Some(light) = emitters.sample(self.world, &choice, to.point, u) else { return Spectrum::ZERO };
         let (value, bsdf_pdf) = shading.eval(light.wi);
-        let value = self.scaled(value, shading, light.wi, true);
+        let value = self.with_cosine_bugs(value, shading, light.wi, true);
         if value == Spectrum::ZERO || light.radiance == Color::ZERO {
             return Spectrum::ZERO;
         }
@@ -191,12 +191,12 @@ impl<'w> Walker<'w> {
         }
         let pdf = if light.pdf > 0.0 { light.choice * light.pdf } else { light.choice };
         let weight = if light.pdf == 0.0 || self.bugs.unweighted { 1.0 } else { power(pdf, bsdf_pdf) };
-        let radiance = match (choice.is_sky(), self.bugs.sky) {
-            (true, Sky::UpsideDown) => emitters.sky(self.world, self.turned(light.wi)).0,
-            (true, Sky::NoSine) => light.radiance / (1.0 - light.wi.y * light.wi.y).max(1e-4).sqrt(),
+        let radiance = match (choice.is_sky(), self.bugs.environment) {
+            (true, EnvironmentBug::UpsideDown) => emitters.sky(self.world, self.turned(light.wi)).0,
+            (true, EnvironmentBug::NoSine) => light.radiance / (1.0 - light.wi.y * light.wi.y).max(1e-4).sqrt(),
             _ => light.radiance,
         };
-        value * (weight / pdf) * self.lacking(&light, pdf) * self.lanes.light(radiance)
+        value * (weight / pdf) * self.error_factor(&light, pdf) * self.lanes.light(radiance)
     }
 
     fn blocked(&self, mut ray: Ray64) -> bool {
@@ -212,19 +212,19 @@ impl<'w> Walker<'w> {
     }
 
     /// Returns the factor by which an omitted term changes a light sample.
-    fn lacking(&self, light: &LightSample, pdf: f32) -> f32 {
+    fn error_factor(&self, light: &LightSample, pdf: f32) -> f32 {
         let extended = light.pdf > 0.0 && light.reach.is_finite();
-        match self.bugs.lacks {
-            Lacks::Nothing => 1.0,
-            Lacks::Distance if light.reach.is_finite() => light.reach * light.reach,
-            Lacks::Cosine if extended => 1.0 / light.cosine.max(1e-3),
-            Lacks::Area if extended => match light.light {
+        match self.bugs.missing_factor {
+            MissingFactor::Nothing => 1.0,
+            MissingFactor::Distance if light.reach.is_finite() => light.reach * light.reach,
+            MissingFactor::Cosine if extended => 1.0 / light.cosine.max(1e-3),
+            MissingFactor::Area if extended => match light.light {
                 LightId::Surface(object, part) => self.area(object, part).map_or(1.0, |area| 1.0 / area),
                 LightId::Light(_) | LightId::Environment => 1.0,
             },
-            Lacks::Choice => light.choice,
-            Lacks::Density => pdf,
-            Lacks::Distance | Lacks::Cosine | Lacks::Area => 1.0,
+            MissingFactor::Choice => light.choice,
+            MissingFactor::Density => pdf,
+            MissingFactor::Distance | MissingFactor::Cosine | MissingFactor::Area => 1.0,
         }
     }
 
@@ -250,12 +250,12 @@ impl<'w> Walker<'w> {
     }
 
     /// Applies mistakes in the cosine and in 1/π to a value of BSDF times cosine.
-    fn scaled(&self, value: Spectrum, shading: &Shading, wi: Vec3, sampled_light: bool) -> Spectrum {
+    fn with_cosine_bugs(&self, value: Spectrum, shading: &Shading, wi: Vec3, sampled_light: bool) -> Spectrum {
         let cosine = shading.frame.normal.dot(wi).abs().max(1e-3);
-        let value = match self.bugs.slant {
-            Slant::Right => value,
-            Slant::None => value / cosine,
-            Slant::Twice => value * cosine,
+        let value = match self.bugs.cosine_power {
+            CosinePower::Correct => value,
+            CosinePower::None => value / cosine,
+            CosinePower::Twice => value * cosine,
         };
         match self.bugs.no_pi {
             Some(lights_only) if sampled_light || !lights_only => value * PI,
@@ -264,32 +264,32 @@ impl<'w> Walker<'w> {
     }
 
     /// Returns a scattered direction, its weight and its pdf. The pdf is 0 for a delta lobe.
-    fn scattered(&self, shading: &Shading, numbers: &mut Numbers) -> Option<(Vec3, Spectrum, f32)> {
+    fn scattered(&self, shading: &Shading, numbers: &mut SplitMix) -> Option<(Vec3, Spectrum, f32)> {
         let (choice, mut u) = (numbers.next(), numbers.pair());
-        if self.bugs.chosen == Chosen::OneNumber {
+        if self.bugs.direction_sampling == DirectionSampling::OneNumber {
             u = Vec2::splat(u.x);
         }
         let sample = shading.bsdf.sample(shading.wo, choice, u)?;
         if sample.pdf == 0.0 {
             return Some((shading.frame.to_world(sample.wi), sample.weight, 0.0));
         }
-        if self.bugs.chosen == Chosen::Uniform {
+        if self.bugs.direction_sampling == DirectionSampling::Uniform {
             let (sin, cos) = fp::sin_cos_degrees(f64::from(360.0 * u.x));
             let side = (1.0 - u.y * u.y).max(0.0).sqrt();
             let local = Vec3::new(side * cos as f32, side * sin as f32, u.y.max(1e-4));
             let wi = shading.frame.to_world(local);
             let pdf = local.z / PI;
-            let value = self.scaled(shading.eval(wi).0, shading, wi, false);
+            let value = self.with_cosine_bugs(shading.eval(wi).0, shading, wi, false);
             return Some((wi, value / pdf, pdf));
         }
         let wi = shading.frame.to_world(sample.wi);
         if (wi.dot(shading.n_geo) < 0.0) != (sample.wi.z < 0.0) && !shading.bsdf.is_fibre() {
             return None;
         }
-        let weight = self.scaled(sample.weight, shading, wi, false);
-        Some(match self.bugs.chosen {
-            Chosen::Undivided => (wi, weight * sample.pdf, sample.pdf),
-            Chosen::LocalFrame => (sample.wi, weight, sample.pdf),
+        let weight = self.with_cosine_bugs(sample.weight, shading, wi, false);
+        Some(match self.bugs.direction_sampling {
+            DirectionSampling::Undivided => (wi, weight * sample.pdf, sample.pdf),
+            DirectionSampling::LocalFrame => (sample.wi, weight, sample.pdf),
             _ => (wi, weight, sample.pdf),
         })
     }

@@ -174,7 +174,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the indices are not swapped when a ray leaves the glass",
         "leaving: eta = n / 1",
         "leaving: eta = 1 / n",
-        |v, _| v.bugs.bounces.glass = Glass::NotSwapped,
+        |v, _| v.bugs.bounces.glass = Glass::IndicesNotSwapped,
     ),
     row(
         "not-bent",

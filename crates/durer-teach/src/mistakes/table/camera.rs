@@ -15,7 +15,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "rays pass through the corners of pixels instead of their centers",
         "x = (i + 0.5) / n",
         "x = i / n",
-        |v, corner| v.aim.place = Vec2::new(corner as u32 as f32 % 2.0, (0.5 * corner).floor()),
+        |v, corner| v.camera_bugs.sample_position = Vec2::new(corner as u32 as f32 % 2.0, (0.5 * corner).floor()),
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
     row(
@@ -24,7 +24,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "there is one ray per pixel, but the reference uses many",
         "the mean of many samples",
         "one ray through the center of each pixel",
-        |v, _| v.aim.rays = RayCount::One,
+        |v, _| v.camera_bugs.rays = RayCount::One,
     ),
     row(
         "many-rays",
@@ -32,7 +32,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "each pixel is the mean of many rays, but the reference uses one",
         "one ray through the center of each pixel",
         "the mean of many samples",
-        |v, _| v.aim.rays = RayCount::Sixteen,
+        |v, _| v.camera_bugs.rays = RayCount::Sixteen,
     ),
     row(
         "border-pixels",
@@ -56,7 +56,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "in a non-square picture, the angle spans the smaller side instead of the larger one",
         "larger side from -1 to 1, the other less",
         "smaller side from -1 to 1, the other more",
-        |v, _| v.aim.aspect = Aspect::Smaller,
+        |v, _| v.camera_bugs.aspect = Aspect::Smaller,
     ),
     row(
         "aspect-other-axis",
@@ -64,7 +64,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the aspect ratio is applied to the wrong axis, or divides instead of multiplying",
         "y *= height / width",
         "y *= width / height",
-        |v, _| v.aim.aspect = Aspect::Turned,
+        |v, _| v.camera_bugs.aspect = Aspect::Turned,
     ),
     row(
         "angle-inverted",
@@ -114,7 +114,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "size without the half, or halved twice",
         |v, factor| {
             if v.angle().is_none() {
-                v.aim.scale *= factor;
+                v.camera_bugs.scale *= factor;
             }
         },
     )
@@ -128,7 +128,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         |v, _| {
             let raw = v.world.camera_rules().up != UpRule::Perpendicular;
             v.world.edit().camera_rules.up = if raw { UpRule::Perpendicular } else { UpRule::Raw };
-            v.reframe();
+            v.update_camera_basis();
         },
     ),
     row(
@@ -139,7 +139,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "v = normalize(up)",
         |v, _| {
             v.world.edit().camera_rules.up = UpRule::Skew;
-            v.reframe();
+            v.update_camera_basis();
         },
     ),
     row(
@@ -200,7 +200,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the picture shows {} times as much to each side as it should",
         "x from -tan(angle / 2) to tan(angle / 2)",
         "another angle, or a wrong factor",
-        |v, factor| v.aim.scale *= factor,
+        |v, factor| v.camera_bugs.scale *= factor,
     )
     .with(Values::Numbers(&[0.8, 1.2, 1.5])),
 ];
@@ -212,6 +212,6 @@ fn tan(degrees: f32) -> f32 {
 /// Scales the picture of a perspective camera by a factor that depends on its field of view.
 fn scale(v: &mut super::SceneVariant, factor: impl Fn(f32) -> f32) {
     if let Some(angle) = v.angle() {
-        v.aim.scale *= factor(angle);
+        v.camera_bugs.scale *= factor(angle);
     }
 }

@@ -1,8 +1,8 @@
 //! Mistakes in intersections, normals and transforms.
 
 use super::{Mistake, Values, row};
-use crate::mistakes::bugs::{Ball, BehindOrigin, HitChoice, Normals, Roots};
-use crate::mistakes::variant::{TaughtShapes, taught_shapes};
+use crate::mistakes::bugs::{BehindOrigin, HitChoice, Normals, Roots, SphereNormal};
+use crate::mistakes::variant::{CourseShape, course_shape};
 use durer_render::world::Geometry;
 use durer_scene::dialect::{MeshNormals, Quirk};
 use durer_scene::scene::{MatrixOp, MatrixRules};
@@ -50,7 +50,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "interpolated normals of a smooth mesh are not normalised",
         "N = normalize(a Na + b Nb + c Nc)",
         "N = a Na + b Nb + c Nc",
-        |v, _| v.bugs.long_mixed = true,
+        |v, _| v.bugs.unnormalized_mesh_normals = true,
     ),
     row(
         "normals-flat",
@@ -108,7 +108,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the weights of smooth normals belong to the wrong corners: {a b c|b c a|c a b|b a c|a c b|c b a} for a b c",
         "N = (1 - b - c) Na + b Nb + c Nc",
         "the weights or the normals in another order",
-        |v, order| v.bugs.mixed_otherwise = order as usize,
+        |v, order| v.bugs.normal_permutation = order as usize,
     )
     .with(Values::Only(&[1.0, 2.0, 3.0, 4.0, 5.0])),
     row(
@@ -117,7 +117,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "normals of spheres {are taken from the origin, not from the centre|are not normalised}",
         "N = normalize(p - center)",
         "N = {normalize(p)|p - center}",
-        |v, how| v.bugs.balls = if how == 0.0 { Ball::Position } else { Ball::Long },
+        |v, how| v.bugs.sphere_normals = if how == 0.0 { SphereNormal::Position } else { SphereNormal::Long },
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
@@ -127,7 +127,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "D = b^2 - 4 a c with b = 2 d.(o - center), t = (-b - sqrt(D)) / 2a; or D = b^2 - a c with b = d.(o - center), t = (-b - sqrt(D)) / a",
         "b = d.(o - center), {D = b^2 - 4 a c, t = (-b - sqrt(D)) / 2a|D = b^2 - 4 a c, t = (-b - sqrt(D)) / a|D = b^2 - a c, t = (-b - sqrt(D)) / 2a}",
         |v, how| {
-            v.bugs.pick = HitChoice::Roots([Roots::FourHalf, Roots::FourWhole, Roots::TwiceA][(how as usize).min(2)]);
+            v.bugs.hit_choice = HitChoice::Roots([Roots::FourHalf, Roots::FourWhole, Roots::TwiceA][(how as usize).min(2)]);
         },
     )
     .with(Values::Only(&[0.0, 1.0, 2.0])),
@@ -137,7 +137,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "triangles lack the test {a >= 0, which is b + c <= 1|b >= 0|c >= 0}: they extend beyond that side",
         "b >= 0 && c >= 0 && b + c <= 1",
         "{b >= 0 && c >= 0|c >= 0 && b + c <= 1|b >= 0 && b + c <= 1}",
-        |v, corner| v.wedges(corner as usize),
+        |v, corner| v.extend_beyond_side(corner as usize),
     )
     .with(Values::Only(&[0.0, 1.0, 2.0])),
     row(
@@ -146,7 +146,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "{surfaces|triangles} that are seen from behind are not hit",
         "hits count from either side",
         "if (dot(N, d) > 0) return false",
-        |v, triangles| v.bugs.pick = HitChoice::Fronts(triangles > 0.0),
+        |v, triangles| v.bugs.hit_choice = HitChoice::Fronts(triangles > 0.0),
     )
     .with(Values::Only(&[1.0, 0.0])),
     row(
@@ -155,7 +155,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "in a mesh, the {first|last} triangle that is hit is used instead of the nearest",
         "for each triangle if (t < best) best = t",
         "for each triangle {if (hit) return true|if (hit) best = t}",
-        |v, last| v.bugs.pick = if last == 0.0 { HitChoice::FirstOfMesh } else { HitChoice::LastOfMesh },
+        |v, last| v.bugs.hit_choice = if last == 0.0 { HitChoice::FirstOfMesh } else { HitChoice::LastOfMesh },
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
@@ -164,7 +164,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the ray's direction is transformed to object space like a point, including the translation",
         "d' = M^-1 (d, 0)",
         "d' = M^-1 (d, 1)",
-        |v, _| v.bugs.pick = HitChoice::MovedDirection,
+        |v, _| v.bugs.hit_choice = HitChoice::MovedDirection,
     ),
     row(
         "parallelograms",
@@ -199,7 +199,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the far side of spheres is visible: the greater root is used",
         "t = (-b - sqrt(D)) / 2a, unless that is less than t_min",
         "t = (-b + sqrt(D)) / 2a",
-        |v, _| v.bugs.pick = HitChoice::FarSpheres,
+        |v, _| v.bugs.hit_choice = HitChoice::FarSpheres,
     ),
     row(
         "normals-faced",
@@ -240,7 +240,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "M = M1 * M2 * M3",
         "M = M3 * M2 * M1",
         |v, _| {
-            v.place(&|ops, rules| {
+            v.set_transforms(&|ops, rules| {
                 let reversed: Vec<MatrixOp> = ops.iter().rev().copied().collect();
                 MatrixOp::product(&reversed, rules)
             });
@@ -252,7 +252,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "angles of rotations are interpreted as radians",
         "angle * pi / 180",
         "angle",
-        |v, _| v.place(&|ops, rules| turned(ops, rules, f32::to_degrees)),
+        |v, _| v.set_transforms(&|ops, rules| turned(ops, rules, f32::to_degrees)),
     ),
     row(
         "rotation-negated",
@@ -260,7 +260,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "rotations have the wrong sign",
         "rotation by angle",
         "rotation by -angle, or the transposed matrix",
-        |v, _| v.place(&|ops, rules| turned(ops, rules, |angle| -angle)),
+        |v, _| v.set_transforms(&|ops, rules| turned(ops, rules, |angle| -angle)),
     ),
     row(
         "rotation-axis",
@@ -274,7 +274,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
                 1 => |op| exchanged(op, 1, 2),
                 _ => |op| exchanged(op, 0, 2),
             };
-            v.place(&|ops: &[MatrixOp], rules| MatrixOp::product(&ops.iter().map(axes).collect::<Vec<_>>(), rules));
+            v.set_transforms(&|ops: &[MatrixOp], rules| MatrixOp::product(&ops.iter().map(axes).collect::<Vec<_>>(), rules));
         },
     )
     .with(Values::Only(&[0.0, 1.0, 2.0])),
@@ -285,7 +285,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "translation by (x, y, z)",
         "translation by (-x, -y, -z)",
         |v, _| {
-            v.place(&|ops: &[MatrixOp], rules| {
+            v.set_transforms(&|ops: &[MatrixOp], rules| {
                 let back = |op: &MatrixOp| if let MatrixOp::Translate(by) = *op { MatrixOp::Translate(-by) } else { *op };
                 MatrixOp::product(&ops.iter().map(back).collect::<Vec<_>>(), rules)
             });
@@ -298,7 +298,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "scale by s",
         "scale by 1 / s",
         |v, _| {
-            v.place(&|ops: &[MatrixOp], rules| {
+            v.set_transforms(&|ops: &[MatrixOp], rules| {
                 let inverse = |op: &MatrixOp| match *op {
                     MatrixOp::Scale(by) => MatrixOp::Scale(by.recip()),
                     MatrixOp::UniformScale(by) => MatrixOp::UniformScale(by.recip()),
@@ -309,7 +309,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         },
     ),
     row("transforms-ignored", "transforms", "transforms have no effect", "M = M1 * M2 * M3", "M = identity", |v, _| {
-        v.place(&|_, _| DAffine3::IDENTITY)
+        v.set_transforms(&|_, _| DAffine3::IDENTITY)
     }),
     row(
         "transforms-inverted",
@@ -317,7 +317,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "objects are transformed by the inverse of M",
         "ray to object space by M^-1",
         "ray to object space by M",
-        |v, _| v.place(&|ops, rules| MatrixOp::product(ops, rules).inverse()),
+        |v, _| v.set_transforms(&|ops, rules| MatrixOp::product(ops, rules).inverse()),
     ),
     row(
         "plane-negated",
@@ -397,7 +397,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the farthest object is visible instead of the nearest",
         "if (t < best) best = t",
         "if (t > best) best = t",
-        |v, _| v.bugs.pick = HitChoice::FarthestObject,
+        |v, _| v.bugs.hit_choice = HitChoice::FarthestObject,
     ),
     row(
         "farthest-triangle",
@@ -405,7 +405,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the farthest object is visible, and of meshes the farthest triangle",
         "if (t < best) best = t",
         "if (t > best) best = t",
-        |v, _| v.bugs.pick = HitChoice::FarthestTriangle,
+        |v, _| v.bugs.hit_choice = HitChoice::FarthestTriangle,
     ),
     row(
         "last-triangle",
@@ -413,7 +413,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the last object in the file hides all others, and the last triangle of a mesh hides its others",
         "if (t < best) best = t",
         "if (hit) best = t",
-        |v, _| v.bugs.pick = HitChoice::LastTriangle,
+        |v, _| v.bugs.hit_choice = HitChoice::LastTriangle,
     ),
     row(
         "near-roots",
@@ -421,7 +421,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "only the nearer root of spheres is tested: rays that start inside do not hit them",
         "t = the least root > t_min",
         "t = the lesser root, or nothing",
-        |v, _| v.bugs.pick = HitChoice::NearRoots,
+        |v, _| v.bugs.hit_choice = HitChoice::NearRoots,
     ),
     row(
         "last-hit",
@@ -429,7 +429,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the last hit along the ray is used instead of the first, such as the far root of spheres",
         "t = the least root > t_min",
         "t = the greatest root",
-        |v, _| v.bugs.pick = HitChoice::Last,
+        |v, _| v.bugs.hit_choice = HitChoice::Last,
     ),
     row(
         "last-written",
@@ -437,7 +437,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the last object in the file hides all others: hits are not compared by t",
         "if (t < best) best = t",
         "best = t",
-        |v, _| v.bugs.pick = HitChoice::LastWritten,
+        |v, _| v.bugs.hit_choice = HitChoice::LastInFile,
     ),
     row(
         "first-written",
@@ -445,7 +445,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the first object in the file hides all others: a group stops at its first hit",
         "for each object hit |= object.intersect(...)",
         "for each object if (object.intersect(...)) return true",
-        |v, _| v.bugs.pick = HitChoice::FirstWritten,
+        |v, _| v.bugs.hit_choice = HitChoice::FirstInFile,
     ),
     row(
         "hits-behind",
@@ -463,11 +463,11 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "every kind has a working intersect(...)",
         "one that always returns false",
         |v, kind| {
-            v.world.edit().objects.retain(|object| match taught_shapes(&object.geometry) {
-                Some(TaughtShapes::Sphere) => kind != 0.0,
-                Some(TaughtShapes::Plane) => kind != 1.0,
-                Some(TaughtShapes::Triangle) => kind != 2.0,
-                Some(TaughtShapes::Mesh) => kind != 3.0,
+            v.world.edit().objects.retain(|object| match course_shape(&object.geometry) {
+                Some(CourseShape::Sphere) => kind != 0.0,
+                Some(CourseShape::Plane) => kind != 1.0,
+                Some(CourseShape::Triangle) => kind != 2.0,
+                Some(CourseShape::Mesh) => kind != 3.0,
                 None => true,
             });
             v.objects(|_| {});
@@ -475,13 +475,13 @@ pub(super) const MISTAKES: &[Mistake] = &[
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
     row("translations-ignored", "transforms", "translations have no effect", "M = T * R * S", "M without T", |v, _| {
-        v.place(&|ops, rules| without(ops, rules, |op| matches!(op, MatrixOp::Translate(_))))
+        v.set_transforms(&|ops, rules| without(ops, rules, |op| matches!(op, MatrixOp::Translate(_))))
     }),
     row("scales-ignored", "transforms", "scales have no effect", "M = T * R * S", "M without S", |v, _| {
-        v.place(&|ops, rules| without(ops, rules, |op| matches!(op, MatrixOp::Scale(_) | MatrixOp::UniformScale(_))));
+        v.set_transforms(&|ops, rules| without(ops, rules, |op| matches!(op, MatrixOp::Scale(_) | MatrixOp::UniformScale(_))));
     }),
     row("rotations-ignored", "transforms", "rotations have no effect", "M = T * R * S", "M without R", |v, _| {
-        v.place(&|ops, rules| {
+        v.set_transforms(&|ops, rules| {
             without(ops, rules, |op| {
                 matches!(op, MatrixOp::XRotate(_) | MatrixOp::YRotate(_) | MatrixOp::ZRotate(_) | MatrixOp::Rotate(..))
             })

@@ -92,7 +92,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the highlights use the other model: Phong's (R.L) instead of Blinn's (N.H), or the reverse",
         "as in that year's program: max(0, dot(N, norm(L + V))) or max(0, dot(R, L))",
         "the other",
-        |v, _| v.other_highlights(),
+        |v, _| v.swap_highlight_model(),
     ),
     row(
         "highlight-cosine",

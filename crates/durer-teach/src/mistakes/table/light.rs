@@ -144,7 +144,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "each light replaces the ones before it, so only the last one is visible",
         "color += ...",
         "color = ambient * kd + ...",
-        |v, seen| v.bugs.sum = if seen == 0.0 { LightSum::LastOnly } else { LightSum::LastSeen },
+        |v, seen| v.bugs.sum = if seen == 0.0 { LightSum::LastOnly } else { LightSum::LastUnoccluded },
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(
@@ -225,7 +225,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "light is divided by its distance, regardless of the scene",
         "I = color / (a0 + a1 d + a2 d^2)",
         "I = color / d",
-        |v, _| v.bugs.lights.fading = Attenuation::Linear,
+        |v, _| v.bugs.lights.attenuation = Attenuation::Linear,
     ),
     row(
         "falloff-1-over-d2",
@@ -233,7 +233,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "light is divided by the square of its distance, regardless of the scene",
         "I = color / (a0 + a1 d + a2 d^2)",
         "I = color / (d * d)",
-        |v, _| v.bugs.lights.fading = Attenuation::Square,
+        |v, _| v.bugs.lights.attenuation = Attenuation::Square,
     ),
     row(
         "falloff-multiplied",
@@ -241,7 +241,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "light increases with distance: it is multiplied by the falloff instead of divided",
         "I = color / (a0 + a1 d + a2 d^2)",
         "I = color * (a0 + a1 d + a2 d^2)",
-        |v, _| v.bugs.lights.fading = Attenuation::Multiplied,
+        |v, _| v.bugs.lights.attenuation = Attenuation::Multiplied,
     ),
     row(
         "falloff-without-one",
@@ -430,7 +430,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "light is divided by the square root of its falloff",
         "I = color / (a0 + a1 d + a2 d^2)",
         "I = color / sqrt(a0 + a1 d + a2 d^2)",
-        |v, _| v.bugs.lights.fading = Attenuation::Root,
+        |v, _| v.bugs.lights.attenuation = Attenuation::Root,
     ),
     row(
         "falloff-squared-twice",
@@ -438,7 +438,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the distance is squared twice before light is divided by it",
         "I = color / (a0 + a1 d + a2 d^2)",
         "d = dot(v, v), I = color / (a0 + a1 d + a2 d^2)",
-        |v, _| v.bugs.lights.fading = Attenuation::SquaredTwice,
+        |v, _| v.bugs.lights.attenuation = Attenuation::SquaredTwice,
     ),
     row(
         "ambient-factor",

@@ -22,7 +22,7 @@ pub struct Mistake {
     pub name: &'static str,
     /// Description, without a full stop. `{}` stands for the value; `{a|b|c}` selects an
     /// alternative by the value, from 0.
-    pub words: &'static str,
+    pub description: &'static str,
     /// The correct code.
     pub right: &'static str,
     /// The probable wrong code.
@@ -32,7 +32,7 @@ pub struct Mistake {
     /// Values with which the mistake is tried.
     pub values: Values,
     /// Applies the mistake with a value to a variant of the scene.
-    pub make: fn(&mut SceneVariant, f32),
+    pub apply: fn(&mut SceneVariant, f32),
 }
 
 /// Values with which the search tries a mistake, such as factors or indices of lights.
@@ -72,7 +72,7 @@ pub const MISTAKES: [&[Mistake]; 7] = [
 ];
 
 /// Finds a mistake by name.
-pub fn of_name(name: &str) -> Option<&'static Mistake> {
+pub fn mistake_by_name(name: &str) -> Option<&'static Mistake> {
     MISTAKES.iter().copied().flatten().find(|mistake| mistake.name == name)
 }
 
@@ -85,7 +85,7 @@ pub(in crate::mistakes) const fn row(
     wrong: &'static str,
     make: fn(&mut SceneVariant, f32),
 ) -> Mistake {
-    Mistake { name, words, right, wrong, step, values: Values::One, make }
+    Mistake { name, description: words, right, wrong, step, values: Values::One, apply: make }
 }
 
 impl Mistake {
@@ -101,13 +101,13 @@ impl Mistake {
 
     /// Returns the description with a value filled in.
     pub fn describe(&self, value: f32) -> String {
-        filled(self.words, value)
+        fill_in(self.description, value)
     }
 
     /// Returns the correct code and the probable wrong code, in the formulas of a scene.
-    pub fn forms(&self, value: f32, formulas: &Formulas) -> [String; 2] {
+    pub fn code(&self, value: f32, formulas: &Formulas) -> [String; 2] {
         let messages =
-            |form| filled(form, value).replace(ATTENUATION, formulas.fading).replace("N.H", formulas.highlight);
+            |form| fill_in(form, value).replace(ATTENUATION, formulas.fading).replace("N.H", formulas.highlight);
         [self.right, self.wrong].map(messages)
     }
 }
@@ -142,7 +142,7 @@ impl Formulas {
 }
 
 /// Inserts a value into a text, and resolves each `{a|b|c}`.
-fn filled(words: &str, value: f32) -> String {
+fn fill_in(words: &str, value: f32) -> String {
     let mut text = String::new();
     let mut rest = words;
     while let Some((before, after)) = rest.split_once('{') {

@@ -2,7 +2,7 @@
 //! from the pictures alone.
 
 use super::{Mistake, Values, row};
-use crate::mistakes::bugs::{OutputBug, PictureTurn};
+use crate::mistakes::bugs::{OutputBug, PixelOrder};
 
 /// Usual gamma exponents; 0 stands for the sRGB curve.
 const POWERS: Values = Values::Only(&[0.0, 2.2, 2.0, 1.8, 2.4]);
@@ -15,7 +15,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the picture is mirrored left to right",
         "u = cross(w, up), x from left to right",
         "u = cross(up, w), or x from right to left",
-        |v, _| v.turn.columns_back ^= true,
+        |v, _| v.pixel_order.columns_back ^= true,
     ),
     row(
         "upside-down",
@@ -23,7 +23,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the picture is upside down",
         "rows counted from the top where y points up",
         "row 0 written as the lowest, or read so",
-        |v, _| v.turn.rows_back ^= true,
+        |v, _| v.pixel_order.rows_back ^= true,
     ),
     row(
         "turned",
@@ -32,8 +32,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "d = D w + x u + y v",
         "d = D w - x u - y v",
         |v, _| {
-            v.turn.columns_back ^= true;
-            v.turn.rows_back ^= true;
+            v.pixel_order.columns_back ^= true;
+            v.pixel_order.rows_back ^= true;
         },
     ),
     row(
@@ -42,7 +42,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "columns and rows are swapped",
         "pixel(i, j): i the column, j the row",
         "pixel(j, i)",
-        |v, _| v.turn.exchange = true,
+        |v, _| v.pixel_order.exchange = true,
     ),
     row(
         "bgr",
@@ -50,7 +50,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "red and blue are swapped",
         "red, green, blue in the order of the format",
         "blue, green, red",
-        |v, _| v.turn.channels = 1,
+        |v, _| v.pixel_order.channels = 1,
     ),
     row(
         "channels",
@@ -58,7 +58,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the channels are in another order: {green and blue are exchanged|red and green are exchanged|its red, green and blue are green, blue and red|its red, green and blue are blue, red and green}",
         "red, green, blue in the order of the format",
         "another order, or a pixel that begins at another byte",
-        |v, order| v.turn.channels = 2 + order as u8,
+        |v, order| v.pixel_order.channels = 2 + order as u8,
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
     row(
@@ -68,8 +68,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "rows and columns from 0",
         "rows or columns from 1",
         |v, way| {
-            const WAYS: [(i32, i32); 4] = [(0, -1), (0, 1), (-1, 0), (1, 0)];
-            v.turn = PictureTurn { moved: WAYS[way as usize % 4], black_border: way < 4.0, rolled: way >= 8.0, ..v.turn };
+            const DIRECTIONS: [(i32, i32); 4] = [(0, -1), (0, 1), (-1, 0), (1, 0)];
+            v.pixel_order = PixelOrder { moved: DIRECTIONS[way as usize % 4], black_border: way < 4.0, rolled: way >= 8.0, ..v.pixel_order };
         },
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0])),
@@ -107,7 +107,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the sRGB curve (gamma) is applied once too often",
         "value = c * 255",
         "value = pow(c, 1 / 2.2) * 255",
-        |v, power| v.output = OutputBug::CurveMore(power),
+        |v, power| v.output = OutputBug::ExtraCurve(power),
     )
     .with(POWERS),
     row(
@@ -116,7 +116,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "the sRGB curve (gamma) is missing once, or undone",
         "value = srgb(c) * 255 if the reference has the curve, else c * 255",
         "one curve less: value = c * 255, or pow(c, 2.2) * 255",
-        |v, power| v.output = OutputBug::CurveLess(power),
+        |v, power| v.output = OutputBug::MissingCurve(power),
     )
     .with(POWERS),
     row(
@@ -126,8 +126,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "one ray per pixel",
         "one ray per two by two pixels",
         |v, _| {
-            v.turn.halved = true;
-            v.aim.place = durer_scene::math::Vec2::ONE;
+            v.pixel_order.halved = true;
+            v.camera_bugs.sample_position = durer_scene::math::Vec2::ONE;
         },
     ),
     row("negative", "flat", "the picture is a negative: bright and dark are swapped", "c", "1 - c", |v, _| {

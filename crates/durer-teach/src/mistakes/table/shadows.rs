@@ -1,7 +1,7 @@
 //! Mistakes in shadow rays.
 
 use super::{Mistake, Values, row};
-use crate::mistakes::bugs::{Reach, ShadowDirection};
+use crate::mistakes::bugs::{ShadowDirection, ShadowRayEnd};
 
 /// Common mistakes in shadow rays.
 pub(super) const MISTAKES: &[Mistake] = &[
@@ -55,7 +55,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "in its shadow, a light still contributes a fraction of {}",
         "if (occluded) continue",
         "if (occluded) I *= {}",
-        |v, left| v.bugs.shadows.left = left,
+        |v, left| v.bugs.shadows.remaining_light = left,
     )
     .with(Values::Numbers(&[0.5, 0.2])),
     row(
@@ -93,7 +93,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "shadow rays point away from the light",
         "Ray(p, L)",
         "Ray(p, -L)",
-        |v, _| v.bugs.shadows.way = ShadowDirection::Away,
+        |v, _| v.bugs.shadows.direction = ShadowDirection::Away,
     ),
     row(
         "shadows-along-normal",
@@ -101,7 +101,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "shadow rays follow the normal instead of pointing to the light",
         "Ray(p, L)",
         "Ray(p, N)",
-        |v, _| v.bugs.shadows.way = ShadowDirection::Normal,
+        |v, _| v.bugs.shadows.direction = ShadowDirection::Normal,
     ),
     row(
         "shadows-not-of-glass",
@@ -133,7 +133,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "shadow rays to point lights end {at distance 1|behind the light: the ray is not normalised, and t goes to the distance}",
         "occluded if hit at eps < t < distance to the light",
         "{t < 1 with L = normalize(position - p)|t < distance with L = position - p}",
-        |v, squared| v.bugs.shadows.reach = if squared == 0.0 { Reach::One } else { Reach::Squared },
+        |v, squared| v.bugs.shadows.ray_end = if squared == 0.0 { ShadowRayEnd::One } else { ShadowRayEnd::Squared },
     )
     .with(Values::Only(&[0.0, 1.0])),
     row(

@@ -1,42 +1,45 @@
 //! Checks of lights with attenuation: how much light arrives, and whether the divisor is positive.
 
 use super::finding::{Finding, number, vector};
-use super::lights::{each, place, useless, written};
+use super::lights::{description, for_each_verdict, no_contribution, span};
 use super::scene_probe::SceneProbe;
 use super::shapes::point;
-use super::verdict::{Verdict, divisor};
+use super::verdict::{LightVerdict, attenuation};
 use durer_diag::{Diagnostic, Span};
 use durer_scene::dialect::Dialect;
 use durer_scene::light::Illuminate as _;
 use durer_scene::math::Vec3;
 
 /// Reports lights whose light is too weak when it arrives at the visible surfaces.
-pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
-    each(scout, |light, verdict| {
-        let Verdict::Faint(most) = verdict else { return None };
-        let message = match written(scout, light)?.value.position() {
+pub(super) fn faint(scene_probe: &SceneProbe) -> Vec<Finding> {
+    for_each_verdict(scene_probe, |light, verdict| {
+        let LightVerdict::Faint(most) = verdict else { return None };
+        let message = match description(scene_probe, light)?.value.position() {
             None => format!("this light contributes at most {}", number(most)),
             Some(_) => format!("this light fades to {} before it arrives", number(most)),
         };
-        let (diagnostic, span) = useless(scout, light, message)?;
+        let (diagnostic, span) = no_contribution(scene_probe, light, message)?;
         let factor = 0.8 / most.max(1e-30);
-        let written = &written(scout, light)?.value;
-        let Some(point) = point(written) else {
-            let color = written.color() * factor;
+        let material = &description(scene_probe, light)?.value;
+        let Some(point) = point(material) else {
+            let color = material.color() * factor;
             let help = format!("it is {} times too weak: try `color {}`", number(factor), vector(color));
-            return Some(scout.at_value(diagnostic, span, &["color"]).help(help));
+            return Some(scene_probe.at_value(diagnostic, span, &["color"]).help(help));
         };
         // If the light's colour is plausible, the attenuation is wrong.
-        let value = scout.value(span, &["attenuation", "falloff"]).filter(|_| point.color.max_element() > 0.2);
+        let value =
+            scene_probe.field_span(span, &["attenuation", "falloff"]).filter(|_| point.color.max_element() > 0.2);
         if let (Some(value), Some(a)) = (value, point.attenuation.filter(|_| point.falloff.is_none())) {
             let reversed = Vec3::new(a.z, a.y, a.x);
-            if let Some(text) = fits(scout, light, reversed).then(|| vector(reversed)) {
+            if let Some(text) = is_usual_brightness(scene_probe, light, reversed).then(|| vector(reversed)) {
                 let help = format!("the three coefficients belong to 1, d and d²: did you mean `attenuation {text}`?");
                 return Some(diagnostic.at(value).fix(value, text).help(help));
             }
         }
         let (value, text, field) = match (value, point.falloff, point.attenuation) {
-            (Some(value), Some(falloff), _) => (value, number(falloff / factor), scout.text(before(scout, value))),
+            (Some(value), Some(falloff), _) => {
+                (value, number(falloff / factor), scene_probe.text(previous_word(scene_probe, value)))
+            }
             (Some(value), None, Some(a)) => {
                 // The constant coefficient limits brightness near the light; raise it to its usual
                 // value at most.
@@ -44,8 +47,8 @@ pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
                 (value, vector(Vec3::new(scaled.x.max(a.x.min(1.0)), scaled.y, scaled.z)), "attenuation".into())
             }
             // The dialect's default attenuation applies unless the scene file sets another.
-            _ => match (scout.value(span, &["color"])?, divisor(&scout.world().lights()[light])) {
-                (color, Some(a)) if scout.subject.dialect == Dialect::F23 => {
+            _ => match (scene_probe.field_span(span, &["color"])?, attenuation(&scene_probe.world().lights()[light])) {
+                (color, Some(a)) if scene_probe.input.dialect == Dialect::F23 => {
                     let after = Span { start: color.end, ..color };
                     let text = format!(" attenuation {}", number(a.z / factor));
                     let help = format!("the default is {} here: try `{}`", number(a.z), text.trim());
@@ -61,19 +64,19 @@ pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
 
 /// Returns true if other attenuation coefficients would give the light a usual brightness at the
 /// visible surfaces.
-fn fits(scout: &SceneProbe, light: usize, factors: Vec3) -> bool {
-    let Some(point) = point(&scout.world().lights()[light]) else { return false };
-    let faces = scout.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.cosine > 0.1));
-    let left = faces.map(|(probe, seen)| {
-        let d = (probe.ray.at(seen.t) - point.position).length();
+fn is_usual_brightness(scene_probe: &SceneProbe, light: usize, factors: Vec3) -> bool {
+    let Some(point) = point(&scene_probe.world().lights()[light]) else { return false };
+    let faces = scene_probe.hits().filter(|(_, hit)| hit.contribution(light).is_some_and(|lit| lit.cosine > 0.1));
+    let left = faces.map(|(probe, hit)| {
+        let d = (probe.ray.at(hit.t) - point.position).length();
         point.color.max_element() / (factors.x + factors.y * d + factors.z * d * d)
     });
     (0.2..4.0).contains(&left.fold(0.0, f32::max))
 }
 
 /// Returns the span of the word before a value.
-fn before(scout: &SceneProbe, value: Span) -> Span {
-    let bytes = scout.subject.files.bytes(value.file).unwrap_or_default();
+fn previous_word(scene_probe: &SceneProbe, value: Span) -> Span {
+    let bytes = scene_probe.input.files.bytes(value.file).unwrap_or_default();
     let head = &bytes[..value.start as usize];
     let end = head.iter().rposition(|b| !b.is_ascii_whitespace()).map_or(0, |at| at + 1);
     let start = head[..end].iter().rposition(u8::is_ascii_whitespace).map_or(0, |at| at + 1);
@@ -81,48 +84,48 @@ fn before(scout: &SceneProbe, value: Span) -> Span {
 }
 
 /// Reports lights whose attenuation divides by zero or by a negative number.
-pub(super) fn divides(scout: &SceneProbe) -> Vec<Finding> {
-    let found = scout.verdicts().iter().enumerate().filter(|(_, verdict)| **verdict == Verdict::Divides);
-    found
+pub(super) fn invalid_divisor(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let findings = scene_probe.verdicts().iter().enumerate().filter(|(_, verdict)| **verdict == LightVerdict::Divides);
+    findings
         .filter_map(|(light, _)| {
-            let span = place(scout, light)?;
-            let divisor = divisor(&scout.world().lights()[light]).unwrap_or_default();
+            let span = span(scene_probe, light)?;
+            let divisor = attenuation(&scene_probe.world().lights()[light]).unwrap_or_default();
             let zero = divisor == Vec3::ZERO;
             let message = match zero {
-                true => match scout.value(span, &["attenuation", "falloff"]) {
+                true => match scene_probe.field_span(span, &["attenuation", "falloff"]) {
                     Some(value) => {
                         format!(
                             "this light divides by zero: its {} is {}",
-                            scout.text(before(scout, value)),
-                            scout.text(value)
+                            scene_probe.text(previous_word(scene_probe, value)),
+                            scene_probe.text(value)
                         )
                     }
                     None => "this light divides by zero: it has no attenuation".to_string(),
                 },
                 false => format!("this light is divided by numbers that are not positive: {}", vector(divisor)),
             };
-            let value = scout.value(span, &["attenuation", "falloff"]);
+            let value = scene_probe.field_span(span, &["attenuation", "falloff"]);
             let diagnostic = Diagnostic::warning(message)
                 .effect(match zero {
                     true => "its light is NaN or infinite and is left out: surfaces are black or have specks",
                     false => "it subtracts light, or its light is NaN: surfaces are black",
                 })
-                .help(match scout.value(span, &["falloff"]) {
+                .help(match scene_probe.field_span(span, &["falloff"]) {
                     Some(_) => "write a `falloff` above 0, such as `falloff 0.05`",
-                    None if scout.subject.dialect == Dialect::F23 => {
+                    None if scene_probe.input.dialect == Dialect::F23 => {
                         "write an `attenuation` above 0, such as `attenuation 0.05`"
                     }
-                    None if scout.subject.dialect == Dialect::F16 => "write a `falloff`, such as `falloff 0.05`",
+                    None if scene_probe.input.dialect == Dialect::F16 => "write a `falloff`, such as `falloff 0.05`",
                     None => "use `attenuation 1 0 0` for a light that does not fade",
                 });
-            let triple = written(scout, light).is_some_and(|l| {
+            let triple = description(scene_probe, light).is_some_and(|l| {
                 point(&l.value).is_some_and(|point| point.attenuation.is_some() && point.falloff.is_none())
             });
             let diagnostic = match value {
                 Some(value) if triple => diagnostic.fix(value, "1 0 0").at(value),
                 _ => diagnostic.at(value.unwrap_or(span)),
             };
-            Some(Finding::from(diagnostic).whole(true))
+            Some(Finding::from(diagnostic).affecting_whole_picture(true))
         })
         .collect()
 }

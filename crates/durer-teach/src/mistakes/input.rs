@@ -12,7 +12,7 @@ use durer_scene::scene::Scene;
 
 /// Maximum share of pixels in which a render of the scene may differ from the reference. Above it,
 /// no mistakes are searched for.
-pub(super) const MAX_OFF: f64 = 0.25;
+pub(super) const MAX_DIFFERENCE: f64 = 0.25;
 
 /// Input of a search for mistakes: the reference picture, the picture to diagnose, and the scene of
 /// both.
@@ -47,25 +47,25 @@ pub struct Explanation {
 #[derive(Clone, Debug, Default)]
 pub struct Diagnosis {
     /// Share of the pixels in which a render of the scene differs from the reference.
-    pub off: f64,
+    pub reference_difference: f64,
     /// Explanations of the picture. More than one if several mistakes give the same picture; empty
     /// if there is none.
-    pub named: Vec<Explanation>,
+    pub explanations: Vec<Explanation>,
     /// A mistake that reproduces nearly all of the difference, if the picture also has another
-    /// difference. `None` if `named` is not empty.
+    /// difference. `None` if `explanations` is not empty.
     pub nearly: Option<Explanation>,
     /// Remark on the pictures if no mistake is named.
     pub remark: Option<String>,
     /// The closest trials, including those that do not pass as explanations.
-    pub tried: Vec<Explanation>,
+    pub closest_trials: Vec<Explanation>,
     /// Formulas of the scene, for describing the mistakes.
     pub formulas: Formulas,
 }
 
 impl Diagnosis {
     /// Returns true if a render of the scene reproduces the reference.
-    pub fn is_of_scene(&self) -> bool {
-        self.off <= MAX_OFF
+    pub fn reference_matches_scene(&self) -> bool {
+        self.reference_difference <= MAX_DIFFERENCE
     }
 }
 
@@ -79,10 +79,10 @@ pub(super) fn values(picture: &Picture, scale: Scale, transfer: Transfer) -> Vec
 }
 
 /// Returns the values of the reference, the view for rendering, and the scene without mistakes.
-pub(super) fn prepared<'a>(question: &DiagnosisInput<'a>) -> (Vec<Vec3>, View<'a>, SceneVariant<'a>) {
-    let screen = [question.reference, question.test].iter().any(|picture| picture.scale == Scale::Display);
+pub(super) fn prepare<'a>(input: &DiagnosisInput<'a>) -> (Vec<Vec3>, View<'a>, SceneVariant<'a>) {
+    let screen = [input.reference, input.test].iter().any(|picture| picture.scale == Scale::Display);
     let scale = if screen { Scale::Display } else { Scale::Linear };
-    let base = SceneVariant::new(question.scene, question.world.clone(), question.job.settings);
-    let view = View { job: question.job, scale, transfer: question.transfer, brightest: 1.0 };
-    (values(question.reference, scale, question.transfer), view, base)
+    let base = SceneVariant::new(input.scene, input.world.clone(), input.job.settings);
+    let view = View { job: input.job, scale, transfer: input.transfer, max_value: 1.0 };
+    (values(input.reference, scale, input.transfer), view, base)
 }

@@ -21,7 +21,7 @@ pub(super) struct PrimitiveContext {
 
 impl PrimitiveContext {
     /// Returns the path of a file named by a command, relative to the scene's folder.
-    pub fn seen(&self, name: &Word) -> Word {
+    pub fn resolved(&self, name: &Word) -> Word {
         match self.folder.is_empty() || name.text.starts_with(['/', '\\']) {
             true => name.clone(),
             false => Word { text: format!("{}{}", self.folder, name.text), at: name.at },
@@ -29,8 +29,8 @@ impl PrimitiveContext {
     }
 
     /// Returns this context with the folder changed to that of a file named by a command.
-    pub fn beside(&self, name: &Word) -> PrimitiveContext {
-        let text = self.seen(name).text;
+    pub fn in_folder_of(&self, name: &Word) -> PrimitiveContext {
+        let text = self.resolved(name).text;
         let folder = text.rfind(['/', '\\']).map_or("", |slash| &text[..=slash]);
         PrimitiveContext { folder: folder.into(), ..self.clone() }
     }

@@ -7,22 +7,22 @@ use durer_scene::light::Illuminate as _;
 use durer_scene::math::{Color, fp};
 
 /// Fog that transmits less than this fraction counts as opaque.
-const WALL: f32 = 0.01;
+const OPAQUE: f32 = 0.01;
 
 /// Reports a fog box that no camera ray crosses before it hits a surface.
-pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
-    let world = scout.world();
-    let (Some(fog), Some(written)) = (world.fog(), &scout.subject.scene.fog) else { return Vec::new() };
-    let Some(place) = fog.region.as_ref().filter(|_| scout.is_physical()) else { return Vec::new() };
+pub(super) fn away(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
+    let (Some(fog), Some(written)) = (world.fog(), &scene_probe.input.scene.fog) else { return Vec::new() };
+    let Some(place) = fog.region.as_ref().filter(|_| scene_probe.is_physical()) else { return Vec::new() };
     let goes_through = |probe: &super::probes::Probe| {
-        let end = probe.seen.as_ref().map_or(f32::INFINITY, |seen| seen.t);
+        let end = probe.hit.as_ref().map_or(f32::INFINITY, |hit| hit.t);
         place.bounds.clip(probe.ray.origin, probe.ray.dir).is_some_and(|(from, to)| to > 0.0 && from < end)
     };
     // Fog outside the picture can still dim visible objects.
     let around = world.bounds();
     let apart = around.is_empty()
         || (0..3).any(|axis| place.bounds.min[axis] > around.max[axis] || place.bounds.max[axis] < around.min[axis]);
-    if !apart || scout.probes.iter().any(goes_through) {
+    if !apart || scene_probe.probes.iter().any(goes_through) {
         return Vec::new();
     }
     let (min, max) = (super::finding::vector(around.min), super::finding::vector(around.max));
@@ -32,34 +32,34 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
             true => "move its `min` and `max` to where the camera looks".to_string(),
             false => format!("the bounds of the objects are `min {min} max {max}`"),
         });
-    vec![Finding::from(scout.at_value(diagnostic, written.span, &["min", "max"]))]
+    vec![Finding::from(scene_probe.at_value(diagnostic, written.span, &["min", "max"]))]
 }
 
 /// Reports fog that blocks the light.
-pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
-    let world = scout.world();
-    let (Some(fog), Some(written)) = (world.fog(), &scout.subject.scene.fog) else { return Vec::new() };
-    if !scout.is_physical() {
+pub(super) fn thick_fog(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
+    let (Some(fog), Some(written)) = (world.fog(), &scene_probe.input.scene.fog) else { return Vec::new() };
+    if !scene_probe.is_physical() {
         return Vec::new();
     }
     let span = written.span;
     let extinction = fog.extinction.max_element();
-    let mut found = Vec::new();
-    let mut ways: Vec<f32> = scout
-        .seen()
-        .filter_map(|(probe, seen)| {
+    let mut findings = Vec::new();
+    let mut ways: Vec<f32> = scene_probe
+        .hits()
+        .filter_map(|(probe, hit)| {
             let length = probe.ray.dir.length();
             let (from, to) = match &fog.region {
                 Some(place) => place.bounds.clip(probe.ray.origin, probe.ray.dir)?,
                 None => (0.0, f32::INFINITY),
             };
-            Some((to.min(seen.t) - from.max(0.0)).max(0.0) * length)
+            Some((to.min(hit.t) - from.max(0.0)).max(0.0) * length)
         })
         .collect();
     ways.sort_by(f32::total_cmp);
     let even = fog.region.as_ref().is_none_or(|place| place.density.is_none());
-    let swallowed = ways.iter().filter(|way| fp::exp(-extinction * **way) < WALL).count();
-    if even && !ways.is_empty() && swallowed * 20 > scout.seen().count() * 19 {
+    let swallowed = ways.iter().filter(|way| fp::exp(-extinction * **way) < OPAQUE).count();
+    if even && !ways.is_empty() && swallowed * 20 > scene_probe.hits().count() * 19 {
         let middle = ways[ways.len() / 2];
         let some = number(0.5 / middle);
         let diagnostic = Diagnostic::warning(format!("this fog is opaque: its extinction is {}", number(extinction)))
@@ -68,11 +68,12 @@ pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
                 number(4.6 / extinction),
                 number(middle)
             ))
-            .label(format!("hides {} of the visible surfaces", percent(swallowed, scout.seen().count())))
+            .label(format!("hides {} of the visible surfaces", percent(swallowed, scene_probe.hits().count())))
             .help(format!("`extinction` is per unit of the scene: try `extinction {some}`"));
-        let value = scout.value(span, &["extinction"]);
+        let value = scene_probe.field_span(span, &["extinction"]);
         let diagnostic = diagnostic.fix_at(value, some);
-        found.push(Finding::from(scout.at_value(diagnostic, span, &["extinction"])).whole(true));
+        findings
+            .push(Finding::from(scene_probe.at_value(diagnostic, span, &["extinction"])).affecting_whole_picture(true));
     } else if fog.region.is_none() {
         let sky = world.environment().is_some()
             || world.cube_map().is_some()
@@ -95,8 +96,8 @@ pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
                         super::finding::vector(min.round()),
                         super::finding::vector(max.round())
                     ));
-            found.push(Finding::from(diagnostic.at(span)).whole(!near));
+            findings.push(Finding::from(diagnostic.at(span)).affecting_whole_picture(!near));
         }
     }
-    found
+    findings
 }

@@ -8,30 +8,30 @@ use durer_scene::shape::tessellate::revolution;
 use glam::DVec3;
 
 /// Reads `phimax`, the sweep about the z axis in degrees; from 0 to 360, by default 360.
-pub(super) fn turn(params: &Params) -> f32 {
+pub(super) fn sweep_degrees(params: &Params) -> f32 {
     let degrees = params.float("phimax").unwrap_or(360.0);
     if degrees <= 0.0 {
-        params.report.bad(params.place("phimax"), "`phimax` must be more than 0 degrees");
+        params.report.error(params.span("phimax"), "`phimax` must be more than 0 degrees");
     }
     degrees.clamp(1e-3, 360.0)
 }
 
 fn degrees(params: &Params) -> f64 {
-    f64::from(turn(params))
+    f64::from(sweep_degrees(params))
 }
 
 /// Reads `zmin` and `zmax`, the ends along z, in ascending order. The defaults are `low` and
 /// `high`.
-pub(super) fn ends(params: &Params, [low, high]: [f32; 2]) -> [f32; 2] {
-    let given = [params.float("zmin").unwrap_or(low), params.float("zmax").unwrap_or(high)];
-    [given[0].min(given[1]), given[0].max(given[1])]
+pub(super) fn z_range(params: &Params, [low, high]: [f32; 2]) -> [f32; 2] {
+    let ends = [params.float("zmin").unwrap_or(low), params.float("zmax").unwrap_or(high)];
+    [ends[0].min(ends[1]), ends[0].max(ends[1])]
 }
 
 /// Returns the part of a sphere between two heights.
 pub(super) fn sphere(params: &Params, radius: f32, [low, high]: [f32; 2], flipped: bool) -> Option<MeshData> {
     let (low, high, radius) = (low.max(-radius), high.min(radius), f64::from(radius));
     if low >= high {
-        params.report.bad(params.place("zmin"), "no part of this sphere is between `zmin` and `zmax`");
+        params.report.error(params.span("zmin"), "no part of this sphere is between `zmin` and `zmax`");
         return None;
     }
     Some(revolution::sphere(radius, [low, high], degrees(params)).oriented(flipped))
@@ -53,9 +53,9 @@ pub(super) fn cone(params: &Params, flipped: bool) -> MeshData {
 /// Returns a paraboloid that reaches its radius at `zmax`.
 pub(super) fn paraboloid(params: &Params, flipped: bool) -> Option<MeshData> {
     let radius = f64::from(params.positive("radius").unwrap_or(1.0));
-    let [low, high] = ends(params, [0.0, 1.0]).map(f64::from);
+    let [low, high] = z_range(params, [0.0, 1.0]).map(f64::from);
     if low < 0.0 || low >= high {
-        params.report.bad(params.at, "a paraboloid needs 0 <= `zmin` < `zmax`");
+        params.report.error(params.at, "a paraboloid needs 0 <= `zmin` < `zmax`");
         return None;
     }
     Some(revolution::paraboloid(radius, [low, high], degrees(params)).oriented(flipped))
@@ -63,10 +63,12 @@ pub(super) fn paraboloid(params: &Params, flipped: bool) -> Option<MeshData> {
 
 /// Returns the surface swept by the line from `p1` to `p2` about the z axis.
 pub(super) fn hyperboloid(params: &Params, flipped: bool) -> Option<MeshData> {
-    let end = |name: &'static str, usual: DVec3| params.triple(name).map_or(usual, |p| p.as_dvec3());
+    let end = |name: &'static str, default: DVec3| params.triple(name).map_or(default, |p| p.as_dvec3());
     let (from, to) = (end("p1", DVec3::ZERO), end("p2", DVec3::ONE));
     if from.x * from.x + from.y * from.y + to.x * to.x + to.y * to.y == 0.0 || from == to {
-        params.report.bad(params.at, "a hyperboloid needs two different points, `p1` and `p2`, not both on the z axis");
+        params
+            .report
+            .error(params.at, "a hyperboloid needs two different points, `p1` and `p2`, not both on the z axis");
         return None;
     }
     Some(revolution::hyperboloid([from, to], degrees(params)).oriented(flipped))

@@ -95,7 +95,7 @@ pub(super) fn with_tangents(mut data: MeshData) -> MeshData {
 }
 
 /// Flips v: converts a mesh with v downwards to one with v upwards, and vice versa.
-pub(super) fn turned_over(mut data: MeshData) -> MeshData {
+pub(super) fn with_flipped_v(mut data: MeshData) -> MeshData {
     data.uvs.iter_mut().chain(&mut data.second_uvs).for_each(|uv| uv.y = 1.0 - uv.y);
     data
 }

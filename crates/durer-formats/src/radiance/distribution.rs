@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 
 /// Directional distribution of an emitter: a factor on its radiance for each direction of emission.
 #[derive(Debug, PartialEq)]
-pub(super) enum Spread {
+pub(super) enum DirectionalDistribution {
     Table(IntensityTable),
     /// Constant within a cone about a unit direction, and 0 outside; `degrees` is the half angle.
     Cone {
@@ -145,32 +145,34 @@ impl IntensityTable {
     }
 }
 
-impl Spread {
+impl DirectionalDistribution {
     /// Returns the factor on the radiance in a unit direction in world space; `cosine` is the
     /// cosine to the surface normal.
     pub fn at(&self, dir: DVec3, cosine: f64) -> f64 {
         match self {
-            Spread::Table(light) => light.at(dir, cosine),
-            Spread::Cone { aim, degrees, .. } => f64::from(aim.dot(dir) >= fp::sin_cos_degrees(*degrees).1),
+            DirectionalDistribution::Table(light) => light.at(dir, cosine),
+            DirectionalDistribution::Cone { aim, degrees, .. } => {
+                f64::from(aim.dot(dir) >= fp::sin_cos_degrees(*degrees).1)
+            }
         }
     }
 
     /// Returns the distance of the light's apparent origin behind the surface.
     pub fn focal_length(&self) -> f64 {
         match self {
-            Spread::Table(_) => 0.0,
-            Spread::Cone { focus, .. } => *focus,
+            DirectionalDistribution::Table(_) => 0.0,
+            DirectionalDistribution::Cone { focus, .. } => *focus,
         }
     }
 
     /// Returns the axis from which the angles are measured, and a direction perpendicular to it.
     pub fn axes(&self) -> [DVec3; 2] {
         match self {
-            Spread::Table(light) => {
+            DirectionalDistribution::Table(light) => {
                 let back = light.turn.transpose();
                 [-back.z_axis, back.x_axis].map(DVec3::normalize_or_zero)
             }
-            Spread::Cone { aim, .. } => [*aim, aim.any_orthonormal_vector()],
+            DirectionalDistribution::Cone { aim, .. } => [*aim, aim.any_orthonormal_vector()],
         }
     }
 
@@ -181,12 +183,12 @@ impl Spread {
         let side = front.cross(down);
         let whole = |steps: u32, most: f64| (0..=steps).map(move |i| most * f64::from(i) / f64::from(steps));
         let vertical: Vec<f64> = match self {
-            Spread::Table(_) => whole(180, 180.0).collect(),
+            DirectionalDistribution::Table(_) => whole(180, 180.0).collect(),
             // The edge of the cone is sharp.
-            Spread::Cone { degrees, .. } if *degrees < 179.9 => {
+            DirectionalDistribution::Cone { degrees, .. } if *degrees < 179.9 => {
                 whole(36, *degrees).chain([degrees + 0.01, 180.0]).collect()
             }
-            Spread::Cone { .. } => whole(90, 180.0).collect(),
+            DirectionalDistribution::Cone { .. } => whole(90, 180.0).collect(),
         };
         let mut horizontal: Vec<f64> = whole(72, 360.0).collect();
         let value = |around: f64, from: f64| {
@@ -196,8 +198,8 @@ impl Spread {
             // Compare angles at the edge of the cone, which is more precise than comparing the
             // cosine of a direction.
             let strength = match self {
-                Spread::Table(light) => light.at(dir, facing),
-                Spread::Cone { degrees, .. } => f64::from(from <= *degrees),
+                DirectionalDistribution::Table(light) => light.at(dir, facing),
+                DirectionalDistribution::Cone { degrees, .. } => f64::from(from <= *degrees),
             };
             // Avoid NaN where the surface is not visible and the factor is infinite.
             if share > 0.0 { (share * strength) as f32 } else { 0.0 }

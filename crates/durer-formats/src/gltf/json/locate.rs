@@ -5,8 +5,8 @@ use std::ops::Range;
 /// Returns the byte range of the value at a JSON pointer. If it does not exist, returns the range
 /// of the innermost existing value around it.
 pub(super) fn locate(text: &[u8], pointer: &str) -> Range<usize> {
-    let mut walk = Walk { text, at: 0 };
-    walk.blanks();
+    let mut walk = Cursor { text, at: 0 };
+    walk.skip_whitespace();
     'steps: for step in pointer.split('/').skip(1).map(|step| step.replace("~1", "/").replace("~0", "~")) {
         let range = walk.here();
         let opening = walk.peek();
@@ -16,25 +16,25 @@ pub(super) fn locate(text: &[u8], pointer: &str) -> Range<usize> {
         walk.at += 1;
         let mut number = 0;
         loop {
-            walk.blanks();
+            walk.skip_whitespace();
             if matches!(walk.peek(), None | Some(b'}' | b']')) {
                 return range;
             }
-            let found = match opening {
+            let span = match opening {
                 Some(b'{') => {
                     let key = walk.key();
-                    walk.blanks();
+                    walk.skip_whitespace();
                     walk.at += 1; // the colon
-                    walk.blanks();
+                    walk.skip_whitespace();
                     key == step
                 }
                 _ => number.to_string() == step,
             };
-            if found {
+            if span {
                 continue 'steps;
             }
             walk.skip();
-            walk.blanks();
+            walk.skip_whitespace();
             if walk.peek() == Some(b',') {
                 walk.at += 1;
             }
@@ -47,19 +47,19 @@ pub(super) fn locate(text: &[u8], pointer: &str) -> Range<usize> {
 /// Returns the byte offsets of the items of a top-level list.
 pub(super) fn items(text: &[u8], key: &str) -> Vec<usize> {
     let list = locate(text, &format!("/{key}"));
-    let (mut walk, mut starts) = (Walk { text, at: list.start }, Vec::new());
+    let (mut walk, mut starts) = (Cursor { text, at: list.start }, Vec::new());
     if walk.peek() != Some(b'[') {
         return starts;
     }
     walk.at += 1;
     loop {
-        walk.blanks();
+        walk.skip_whitespace();
         if matches!(walk.peek(), None | Some(b']' | b'}')) {
             return starts;
         }
         starts.push(walk.at);
         walk.skip();
-        walk.blanks();
+        walk.skip_whitespace();
         if walk.peek() == Some(b',') {
             walk.at += 1;
         }
@@ -67,17 +67,17 @@ pub(super) fn items(text: &[u8], key: &str) -> Vec<usize> {
 }
 
 /// Cursor that walks through JSON text and skips values without parsing them.
-struct Walk<'a> {
+struct Cursor<'a> {
     text: &'a [u8],
     at: usize,
 }
 
-impl Walk<'_> {
+impl Cursor<'_> {
     fn peek(&self) -> Option<u8> {
         self.text.get(self.at).copied()
     }
 
-    fn blanks(&mut self) {
+    fn skip_whitespace(&mut self) {
         while matches!(self.peek(), Some(b' ' | b'\t' | b'\n' | b'\r')) {
             self.at += 1;
         }
@@ -86,7 +86,7 @@ impl Walk<'_> {
     /// Returns the range of the value at the cursor; for an object or array, only that of its first
     /// byte.
     fn here(&self) -> Range<usize> {
-        let mut walk = Walk { ..*self };
+        let mut walk = Cursor { ..*self };
         if matches!(walk.peek(), Some(b'{' | b'[')) {
             return self.at..self.at + 1;
         }

@@ -20,12 +20,12 @@ const LIBRARY: &str = "Ashikhmin LaFortune LaFortune1 WGMDaniso WGMDiso WalterBS
 impl Reader<'_> {
     /// Warns about files that a primitive names and that do not exist, if they are of types that
     /// are not read.
-    pub fn missing(&self, primitive: &RadPrimitive) {
+    pub fn warn_missing_files(&self, primitive: &RadPrimitive) {
         for word in &primitive.texts {
             let Some((name, kind)) = word.text.rsplit_once('.') else { continue };
             let library = kind == "cal" && LIBRARY.split_whitespace().any(|known| known == name);
             if matches!(kind, "cal" | "xml" | "rtm" | "oct") && !library && !self.input.source.contains(&word.text) {
-                let message = format!("missing file {}", word.shown());
+                let message = format!("missing file {}", word.quoted());
                 self.report.warn_once("missing-file", word.at, message);
             }
         }
@@ -34,7 +34,7 @@ impl Reader<'_> {
 
 /// Removes unused materials. These are, for example, materials used only by suns, the outer side of
 /// glass, and parts of a mixture that was reduced to one of them.
-pub(super) fn keep_used(scene: &mut Scene) {
+pub(super) fn remove_unused(scene: &mut Scene) {
     let mut used = vec![false; scene.materials.len()];
     let objects = || scene.root.iter().flat_map(|root| &root.objects);
     objects().filter_map(|object| object.material).for_each(|number| used[number as usize] = true);

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 /// Maximum percentage of pixels that can differ by more than rounding.
-const MOST: f64 = 0.1;
+const MAX_DIFFERING: f64 = 0.1;
 
 /// Known pixels of official pictures that are missing: scene, position, colour.
 const PIXELS: [(&str, [usize; 2], [u8; 3]); 1] = [("glassplane", [10, 30], [41, 68, 116])];
@@ -89,7 +89,7 @@ pub fn run(durer: &Path, folder: &Path, meshes: &Path, out: &Path, only: Option<
                 let official = folder.join(format!("{name}_{ending}.png"));
                 if official.exists() {
                     let (share, largest) = difference(&read(made)?, &read(&official)?);
-                    agrees &= share <= MOST;
+                    agrees &= share <= MAX_DIFFERING;
                     messages.push(format!("{share:.3} % of the pixels differ, by {largest} at most"));
                 }
             }

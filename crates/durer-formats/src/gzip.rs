@@ -11,12 +11,12 @@ use std::sync::Arc;
 ///
 /// Errors of [`AssetSource::read`], and [`SourceError::Io`] if compressed data is damaged or
 /// exceeds the budget.
-pub fn read_unpacked(source: &dyn AssetSource, name: &str) -> Result<Arc<[u8]>, SourceError> {
+pub fn read_decompressed(source: &dyn AssetSource, name: &str) -> Result<Arc<[u8]>, SourceError> {
     let bytes = source.read(name)?;
-    if !is_packed(&bytes) {
+    if !is_gzip(&bytes) {
         return Ok(bytes);
     }
-    let all = unpacked(&bytes, source.budget()).map_err(|problem| {
+    let all = decompress(&bytes, source.budget()).map_err(|problem| {
         let error = std::io::Error::new(std::io::ErrorKind::InvalidData, problem);
         SourceError::Io { name: name.into(), error }
     })?;
@@ -25,7 +25,7 @@ pub fn read_unpacked(source: &dyn AssetSource, name: &str) -> Result<Arc<[u8]>, 
 }
 
 /// Returns true if the bytes are a gzip file.
-pub fn is_packed(bytes: &[u8]) -> bool {
+pub fn is_gzip(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\x1f\x8b")
 }
 
@@ -35,7 +35,7 @@ pub fn is_packed(bytes: &[u8]) -> bool {
 /// # Errors
 ///
 /// Returns a message if the data is damaged or would exceed the budget.
-pub fn unpacked(bytes: &[u8], budget: u64) -> Result<Arc<[u8]>, String> {
+pub fn decompress(bytes: &[u8], budget: u64) -> Result<Arc<[u8]>, String> {
     // Deflate compresses at most 1032 bytes into one. The last four bytes contain the uncompressed
     // size of the last member.
     let most = budget.min(1032 * bytes.len() as u64);
@@ -65,8 +65,8 @@ mod tests {
             encoder.finish().unwrap()
         };
         let both = [packed("a cube, "), packed("a ball")].concat();
-        assert_eq!(&*unpacked(&both, 100).unwrap(), b"a cube, a ball");
-        assert!(unpacked(&both, 13).unwrap_err().contains("too large"));
-        assert!(unpacked(&both[..both.len() - 1], 100).is_err());
+        assert_eq!(&*decompress(&both, 100).unwrap(), b"a cube, a ball");
+        assert!(decompress(&both, 13).unwrap_err().contains("too large"));
+        assert!(decompress(&both[..both.len() - 1], 100).is_err());
     }
 }

@@ -7,7 +7,7 @@ use std::ffi::OsString;
 
 /// Options of other programs: their names, the option that a command must have for the hint to
 /// apply, and the hint.
-const POINTERS: &[(&[&str], &str, &str)] = &[
+const HINTS: &[(&[&str], &str, &str)] = &[
     (&["--width", "--height", "--resolution", "--res", "-size"], "size", "use `--size 640x480`, width first"),
     (
         &["--spp", "--aa", "--antialias", "--samples-per-pixel"],
@@ -33,7 +33,7 @@ const POINTERS: &[(&[&str], &str, &str)] = &[
 ];
 
 /// Replaces clap's suggestion for an unknown option with a hint at the equivalent option.
-pub fn corrected(mut error: Error, words: &[OsString], program: &Command) -> Error {
+pub fn with_hint(mut error: Error, words: &[OsString], program: &Command) -> Error {
     if error.kind() != ErrorKind::UnknownArgument {
         return error;
     }
@@ -45,7 +45,7 @@ pub fn corrected(mut error: Error, words: &[OsString], program: &Command) -> Err
     let given = whole.unwrap_or(given).split('=').next().unwrap_or_default().to_string();
     let command = words.get(1).and_then(|name| program.find_subcommand(name)).unwrap_or(program);
     let has = |option: &str| command.get_arguments().any(|argument| argument.get_long() == Some(option));
-    let known = POINTERS.iter().find(|(names, option, _)| names.contains(&given.as_str()) && has(option));
+    let known = HINTS.iter().find(|(names, option, _)| names.contains(&given.as_str()) && has(option));
     let Some((_, _, help)) = known else { return error };
     let course = if whole.is_some() { " (`durer course` takes the course's options)" } else { "" };
     for kind in [ContextKind::SuggestedArg, ContextKind::SuggestedValue, ContextKind::Suggested, ContextKind::Usage] {

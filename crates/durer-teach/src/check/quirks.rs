@@ -1,7 +1,7 @@
 //! Checks of scenes that the program of a course year renders differently than intended because of
 //! its quirks.
 
-use super::finding::{Finding, MAX_SOUGHT, number, percent, vector};
+use super::finding::{Finding, MAX_FINDINGS, number, percent, vector};
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
 use durer_scene::camera::Projection;
@@ -9,56 +9,59 @@ use durer_scene::dialect::{Highlight, Quirk};
 use durer_scene::light::Illuminate as _;
 use durer_scene::material::PhongMaterial;
 use durer_scene::math::Color;
-use durer_scene::scene::{Material as Written, Spanned};
+use durer_scene::scene::{Material as ParsedMaterial, Spanned};
 
 /// Range of lengths of a camera's `up` whose effect is invisible.
-const UNIT: std::ops::RangeInclusive<f32> = 0.9..=1.1;
+const UNIT_LENGTHS: std::ops::RangeInclusive<f32> = 0.9..=1.1;
 /// Cosine between `up` and `direction` above which the skew is visible.
 const SKEW: f32 = 0.6;
 /// Aspect ratio below which a picture looks square.
 const SQUARE: f32 = 1.05;
 
 /// Iterates over the visible Phong materials with their descriptions in the scene file.
-fn seen<'s>(scout: &SceneProbe<'s>) -> impl Iterator<Item = (usize, &'s Spanned<Written>, &'s PhongMaterial)> {
-    let rays = scout.material_rays().to_vec();
-    let all = scout.subject.scene.materials.iter().enumerate();
-    all.filter_map(move |(i, written)| match &written.value {
-        Written::Phong(phong, _) if rays[i] > 0 => Some((i, written, &**phong)),
+fn visible_materials<'s>(
+    scene_probe: &SceneProbe<'s>,
+) -> impl Iterator<Item = (usize, &'s Spanned<ParsedMaterial>, &'s PhongMaterial)> {
+    let rays = scene_probe.material_rays().to_vec();
+    let all = scene_probe.input.scene.materials.iter().enumerate();
+    all.filter_map(move |(i, material)| match &material.value {
+        ParsedMaterial::Phong(phong, _) if rays[i] > 0 => Some((i, material, &**phong)),
         _ => None,
     })
 }
 
 /// Reports highlights with exponent 0 in a dialect in which 0 to the power of 0 is 1.
-pub(super) fn pow_zero(scout: &SceneProbe) -> Vec<Finding> {
-    let rules = scout.world().rules();
+pub(super) fn pow_zero(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let rules = scene_probe.world().rules();
     if rules.highlight != Highlight::Phong || !rules.has(Quirk::PowZero) {
-        return blunt(scout);
+        return wide_highlight(scene_probe);
     }
-    let all = scout.seen().count();
+    let all = scene_probe.hits().count();
     let chalk = |phong: &PhongMaterial| {
         phong.specular_color.max_element() > 0.02 && phong.shininess.or(phong.exponent).unwrap_or(0.0) == 0.0
     };
-    let say = |(i, written, phong): (usize, &Spanned<Written>, &PhongMaterial)| {
+    let say = |(i, material, phong): (usize, &Spanned<ParsedMaterial>, &PhongMaterial)| {
         let missing = phong.shininess.is_none();
-        let count = scout.material_rays()[i];
+        let count = scene_probe.material_rays()[i];
         let message = match missing {
             true => format!("material {i} has a `specularColor` but no `shininess`, so that is 0"),
             false => format!("the `shininess` of material {i} is 0"),
         };
-        let message = message.replace("specularColor", scout.word("specularColor", "specular"));
+        let message = message.replace("specularColor", scene_probe.keyword_of_grammar("specularColor", "specular"));
         let diagnostic = Diagnostic::warning(message)
             .label(format!("on {} of the visible surfaces", percent(count, all)))
             .effect("its highlight covers everything, which looks like chalk: 0 to the power of 0 is 1")
             .help("add a `shininess`, such as 20; higher values are sharper");
-        let value = scout.value(written.span, &["shininess"]);
+        let value = scene_probe.field_span(material.span, &["shininess"]);
         let diagnostic = match value {
             Some(value) => diagnostic.at(value).fix(value, "20"),
-            None => scout.at_value(diagnostic, written.span, &["specularColor", "specular"]),
+            None => scene_probe.at_value(diagnostic, material.span, &["specularColor", "specular"]),
         };
-        Finding::from(diagnostic).whole(count * 2 > all)
+        Finding::from(diagnostic).affecting_whole_picture(count * 2 > all)
     };
-    let found: Vec<Finding> = seen(scout).filter(|(.., phong)| chalk(phong)).map(say).take(MAX_SOUGHT).collect();
-    if found.is_empty() { blunt(scout) } else { found }
+    let findings: Vec<Finding> =
+        visible_materials(scene_probe).filter(|(.., phong)| chalk(phong)).map(say).take(MAX_FINDINGS).collect();
+    if findings.is_empty() { wide_highlight(scene_probe) } else { findings }
 }
 
 /// Returns the exponent of a material's highlight, and the field that sets it.
@@ -71,52 +74,52 @@ fn sharpness(phong: &PhongMaterial) -> Option<(&'static str, f32)> {
 
 /// Reports highlights so wide that they cover everything, for example with exponent 0 or a
 /// reciprocal exponent.
-fn blunt(scout: &SceneProbe) -> Vec<Finding> {
-    if scout.world().rules().highlight == Highlight::None || scout.is_physical() {
+fn wide_highlight(scene_probe: &SceneProbe) -> Vec<Finding> {
+    if scene_probe.world().rules().highlight == Highlight::None || scene_probe.is_physical() {
         return Vec::new();
     }
-    let say = |(i, written, phong): (usize, &Spanned<Written>, &PhongMaterial)| {
+    let say = |(i, material, phong): (usize, &Spanned<ParsedMaterial>, &PhongMaterial)| {
         let (word, exponent) = sharpness(phong)?;
-        if exponent >= BLUNT || phong.specular_color.max_element() < 0.02 || phong.refraction_index.is_some() {
+        if exponent >= MIN_EXPONENT || phong.specular_color.max_element() < 0.02 || phong.refraction_index.is_some() {
             return None;
         }
         let diagnostic = Diagnostic::warning(format!("the `{word}` of material {i} is {}", number(exponent)))
             .effect("its highlight covers nearly everything, which looks like chalk")
             .help(format!("higher values are sharper, and plastic has about 20: try `{word} 20`"));
-        let value = scout.value(written.span, &[word]);
-        Some(Finding::from(scout.at_value(diagnostic.fix_at(value, "20"), written.span, &[word])))
+        let value = scene_probe.field_span(material.span, &[word]);
+        Some(Finding::from(scene_probe.at_value(diagnostic.fix_at(value, "20"), material.span, &[word])))
     };
-    seen(scout).filter_map(say).take(MAX_SOUGHT).collect()
+    visible_materials(scene_probe).filter_map(say).take(MAX_FINDINGS).collect()
 }
 
 /// Exponent above which a highlight is smaller than a pixel.
-const SHARPEST: f32 = 2e4;
+const MAX_EXPONENT: f32 = 2e4;
 /// Exponent below which highlights are invisible.
-const BLUNT: f32 = 0.7;
+const MIN_EXPONENT: f32 = 0.7;
 
 /// Reports highlights smaller than a pixel.
-pub(super) fn tiny_highlight(scout: &SceneProbe) -> Vec<Finding> {
-    if scout.world().rules().highlight == Highlight::None || scout.is_physical() {
+pub(super) fn tiny_highlight(scene_probe: &SceneProbe) -> Vec<Finding> {
+    if scene_probe.world().rules().highlight == Highlight::None || scene_probe.is_physical() {
         return Vec::new();
     }
-    let say = |(i, written, phong): (usize, &Spanned<Written>, &PhongMaterial)| {
+    let say = |(i, material, phong): (usize, &Spanned<ParsedMaterial>, &PhongMaterial)| {
         let (word, exponent) = sharpness(phong)?;
-        if exponent <= SHARPEST || phong.specular_color.max_element() < 0.02 {
+        if exponent <= MAX_EXPONENT || phong.specular_color.max_element() < 0.02 {
             return None;
         }
         let diagnostic = Diagnostic::warning(format!("the `{word}` of material {i} is {}", number(exponent)))
             .effect("its highlight is smaller than a pixel and invisible")
             .help(format!("plastic has about 20, polished metal 200: try `{word} 100`"));
-        let value = scout.value(written.span, &[word]);
-        Some(Finding::from(scout.at_value(diagnostic.fix_at(value, "100"), written.span, &[word])))
+        let value = scene_probe.field_span(material.span, &[word]);
+        Some(Finding::from(scene_probe.at_value(diagnostic.fix_at(value, "100"), material.span, &[word])))
     };
-    seen(scout).filter_map(say).take(MAX_SOUGHT).collect()
+    visible_materials(scene_probe).filter_map(say).take(MAX_FINDINGS).collect()
 }
 
 /// Reports a highlight colour without an exponent, which is 1 by default.
-pub(super) fn no_exponent(scout: &SceneProbe) -> Vec<Finding> {
-    match scout.world().rules().highlight {
-        Highlight::None => return no_highlight(scout).into_iter().collect(),
+pub(super) fn no_exponent(scene_probe: &SceneProbe) -> Vec<Finding> {
+    match scene_probe.world().rules().highlight {
+        Highlight::None => return no_highlight(scene_probe).into_iter().collect(),
         Highlight::Phong => return Vec::new(),
         Highlight::Blinn | Highlight::ByKeyword => {}
     }
@@ -126,19 +129,19 @@ pub(super) fn no_exponent(scout: &SceneProbe) -> Vec<Finding> {
             && phong.exponent.is_none()
             && phong.refraction_index.is_none()
     };
-    let say = |(i, written, _): (usize, &Spanned<Written>, &PhongMaterial)| {
+    let say = |(i, material, _): (usize, &Spanned<ParsedMaterial>, &PhongMaterial)| {
         let diagnostic =
             Diagnostic::warning(format!("material {i} has a `specularColor` but no `exponent`, so that is 1"))
                 .effect("its highlight covers everything, which looks like chalk")
                 .help("add an `exponent`, such as 20; higher values are sharper");
-        Finding::from(scout.at_value(diagnostic, written.span, &["specularColor"]))
+        Finding::from(scene_probe.at_value(diagnostic, material.span, &["specularColor"]))
     };
-    seen(scout).filter(|(.., phong)| bare(phong)).map(say).take(MAX_SOUGHT).collect()
+    visible_materials(scene_probe).filter(|(.., phong)| bare(phong)).map(say).take(MAX_FINDINGS).collect()
 }
 
 /// Notes a highlight colour without an exponent in a dialect without highlights, which uses it as
 /// the colour of a mirror.
-fn no_highlight(scout: &SceneProbe) -> Option<Finding> {
+fn no_highlight(scene_probe: &SceneProbe) -> Option<Finding> {
     let bare = |phong: &PhongMaterial| {
         phong.specular_color.max_element() > 0.02
             && phong.shininess.is_none()
@@ -146,23 +149,23 @@ fn no_highlight(scout: &SceneProbe) -> Option<Finding> {
             && phong.refraction_index.is_none()
             && phong.diffuse_color.is_none_or(|color| color.max_element() > 0.15)
     };
-    let (i, written, _) = seen(scout).find(|(.., phong)| bare(phong))?;
+    let (i, material, _) = visible_materials(scene_probe).find(|(.., phong)| bare(phong))?;
     let diagnostic = Diagnostic::note(format!("material {i} has a `specularColor` and no `shininess`"))
         .effect("this year's program has no highlights and uses the colour for a mirror; in other dialects the highlight covers everything")
         .help("for a highlight, add a `shininess`, such as 20, and use a dialect with highlights, such as `--dialect f16`");
-    Some(Finding::from(scout.at_value(diagnostic, written.span, &["specularColor"])))
+    Some(Finding::from(scene_probe.at_value(diagnostic, material.span, &["specularColor"])))
 }
 
 /// Reports a camera's `up` that is not unit length in a dialect that does not normalise it.
-pub(super) fn long_up(scout: &SceneProbe) -> Vec<Finding> {
-    let up = scout.world().camera().pose().up;
+pub(super) fn long_up(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let up = scene_probe.world().camera().pose().up;
     let length = up.length();
-    let rules = scout.world().rules();
+    let rules = scene_probe.world().rules();
     if !rules.has(Quirk::RawUp) {
-        return skew_up(scout).filter(|_| rules.has(Quirk::SkewUp)).into_iter().collect();
+        return skew_up(scene_probe).filter(|_| rules.has(Quirk::SkewUp)).into_iter().collect();
     }
-    if UNIT.contains(&length) {
-        return skew_up(scout).into_iter().collect();
+    if UNIT_LENGTHS.contains(&length) {
+        return skew_up(scene_probe).into_iter().collect();
     }
     let (how, word) = if length > 1.0 { (length, "flattened") } else { (1.0 / length, "stretched upwards") };
     let unit = vector(up / length);
@@ -170,17 +173,17 @@ pub(super) fn long_up(scout: &SceneProbe) -> Vec<Finding> {
         Diagnostic::warning(format!("the camera's `up` has a length of {} and is used as written", number(length)))
             .effect(format!("the picture is {word} by a factor of {}", number(how)))
             .help(format!("normalise it: `up {unit}`"));
-    let span = scout.subject.scene.camera_span;
-    let diagnostic = match scout.value(span, &["up"]) {
+    let span = scene_probe.input.scene.camera_span;
+    let diagnostic = match scene_probe.field_span(span, &["up"]) {
         Some(value) => diagnostic.at(value).fix(value, unit),
         None => diagnostic.at(span),
     };
-    vec![Finding::from(diagnostic).whole(true)]
+    vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }
 
 /// Reports an `up` far from perpendicular to `direction` in a dialect that does not correct it.
-fn skew_up(scout: &SceneProbe) -> Option<Finding> {
-    let pose = scout.world().camera().pose();
+fn skew_up(scene_probe: &SceneProbe) -> Option<Finding> {
+    let pose = scene_probe.world().camera().pose();
     let (up, forward) = (pose.up.normalize_or_zero(), pose.direction.normalize_or_zero());
     let off = up.dot(forward);
     if off.abs() < SKEW || off.abs() > 0.999 {
@@ -192,33 +195,36 @@ fn skew_up(scout: &SceneProbe) -> Option<Finding> {
         Diagnostic::warning("the camera's `up` is not perpendicular to its `direction` and is used as written")
             .effect(format!("the picture is skewed, and {} times too flat", number(1.0 / (1.0 - off * off).sqrt())))
             .help(format!("write a perpendicular vector: `up {text}`"));
-    let span = scout.subject.scene.camera_span;
-    let value = scout.value(span, &["up"]);
-    Some(Finding::from(scout.at_value(diagnostic.fix_at(value, text), span, &["up"])).whole(true))
+    let span = scene_probe.input.scene.camera_span;
+    let value = scene_probe.field_span(span, &["up"]);
+    Some(
+        Finding::from(scene_probe.at_value(diagnostic.fix_at(value, text), span, &["up"]))
+            .affecting_whole_picture(true),
+    )
 }
 
 /// Reports a non-square picture in a dialect that stretches it.
-pub(super) fn stretched(scout: &SceneProbe) -> Vec<Finding> {
-    let job = scout.subject.job;
+pub(super) fn stretched(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let job = scene_probe.input.job;
     let (width, height) = (job.width as f32, job.height as f32);
     let ratio = width.max(height) / width.min(height);
-    if !scout.world().rules().has(Quirk::Stretch) || ratio < SQUARE {
+    if !scene_probe.world().rules().has(Quirk::Stretch) || ratio < SQUARE {
         return Vec::new();
     }
     let way = if width > height { "wide" } else { "high" };
     let side = job.width.max(job.height);
     let diagnostic = Diagnostic::warning(format!("the picture of {} x {} pixels is not square", job.width, job.height))
-        .at(scout.subject.scene.camera_span)
+        .at(scene_probe.input.scene.camera_span)
         .effect(format!("this year's program stretches it: everything is {} times too {way}", number(ratio)))
         .help(format!(
             "set a square size, such as `--size {side}x{side}` (in the course's programs `-size {side} {side}`)"
         ));
-    vec![Finding::from(diagnostic).whole(true)]
+    vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }
 
 /// Reports faces with more than three vertices, of which the dialect's program reads only three.
-pub(super) fn quads(scout: &SceneProbe) -> Vec<Finding> {
-    if !scout.world().rules().is_bit_compatible() {
+pub(super) fn quads(scene_probe: &SceneProbe) -> Vec<Finding> {
+    if !scene_probe.world().rules().is_bit_compatible() {
         return Vec::new();
     }
     let say = |(name, count, all, face): (&str, usize, usize, durer_diag::Span)| {
@@ -230,16 +236,16 @@ pub(super) fn quads(scout: &SceneProbe) -> Vec<Finding> {
                 .help("split them into triangles: `f 1 2 3 4` becomes `f 1 2 3` and `f 1 3 4`");
         Finding::from(diagnostic)
     };
-    super::mesh::large_faces(scout).into_iter().map(say).collect()
+    super::mesh::large_faces(scene_probe).into_iter().map(say).collect()
 }
 
 /// Reports patterns whose two parts are equal.
-pub(super) fn same_parts(scout: &SceneProbe) -> Vec<Finding> {
+pub(super) fn same_parts(scene_probe: &SceneProbe) -> Vec<Finding> {
     use durer_scene::material::Pattern;
-    let materials = &scout.subject.scene.materials;
-    let say = |(i, material): (usize, &Spanned<Written>)| {
-        if let Written::Phong(_, Some(noise)) = &material.value {
-            return (noise.color1 == noise.color2 && scout.material_rays()[i] > 0).then(|| {
+    let materials = &scene_probe.input.scene.materials;
+    let say = |(i, material): (usize, &Spanned<ParsedMaterial>)| {
+        if let ParsedMaterial::Phong(_, Some(noise)) = &material.value {
+            return (noise.color1 == noise.color2 && scene_probe.material_rays()[i] > 0).then(|| {
                 let diagnostic =
                     Diagnostic::warning(format!("both colours of this noise are {}", vector(noise.color1)))
                         .effect("the pattern is invisible: a single colour")
@@ -247,10 +253,10 @@ pub(super) fn same_parts(scout: &SceneProbe) -> Vec<Finding> {
                 Finding::from(diagnostic.at(material.span))
             });
         }
-        let Written::Solid(solid, _) = &material.value else { return None };
+        let ParsedMaterial::Solid(solid, _) = &material.value else { return None };
         let [first, second] = solid.materials();
         let of = |index: u32| materials.get(index as usize).map(|part| &part.value);
-        if first != second && of(first) != of(second) || scout.material_rays()[i] == 0 {
+        if first != second && of(first) != of(second) || scene_probe.material_rays()[i] == 0 {
             return None;
         }
         let message = match first == second {
@@ -263,36 +269,37 @@ pub(super) fn same_parts(scout: &SceneProbe) -> Vec<Finding> {
             .help("give its two `materialIndex` fields different materials that precede it");
         Some(Finding::from(diagnostic))
     };
-    materials.iter().enumerate().filter_map(say).take(MAX_SOUGHT).collect()
+    materials.iter().enumerate().filter_map(say).take(MAX_FINDINGS).collect()
 }
 
 /// Reports ambient light so bright that other lights are hardly visible.
-pub(super) fn full_ambient(scout: &SceneProbe) -> Vec<Finding> {
-    let world = scout.world();
+pub(super) fn full_ambient(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
     let ambient = world.ambient();
     let lights: Color = world.lights().iter().map(|light| light.color()).sum();
     if ambient.min_element() < 0.8 || ambient.max_element() > 2.0 || lights.max_element() <= 0.0 {
         return Vec::new();
     }
-    let word = scout.word("ambientLight", "ambient_light");
+    let word = scene_probe.keyword_of_grammar("ambientLight", "ambient_light");
     let diagnostic =
         Diagnostic::warning(format!("the ambient light is {}, which leaves no range for other light", vector(ambient)))
             .effect("shadows and shading are washed out: surfaces have their full colour without any light")
             .help(format!("0.1 to 0.3 is usual: try `{word} 0.2 0.2 0.2`"));
-    let diagnostic = match super::colors::background_span(scout).and_then(|block| scout.value(block, &[word])) {
-        Some(value) => diagnostic.at(value).fix(value, "0.2 0.2 0.2"),
-        None => diagnostic,
-    };
-    vec![Finding::from(diagnostic).whole(true)]
+    let diagnostic =
+        match super::colors::background_span(scene_probe).and_then(|block| scene_probe.field_span(block, &[word])) {
+            Some(value) => diagnostic.at(value).fix(value, "0.2 0.2 0.2"),
+            None => diagnostic,
+        };
+    vec![Finding::from(diagnostic).affecting_whole_picture(true)]
 }
 
 /// Reports planes whose normal is not unit length, in dialects where that moves them.
-pub(super) fn plane_normal(scout: &SceneProbe) -> Vec<Finding> {
+pub(super) fn plane_normal(scene_probe: &SceneProbe) -> Vec<Finding> {
     use durer_render::world::Object;
     let say = |object: &Object| {
         let plane = super::shapes::plane(object)?;
         let length = plane.normal.length();
-        let rules = scout.world().rules();
+        let rules = scene_probe.world().rules();
         let counts = rules.has(Quirk::RawNormals) && !rules.has(Quirk::UnitLight);
         if (0.98..=1.02).contains(&length) || plane.offset == 0.0 && !counts {
             return None;
@@ -315,11 +322,14 @@ pub(super) fn plane_normal(scout: &SceneProbe) -> Vec<Finding> {
             });
         // Keep the plane where it is.
         let offset = number(plane.offset / length);
-        let diagnostic = match (scout.value(object.span, &["normal"]), scout.value(object.span, &["offset"])) {
+        let diagnostic = match (
+            scene_probe.field_span(object.span, &["normal"]),
+            scene_probe.field_span(object.span, &["offset"]),
+        ) {
             (Some(value), Some(place)) => diagnostic.at(value).fix(value, unit).fix(place, offset),
             _ => diagnostic.at(object.span),
         };
         Some(Finding::from(diagnostic))
     };
-    scout.world().objects().iter().filter_map(say).take(MAX_SOUGHT).collect()
+    scene_probe.world().objects().iter().filter_map(say).take(MAX_FINDINGS).collect()
 }

@@ -14,7 +14,7 @@ const DIRECTIONS: [Vec3; 5] = [
 
 /// Returns the bounded objects that contain a point: a ray in each test direction crosses their
 /// surface an odd number of times.
-pub(super) fn around(world: &World, point: Vec3) -> Vec<u32> {
+pub(super) fn containing_objects(world: &World, point: Vec3) -> Vec<u32> {
     let boxed = |object: &u32| {
         let bounds = world.objects()[*object as usize].bounds();
         bounds.is_some_and(|b| b.contains(point))

@@ -13,10 +13,10 @@ const HIGHEST: i64 = 32;
 
 /// Reads the number of points along u and v, each at least `least`.
 fn counts(params: &Params, least: i64) -> Option<[u32; 2]> {
-    let counts = ["nu", "nv"].map(|name| params.whole(name).unwrap_or(0));
+    let counts = ["nu", "nv"].map(|name| params.integer(name).unwrap_or(0));
     if counts.iter().any(|count| *count < least) || counts[0].saturating_mul(counts[1]) > MAX_POINTS {
         let message = format!("`nu` and `nv` must be {least} or more, and their product at most {MAX_POINTS}");
-        params.report.bad(params.at, message);
+        params.report.error(params.at, message);
         return None;
     }
     Some(counts.map(|count| count as u32))
@@ -28,7 +28,7 @@ pub(super) fn heights(params: &Params, reversed: bool) -> Option<MeshData> {
     let heights = params.floats("Pz").unwrap_or_default();
     if heights.len() != columns as usize * rows as usize {
         let message = format!("`Pz` has {} values for {columns} x {rows} points", heights.len());
-        params.report.bad(params.place("Pz"), message);
+        params.report.error(params.span("Pz"), message);
         return None;
     }
     Some(net::heights([columns, rows], heights.iter().map(|height| *height as f32)).oriented(reversed))
@@ -48,14 +48,14 @@ pub(super) fn nurbs(params: &Params, reversed: bool) -> Option<MeshData> {
     let wanted = counts[0] as usize * counts[1] as usize;
     if points.len() != wanted || points.iter().any(|p| p.w <= 0.0) {
         let message = format!("a NURBS surface needs {wanted} points, `P` or `Pw`, with weights above 0");
-        params.report.bad(params.at, message);
+        params.report.error(params.at, message);
         return None;
     }
     Some(net::nurbs(&points, counts[0], &sides).oriented(reversed))
 }
 
 fn knots<'a>(params: &'a Params, names: [&'static str; 4], count: u32) -> Option<NurbsSide<'a>> {
-    let order = params.whole(names[0]).unwrap_or(0);
+    let order = params.integer(names[0]).unwrap_or(0);
     let all = params.floats(names[1]).unwrap_or_default();
     let rising = all.windows(2).all(|pair| pair[0] <= pair[1]);
     if !(2..=HIGHEST.min(i64::from(count))).contains(&order) || all.len() != count as usize + order as usize || !rising
@@ -64,15 +64,15 @@ fn knots<'a>(params: &'a Params, names: [&'static str; 4], count: u32) -> Option
             "`{}` must be from 2 to the number of points, and `{}` needs as many increasing numbers as order plus points",
             names[0], names[1]
         );
-        params.report.bad(params.place(names[1]), message);
+        params.report.error(params.span(names[1]), message);
         return None;
     }
     let order = order as usize;
     let [first, last] = [all[order - 1], all[count as usize]];
-    let end = |name, usual: f64| params.float(name).map_or(usual, f64::from).clamp(first, last);
+    let end = |name, default: f64| params.float(name).map_or(default, f64::from).clamp(first, last);
     let (from, to) = (end(names[2], first), end(names[3], last));
     if from >= to {
-        params.report.bad(params.at, "this NURBS surface is empty: its parameter range has no length");
+        params.report.error(params.at, "this NURBS surface is empty: its parameter range has no length");
         return None;
     }
     Some(NurbsSide { knots: all, order, from, to })

@@ -11,23 +11,23 @@ use durer_scene::math::Vec3;
 use durer_scene::scene::Material;
 
 /// Adds an effect, help or edits from the compiled scene to a finding.
-pub(super) fn complete(scout: &SceneProbe, finding: &mut Finding) {
+pub(super) fn complete(scene_probe: &SceneProbe, finding: &mut Finding) {
     match finding.diagnostic.code {
-        "no-light" => no_light(scout, finding),
+        "no-light" => no_light(scene_probe, finding),
         "black-light" => {
-            finding.whole = super::lights::all_fail(scout);
-            finding.diagnostic.effect = Some(match finding.whole {
+            finding.affects_whole_picture = super::lights::none_contributes(scene_probe);
+            finding.diagnostic.effect = Some(match finding.affects_whole_picture {
                 true => "no light reaches the visible surfaces".into(),
                 false => "it contributes nothing to the picture".into(),
             });
-            if let Some(value) = finding.diagnostic.span.and_then(|span| scout.value(span, &["color"])) {
+            if let Some(value) = finding.diagnostic.span.and_then(|span| scene_probe.field_span(span, &["color"])) {
                 finding.diagnostic.span = Some(value);
                 finding.diagnostic.help.get_or_insert("white light is `color 1 1 1`".into());
             }
         }
-        "no-falloff" => finding.whole = true,
+        "no-falloff" => finding.affects_whole_picture = true,
         "no-objects" => {
-            finding.whole = true;
+            finding.affects_whole_picture = true;
             finding.diagnostic.effect = Some("every ray misses, so the picture shows only the background".into());
         }
         "empty-solid" => {
@@ -37,10 +37,10 @@ pub(super) fn complete(scout: &SceneProbe, finding: &mut Finding) {
                 .help
                 .get_or_insert("move its parts until they overlap: an intersection is the common part of all".into());
         }
-        "foreign-word" => foreign_in_nodes(scout, finding),
-        "up-parallel" => up_parallel(scout, finding),
-        "material-index" => material_index(scout, finding),
-        "no-material" => no_material(scout, finding),
+        "foreign-word" => foreign_in_nodes(scene_probe, finding),
+        "up-parallel" => up_parallel(scene_probe, finding),
+        "material-index" => material_index(scene_probe, finding),
+        "no-material" => no_material(scene_probe, finding),
         "mesh-file" | "comment" => finding.diagnostic.severity = Severity::Note,
         _ => {}
     }
@@ -48,10 +48,10 @@ pub(super) fn complete(scout: &SceneProbe, finding: &mut Finding) {
 
 /// Adds help about placement. The node grammar places an object with the node around it; other
 /// dialects place it with the object's own fields.
-fn foreign_in_nodes(scout: &SceneProbe, finding: &mut Finding) {
+fn foreign_in_nodes(scene_probe: &SceneProbe, finding: &mut Finding) {
     finding.diagnostic.severity = Severity::Note;
-    let word = finding.diagnostic.span.map(|span| scout.text(span)).unwrap_or_default();
-    if scout.subject.dialect == Dialect::F23
+    let word = finding.diagnostic.span.map(|span| scene_probe.text(span)).unwrap_or_default();
+    if scene_probe.input.dialect == Dialect::F23
         && finding.diagnostic.help.is_none()
         && ["center", "position"].contains(&word.as_str())
     {
@@ -62,8 +62,8 @@ fn foreign_in_nodes(scout: &SceneProbe, finding: &mut Finding) {
 
 /// Completes the finding about missing lights. It is only a note if all materials are plain
 /// colours.
-fn no_light(scout: &SceneProbe, finding: &mut Finding) {
-    let scene = scout.subject.scene;
+fn no_light(scene_probe: &SceneProbe, finding: &mut Finding) {
+    let scene = scene_probe.input.scene;
     let plain = |material: &Material| match material {
         Material::Phong(phong, _) => phong.specular_color == Vec3::ZERO && phong.reflective_color == Vec3::ZERO,
         Material::Principled(..) | Material::Hair(..) => false,
@@ -75,10 +75,10 @@ fn no_light(scout: &SceneProbe, finding: &mut Finding) {
     if flat {
         finding.diagnostic.severity = Severity::Note;
     }
-    finding.whole = true;
+    finding.affects_whole_picture = true;
     finding.diagnostic.effect = Some("every surface has one flat colour, without shading or shadows".into());
     finding.diagnostic.help = Some(
-        match scout.subject.dialect {
+        match scene_probe.input.dialect {
             Dialect::F23 => {
                 "add a node, such as `Node { Component<Light> { type directional direction -1 -2 -1 color 0.9 0.9 0.9 } }`"
             }
@@ -88,11 +88,11 @@ fn no_light(scout: &SceneProbe, finding: &mut Finding) {
     );
 }
 
-fn up_parallel(scout: &SceneProbe, finding: &mut Finding) {
+fn up_parallel(scene_probe: &SceneProbe, finding: &mut Finding) {
     finding.diagnostic.effect = Some("the picture has an arbitrary rotation".into());
-    let direction = scout.world().camera().pose().direction.normalize_or_zero();
+    let direction = scene_probe.world().camera().pose().direction.normalize_or_zero();
     let up = if direction.y.abs() < 0.9 { Vec3::Y } else { Vec3::Z };
-    if let Some(value) = scout.value(scout.subject.scene.camera_span, &["up"]) {
+    if let Some(value) = scene_probe.field_span(scene_probe.input.scene.camera_span, &["up"]) {
         finding.diagnostic.span = Some(value);
         finding.diagnostic.help = Some(format!("choose another `up`, such as `{}`", vector(up)));
         finding.diagnostic = finding.diagnostic.clone().fix(value, vector(up));
@@ -101,17 +101,17 @@ fn up_parallel(scout: &SceneProbe, finding: &mut Finding) {
 
 /// Suggests a material index. If an index is one too large, or there is only one material, the
 /// correction is certain.
-fn material_index(scout: &SceneProbe, finding: &mut Finding) {
+fn material_index(scene_probe: &SceneProbe, finding: &mut Finding) {
     finding.diagnostic.effect = finding.diagnostic.help.take();
-    let count = scout.subject.scene.materials.len();
+    let count = scene_probe.input.scene.materials.len();
     let Some(span) = finding.diagnostic.span else { return };
-    let text = scout.text(span);
+    let text = scene_probe.text(span);
     let Some((word, index)) = text.rsplit_once(char::is_whitespace) else { return };
     if count == 0 {
         finding.diagnostic.help = Some("add a `Materials` section".into());
         return;
     }
-    if from_one(scout, finding, count) {
+    if from_one(scene_probe, finding, count) {
         return;
     }
     let suggestion = index.parse::<usize>().map_or(0, |index| if index == count { count - 1 } else { 0 });
@@ -127,11 +127,11 @@ fn material_index(scout: &SceneProbe, finding: &mut Finding) {
 
 /// Corrects all indices if no object uses material 0 and an object uses the index after the last,
 /// which means that they are counted from 1.
-fn from_one(scout: &SceneProbe, finding: &mut Finding, count: usize) -> bool {
+fn from_one(scene_probe: &SceneProbe, finding: &mut Finding, count: usize) -> bool {
     let span = finding.diagnostic.span.unwrap_or_default();
-    let uses = scout.subject.files.bytes(span.file).map(|bytes| place::values(bytes, span.file, "MaterialIndex"));
+    let uses = scene_probe.input.files.bytes(span.file).map(|bytes| place::values(bytes, span.file, "MaterialIndex"));
     let uses: Vec<(Span, usize)> =
-        uses.into_iter().flatten().filter_map(|value| Some((value, scout.text(value).parse().ok()?))).collect();
+        uses.into_iter().flatten().filter_map(|value| Some((value, scene_probe.text(value).parse().ok()?))).collect();
     if count < 2 || uses.iter().any(|(_, index)| *index == 0) || !uses.iter().any(|(_, index)| *index == count) {
         return false;
     }
@@ -143,11 +143,11 @@ fn from_one(scout: &SceneProbe, finding: &mut Finding, count: usize) -> bool {
     true
 }
 
-fn no_material(scout: &SceneProbe, finding: &mut Finding) {
+fn no_material(scene_probe: &SceneProbe, finding: &mut Finding) {
     finding.diagnostic.effect = Some("it does not have the intended colour".into());
-    let scene = scout.subject.scene;
+    let scene = scene_probe.input.scene;
     let first = scene.root.iter().flat_map(|root| &root.objects).next();
-    let nodes = scout.subject.dialect == durer_scene::dialect::Dialect::F23;
+    let nodes = scene_probe.input.dialect == durer_scene::dialect::Dialect::F23;
     // At the top of the group it applies to all objects without their own index.
     if let Some(first) = first.filter(|first| first.material.is_none() && !scene.materials.is_empty() && !nodes) {
         let place = Span { end: first.span.start, ..first.span };

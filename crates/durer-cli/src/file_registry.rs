@@ -5,7 +5,7 @@
 //! files. Files are compared by identity, so that different names of and links to the same file are
 //! recognised.
 
-use crate::failure::{Failure, bad};
+use crate::failure::{Failure, invalid_input};
 use durer::image::Destination;
 use durer::render::PartialRender;
 use std::io::Read;
@@ -13,14 +13,14 @@ use std::path::{Path, PathBuf};
 
 /// Input and output files of one run, registered to prevent that an input is overwritten.
 #[derive(Default)]
-pub struct Guard {
+pub struct FileRegistry {
     inputs: Vec<NamedFile>,
     outputs: Vec<NamedFile>,
 }
 
 /// A registered file, the option that names it, and its identity.
 struct NamedFile {
-    what: &'static str,
+    option: &'static str,
     path: PathBuf,
     identity: Identity,
 }
@@ -61,10 +61,10 @@ fn inode(_: &Path) -> Option<(u64, u64)> {
     None
 }
 
-impl Guard {
+impl FileRegistry {
     /// Registers an input. Fails if the file is also an output.
-    pub fn reads(&mut self, path: &Path) -> Result<(), Failure> {
-        let input = NamedFile { what: "", path: path.into(), identity: Identity::of(path) };
+    pub fn register_input(&mut self, path: &Path) -> Result<(), Failure> {
+        let input = NamedFile { option: "", path: path.into(), identity: Identity::of(path) };
         if let Some(output) = self.outputs.iter().find(|output| output.identity.is_same(&input.identity)) {
             return Err(both(output, &input));
         }
@@ -74,11 +74,11 @@ impl Guard {
 
     /// Registers an output for the option `what`. Fails if the file cannot be written, is an input
     /// or another output, or holds saved work.
-    pub fn writes(&mut self, what: &'static str, path: &Path) -> Result<Destination, Failure> {
-        let place = self.saves(what, path)?;
+    pub fn register_output(&mut self, what: &'static str, path: &Path) -> Result<Destination, Failure> {
+        let place = self.register_saved_work(what, path)?;
         match is_saved_work(path) {
             false => Ok(place),
-            true => Err(bad(format!(
+            true => Err(invalid_input(format!(
                 "{what}: `{}` holds saved work, which must not be overwritten: choose another name",
                 path.display()
             ))),
@@ -86,8 +86,8 @@ impl Guard {
     }
 
     /// Registers an output for saved work, which can replace older saved work.
-    pub fn saves(&mut self, what: &'static str, path: &Path) -> Result<Destination, Failure> {
-        self.claim(what, path)?;
+    pub fn register_saved_work(&mut self, what: &'static str, path: &Path) -> Result<Destination, Failure> {
+        self.register_removal(what, path)?;
         let own = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|own| path == Path::new(own));
         if own && !crate::terminal::has_standard_output() {
             return Err(anyhow::anyhow!("cannot write `{}`: it is closed", path.display()).into());
@@ -96,8 +96,8 @@ impl Guard {
     }
 
     /// Registers a file that is removed, or written through another registration.
-    pub fn claim(&mut self, what: &'static str, path: &Path) -> Result<(), Failure> {
-        let output = NamedFile { what, path: path.into(), identity: Identity::of(path) };
+    pub fn register_removal(&mut self, what: &'static str, path: &Path) -> Result<(), Failure> {
+        let output = NamedFile { option: what, path: path.into(), identity: Identity::of(path) };
         let same = |other: &&NamedFile| other.identity.is_same(&output.identity);
         if let Some(input) = self.inputs.iter().find(same) {
             return Err(both(&output, input));
@@ -105,8 +105,8 @@ impl Guard {
         // Devices and pipes can be named twice.
         let file = !path.exists() || path.is_file();
         if let Some(other) = self.outputs.iter().find(same).filter(|_| file) {
-            let (what, first) = (output.what, other.what);
-            return Err(bad(format!(
+            let (what, first) = (output.option, other.option);
+            return Err(invalid_input(format!(
                 "{first} and {what} both name `{}`: choose another name for one of them",
                 path.display()
             )));
@@ -130,9 +130,11 @@ pub fn start_of(path: &Path) -> std::io::Result<Vec<u8>> {
 }
 
 fn both(output: &NamedFile, input: &NamedFile) -> Failure {
-    let (what, path) = (output.what, output.path.display());
+    let (what, path) = (output.option, output.path.display());
     let named = if output.path == input.path { String::new() } else { format!(", as `{}`", input.path.display()) };
-    bad(format!("{what}: `{path}` would be overwritten, but it is an input of this run{named}: choose another name"))
+    invalid_input(format!(
+        "{what}: `{path}` would be overwritten, but it is an input of this run{named}: choose another name"
+    ))
 }
 
 #[cfg(test)]
@@ -155,17 +157,19 @@ mod tests {
             same.push(if link == "here" { at("here/in") } else { at(link) });
         }
         for name in &same {
-            let (mut before, mut after) = (Guard::default(), Guard::default());
-            before.reads(&at("in")).unwrap_or_else(|_| panic!("nothing is written yet"));
-            assert!(before.writes("-o", name).is_err(), "{}", name.display());
-            assert!(before.writes("-o", &at("other")).is_ok());
-            assert!(after.writes("-o", name).is_ok());
-            assert!(after.reads(&at("in")).is_err(), "{}", name.display());
-            assert!(after.writes("--preview", &at("in")).is_err(), "{}", name.display());
+            let (mut before, mut after) = (FileRegistry::default(), FileRegistry::default());
+            before.register_input(&at("in")).unwrap_or_else(|_| panic!("nothing is written yet"));
+            assert!(before.register_output("-o", name).is_err(), "{}", name.display());
+            assert!(before.register_output("-o", &at("other")).is_ok());
+            assert!(after.register_output("-o", name).is_ok());
+            assert!(after.register_input(&at("in")).is_err(), "{}", name.display());
+            assert!(after.register_output("--preview", &at("in")).is_err(), "{}", name.display());
         }
         // Files that do not exist yet.
-        let mut guard = Guard::default();
-        assert!(guard.writes("-o", &at("new")).is_ok() && guard.writes("-o", &at("a/new")).is_ok());
-        assert!(guard.writes("--preview", &at("a/../new")).is_err());
+        let mut registry = FileRegistry::default();
+        assert!(
+            registry.register_output("-o", &at("new")).is_ok() && registry.register_output("-o", &at("a/new")).is_ok()
+        );
+        assert!(registry.register_output("--preview", &at("a/../new")).is_err());
     }
 }

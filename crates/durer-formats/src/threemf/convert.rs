@@ -1,6 +1,6 @@
 //! Converts a model into a scene: meshes by material, and components with their transforms.
 
-use super::model::{Group, Mesh, Model, Object, ObjectRef};
+use super::model::{Mesh, Model, Object, ObjectRef, PropertyKind};
 use super::package::Package;
 use super::parser;
 use crate::growth::MAX_OBJECTS;
@@ -19,7 +19,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 /// Maximum depth of nested objects, and maximum number of parts.
-const DEEPEST: u32 = 32;
+const MAX_DEPTH: u32 = 32;
 const MAX_PARTS: usize = 4096;
 
 /// Builder that converts the objects of a 3MF archive to a scene.
@@ -28,7 +28,7 @@ struct SceneMaker<'a> {
     report: &'a SharedReport,
     models: BTreeMap<String, Option<Rc<Model>>>,
     /// Converted objects by part and id, with the number of scene objects in each.
-    shown: BTreeMap<(String, u32), (Rc<scene::Group>, usize)>,
+    converted: BTreeMap<(String, u32), (Rc<scene::Group>, usize)>,
     /// Material index for each texture resource, by part and id. After it, the material of meshes
     /// with vertex colours.
     pictures: BTreeMap<(String, u32), Option<u32>>,
@@ -45,14 +45,14 @@ pub(super) fn scene(package: Package, report: &SharedReport) -> Option<Scene> {
         package,
         report,
         models: BTreeMap::new(),
-        shown: BTreeMap::new(),
+        converted: BTreeMap::new(),
         pictures: BTreeMap::new(),
         colored: None,
         count: 0,
         scene: Scene::default(),
     };
     let model = show.model(&root, at)?;
-    let items = show.places(&root, &model.items, 0);
+    let items = show.convert_refs(&root, &model.items, 0);
     show.scene.root = Some(scene::Group { objects: items });
     if show.count == 0 && !report.has_errors() {
         let warning = durer_diag::Diagnostic::warning("the file has no visible shapes");
@@ -63,11 +63,11 @@ pub(super) fn scene(package: Package, report: &SharedReport) -> Option<Scene> {
 
 impl SceneMaker<'_> {
     fn model(&mut self, part: &str, at: Span) -> Option<Rc<Model>> {
-        if let Some(known) = self.models.get(part) {
-            return known.clone();
+        if let Some(cached) = self.models.get(part) {
+            return cached.clone();
         }
         if self.models.len() >= MAX_PARTS {
-            self.report.bad(at, format!("more than {MAX_PARTS} parts in an archive"));
+            self.report.error(at, format!("more than {MAX_PARTS} parts in an archive"));
             return None;
         }
         let model = parser::read(&mut self.package, part, at, self.report).map(Rc::new);
@@ -76,7 +76,7 @@ impl SceneMaker<'_> {
     }
 
     /// Converts build items or components.
-    fn places(&mut self, part: &str, places: &[ObjectRef], depth: u32) -> Vec<scene::Object> {
+    fn convert_refs(&mut self, part: &str, places: &[ObjectRef], depth: u32) -> Vec<scene::Object> {
         let mut objects = Vec::new();
         for place in places {
             let other = place.part.clone().unwrap_or(part.to_string());
@@ -85,13 +85,13 @@ impl SceneMaker<'_> {
             if self.count > MAX_OBJECTS {
                 let message =
                     format!("the model has more than {MAX_OBJECTS} objects, counting each use of a component");
-                self.report.bad(place.at, message);
+                self.report.error(place.at, message);
                 return objects;
             }
             let inner = scene::Object { node: ObjectKind::Group((*group).clone()), material: None, span: place.at };
             // Translations are in the unit of the part that contains the build item.
             let unit = self.models.get(part).and_then(Option::as_ref).map_or(1.0, |model| model.unit);
-            objects.push(inner.transformed(DAffine3 { translation: unit * place.map.translation, ..place.map }));
+            objects.push(inner.transformed(DAffine3 { translation: unit * place.transform.translation, ..place.transform }));
         }
         objects
     }
@@ -99,31 +99,33 @@ impl SceneMaker<'_> {
     /// Converts an object of a part. Each object is converted only once.
     fn object(&mut self, part: &str, place: &ObjectRef, depth: u32) -> Option<(Rc<scene::Group>, usize)> {
         let key = (part.to_string(), place.id);
-        if let Some(known) = self.shown.get(&key) {
-            return Some(known.clone());
+        if let Some(cached) = self.converted.get(&key) {
+            return Some(cached.clone());
         }
-        if depth > DEEPEST {
-            self.report
-                .bad(place.at, format!("objects are nested more than {DEEPEST} levels deep: does one contain itself?"));
+        if depth > MAX_DEPTH {
+            self.report.error(
+                place.at,
+                format!("objects are nested more than {MAX_DEPTH} levels deep: does one contain itself?"),
+            );
             return None;
         }
         let model = self.model(part, place.at)?;
         let Some((object, at)) = model.objects.get(&place.id) else {
             let ids: Vec<String> = model.objects.keys().map(u32::to_string).collect();
             let help = suggest(&place.id.to_string(), ids.iter().map(String::as_str));
-            self.report.bad_with(place.at, format!("object {} does not exist", place.id), help);
+            self.report.error_with_help(place.at, format!("object {} does not exist", place.id), help);
             return None;
         };
         let before = self.count;
         let objects = match object {
             Object::Mesh(mesh) => self.mesh((part, &model, place.id), mesh, *at),
-            Object::Components(places) => self.places(part, places, depth + 1),
+            Object::Components(places) => self.convert_refs(part, places, depth + 1),
         };
-        // Each use of the object adds this count; see `places`.
+        // Each use of the object adds this count; see `convert_refs`.
         let count = (self.count - before).max(objects.len());
         self.count = before;
         let group = (Rc::new(scene::Group { objects }), count);
-        self.shown.insert(key, group.clone());
+        self.converted.insert(key, group.clone());
         Some(group)
     }
 
@@ -133,27 +135,27 @@ impl SceneMaker<'_> {
         let unit = model.unit as f32;
         let property = |i: usize| {
             let own = mesh.properties.get(i).copied().flatten();
-            own.or(mesh.usual.map(|(list, index)| (list, [index; 3])))
+            own.or(mesh.default_property.map(|(list, index)| (list, [index; 3])))
         };
         // Triangles and the properties of their corners, grouped by texture; `None` is the group
         // without a texture.
-        let mut skins: BTreeMap<Option<u32>, Skin> = BTreeMap::new();
+        let mut skins: BTreeMap<Option<u32>, MeshBuilder> = BTreeMap::new();
         for (i, triangle) in mesh.triangles.iter().enumerate() {
             let skin = |picture| (picture, [[1.0; 4]; 3], [Vec2::ZERO; 3]);
             let (picture, colors, uvs) = match property(i).map(|(list, at)| (model.properties.get(&list), at)) {
                 Some((Some(properties), at)) => match &properties.group {
-                    Group::Colors(colors) => {
+                    PropertyKind::Colors(colors) => {
                         let color = |k: u32| colors.get(k as usize).copied().unwrap_or([1.0; 4]);
                         (None, at.map(color), [Vec2::ZERO; 3])
                     }
-                    Group::Texture { picture, uvs } => {
+                    PropertyKind::Texture { picture, uvs } => {
                         (Some(*picture), [[1.0; 4]; 3], at.map(|k| uvs.get(k as usize).copied().unwrap_or_default()))
                     }
-                    Group::Picture { .. } => skin(None),
+                    PropertyKind::Picture { .. } => skin(None),
                 },
                 Some((None, _)) => {
-                    let list = mesh.usual.map_or(0, |usual| usual.0);
-                    self.report.bad(at, format!("no property list {list} is defined before this"));
+                    let list = mesh.default_property.map_or(0, |default| default.0);
+                    self.report.error(at, format!("no property list {list} is defined before this"));
                     return Vec::new();
                 }
                 None => skin(None),
@@ -197,16 +199,17 @@ impl SceneMaker<'_> {
     /// Returns the material that shows a texture resource.
     fn picture(&mut self, part: &str, model: &Model, id: u32, at: Span) -> Option<u32> {
         let key = (part.to_string(), id);
-        if let Some(known) = self.pictures.get(&key) {
-            return *known;
+        if let Some(cached) = self.pictures.get(&key) {
+            return *cached;
         }
-        let Some(Group::Picture { part: name, styles, at: named }) = model.properties.get(&id).map(|p| &p.group) else {
-            self.report.bad(at, format!("`<texture2d>` {id} does not exist"));
+        let Some(PropertyKind::Picture { part: name, styles, at: named }) = model.properties.get(&id).map(|p| &p.group)
+        else {
+            self.report.error(at, format!("`<texture2d>` {id} does not exist"));
             return None;
         };
         let bytes = self.package.bytes(name, *named);
         if bytes.is_none() && !self.report.has_errors() {
-            self.report.bad(*named, format!("the archive has no part `{name}`"));
+            self.report.error(*named, format!("the archive has no part `{name}`"));
         }
         let mut mapping = Mapping::default();
         for (wrap, style) in mapping.wrap.iter_mut().zip(styles) {
@@ -216,14 +219,14 @@ impl SceneMaker<'_> {
                 _ => Wrap::Repeat,
             };
         }
-        let made = bytes.map(|bytes| {
+        let loaded = bytes.map(|bytes| {
             let picture = TextureImage { bytes: PictureBytes::Memory(name.clone(), bytes), mapping };
             let base_color_texture = Some(asset(&mut self.scene, picture, *named));
             self.scene
                 .add_material(Material::Principled(Box::new(PrincipledMaterial { base_color_texture, ..plastic() })))
         });
-        self.pictures.insert(key, made);
-        made
+        self.pictures.insert(key, loaded);
+        loaded
     }
 }
 
@@ -234,13 +237,13 @@ fn plastic() -> PrincipledMaterial {
 /// Mesh under construction for the triangles of one material; each corner has its own colour and
 /// texture coordinates.
 #[derive(Default)]
-struct Skin {
+struct MeshBuilder {
     data: MeshData,
     is_colored: bool,
     known: BTreeMap<(u32, [u32; 4]), u32>,
 }
 
-impl Skin {
+impl MeshBuilder {
     fn push(&mut self, mesh: &Mesh, triangle: [u32; 3], colors: [[f32; 4]; 3], uvs: [Vec2; 3], unit: f32) {
         let data = &mut self.data;
         let mut corners = triangle;

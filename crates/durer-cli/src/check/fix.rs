@@ -2,7 +2,7 @@
 
 use super::args::CheckArgs;
 use super::change::Change;
-use super::checked_scene::{CheckedScene, look};
+use super::checked_scene::{CheckedScene, check_text};
 use crate::failure::Failure;
 use durer::check::{Finding, apply, rank};
 use durer::diag::{Edit, Severity};
@@ -10,23 +10,23 @@ use durer::report::place;
 use std::sync::Arc;
 
 /// Maximum number of findings that are fixed in one run.
-const MOST: usize = 100;
+const MAX_FIXED: usize = 100;
 
 /// Applies all fixes that help, and sets `checked` to the result for the new text.
-pub fn mend(
+pub fn apply_fixes(
     checked: &mut CheckedScene,
     mut text: Arc<[u8]>,
     args: &CheckArgs,
 ) -> Result<(Arc<[u8]>, Vec<Change>), Failure> {
     let mut changes = Vec::new();
-    'again: for _ in 0..MOST {
+    'again: for _ in 0..MAX_FIXED {
         for finding in checked.findings.iter().filter(|finding| !finding.diagnostic.fix.is_empty()) {
             let repaired = apply(&text, 0, std::slice::from_ref(finding));
-            if repaired.mended.is_empty() {
+            if repaired.fixed.is_empty() {
                 continue;
             }
             let bytes: Arc<[u8]> = repaired.bytes.into();
-            let after = look(&checked.path, bytes.clone(), args)?;
+            let after = check_text(&checked.path, bytes.clone(), args)?;
             if is_better(checked, &after, finding) {
                 changes.extend(finding.diagnostic.fix.iter().map(|edit| change(checked, finding, edit)));
                 (*checked, text) = (after, bytes);
@@ -42,18 +42,18 @@ pub fn mend(
 const MAX_TRIED: usize = 8;
 
 /// Removes edits that `--fix` would not keep from the findings.
-pub fn withdraw(checked: &mut CheckedScene, text: &[u8], args: &CheckArgs) -> Result<(), Failure> {
+pub fn remove_useless_fixes(checked: &mut CheckedScene, text: &[u8], args: &CheckArgs) -> Result<(), Failure> {
     let offered = |finding: &&Finding| !finding.diagnostic.fix.is_empty();
-    let mut kept = Vec::new();
+    let mut needed = Vec::new();
     for finding in checked.findings.iter().filter(offered).take(MAX_TRIED) {
         let repaired = apply(text, 0, std::slice::from_ref(finding));
-        kept.push(match repaired.mended.is_empty() {
+        needed.push(match repaired.fixed.is_empty() {
             true => false,
-            false => is_better(checked, &look(&checked.path, repaired.bytes.into(), args)?, finding),
+            false => is_better(checked, &check_text(&checked.path, repaired.bytes.into(), args)?, finding),
         });
     }
     let offers = checked.findings.iter_mut().filter(|finding| !finding.diagnostic.fix.is_empty());
-    for (finding, _) in offers.zip(kept).filter(|(_, kept)| !kept) {
+    for (finding, _) in offers.zip(needed).filter(|(_, needed)| !needed) {
         finding.diagnostic.fix.clear();
     }
     Ok(())
@@ -69,7 +69,7 @@ fn is_better(before: &CheckedScene, after: &CheckedScene, finding: &Finding) -> 
     if errors(after) < errors(before) {
         return true;
     }
-    let worse = |f: &Finding| f.whole && rank(f.diagnostic.code) < rank(code);
+    let worse = |f: &Finding| f.affects_whole_picture && rank(f.diagnostic.code) < rank(code);
     errors(after) == errors(before) && alike(after) < alike(before) && after.count(worse) <= before.count(worse)
 }
 

@@ -11,25 +11,25 @@ use durer_formats::scene_format_for;
 use durer_render::integrator::IntegratorKind;
 use durer_render::world::Material;
 use durer_scene::math::{Color, Vec3};
-use durer_scene::scene::Material as Written;
+use durer_scene::scene::Material as ParsedMaterial;
 
 /// Radiance below which a surface is black in eight bits.
 const BLACK: f32 = 0.001;
 /// Minimum number of black surface samples, in tenths, for the picture to count as black.
-const MOSTLY: usize = 9;
+const MIN_BLACK_TENTHS: usize = 9;
 /// Minimum number of surface samples needed for a conclusion.
-const FEWEST: usize = 20;
+const MIN_SAMPLES: usize = 20;
 
 /// Reports a scene whose only light is of a kind that Whitted's method does not support.
-pub(super) fn wrong_integrator(scout: &SceneProbe) -> Vec<Finding> {
-    let world = scout.world();
-    if !matches!(scout.subject.job.method, IntegratorKind::Whitted(_)) || !world.lights().is_empty() {
+pub(super) fn wrong_integrator(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let world = scene_probe.world();
+    if !matches!(scene_probe.input.job.method, IntegratorKind::Whitted(_)) || !world.lights().is_empty() {
         return Vec::new();
     }
-    let light = emissive_objects(scout).into_iter().next();
+    let light = emissive_objects(scene_probe).into_iter().next();
     let (what, span) = match (light, world.environment()) {
-        (Some((object, _)), _) => ("emissive surfaces", Some(scout.object_span(object))),
-        (None, Some(_)) => ("its environment", background_span(scout)),
+        (Some((object, _)), _) => ("emissive surfaces", Some(scene_probe.object_span(object))),
+        (None, Some(_)) => ("its environment", background_span(scene_probe)),
         (None, None) => return Vec::new(),
     };
     let diagnostic = Diagnostic::warning(format!(
@@ -37,16 +37,16 @@ pub(super) fn wrong_integrator(scout: &SceneProbe) -> Vec<Finding> {
     ))
     .effect("nothing is lit: surfaces are black or have a flat colour")
     .help("use `--integrator path`, or omit `--integrator`");
-    vec![Finding::from(Diagnostic { span, ..diagnostic }).whole(true)]
+    vec![Finding::from(Diagnostic { span, ..diagnostic }).affecting_whole_picture(true)]
 }
 
 /// Reports an environment that is multiplied by 0.
-pub(super) fn black_sky(scout: &SceneProbe) -> Vec<Finding> {
-    let background = &scout.subject.scene.background;
-    if scout.world().environment().is_none() || background.environment_scale != Some(Vec3::ZERO) {
+pub(super) fn black_sky(scene_probe: &SceneProbe) -> Vec<Finding> {
+    let background = &scene_probe.input.scene.background;
+    if scene_probe.world().environment().is_none() || background.environment_scale != Some(Vec3::ZERO) {
         return Vec::new();
     }
-    let alone = scout.world().lights().is_empty() && emissive_objects(scout).is_empty();
+    let alone = scene_probe.world().lights().is_empty() && emissive_objects(scene_probe).is_empty();
     let diagnostic = Diagnostic::warning("the environment is multiplied by 0")
         .effect(if alone {
             "nothing else emits light, so the picture is black"
@@ -54,37 +54,37 @@ pub(super) fn black_sky(scout: &SceneProbe) -> Vec<Finding> {
             "it emits no light and is invisible"
         })
         .help("`environmentScale` is a factor; `environmentScale 1 1 1` leaves the environment unchanged");
-    let value = background_span(scout).and_then(|block| scout.value(block, &["environmentScale"]));
-    let diagnostic = Diagnostic { span: value.or(background_span(scout)), ..diagnostic.fix_at(value, "1 1 1") };
-    vec![Finding::from(diagnostic).whole(alone)]
+    let value = background_span(scene_probe).and_then(|block| scene_probe.field_span(block, &["environmentScale"]));
+    let diagnostic = Diagnostic { span: value.or(background_span(scene_probe)), ..diagnostic.fix_at(value, "1 1 1") };
+    vec![Finding::from(diagnostic).affecting_whole_picture(alone)]
 }
 
 /// Reports a path-traced picture in which nearly all surfaces are black although the scene has
 /// light.
-pub(super) fn mostly_black(scout: &SceneProbe) -> Vec<Finding> {
-    if !scout.is_physical() || scout.is_dark() || scout.world().fog().is_some() {
+pub(super) fn mostly_black(scene_probe: &SceneProbe) -> Vec<Finding> {
+    if !scene_probe.is_physical() || scene_probe.is_dark() || scene_probe.world().fog().is_some() {
         return Vec::new();
     }
-    let world = scout.world();
-    let reflects = |seen: &ProbeHit| {
-        let written = scout.subject.scene.materials.get(seen.material as usize).map(|written| &written.value);
+    let world = scene_probe.world();
+    let reflects = |hit: &ProbeHit| {
+        let written = scene_probe.input.scene.materials.get(hit.material as usize).map(|written| &written.value);
         let dark = match written {
-            Some(Written::Principled(m)) => m.base_color.max_element() < 0.05 && m.base_color_texture.is_none(),
+            Some(ParsedMaterial::Principled(m)) => m.base_color.max_element() < 0.05 && m.base_color_texture.is_none(),
             _ => false,
         };
         !dark
-            && !world.may_emit(seen.material)
-            && !matches!(world.materials()[seen.material as usize], Material::Mix(..))
+            && !world.may_emit(hit.material)
+            && !matches!(world.materials()[hit.material as usize], Material::Mix(..))
     };
-    let own = scout
+    let own = scene_probe
         .lit_probes()
-        .filter_map(|(probe, color): (&Probe, Color)| probe.seen.as_ref().filter(|seen| reflects(seen)).map(|_| color));
+        .filter_map(|(probe, color): (&Probe, Color)| probe.hit.as_ref().filter(|hit| reflects(hit)).map(|_| color));
     let (all, black) =
         own.fold((0, 0), |(all, black), color| (all + 1, black + usize::from(color.max_element() < BLACK)));
-    if all < FEWEST || black * 10 < all * MOSTLY {
+    if all < MIN_SAMPLES || black * 10 < all * MIN_BLACK_TENTHS {
         return Vec::new();
     }
-    let model = scout.subject.files.name(0).is_some_and(|name| scene_format_for(name).is_some());
+    let model = scene_probe.input.files.name(0).is_some_and(|name| scene_format_for(name).is_some());
     let diagnostic = Diagnostic::warning(format!(
         "{} of the visible surface area is black: the scene's lights do not reach it",
         percent(black, all)
@@ -94,17 +94,17 @@ pub(super) fn mostly_black(scout: &SceneProbe) -> Vec<Finding> {
         true => "`--studio sun` lights a model from outside, and replaces its lights",
         false => "move the light to the camera's side, add another, or write `Background { color 0.3 0.3 0.3 }`",
     });
-    let span = scout.subject.scene.lights.iter().flatten().next().map(|light| light.span);
-    vec![Finding::from(Diagnostic { span, ..diagnostic }).whole(true)]
+    let span = scene_probe.input.scene.lights.iter().flatten().next().map(|light| light.span);
+    vec![Finding::from(Diagnostic { span, ..diagnostic }).affecting_whole_picture(true)]
 }
 
 /// Reports mirrors with nothing to reflect: only mirrors are visible, and their surroundings are
 /// black.
-pub(super) fn nothing_mirrored(scout: &SceneProbe) -> Vec<Finding> {
-    if scout.is_physical() || scout.subject.job.settings.bounces == 0 {
+pub(super) fn nothing_mirrored(scene_probe: &SceneProbe) -> Vec<Finding> {
+    if scene_probe.is_physical() || scene_probe.input.job.settings.bounces == 0 {
         return Vec::new();
     }
-    let world = scout.world();
+    let world = scene_probe.world();
     let mirror = |seen: &ProbeHit| match &world.materials()[seen.material as usize] {
         Material::Phong(phong) => {
             (phong.reflective + phong.transparent).max_element() > 0.1
@@ -115,7 +115,7 @@ pub(super) fn nothing_mirrored(scout: &SceneProbe) -> Vec<Finding> {
         Material::Mix(..) => false,
     };
     let black = |probe: &Probe| probe.color.max_element() < BLACK;
-    let mut seen = scout.seen().peekable();
+    let mut seen = scene_probe.hits().peekable();
     let Some((_, first)) = seen.peek().copied() else { return Vec::new() };
     let (all, dark) =
         seen.fold((0, 0), |(all, dark), (probe, hit)| (all + 1, dark + usize::from(mirror(hit) && black(probe))));
@@ -125,6 +125,6 @@ pub(super) fn nothing_mirrored(scout: &SceneProbe) -> Vec<Finding> {
     let diagnostic = Diagnostic::warning("only mirrors are visible, and they have nothing to reflect")
         .effect("mirrors show their surroundings, which are black")
         .help("give the `Background` a `color`, add an object to reflect, or give the mirror a `diffuseColor`");
-    let span = scout.subject.scene.materials.get(first.material as usize).map(|written| written.span);
-    vec![Finding::from(Diagnostic { span, ..diagnostic }).whole(true)]
+    let span = scene_probe.input.scene.materials.get(first.material as usize).map(|written| written.span);
+    vec![Finding::from(Diagnostic { span, ..diagnostic }).affecting_whole_picture(true)]
 }

@@ -7,22 +7,22 @@ use durer_scene::scene::{MatrixOp, MatrixRules, Object, ObjectKind};
 
 /// If nothing is in the picture, returns the span of the first transform that moves its object out
 /// of the picture but would not if it were reversed or removed, and a sentence about it.
-pub(super) fn moved(scout: &SceneProbe) -> Option<(Span, String)> {
-    let objects = scout.subject.scene.root.iter().flat_map(|root| &root.objects);
-    objects.filter_map(|object| of(scout, object)).next()
+pub(super) fn moved_out_of_view(scene_probe: &SceneProbe) -> Option<(Span, String)> {
+    let objects = scene_probe.input.scene.root.iter().flat_map(|root| &root.objects);
+    objects.filter_map(|object| of(scene_probe, object)).next()
 }
 
-fn of(scout: &SceneProbe, object: &Object) -> Option<(Span, String)> {
+fn of(scene_probe: &SceneProbe, object: &Object) -> Option<(Span, String)> {
     let ObjectKind::Transform(ops, inner) = &object.node else { return None };
     // Find the compiled object by the position of its keyword.
-    let world = scout.world();
+    let world = scene_probe.world();
     let own =
         world.objects().iter().find(|own| own.span.file == inner.span.file && own.span.start == inner.span.start)?;
     let (to_world, bounds) = (own.to_world.as_ref()?, own.bounds()?);
     let local = to_world.inverse_point(bounds.center()) + own.center;
     let by =
         |ops: &[MatrixOp]| MatrixOp::product(ops, MatrixRules::default()).transform_point3(local.as_dvec3()).as_vec3();
-    let aims = |place: Vec3| super::visibility::aims(scout, place);
+    let aims = |place: Vec3| super::visibility::is_in_view(scene_probe, place);
     let place = super::finding::vector(bounds.center());
     let reversed: Vec<MatrixOp> = ops.iter().rev().copied().collect();
     let other = by(&reversed);

@@ -5,11 +5,11 @@ use durer_scene::math::Vec3;
 /// Maximum difference of a channel that is attributed to rounding.
 pub(super) const ROUNDING: f32 = 1.2 / 255.0;
 /// Difference of a channel above which it counts as visible.
-pub(super) const SEEN: f32 = 2.5 / 255.0;
+pub(super) const VISIBLE: f32 = 2.5 / 255.0;
 
 /// Maximum number of outliers that are ignored, and minimum number of other pixels that must match.
-const STRAYS: usize = 4;
-const FEWEST: usize = 30;
+const MAX_OUTLIERS: usize = 4;
+const MIN_PIXELS: usize = 30;
 
 /// How well a rendered picture matches the test picture, where either differs from the reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,45 +21,45 @@ pub(super) struct Fit {
 }
 
 /// Returns the squared difference of two values in excess of rounding.
-fn beyond(a: Vec3, b: Vec3) -> f64 {
+fn excess(a: Vec3, b: Vec3) -> f64 {
     let rest = ((a - b).abs() - ROUNDING).max(Vec3::ZERO);
     f64::from(rest.length_squared())
 }
 
-fn seen(a: Vec3, b: Vec3) -> bool {
-    (a - b).abs().max_element() > SEEN
+fn differs_visibly(a: Vec3, b: Vec3) -> bool {
+    (a - b).abs().max_element() > VISIBLE
 }
 
 /// Returns the squared difference of two pictures in excess of rounding.
 pub(super) fn difference(a: &[Vec3], b: &[Vec3]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| beyond(*a, *b)).sum()
+    a.iter().zip(b).map(|(a, b)| excess(*a, *b)).sum()
 }
 
 /// Counts pixels that differ visibly.
 pub(super) fn differing(a: &[Vec3], b: &[Vec3]) -> usize {
-    a.iter().zip(b).filter(|(a, b)| seen(**a, **b)).count()
+    a.iter().zip(b).filter(|(a, b)| differs_visibly(**a, **b)).count()
 }
 
 /// Measures how well a rendered picture matches the test picture.
-pub(super) fn fit(reference: &[Vec3], test: &[Vec3], made: &[Vec3]) -> Fit {
-    let (total, rest) = (difference(reference, test), difference(made, test));
+pub(super) fn fit(reference: &[Vec3], test: &[Vec3], rendered: &[Vec3]) -> Fit {
+    let (total, rest) = (difference(reference, test), difference(rendered, test));
     let (mut either, mut agree) = (0_usize, 0_usize);
-    for ((r, t), m) in reference.iter().zip(test).zip(made) {
-        if seen(*r, *t) || seen(*r, *m) {
+    for ((r, t), m) in reference.iter().zip(test).zip(rendered) {
+        if differs_visibly(*r, *t) || differs_visibly(*r, *m) {
             either += 1;
-            agree += usize::from(!seen(*t, *m));
+            agree += usize::from(!differs_visibly(*t, *m));
         }
     }
     let explained = if total > 0.0 { 1.0 - rest / total } else { 0.0 };
     let strays = either - agree;
     // If only a few pixels differ, an outlier at an edge would dominate, so ignore outliers.
-    if strays > 0 && strays <= STRAYS.max(reference.len() / 2000) && agree >= FEWEST.max(8 * strays) {
-        let kept = |test: &Vec3, made: &Vec3| !seen(*test, *made);
+    if strays > 0 && strays <= MAX_OUTLIERS.max(reference.len() / 2000) && agree >= MIN_PIXELS.max(8 * strays) {
+        let unchanged = |test: &Vec3, rendered: &Vec3| !differs_visibly(*test, *rendered);
         let part = |of: &[Vec3]| -> f64 {
-            let all = of.iter().zip(test).zip(made).filter(|((_, t), m)| kept(t, m));
-            all.map(|((a, t), _)| beyond(*a, *t)).sum()
+            let all = of.iter().zip(test).zip(rendered).filter(|((_, t), m)| unchanged(t, m));
+            all.map(|((a, t), _)| excess(*a, *t)).sum()
         };
-        let (total, rest) = (part(reference), part(made));
+        let (total, rest) = (part(reference), part(rendered));
         if total > 0.0 {
             return Fit { explained: explained.max(1.0 - rest / total), matched: agree as f64 / either as f64 };
         }
@@ -80,7 +80,7 @@ pub(super) fn sampled(width: u32, reference: &[Vec3], test: &[Vec3], most: usize
             (((i as f64 + part) * list as f64 / count as f64) as usize).min(list - 1)
         })
     };
-    let mut differ: Vec<usize> = (0..all).filter(|&i| seen(reference[i], test[i])).collect();
+    let mut differ: Vec<usize> = (0..all).filter(|&i| differs_visibly(reference[i], test[i])).collect();
     // Sort by tiles of 8x8 pixels, so that subsampling covers all regions.
     differ.sort_by_key(|i| (i / width as usize / 8, i % width as usize / 8));
     let mut chosen: Vec<usize> = spread(all, most / 2).collect();

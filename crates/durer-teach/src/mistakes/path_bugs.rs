@@ -2,10 +2,10 @@
 
 /// Power of the cosine at a surface in a student's path tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Slant {
+pub enum CosinePower {
     /// cos, which is correct.
     #[default]
-    Right,
+    Correct,
     /// No cosine.
     None,
     /// cos².
@@ -14,10 +14,10 @@ pub enum Slant {
 
 /// How a student's path tracer samples the scattered direction at a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Chosen {
+pub enum DirectionSampling {
     /// BSDF sampling, divided by the pdf, which is correct.
     #[default]
-    Right,
+    Correct,
     /// BSDF sampling, not divided by the pdf.
     Undivided,
     /// Uniform over the hemisphere, but divided by the pdf of cosine sampling.
@@ -30,7 +30,7 @@ pub enum Chosen {
 
 /// The factor that a student's path tracer omits from a light sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Lacks {
+pub enum MissingFactor {
     /// None, which is correct.
     #[default]
     Nothing,
@@ -48,10 +48,10 @@ pub enum Lacks {
 
 /// Mistakes in a student's environment light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Sky {
+pub enum EnvironmentBug {
     /// None: directions and pdf are correct.
     #[default]
-    Right,
+    Correct,
     /// The environment is upside down.
     UpsideDown,
     /// The pdf lacks the sine of the polar angle.
@@ -60,7 +60,7 @@ pub enum Sky {
 
 /// How a student's path tracer computes a pixel from its samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Mean {
+pub enum PixelMean {
     /// Mean of the radiance, which is correct.
     #[default]
     Light,
@@ -70,25 +70,25 @@ pub enum Mean {
     Shown,
 }
 
-/// The mistakes of a student's path tracer (`Walker`). The default is a correct tracer.
+/// The mistakes of a student's path tracer (`BuggyPathTracer`). The default is a correct tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Paths {
+pub struct PathBugs {
     /// Power of the cosine at surfaces.
-    pub slant: Slant,
+    pub cosine_power: CosinePower,
     /// The diffuse lobe lacks the factor 1/π; with `true`, only for light samples.
     pub no_pi: Option<bool>,
     /// Sampling of scattered directions.
-    pub chosen: Chosen,
+    pub direction_sampling: DirectionSampling,
     /// Factor omitted from light samples.
-    pub lacks: Lacks,
+    pub missing_factor: MissingFactor,
     /// Light and BSDF samples are added without MIS weights.
     pub unweighted: bool,
     /// Paths that survive Russian roulette are not divided by the survival probability.
-    pub roulette: bool,
+    pub undivided_roulette: bool,
     /// One-sided emitters emit on both sides.
     pub two_sided: bool,
     /// Environment light.
-    pub sky: Sky,
+    pub environment: EnvironmentBug,
     /// Computation of a pixel from its samples.
-    pub mean: Mean,
+    pub pixel_mean: PixelMean,
 }
