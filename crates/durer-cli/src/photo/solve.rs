@@ -62,7 +62,11 @@ fn lens_line(all: &Reconstruction, number: usize, lens: &Lens) -> String {
 }
 
 /// Reads the control points before the work, so that errors in the file are reported at once.
-fn control(args: &SolveArgs, names: &[&str], registry: &mut FileRegistry) -> Result<Option<Vec<ControlPoint>>, Failure> {
+fn control(
+    args: &SolveArgs,
+    names: &[&str],
+    registry: &mut FileRegistry,
+) -> Result<Option<Vec<ControlPoint>>, Failure> {
     let Some(path) = &args.control else { return Ok(None) };
     read_control(&path.to_string_lossy(), &bytes(path, registry)?, names).map(Some).map_err(from_photo_error)
 }

@@ -91,7 +91,9 @@ impl SceneMaker<'_> {
             let inner = scene::Object { node: ObjectKind::Group((*group).clone()), material: None, span: place.at };
             // Translations are in the unit of the part that contains the build item.
             let unit = self.models.get(part).and_then(Option::as_ref).map_or(1.0, |model| model.unit);
-            objects.push(inner.transformed(DAffine3 { translation: unit * place.transform.translation, ..place.transform }));
+            objects.push(
+                inner.transformed(DAffine3 { translation: unit * place.transform.translation, ..place.transform }),
+            );
         }
         objects
     }

@@ -86,7 +86,8 @@ pub(super) fn no_bounces(scene_probe: &SceneProbe) -> Vec<Finding> {
     let bounces = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
     // If highlights and mirrors share one colour, it is meant as a mirror only if the material
     // would be black without reflection.
-    let shared = matches!(scene_probe.world().rules().secondary, SecondaryRays::Specular | SecondaryRays::SpecularFresnel);
+    let shared =
+        matches!(scene_probe.world().rules().secondary, SecondaryRays::Specular | SecondaryRays::SpecularFresnel);
     let intended = |phong: &Phong| phong.fresnel || !shared || phong.diffuse.max_element() < 0.15;
     let all: Vec<_> = phongs(scene_probe)
         .filter(|(i, _, phong)| bounces(phong) && intended(phong) && rays(scene_probe, *i) > 0)

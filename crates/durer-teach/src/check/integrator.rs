@@ -72,9 +72,7 @@ pub(super) fn mostly_black(scene_probe: &SceneProbe) -> Vec<Finding> {
             Some(ParsedMaterial::Principled(m)) => m.base_color.max_element() < 0.05 && m.base_color_texture.is_none(),
             _ => false,
         };
-        !dark
-            && !world.may_emit(hit.material)
-            && !matches!(world.materials()[hit.material as usize], Material::Mix(..))
+        !dark && !world.may_emit(hit.material) && !matches!(world.materials()[hit.material as usize], Material::Mix(..))
     };
     let own = scene_probe
         .lit_probes()

@@ -259,8 +259,10 @@ impl<'s> SceneVariant<'s> {
                     }
                 }
                 Geometry::Mesh(tree) => {
-                    *tree =
-                        Arc::new(MeshTree::new(tree.mesh.with_scaled_triangles(corner, EXTENSION), BuildQuality::Balanced))
+                    *tree = Arc::new(MeshTree::new(
+                        tree.mesh.with_scaled_triangles(corner, EXTENSION),
+                        BuildQuality::Balanced,
+                    ))
                 }
                 Geometry::Solid(_) => {}
             }

@@ -29,7 +29,9 @@ impl Path<'_> {
         });
         let brightest = by_chance.map(|object| self.brightest(object.material, &brightness)).fold(0.0, f32::max);
         let sky = match self.options.direct {
-            DirectSampling::Lights | DirectSampling::Center => self.world.environment().map_or(0.0, |sky| brightness(sky.max_weight())),
+            DirectSampling::Lights | DirectSampling::Center => {
+                self.world.environment().map_or(0.0, |sky| brightness(sky.max_weight()))
+            }
             DirectSampling::Both | DirectSampling::Bsdf => 0.0,
         };
         // Directions are sampled in proportion to their cosine, so a hit counts pi times.

@@ -14,7 +14,13 @@ const MOST_LAYERS: u32 = 64;
 
 impl Whitted<'_> {
     /// Returns the shadow ray to a light for the trace.
-    pub(super) fn shadow(&self, surface: &SurfacePoint, light: usize, light_sample: &LightLiSample, share: Color) -> Shadow {
+    pub(super) fn shadow(
+        &self,
+        surface: &SurfacePoint,
+        light: usize,
+        light_sample: &LightLiSample,
+        share: Color,
+    ) -> Shadow {
         let ray = self.shadow_ray(surface, light, light_sample);
         let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
         Shadow { ray: (&ray).into(), blocker, share: share.into() }
