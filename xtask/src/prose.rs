@@ -37,25 +37,27 @@ impl Paragraph {
     }
 }
 
+/// A listed phrase, or a comment that is too wide, at a line of a file.
+struct Finding {
+    file: String,
+    line: usize,
+    message: String,
+    /// What to write instead. Findings are counted by it.
+    rule: String,
+}
+
 /// Prints findings and counts. Fails if there are any findings.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
-    let root = crate::root()?;
-    let list = std::fs::read_to_string(root.join("xtask/prose.txt"))?;
-    let rules = rules(&list).context("xtask/prose.txt")?;
     let only: Vec<&String> = arguments.iter().filter(|argument| !argument.starts_with("--")).collect();
     let quiet = arguments.iter().any(|argument| argument == "--count");
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
-    for path in sources(&root)? {
-        let name = path.strip_prefix(&root)?.to_string_lossy().into_owned();
-        if !only.is_empty() && !only.iter().any(|part| name.contains(part.as_str())) {
+    for Finding { file, line, message, rule } in findings(&crate::root()?)? {
+        if !only.is_empty() && !only.iter().any(|part| file.contains(part.as_str())) {
             continue;
         }
-        let text = std::fs::read_to_string(&path).with_context(|| name.clone())?;
-        for (line, message, rule) in find_phrases(&text, name.ends_with(".md"), &rules) {
-            *counts.entry(rule).or_default() += 1;
-            if !quiet {
-                println!("{name}:{line}: {message}");
-            }
+        *counts.entry(rule).or_default() += 1;
+        if !quiet {
+            println!("{file}:{line}: {message}");
         }
     }
     let mut counts: Vec<(String, usize)> = counts.into_iter().collect();
@@ -64,6 +66,25 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let all: usize = counts.iter().map(|row| row.1).sum();
     println!("{all:6} in all");
     Ok(if all == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Searches all sources and documents of the repository.
+fn findings(root: &Path) -> Result<Vec<Finding>> {
+    let list = std::fs::read_to_string(root.join("xtask/prose.txt"))?;
+    let rules = rules(&list).context("xtask/prose.txt")?;
+    let mut findings = Vec::new();
+    for path in sources(root)? {
+        let file = path.strip_prefix(root)?.to_string_lossy().into_owned();
+        let text = std::fs::read_to_string(&path).with_context(|| file.clone())?;
+        let in_file = find_phrases(&text, file.ends_with(".md"), &rules);
+        findings.extend(in_file.into_iter().map(|(line, message, rule)| Finding {
+            file: file.clone(),
+            line,
+            message,
+            rule,
+        }));
+    }
+    Ok(findings)
 }
 
 fn rules(list: &str) -> Result<Vec<Rule>> {
@@ -82,8 +103,8 @@ fn rules(list: &str) -> Result<Vec<Rule>> {
     Ok(rules)
 }
 
-/// Returns the paths of Rust sources and documents, sorted. Excludes word lists and third-party
-/// texts.
+/// Returns the paths of Rust sources and documents, sorted. Excludes hidden folders, build outputs
+/// and npm packages.
 fn sources(root: &Path) -> Result<Vec<PathBuf>> {
     let (mut all, mut folders) = (Vec::new(), vec![root.to_path_buf()]);
     while let Some(folder) = folders.pop() {
@@ -243,6 +264,14 @@ mod tests {
         let rules =
             rules("[begin]\nwhat | a noun\n[phrase]\nno number | NaN\nlamp | light\nreckon* | compute").unwrap();
         find_phrases(text, is_document, &rules).into_iter().map(|(line, _, rule)| (line, rule)).collect()
+    }
+
+    #[test]
+    fn repository_has_no_listed_phrases() {
+        let found = findings(&crate::root().unwrap()).unwrap();
+        let lines: Vec<String> =
+            found.iter().map(|Finding { file, line, message, .. }| format!("{file}:{line}: {message}")).collect();
+        assert!(lines.is_empty(), "{}", lines.join("\n"));
     }
 
     #[test]
