@@ -105,7 +105,7 @@ const USAGE: &str = "Commands:
   cargo xtask playground -o FOLDER
       Build the page of `durer live` as static files, over WebAssembly. Needs the target wasm32-unknown-unknown, and
       wasm-bindgen in the version of crates/durer-wasm/Cargo.toml.
-  cargo xtask manual
+  cargo xtask manual [--pages]
       Write the language reference in docs/language with its pictures, and the grammar for editors.
   cargo xtask prose [--count] [PATH ...]
       Find words and patterns of xtask/prose.txt in comments, messages and documents, and comments over 100 columns.
@@ -142,7 +142,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("validate") => validate::run(&arguments[1..]),
         Some("many-lights") => many_lights::run(),
         Some("peers") => peers::run(&arguments[1..]),
-        Some("manual") => manual::run(),
+        Some("manual") => manual::run(&arguments[1..]),
         Some("page") => page::run(&arguments[1..]),
         Some("playground") => page::playground(&arguments[1..]),
         Some("prose") => prose::run(&arguments[1..]),

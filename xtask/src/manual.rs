@@ -15,12 +15,15 @@ const GENERATED: &str =
 /// Size of the example pictures in pixels.
 const SIZE: &str = "240x180";
 
-/// Runs `cargo xtask manual`.
-pub fn run() -> Result<ExitCode> {
+/// Writes the pages and the pictures of their examples; with `--pages`, only the pages.
+pub fn run(arguments: &[String]) -> Result<ExitCode> {
     for (path, text) in pages() {
         std::fs::create_dir_all(path.parent().context("a folder")?)?;
         std::fs::write(&path, text)?;
         println!("wrote {}", path.display());
+    }
+    if arguments.iter().any(|argument| argument == "--pages") {
+        return Ok(ExitCode::SUCCESS);
     }
     let durer = crate::build::build_durer()?;
     std::fs::create_dir_all(pictures())?;

@@ -42,7 +42,7 @@ struct Finding {
     file: String,
     line: usize,
     message: String,
-    /// What to write instead. Findings are counted by it.
+    /// Rule that is broken, with the words to write instead.
     rule: String,
 }
 

@@ -296,7 +296,7 @@ impl Reader<'_, '_> {
             self.leave_out("Tf", material.filter_at);
         }
         let name = std::mem::take(&mut material.name);
-        self.library.materials.entry(name).or_insert_with(|| material.to_principled());
+        self.library.materials.entry(name).or_insert_with(|| material.into_principled());
     }
 }
 

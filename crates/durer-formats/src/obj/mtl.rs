@@ -70,7 +70,7 @@ impl MtlMaterial {
     }
 
     /// Converts the statements to OpenPBR parameters.
-    pub fn to_principled(self) -> PrincipledMaterial {
+    pub fn into_principled(self) -> PrincipledMaterial {
         let (physical, model) = (self.is_physical(), self.model());
         let (transmission, opacity) = (self.transmission(), self.opacity());
         // A texture without `Kd` is shown with its full brightness.
