@@ -303,7 +303,7 @@ impl Reader<'_> {
         self.mesh(plugin, &key, to_world, || curve::tubes(input, report, (&path, at), is_spline))
     }
 
-    /// Returns a mesh in which v increases downwards, and its transform.
+    /// Returns a mesh and its transform. As in Mitsuba, v = 0 is the upper edge of a picture.
     fn mesh(
         &mut self,
         plugin: &Plugin,

@@ -19,7 +19,7 @@ const FACES: [([[f32; 3]; 4], [f32; 3]); 6] = [
 const SIDES: u32 = 128;
 const AROUND: [[f32; 2]; 4] = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
 
-/// Returns the cube that extends from -1 to 1. The texture coordinate v increases downwards.
+/// Returns the cube that extends from -1 to 1. As in Mitsuba, v = 0 is the upper edge of a picture.
 pub(super) fn cube() -> MeshData {
     let mut data = MeshData { flat: true, ..MeshData::default() };
     for (corners, normal) in FACES {
@@ -33,7 +33,8 @@ pub(super) fn cube() -> MeshData {
     data
 }
 
-/// Returns the square from -1 to 1 that faces +z. The texture coordinate v increases downwards.
+/// Returns the square from -1 to 1 that faces +z. As in Mitsuba, v = 0 is the upper edge of a
+/// picture.
 pub(super) fn rectangle() -> MeshData {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Vec2::from_array);
     let triangles = vec![[0, 1, 2], [0, 2, 3]];
@@ -74,8 +75,8 @@ pub(super) fn disk() -> MeshData {
     data
 }
 
-/// Returns an open cylinder of length 1 around the z axis. Its texture coordinates are those of a
-/// mesh in which v increases downwards.
+/// Returns an open cylinder of length 1 around the z axis. As in Mitsuba, v = 0 is the upper edge of
+/// a picture.
 pub(super) fn cylinder(radius: f32) -> MeshData {
     revolution::cylinder(radius, [0.0, 1.0], 360.0)
 }
@@ -95,7 +96,8 @@ pub(super) fn with_tangents(mut data: MeshData) -> MeshData {
     data
 }
 
-/// Flips v, which converts a mesh with v downwards to a mesh with v upwards, and vice versa.
+/// Flips the texture coordinate v of a mesh, so that the upper edge of a picture moves from v = 0 to
+/// v = 1, or vice versa.
 pub(super) fn with_flipped_v(mut data: MeshData) -> MeshData {
     data.uvs.iter_mut().chain(&mut data.second_uvs).for_each(|uv| uv.y = 1.0 - uv.y);
     data

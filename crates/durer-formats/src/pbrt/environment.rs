@@ -106,8 +106,8 @@ impl Reader<'_> {
 }
 
 impl Source {
-    /// Returns the radiance from a direction in world space. As in pbrt-v4, this is the value of
-    /// the nearest texel; as in pbrt-v3, it is interpolated bilinearly.
+    /// Returns the radiance from a direction in world space. The equal-area map of pbrt-v4 uses
+    /// the nearest texel, and the equirectangular map of pbrt-v3 uses bilinear interpolation.
     fn at(&self, dir: DVec3) -> Color {
         let dir = self.to_light.transform_vector3(dir).normalize_or(DVec3::Z).as_vec3();
         let (width, height) = (self.image.width, self.image.height);

@@ -8,8 +8,8 @@ use durer_scene::scene::{Material, Scene};
 
 #[test]
 fn serialized_mesh_equals_ply_mesh() {
-    // All files contain the same lists. In both formats, v increases downwards, and the flags for
-    // colours and for flat faces have no effect.
+    // All files contain the same lists. In both formats, v = 0 is the upper edge of a picture, and
+    // the flags for colours and for flat faces have no effect.
     let ply = b"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
         property float nx\nproperty float ny\nproperty float nz\nproperty float u\nproperty float v\n\
         element face 2\nproperty list uchar int vertex_indices\nend_header\n\
