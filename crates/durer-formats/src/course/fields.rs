@@ -9,8 +9,8 @@ use durer_scene::describe::{Constraint, DescribedKind, Field, FieldKind, FileNam
 use durer_scene::dialect::{Dialect, DialectSet, Quirk};
 use durer_scene::math::Vec3;
 
-/// Order in which the fields of a statement must appear. This is the listed order, which the
-/// course's parsers require, or any order.
+/// Order in which the fields of a statement must appear. The order can be free, or it can be the
+/// listed order, which the course's parsers require.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Order {
     Listed,
@@ -83,8 +83,8 @@ impl Reader<'_, '_> {
         }
         let dialect = if ours { Dialect::Durer } else { self.options.dialect };
         for (field, _) in fields.iter().zip(&given).filter(|(f, g)| f.required && g.is_none()) {
-            // If this dialect has no word for a field, the field has a fixed value. An example is
-            // the centre of a sphere in a node.
+            // If this dialect has no word for a field, the field has a fixed value. For example,
+            // the centre of a sphere in a node is fixed.
             let Some(word) = field.keyword(dialect) else { continue };
             let error = Diagnostic::error(format!("`{name}` has no `{word}`")).code("missing-field").at(keyword);
             self.error(match example(word) {

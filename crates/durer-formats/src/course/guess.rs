@@ -184,8 +184,8 @@ fn names(set: DialectSet) -> String {
     if names.is_empty() { Dialect::Durer.name().into() } else { names.join(", ") }
 }
 
-/// Returns true if a word of 2020 proves that year on its own. The words `sphere` and `point` do
-/// not, because they may be file names.
+/// Returns true if a word of 2020 proves that year on its own. The words `sphere` and `point` are
+/// not proof, because they may be file names.
 fn is_distinctive(word: &str) -> bool {
     word.contains(['<', '_']) || word.starts_with(char::is_uppercase)
 }

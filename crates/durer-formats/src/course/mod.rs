@@ -34,8 +34,9 @@ pub use write::write;
 pub struct ReadOptions {
     /// Dialect of the file.
     pub dialect: Dialect,
-    /// True to allow only what the course's parsers for that dialect accept. This excludes comments
-    /// and words of other years, and requires fields and counts in the expected order.
+    /// True to allow only what the course's parsers for that dialect accept. In this mode, comments
+    /// and words of other years are not allowed, and fields and counts must be in the required
+    /// order.
     pub strict: bool,
     /// Quirks of the course's programs that the reader imitates.
     pub compat: QuirkSet,
@@ -47,7 +48,7 @@ pub fn read(bytes: &[u8], file: u32, options: ReadOptions, diagnostics: &mut Dia
     read_with(bytes, file, options, &|_| IncludedFile::NoFolder, diagnostics)
 }
 
-/// Reads a scene. The function `open` is called to open the files that it includes.
+/// Reads a scene. The function `open` is called to open the files that the scene includes.
 pub fn read_with(
     bytes: &[u8],
     file: u32,

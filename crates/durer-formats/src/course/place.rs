@@ -1,4 +1,4 @@
-//! Finds the spans of field values in a scene file. Programs that edit the file need them.
+//! Finds the spans of field values in a scene file. Programs that edit the file use these spans.
 
 use super::lexer::{Token, TokenKind, tokens};
 use durer_diag::Span;
@@ -49,7 +49,7 @@ fn block_of(text: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
 }
 
 /// Returns the span of the value of a field, which consists of its numbers or of the single word
-/// after the field. If the field is repeated, this is its last value, which is the one that takes
+/// after the field. If the field is repeated, returns the span of its last value, which takes
 /// effect.
 pub fn value(bytes: &[u8], keyword: Span, field: &str) -> Option<Span> {
     let text = |span: Span| std::str::from_utf8(&bytes[span.start as usize..span.end as usize]).unwrap_or_default();
@@ -66,8 +66,9 @@ pub fn block(bytes: &[u8], keyword: Span) -> Option<Span> {
     inside(bytes, keyword).map(|(_, end)| Span { end, ..keyword })
 }
 
-/// Returns the span of the keyword of a top-level section. If there are several such sections, this
-/// is the last one, which takes effect. Returns `None` if there is no such section.
+/// Returns the span of the keyword of a top-level section. If there are several such sections,
+/// returns the span of the last one, which takes effect. Returns `None` if there is no such
+/// section.
 pub fn section(bytes: &[u8], file: u32, keyword: &str) -> Option<Span> {
     let (mut depth, mut found) = (0, None);
     for token in tokens(bytes, file) {

@@ -15,8 +15,8 @@ use durer_scene::scene::{
 };
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
-/// Generator of random scenes for tests. It uses given bytes to make choices, and then a linear
-/// congruential generator (Knuth's multiplier, upper half of the state).
+/// Generator of random scenes for tests. The generator uses given bytes to make choices, and then a
+/// linear congruential generator (Knuth's multiplier, upper half of the state).
 pub struct SceneGenerator {
     state: u64,
     bytes: std::vec::IntoIter<u8>,

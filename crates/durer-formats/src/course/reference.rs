@@ -112,7 +112,7 @@ impl Entry {
         self.keywords.iter().fold(0, |all, keyword| all | keyword.1)
     }
 
-    /// Returns a scene that shows the example, if the example is a visible thing.
+    /// Returns a scene that shows the example, if the example is visible.
     pub fn scene(&self) -> Option<String> {
         let example = &self.example;
         Some(match self.chapter {

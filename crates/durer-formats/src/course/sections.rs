@@ -24,8 +24,7 @@ pub(super) const IN_GROUP: [&str; OBJECTS + 4] = [
     "MaterialIndex", "numObjects", "Grid", "define",
 ];
 
-/// Number of words in [`IN_GROUP`] that begin an object, and that are suggested inside of a
-/// transform.
+/// Number of words in [`IN_GROUP`] that begin an object, and that are suggested inside a transform.
 pub(super) const OBJECTS: usize = 21;
 
 impl Reader<'_, '_> {
@@ -395,7 +394,7 @@ impl Reader<'_, '_> {
             return None;
         }
         // The current material is the material of this object. If the object is a group, the
-        // material can change inside of it.
+        // material can change inside it.
         let material = self.material;
         let classic = |words: &[(&str, DialectSet)]| words.iter().any(|(w, s)| *w == word && s & set::CLASSIC != 0);
         let node = if word == "Group" {

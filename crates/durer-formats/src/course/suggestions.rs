@@ -93,7 +93,7 @@ pub(super) fn word_in_dialect(word: &str, dialect: Dialect) -> Option<&'static s
     counterpart(word, dialect).or(other.filter(known))
 }
 
-/// Returns the valid word that was intended when a common mistake was made, and a remark.
+/// Returns the valid word that corrects a common mistake, and a remark about it.
 pub(super) fn common_mistake<'w>(
     word: &str,
     known: impl IntoIterator<Item = &'w str>,

@@ -106,7 +106,7 @@ impl Reader<'_, '_> {
             self.skip_values();
         }
         if opens {
-            // Errors inside of the braces have already been reported.
+            // Errors inside the braces have already been reported.
             self.close(word, self.errors() == known);
         }
         if self.errors() == errors

@@ -95,7 +95,7 @@ pub(super) fn all() -> impl Iterator<Item = &'static str> {
     WORDS.keys().copied()
 }
 
-/// Returns true if a block with braces follows a word.
+/// Returns true if a word begins a block with braces.
 pub(super) fn begins_block(word: &str) -> bool {
     word.starts_with(|c: char| c.is_ascii_uppercase()) && WORDS.contains_key(word)
 }
@@ -122,7 +122,8 @@ pub(super) const SECTIONS: [&str; 6] = ["Background", "Fog", "Lights", "Textures
 /// Sections that exist only in the Dürer dialect.
 pub(super) const DURER_SECTIONS: [&str; 2] = ["Fog", "Textures"];
 
-/// Returns the camera that begins with the given word, for files in the grammar without nodes.
+/// Returns the camera whose block begins with the given word, for files in the grammar without
+/// nodes.
 pub(super) fn camera_of(word: &str) -> Option<Camera> {
     Camera::from_keyword(word).filter(|_| word != "Camera")
 }

@@ -147,7 +147,7 @@ impl Writer {
                 ops.iter().for_each(|op| w.matrix(op));
                 match inner.material == object.material {
                     true => w.object(inner),
-                    // A transform cannot contain a `MaterialIndex`, but a group inside of it can.
+                    // A transform cannot contain a `MaterialIndex`, but a group inside it can.
                     false => w.group(&Group { objects: vec![Object::clone(inner)] }),
                 }
             }),

@@ -1,4 +1,5 @@
-//! Evaluates animations, which give transforms of nodes and weights of morph targets at a time.
+//! Evaluates animations, which give transforms of nodes and weights of morph targets at a given
+//! time.
 //!
 //! Source: *glTF 2.0 Specification*, chapter 3.11 and appendix C.
 
@@ -143,7 +144,7 @@ impl Sampler {
     }
 }
 
-/// Adds a note which says that the file has animations, but that they are not applied.
+/// Adds a note that the file has animations and that they are not applied.
 fn at_rest(animations: &JsonRef) {
     let mut all = animations.items();
     let count = all.len();

@@ -12,8 +12,8 @@ use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::ops::{Range, RangeBounds};
 
-/// Collector for the diagnostics of a glTF file, which all parts of the reader share. It also finds
-/// the byte ranges of JSON values.
+/// Collector for the diagnostics of a glTF file, which all parts of the reader share. The collector
+/// also finds the byte ranges of JSON values.
 pub(super) struct JsonReport<'a> {
     /// JSON text, which is the whole file or the JSON chunk of a binary file.
     text: &'a [u8],
@@ -120,9 +120,9 @@ impl<'a> JsonRef<'a> {
         self.report.span(&self.pointer())
     }
 
-    /// Returns the name of the innermost value with a name that contains this one, for use after a
-    /// noun. It consists of a space and the name in backquotes. The text is empty if there is no
-    /// name.
+    /// Returns the name of this value, or of the innermost enclosing value that has a name, for use
+    /// after a noun. The text consists of a space and the name in backquotes. The text is empty if
+    /// there is no name.
     pub fn name(&self) -> String {
         let own = self.value.get("name").and_then(Value::as_str).filter(|name| !name.is_empty());
         match (own, self.parent) {
@@ -153,7 +153,7 @@ impl<'a> JsonRef<'a> {
         Some(JsonRef { value, report: self.report, parent: Some(self), step: PathStep::Key(key) })
     }
 
-    /// Returns a required member; reports an error if it is missing.
+    /// Returns a required member, and reports an error if it is missing.
     pub fn required(&'a self, key: &'a str) -> Option<JsonRef<'a>> {
         let count = self.get(key);
         if count.is_none() && self.value.is_object() {

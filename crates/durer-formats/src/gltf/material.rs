@@ -87,7 +87,7 @@ impl Model<'_> {
         }
         let is_colored = self.colored.get(number) == Some(&true);
         if alpha == Alpha::Mask && is_colored {
-            // The alpha of the vertices is multiplied in before the cutoff is applied.
+            // The product includes the alpha of the vertices before the cutoff is applied.
             self.set_mask(&mut m, at, cutoff);
         }
         m.normal_texture = at.get("normalTexture").and_then(|texture| {

@@ -1,4 +1,4 @@
-//! Decodes buffer views that meshoptimizer compressed. They contain attributes, triangles or
+//! Decodes buffer views that meshoptimizer compressed. The views contain attributes, triangles or
 //! indices, and attributes can have a filter.
 //!
 //! Source: *EXT_meshopt_compression*, Khronos Group, appendices A (bitstream) and B (filters). The
@@ -171,8 +171,8 @@ fn attributes(packed: &[u8], count: usize, stride: usize) -> Option<Vec<u8>> {
     reader.0.is_empty().then_some(all)
 }
 
-/// Decodes sixteen differences. They can all be zero, have eight bits each, or have two or four
-/// bits each with the larger values appended.
+/// Decodes sixteen differences. The differences are all zero, have eight bits each, or have two or
+/// four bits each with the larger values appended.
 fn deltas(reader: &mut Reader, mode: u8) -> Option<[u8; 16]> {
     let bits = match mode {
         0 => return Some([0; 16]),

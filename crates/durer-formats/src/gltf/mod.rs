@@ -41,8 +41,8 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use write::write;
 
-/// Extensions that a file is allowed to require. The reader warns about parts of them that it does
-/// not support.
+/// Extensions that a file is allowed to require. The reader warns about the parts of an extension
+/// that it does not support.
 const SUPPORTED_EXTENSIONS: [&str; 24] = [
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",

@@ -170,7 +170,7 @@ impl Model<'_> {
     }
 
     /// Returns the nodes of the visible scene with parents first, and the transforms of all nodes
-    /// to world space. Joints can be nodes that are outside of the visible scene.
+    /// to world space. Joints can be nodes that are outside the visible scene.
     pub(super) fn world_transforms(&self, root: &JsonRef, nodes: &[NodeData]) -> (Vec<usize>, Vec<DAffine3>) {
         let mut maps = vec![DAffine3::IDENTITY; nodes.len()];
         let mut order = Vec::with_capacity(nodes.len());

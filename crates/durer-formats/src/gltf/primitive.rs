@@ -188,7 +188,7 @@ impl Model<'_> {
         Some(Primitive { data, material, has_normals: true, pose: None })
     }
 
-    /// Reads an attribute that is not the positions.
+    /// Reads an attribute other than the vertex positions.
     fn fill(&self, data: &mut MeshData, key: &str, at: &JsonRef) {
         const UNSIGNED: &[ComponentType] = &[ComponentType::U8, ComponentType::U16];
         match key {

@@ -351,8 +351,8 @@ fn specular_extension_applies_to_dielectrics_only() {
     assert_eq!(of(0.0, ""), (0.25, 1.5, red));
     // The extension has no effect on metals.
     assert_eq!(of(1.0, ""), (1.0, 1.5, Vec3::ONE));
-    // For a material that is partly metallic, a smaller index of refraction replaces the weight and
-    // gives a quarter of 0.04 at normal incidence.
+    // For a material that is partly metallic, the weight is replaced with a smaller index of
+    // refraction, which reflects a quarter of 0.04 at normal incidence.
     let (weight, ior, _) = of(0.5, "");
     let root = (ior - 1.0) / (ior + 1.0);
     assert!(weight == 1.0 && (root * root - 0.01).abs() < 1e-6, "{weight} {ior}");
@@ -361,7 +361,7 @@ fn specular_extension_applies_to_dielectrics_only() {
 }
 
 /// At normal incidence, the reflectance is 0.04 times the weight and the colour. At grazing angles,
-/// it is 1.
+/// the reflectance is 1.
 #[test]
 fn specular_color_brightness_becomes_the_weight() {
     let of = |weight: f32, color: &str| {
@@ -443,8 +443,8 @@ fn joints_morph_targets_and_key_frames_move_vertices() {
     let moved = positions(&at("SimpleMorph/glTF/SimpleMorph.gltf", Some(2.0)));
     assert_eq!(rest, [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 0.5, 0.0)]);
     assert!(moved[2].y > 1.0 && moved[..2] == rest[..2], "{moved:?}");
-    // The rotation around z takes one second. After a quarter of it, the triangle has turned by 90
-    // degrees.
+    // The animation makes one turn around z in one second. After a quarter of the turn, the
+    // triangle has rotated by 90 degrees.
     let turned = at("AnimatedTriangle/glTF/AnimatedTriangle.gltf", Some(0.25));
     let mut reached = Vec::new();
     durer_scene::scene::extent::points(&turned, &mut |p| reached.push(p.as_vec3()));

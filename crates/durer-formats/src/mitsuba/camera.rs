@@ -1,7 +1,7 @@
 //! Reads the sensor, the film, the sampler and the integrator.
 //!
 //! Source: *Mitsuba 3 documentation*, "Sensors", "Films" and "Integrators". A camera looks along
-//! +z; +y is up and +x is to the left.
+//! +z, with +y pointing up and +x pointing to the left.
 
 use super::plugin::Plugin;
 use super::state::Reader;

@@ -12,7 +12,7 @@ use glam::DVec4;
 use std::ops::Range;
 
 /// Maximum total number of segments of all curves, and the number of segments above which tubes
-/// have fewer sides. The maximum is low in tests because they reach it.
+/// have fewer sides. Tests use a low maximum so that they can reach it quickly.
 const MAX_PIECES: usize = if cfg!(test) { 1 << 12 } else { 1 << 19 };
 const MANY: usize = 1 << 12;
 

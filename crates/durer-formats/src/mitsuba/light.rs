@@ -1,5 +1,5 @@
-//! Converts point lights, distant lights, infinite lights and area lights. Their values are
-//! radiances.
+//! Converts point lights, distant lights, infinite lights and area lights. The values of these
+//! lights are radiances.
 //!
 //! Source: *Mitsuba 3 documentation*, "Emitters".
 
@@ -150,8 +150,8 @@ impl Reader<'_> {
         None
     }
 
-    /// Adds a projector as a measured light. Its distribution is that of its picture on the plane
-    /// at distance 1.
+    /// Adds a projector as a measured light. The distribution of the light is that of its picture
+    /// on the plane at distance 1.
     fn projector(&mut self, plugin: &Plugin, to_world: DAffine3) {
         let report = self.report;
         let image = self.named_plugin(plugin, "irradiance").and_then(|texture| self.projected_picture(&texture));

@@ -479,7 +479,7 @@ impl<'a> Loader<'a> {
     fn spectrum(&self, attribute: &(String, Span)) -> Option<Value> {
         if !attribute.0.contains(':') {
             return match numbers(&attribute.0).as_deref() {
-                // Mitsuba 0.6 also allows colours at this place.
+                // In Mitsuba 0.6, the value can also be a colour.
                 Some(&[r, g, b]) => Some(Value::Rgb(DVec3::new(r, g, b).as_vec3())),
                 _ => self.numbers(attribute).map(|[number]| Value::ConstantSpectrum(number as f32)),
             };

@@ -70,7 +70,8 @@ impl Reader<'_> {
         material
     }
 
-    /// Returns true if a material has few enough parts to be copied. Otherwise reports an error.
+    /// Returns true if a material has few enough parts to be copied, and otherwise reports an
+    /// error.
     fn has_room_for(&self, material: &MaterialDef, at: Span) -> bool {
         let count = material.count(MAX_PARTS);
         if count > MAX_PARTS {

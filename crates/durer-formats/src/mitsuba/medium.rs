@@ -53,8 +53,7 @@ impl Reader<'_> {
         Some((medium, plugin.key()))
     }
 
-    /// Returns a colour that may be given by a volume. If it is a grid, returns the mean of the
-    /// grid.
+    /// Returns a colour that may be given by a volume. For a grid, returns the mean of its values.
     fn volume_color(&self, plugin: &Plugin, name: &'static str, default: Color) -> Color {
         let volume = self.named_plugin(plugin, name).filter(|volume| volume.kind.ends_with("volume"));
         let Some(volume) = volume else {

@@ -96,7 +96,7 @@ impl Plugin {
         self.get(name).map_or(self.at, |property| property.at)
     }
 
-    /// Returns the value of a property if it has the expected type. Otherwise reports an error.
+    /// Returns the value of a property if it has the expected type, and otherwise reports an error.
     fn typed<T>(
         &self,
         report: &SharedReport,

@@ -6,8 +6,8 @@ use durer_scene::bsdf::albedo::single_means;
 use durer_scene::bsdf::fresnel;
 use durer_scene::math::{Vec3, fp};
 
-/// Rough dielectric boundary of a `roughplastic`. It stores the mean transmittance and reflectance
-/// in Mitsuba and in Dürer, which are needed to match the colour of the base.
+/// Rough dielectric boundary of a `roughplastic`. The boundary stores the mean transmittance and
+/// reflectance in Mitsuba and in Dürer, which are needed to match the colour of the base.
 pub(super) struct Boundary {
     index: f32,
     /// Mean transmittance of the rough boundary from outside and its mean reflectance from inside,
@@ -49,9 +49,9 @@ impl Boundary {
     }
 
     /// Returns the mean radiance of a diffuse base seen through the boundary in Mitsuba, divided by
-    /// its value in Dürer. In Mitsuba, light is lost both when it enters the base and when it
-    /// leaves. If bounces change the colour, `left` is the fraction of light that remains after
-    /// each bounce.
+    /// its value in Dürer. In Mitsuba, light is lost each time that it crosses the boundary, both
+    /// on the way in and on the way out. If bounces change the colour, `left` is the fraction of
+    /// light that remains after each bounce.
     pub fn below(&self, left: Option<f32>) -> f32 {
         let shown = |[through, inside]: [f32; 2]| {
             let through = through / self.index;

@@ -1,10 +1,11 @@
 //! Reads `.serialized` files, each of which can contain several meshes.
 //!
 //! All values are little-endian. Each mesh begins with the number 0x041C and the version (3 or 4),
-//! each of which has 16 bits. A zlib stream follows. It contains flags, a zero-terminated name
-//! (only in version 4), the numbers of vertices and triangles, and then the lists of positions,
-//! normals, texture coordinates, colours and vertex indices. The file ends with the offsets of all
-//! meshes, followed by the number of meshes. Source: *Mitsuba 3 documentation*, `serialized`.
+//! each of which has 16 bits. A zlib stream follows. The stream contains flags, a zero-terminated
+//! name (only in version 4), the numbers of vertices and triangles, and then the lists of
+//! positions, normals, texture coordinates, colours and vertex indices. The file ends with the
+//! offsets of all meshes, followed by the number of meshes. Source: *Mitsuba 3 documentation*,
+//! `serialized`.
 
 use crate::files::read_named;
 use crate::model::ReadInput;

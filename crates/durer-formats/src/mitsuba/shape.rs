@@ -242,8 +242,8 @@ impl Reader<'_> {
         };
         let flat = plugin.boolean(report, "face_normals").unwrap_or(false);
         let is_obj = plugin.kind == "obj";
-        // Mitsuba flips v in OBJ files, where v points up as it does in Dürer. It does not flip v
-        // in PLY files.
+        // Mitsuba flips v in OBJ files, where v points up as it does in Dürer. Mitsuba does not
+        // flip v in PLY files.
         let over = plugin.boolean(report, "flip_tex_coords").unwrap_or(is_obj);
         let mirrored = to_world.matrix3.determinant() < 0.0;
         let input = self.input;

@@ -34,7 +34,7 @@ pub(super) struct Reader<'a> {
     /// Contents of shape groups, with the number of objects in each group.
     pub groups: BTreeMap<Key, (Rc<Group>, usize)>,
     /// True if the current shape is turned inside out, so that the interior index of refraction of
-    /// its glass applies outside of it.
+    /// its glass applies outside it.
     pub inside_out: bool,
     pub infinite: Option<InfiniteLight>,
     /// True if scattered light is not rendered because `max_depth` is below 2.

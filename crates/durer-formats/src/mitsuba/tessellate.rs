@@ -63,8 +63,8 @@ pub(super) fn disk() -> MeshData {
         data.positions.push(rim(i as f32));
         data.uvs.push(Vec2::new(1.0, around(i as f32)));
         if i < SIDES {
-            // Each triangle has its own vertex at the centre of the disc, whose v is the mean of
-            // the two outer corners.
+            // Each triangle has its own vertex at the centre of the disc. The v of this vertex is
+            // the mean of those of the two outer corners.
             data.positions.push(Vec3::ZERO);
             data.uvs.push(Vec2::new(0.0, around(i as f32 + 0.5)));
             data.triangles.push([2 * i + 1, 2 * i, 2 * i + 2]);
@@ -75,8 +75,8 @@ pub(super) fn disk() -> MeshData {
     data
 }
 
-/// Returns an open cylinder of length 1 around the z axis. As in Mitsuba, v = 0 is the upper edge of
-/// a picture.
+/// Returns an open cylinder of length 1 around the z axis. As in Mitsuba, v = 0 is the upper edge
+/// of a picture.
 pub(super) fn cylinder(radius: f32) -> MeshData {
     revolution::cylinder(radius, [0.0, 1.0], 360.0)
 }
@@ -96,8 +96,8 @@ pub(super) fn with_tangents(mut data: MeshData) -> MeshData {
     data
 }
 
-/// Flips the texture coordinate v of a mesh, so that the upper edge of a picture moves from v = 0 to
-/// v = 1, or vice versa.
+/// Flips the texture coordinate v of a mesh, so that the upper edge of a picture moves from v = 0
+/// to v = 1, or vice versa.
 pub(super) fn with_flipped_v(mut data: MeshData) -> MeshData {
     data.uvs.iter_mut().chain(&mut data.second_uvs).for_each(|uv| uv.y = 1.0 - uv.y);
     data

@@ -98,8 +98,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns a number that may be a texture. `change` is applied to the number, or to the
-    /// picture, in which case the number is 1.
+    /// Returns a number that may be a texture. `change` is applied to the number. For a picture, it
+    /// is applied to the picture and the number is 1.
     pub fn number_or_texture(
         &mut self,
         plugin: &Plugin,
@@ -196,7 +196,7 @@ impl Reader<'_> {
         };
         texture.mark_known(&["raw", "accel", "format"]);
         // In Mitsuba, the alpha channel of a picture does not make the surface transparent. Only
-        // `mask` does.
+        // `mask` makes a surface transparent.
         mapping.cutoff = Some(0.0);
         let (bytes, scale) = make(&self.loader.path(&name), texture.span("filename"))?;
         Some((TextureImage { bytes, mapping }, scale))

@@ -28,8 +28,8 @@ impl CameraFrame {
         CameraFrame { center: to_world.translation, axes: [m.x_axis, m.y_axis, m.z_axis] }
     }
 
-    /// Returns `Handedness::Left` if the picture is mirrored, which means that `right` points to the
-    /// left of a viewer who looks along `forward`.
+    /// Returns `Handedness::Left` if the picture is mirrored, which means that `right` points to
+    /// the left of a viewer who looks along `forward`.
     fn handedness(right: DVec3, up: DVec3, forward: DVec3) -> Handedness {
         if forward.cross(up).dot(right) < 0.0 { Handedness::Left } else { Handedness::Right }
     }

@@ -14,8 +14,8 @@ use std::f32::consts::{FRAC_2_PI, PI, TAU};
 /// Maximum height in pixels of the merged environment map.
 const MAX_ROWS: u32 = 2048;
 
-/// Environment map of one infinite light, with its transform and scale. It is merged with the other
-/// maps into the environment of the scene.
+/// Environment map of one infinite light, with its transform and scale. The map is merged with the
+/// other maps into the environment of the scene.
 struct Source {
     image: Image,
     to_light: DAffine3,
@@ -48,8 +48,9 @@ impl Reader<'_> {
         }
         (self.scene.background.color, self.scene.background.ambient_light) = (even, Color::ZERO);
         let Some((name, at)) = first else { return };
-        // Double the number of rows for an equirectangular source. Its fine detail near the poles
-        // may end up in a different part of the merged map, where the texels are coarser.
+        // Double the number of rows for an equirectangular source. Fine detail near the poles of
+        // the source may be far from the poles of the merged map, where fewer texels are available
+        // for it.
         let finer = |source: &Source| {
             source.image.height * if source.map == EnvironmentMapping::Equirectangular { 2 } else { 1 }
         };

@@ -137,7 +137,7 @@ impl Reader<'_> {
             self.report.error(place, format!("density {} is {}: it must be 0 or more", bad + 1, densities[bad]));
             return None;
         }
-        // Surround the grid with zeros, because the density outside of it is 0.
+        // Surround the grid with zeros, because the density outside it is 0.
         let [nx, ny, nz] = counts.map(|n| n as usize);
         let mut values = vec![0.0; (nx + 2) * (ny + 2) * (nz + 2)];
         for (i, row) in densities.chunks_exact(nx).enumerate() {
@@ -154,7 +154,7 @@ impl Reader<'_> {
         Some(Medium { density: Some(Density { name: FileName { path, span: place }, to_world }), ..medium })
     }
 
-    /// Sets the media inside and outside of the shapes that follow. Both media must already be
+    /// Sets the media inside and outside the shapes that follow. Both media must already be
     /// defined.
     pub fn medium_interface(&mut self, names: &[String; 2], at: Span) {
         for name in names.iter().filter(|name| !name.is_empty() && !self.media.contains_key(*name)) {

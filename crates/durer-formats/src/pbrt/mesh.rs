@@ -7,8 +7,8 @@ use durer_scene::shape::tessellate::net::{self, Patches};
 use durer_scene::shape::tessellate::revolution;
 use durer_scene::shape::tessellate::subdivision::loop_surface;
 
-/// Maximum number of triangles of a subdivision surface. The limit is low in tests because they
-/// reach it.
+/// Maximum number of triangles of a subdivision surface. Tests use a low limit so that they can
+/// reach it quickly.
 const MAX_TRIANGLES: usize = if cfg!(test) { 1 << 14 } else { 1 << 20 };
 
 /// Vertices and faces of a mesh as listed in a pbrt file. All faces have the same number of

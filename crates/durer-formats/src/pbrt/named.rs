@@ -6,8 +6,8 @@ use durer_scene::spectrum::space::color_of_chromaticity;
 
 /// Complex indices of refraction of metals (eta, k) for red, green and blue. They are chosen so
 /// that the colours of the reflectances at 0 and 82 degrees equal those of the spectral
-/// reflectances under D65, with an error of at most 0.002. The red component of gold is outside of
-/// linear sRGB and differs by 0.03.
+/// reflectances under D65, with an error of at most 0.002. The red component of gold is outside the
+/// range of linear sRGB and differs by 0.03.
 ///
 /// Source of the spectra: Palik, *Handbook of Optical Constants of Solids*, 1985, and the SOPRA
 /// collection, as distributed with pbrt-v4.

@@ -88,7 +88,7 @@ pub(super) struct Param {
     pub values: Values,
     /// Span of the string that gives the type and name.
     pub at: Span,
-    /// Span of its values.
+    /// Span of the parameter's values.
     pub values_at: Span,
     used: Cell<bool>,
 }

@@ -17,7 +17,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 /// Maximum total number of triangles of all tessellated shapes, and the number of triangles above
-/// which curves get fewer sides. The maximum is low in tests because they reach it.
+/// which curves get fewer sides. Tests use a low maximum so that they can reach it quickly.
 const MAX_TRIANGLES: usize = if cfg!(test) { 1 << 18 } else { 1 << 24 };
 const MANY: usize = 1 << 20;
 
@@ -239,8 +239,8 @@ impl Reader<'_> {
     }
 }
 
-/// Returns the radiance of an area light. Its power is divided equally among the lights of the
-/// shape. A mesh has one light for each triangle.
+/// Returns the radiance of an area light. The power of an area light is divided equally among the
+/// lights of its shape. A mesh has one light for each triangle.
 fn radiance(light: &AreaLight, shape: &ShapeDef) -> Color {
     let Some(power) = light.power else { return light.radiance };
     let sides = if light.two_sided { 2.0 } else { 1.0 };

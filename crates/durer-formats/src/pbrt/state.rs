@@ -27,7 +27,7 @@ pub(super) const MEDIUM: usize = 3;
 pub(super) const TEXTURE: usize = 4;
 
 /// Graphics state of pbrt, such as the current transformation and material. `AttributeBegin` saves
-/// it.
+/// a copy of this state.
 #[derive(Clone, Default)]
 pub(super) struct State {
     pub transforms: Transforms,
@@ -35,7 +35,7 @@ pub(super) struct State {
     /// Index of the current material.
     pub material: usize,
     pub area_light: Option<Rc<AreaLight>>,
-    /// Names of the media inside and outside of the shapes that follow.
+    /// Names of the media inside and outside the shapes that follow.
     pub inside: Option<String>,
     pub outside: Option<String>,
     /// Parameters that `Attribute` has set for shapes, lights, materials, media and textures.
@@ -43,7 +43,7 @@ pub(super) struct State {
     pub space: RgbSpace,
 }
 
-/// Kind of a scope that a directive such as `AttributeBegin` has opened. It determines which
+/// Kind of a scope that a directive such as `AttributeBegin` has opened. The kind determines which
 /// directive closes the scope.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scope {

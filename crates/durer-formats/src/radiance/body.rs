@@ -1,6 +1,6 @@
 //! Merges all surfaces that have the same material into one mesh. Dürer keeps track of the objects
-//! that a ray is inside of, so the surface of a glass body must be a single object. In addition,
-//! many small objects need more memory and time than their triangles do.
+//! that contain the current point of a ray, so the surface of a glass body must be a single object.
+//! In addition, many small objects need more memory and time than their triangles do.
 
 use durer_diag::Span;
 use durer_scene::math::{Vec3, fp};
@@ -14,7 +14,7 @@ pub(super) type Facets = Vec<Vec<DVec3>>;
 /// Number of sides of a tessellated round surface.
 const SIDES: u32 = 128;
 
-/// Mesh of all surfaces that share a material. The reader adds the surfaces to it one by one.
+/// Mesh of all surfaces that share a material. The reader adds the surfaces to the mesh one by one.
 pub(super) struct MaterialMesh {
     data: MeshData,
     pub at: Span,

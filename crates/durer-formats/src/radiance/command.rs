@@ -1,5 +1,5 @@
 //! Executes the commands `!xform`, `!cat`, `!genbox`, `!genprism` and `!gensky`, whose output can
-//! be piped into `xform`. The reader does not run any program. It generates the output itself.
+//! be piped into `xform`. The reader does not run any program, but generates the output itself.
 
 use super::body::Facets;
 use super::context::PrimitiveContext;

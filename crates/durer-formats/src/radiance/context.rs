@@ -4,8 +4,8 @@ use super::words::Word;
 use glam::DAffine3;
 use std::rc::Rc;
 
-/// Transform and settings that apply to all primitives of a text. They come from the commands that
-/// include the text.
+/// Transform and settings that apply to all primitives of a text. The transform and the settings
+/// come from the commands that include the text.
 #[derive(Clone, Default)]
 pub(super) struct PrimitiveContext {
     pub map: DAffine3,
@@ -14,8 +14,8 @@ pub(super) struct PrimitiveContext {
     /// True if all surfaces are turned inside out.
     pub inverted: bool,
     pub depth: u32,
-    /// Folder in which commands run, relative to the scene's folder and with a `/` at the end. It
-    /// is empty for the scene's folder itself.
+    /// Folder in which commands run, relative to the scene's folder and with a `/` at the end. The
+    /// path is empty for the scene's folder itself.
     pub folder: Rc<str>,
 }
 

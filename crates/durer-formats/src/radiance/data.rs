@@ -68,12 +68,12 @@ impl Table {
         self.axes.len()
     }
 
-    /// Interpolates linearly between samples in all coordinates. Returns 0 for positions outside of
+    /// Interpolates linearly between samples in all coordinates. Returns 0 for positions outside
     /// the table.
     pub fn at(&self, coordinates: &[f64]) -> f64 {
         const SLACK: f64 = 1e-4;
-        // For each coordinate, this is the index of the sample before the position, and the
-        // relative distance to the next sample.
+        // Index of the sample before the position, and relative distance to the next sample, for
+        // each coordinate.
         let mut cells = [(0, 0.0); MAX_DIMENSIONS];
         for ((axis, &x), cell) in self.axes.iter().zip(coordinates).zip(&mut cells) {
             let (first, last) = (axis[0].min(axis[axis.len() - 1]), axis[0].max(axis[axis.len() - 1]));

@@ -12,8 +12,8 @@ use durer_scene::math::fp;
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
-/// Directional distribution of an emitter, which is a factor on its radiance for each direction of
-/// emission.
+/// Directional distribution of an emitter, which gives a factor for its radiance in each direction
+/// of emission.
 #[derive(Debug, PartialEq)]
 pub(super) enum DirectionalDistribution {
     Table(IntensityTable),
@@ -57,8 +57,8 @@ enum Correction {
 enum Angle {
     /// Angle between the emission direction and the downward direction.
     Theta,
-    /// Angle around the vertical axis, measured from x towards y. It is mirrored at multiples of
-    /// this number of degrees.
+    /// Angle around the vertical axis, measured from x towards y. The angle is mirrored at
+    /// multiples of this number of degrees.
     Phi(f64),
     /// Vertical or horizontal angle of a type B photometer. If the flag is true, the sign of the
     /// angle is dropped.
@@ -107,7 +107,7 @@ impl Angle {
 }
 
 /// Returns the number of coordinates in the arguments of a pattern, where they follow the function
-/// and the files. The number is 0 if one of them is not an angle of a light.
+/// and the files. The number is 0 if one of the coordinates is not an angle of a light.
 pub(super) fn coordinates(primitive: &RadPrimitive) -> usize {
     let names = || primitive.texts.iter().skip(3).take_while(|word| !word.text.starts_with('-'));
     if names().all(|word| Angle::of(&word.text).is_some()) { names().count() } else { 0 }
@@ -134,7 +134,7 @@ impl IntensityTable {
         (angles.len() == table.dimensions()).then_some(IntensityTable { table, correction, factor, angles, turn })
     }
 
-    /// Returns the factor in a unit direction in world space. `cosine` is the cosine of the angle
+    /// Returns the factor for a unit direction in world space. `cosine` is the cosine of the angle
     /// to the surface normal.
     fn at(&self, dir: DVec3, cosine: f64) -> f64 {
         let e = (self.turn * dir).normalize_or_zero();
@@ -152,8 +152,8 @@ impl IntensityTable {
 }
 
 impl DirectionalDistribution {
-    /// Returns the factor on the radiance in a unit direction in world space. `cosine` is the
-    /// cosine of the angle to the surface normal.
+    /// Returns the factor that multiplies the radiance in a unit direction in world space. `cosine`
+    /// is the cosine of the angle to the surface normal.
     pub fn at(&self, dir: DVec3, cosine: f64) -> f64 {
         match self {
             DirectionalDistribution::Table(light) => light.at(dir, cosine),
@@ -183,9 +183,9 @@ impl DirectionalDistribution {
         }
     }
 
-    /// Returns the light profile of a surface for each unit of area and of radiance. For a
-    /// direction, `shows` returns the projected area as a fraction of the area, and the cosine of
-    /// the angle to the normal.
+    /// Returns the light profile of a surface for a unit area and a unit radiance. For a direction,
+    /// `shows` returns the projected area as a fraction of the area, and the cosine of the angle to
+    /// the normal.
     pub fn profile(&self, shows: impl Fn(DVec3) -> (f64, f64)) -> PhotometricProfile {
         let [down, front] = self.axes();
         let side = front.cross(down);

@@ -1,5 +1,5 @@
-//! Generates the output of `gensky`: the sun and a CIE sky. They follow from the location, date and
-//! time, or from the angles of the sun.
+//! Generates the output of `gensky`: the sun and a CIE sky. The sun and the sky follow from the
+//! location, date and time, or from the angles of the sun.
 //!
 //! Sources: the manual page of gensky; Cooper, *The absorption of radiation in solar stills*, Solar
 //! Energy 12, 1969, for the declination; IES, *Recommended Practice for the Calculation of Daylight
@@ -34,8 +34,8 @@ struct SkyArgs {
     kind: Kind,
     sunny: bool,
     latitude: f64,
-    /// Degrees west of Greenwich. The unit also applies to `meridian`, which is the standard
-    /// meridian of the clock time.
+    /// Longitude in degrees west of Greenwich. The standard meridian of the clock time, `meridian`,
+    /// has the same unit.
     longitude: f64,
     meridian: f64,
     year: Option<i32>,
@@ -263,9 +263,8 @@ impl SkyArgs {
     }
 
     /// Returns the value of the sky formula at the zenith. Also returns the radiance of a uniform
-    /// sky that has the same horizontal irradiance as this sky, if the zenith of this sky has a
-    /// radiance of 1. `a` is the altitude of the sun in radians, and `sin` is the sine of that
-    /// angle.
+    /// sky that has the same horizontal irradiance as this sky, for a zenith radiance of 1. `a` is
+    /// the altitude of the sun in radians, and `sin` is the sine of that angle.
     fn normalization(&self, a: f64, sin: f64) -> (f64, f64) {
         let from_zenith = (FRAC_PI_2 - a) as f32;
         let (given, row) = match self.kind {

@@ -1,8 +1,8 @@
 //! Converts materials to OpenPBR parameters.
 //!
-//! Like GGX's alpha, Ward's roughness is the mean slope of the surface, and alpha is the square of
-//! OpenPBR's roughness. Sources: the reference manual of Radiance; Ward, *Measuring and Modeling
-//! Anisotropic Reflection*, SIGGRAPH 1992.
+//! Ward's roughness is the mean slope of the surface. This is also the meaning of GGX's alpha,
+//! which is the square of OpenPBR's roughness. Sources: the reference manual of Radiance; Ward,
+//! *Measuring and Modeling Anisotropic Reflection*, SIGGRAPH 1992.
 
 use super::args::RadPrimitive;
 use super::converted::{ConvertedModifier, MaterialKind, PatternEffect};
@@ -63,9 +63,10 @@ fn trans(color: Color, [specular, transmitted, straight]: [f32; 3], roughness: [
     let [transmitted, straight] = [transmitted, straight].map(|share| share.clamp(0.0, 1.0));
     let through = transmitted * straight;
     let (back, forth) = (1.0 - transmitted, transmitted * (1.0 - straight));
-    // Light that is transmitted specularly is reflected at both sides of the sheet, with 2 F / (1 +
-    // F). All other light is reflected once, with F. These values of F and of the weight of the
-    // sheet give the specified fractions at normal incidence.
+    // Both sides of the sheet reflect light that is transmitted specularly, with a total
+    // reflectance of 2 F / (1 + F). All other light is reflected only once, with a reflectance of
+    // F. These values of F and of the weight of the sheet give the specified fractions at normal
+    // incidence.
     let specular = specular.min(0.9);
     let once = specular / (1.0 + (1.0 - specular) * through);
     let sheet = (1.0 - specular) * through * (1.0 + once) / (1.0 - once);
@@ -86,8 +87,8 @@ fn trans(color: Color, [specular, transmitted, straight]: [f32; 3], roughness: [
     }
 }
 
-/// Returns a dielectric body with the given index of refraction. `left` is its transmittance over a
-/// distance of 1.
+/// Returns a dielectric body with the given index of refraction. `left` is the transmittance of the
+/// body over a distance of 1.
 fn body(left: Color, index: f32) -> PrincipledMaterial {
     let m = PrincipledMaterial {
         transmission_weight: 1.0,

@@ -3,7 +3,7 @@
 //!
 //! Sources: *The RADIANCE 5.4 Synthetic Imaging System*, reference manual; the manual pages of
 //! xform, genbox, genprism, gensky, rad and rpict. As in Radiance's own pictures, a pixel value of
-//! 1 is a radiance of 1 W/(sr m²). Multiplying it by 179 gives the luminance in cd/m².
+//! 1 is a radiance of 1 W/(sr m²). Multiplying the pixel value by 179 gives the luminance in cd/m².
 
 mod args;
 mod body;

@@ -16,7 +16,7 @@ use glam::DVec3;
 pub(super) struct ViewBox {
     min: DVec3,
     size: DVec3,
-    /// True if the cameras are inside of the box.
+    /// True if the cameras are inside the box.
     interior: bool,
     /// Index of the up axis, and its sign.
     up: (usize, f64),
@@ -46,7 +46,7 @@ pub(super) fn standard(name: &str) -> Option<(DVec3, char)> {
 
 impl ViewBox {
     /// Reads the values of `ZONE` and `UP`. By default, the box is the bounding cube of all
-    /// surfaces, the cameras are outside of it, and the up axis is z.
+    /// surfaces, the cameras are outside it, and the up axis is z.
     pub fn of(zone: Option<&[Word]>, up: Option<&[Word]>, reader: &Reader) -> ViewBox {
         let up = up.and_then(|words| words.first()).map_or("", |word| word.text.as_str());
         let letter = up.trim_start_matches(['+', '-']).chars().next().map(|letter| letter.to_ascii_uppercase());

@@ -27,8 +27,8 @@ const MAX_MATERIALS: usize = 1 << 16;
 /// Maximum number of corners and shapes in a scene.
 const MAX_SHAPES: usize = 1 << 26;
 
-/// Radiance modifier, such as a material or a pattern, as stored in the file. It contains the
-/// indices of the modifiers that it refers to.
+/// Radiance modifier, such as a material or a pattern, as stored in the file. The modifier contains
+/// the indices of the modifiers that it refers to.
 pub(super) struct Modifier {
     pub primitive: Rc<RadPrimitive>,
     /// Index of the modifier that applies to this one.
@@ -94,8 +94,8 @@ pub(super) struct Reader<'a> {
     pub report: &'a SharedReport,
     pub modifiers: Vec<Modifier>,
     pub names: BTreeMap<String, usize>,
-    /// Converted modifiers, by their index and by the bits of the colour by which earlier patterns
-    /// multiply them.
+    /// Converted modifiers. The key is the index of the modifier and the bits of the colour by
+    /// which earlier patterns multiply it.
     pub converted: BTreeMap<(usize, [u32; 3]), Rc<ConvertedModifier>>,
     /// True after the limit on the number of materials was reached.
     material_limit_reached: bool,
@@ -104,9 +104,9 @@ pub(super) struct Reader<'a> {
     /// Fog that corresponds to each material of type `mist`.
     pub mist_fog: BTreeMap<u32, Fog>,
     pub distant: Vec<DistantSource>,
-    /// Directional distributions by the index of their modifier, and then the light profiles that
-    /// are made from them. The profiles are listed by distribution and by the orientation of the
-    /// surface.
+    /// Directional distributions by the index of their modifier, followed by the light profiles
+    /// that are made from them. The key of a light profile is its distribution and the orientation
+    /// of the surface.
     pub distributions: BTreeMap<usize, Rc<DirectionalDistribution>>,
     pub profiles: Vec<(Rc<DirectionalDistribution>, Orientation)>,
     pub triangulator: Triangulator,
@@ -290,7 +290,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Converts the mist around the camera to fog, because rays from the camera do not know that
-    /// they start inside of a body.
+    /// they start inside a body.
     fn mist_to_fog(&mut self) {
         let Some(eye) = self.scene.camera.as_ref().map(|camera| camera.pose().center) else { return };
         for (number, fog) in std::mem::take(&mut self.mist_fog) {

@@ -112,8 +112,8 @@ fn materials_become_layers() {
     assert_eq!((m.base_color, messages.len()), (Vec3::new(0.8, 0.4, 0.2), 0));
     // An index of refraction of 1.5 gives a reflectance of 4 %.
     assert!((m.specular_ior - 1.5).abs() < 1e-5 && m.specular_roughness == 0.0);
-    // The specular part of rough plastic is white at all angles. Its roughness is the square root
-    // of the slope.
+    // The specular part of rough plastic is white at all angles. The roughness of OpenPBR is the
+    // square root of the slope.
     let scene = clean("void plastic m 0 0 5 .8 .4 .2 .04 .09 m sphere s 0 0 4 1 2 3 .5");
     let Material::Solid(durer_scene::material::PatternMaterial::Mix(mix), _) = &scene.materials[2].value else {
         panic!("no mixture")

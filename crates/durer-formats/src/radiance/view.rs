@@ -47,8 +47,8 @@ impl Default for View {
 }
 
 /// Returns the last view in a file. A view is on a line that begins with `VIEW=` or with the name
-/// of a program. If the file is a picture, only its header is searched, in which the lines can
-/// contain other options too.
+/// of a program. If the file is a picture, only its header is searched. The lines of a header can
+/// also contain other options.
 pub(super) fn last_view(bytes: &[u8], file: u32, report: &SharedReport) -> Option<View> {
     let (mut view, mut start) = (None, 0);
     let picture = bytes.starts_with(b"#?");

@@ -37,7 +37,7 @@ impl Word {
     }
 }
 
-/// Start of a Radiance primitive, which is its first word, or of a command that begins with `!`.
+/// First word of a Radiance primitive, or a command that begins with `!`.
 pub(super) enum PrimitiveStart {
     Word(Word),
     /// Range of bytes of a command without its `!`.

@@ -15,12 +15,13 @@ const MAX_PLACES: usize = 1 << 20;
 enum Repetition {
     /// The part is applied a fixed number of times (`-i`).
     Fixed(i32),
-    /// The part creates an array of copies (`-a`). It is applied zero times to the first copy, once
-    /// to the second, twice to the third, and so on.
+    /// The part creates an array of copies (`-a`). The part is applied zero times to the first
+    /// copy, once to the second, twice to the third, and so on.
     Array(usize),
 }
 
-/// Transform of an `xform` command. It is a sequence of parts and can create several copies.
+/// Transform of an `xform` command. The transform is a sequence of parts, and it can create several
+/// copies.
 #[derive(Clone)]
 pub(super) struct TransformSequence {
     parts: Vec<(Repetition, DAffine3)>,
@@ -32,8 +33,8 @@ impl Default for TransformSequence {
     }
 }
 
-/// Returns the rotation around an axis by an angle in degrees. It is exact for multiples of a right
-/// angle.
+/// Returns the rotation around an axis by an angle in degrees. The result is exact for multiples of
+/// a right angle.
 fn rotation(axis: usize, degrees: f64) -> DAffine3 {
     let (sin, cos) = fp::sin_cos_degrees(degrees);
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);

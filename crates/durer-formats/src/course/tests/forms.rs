@@ -37,8 +37,8 @@ fn sample(kind: FieldKind, rule: Constraint) -> (String, Value) {
     (text.into(), value)
 }
 
-/// Writes every statement of a list with all fields that it has in a dialect, reads it inside of
-/// the text that `wrap` returns, and compares the result.
+/// Writes every statement of a list with all fields that it has in a dialect, reads it inside the
+/// text that `wrap` returns, and compares the result.
 fn every_word<T: DescribedKind + PartialEq + std::fmt::Debug>(
     wrap: impl Fn(&str, &str) -> String,
     find: impl Fn(Scene) -> T,

@@ -1,5 +1,5 @@
 //! Tests with thousands of broken files. The reader must not panic, must take a bounded amount of
-//! time, and must report errors with spans that are inside of the file.
+//! time, and must report errors with spans that are inside the file.
 
 use super::*;
 use crate::Decoder;

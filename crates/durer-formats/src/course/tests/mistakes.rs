@@ -157,7 +157,7 @@ fn two_mistakes_give_two_errors() {
 #[test]
 fn lost_brace_gives_an_error_at_its_effect_and_at_the_end() {
     for (from, to, places) in [
-        // The `}` of the transform closes the mesh instead, so the next group is inside of the
+        // The `}` of the transform closes the mesh instead, so the next group is inside the
         // transform.
         ("cube.obj\n        }\n", "cube.obj\n", ["47:5", "60:1"]),
         ("diffuseColor 1 0 0", "diffuseColor 1 0 0 }", ["26:9", "28:5"]),

@@ -76,7 +76,7 @@ fn wrong_names_are_errors() {
             "3:8 error: `Sphere` cannot be a name: it is a word of the language [Sphere]",
         ),
         ("define 3 Sphere { center 0 0 0 radius 1 }", "3:8 error: `3` cannot be a name: it is a number [3]"),
-        // Cycles are impossible because an object cannot be used inside of its own definition.
+        // Cycles are impossible because an object cannot be used inside its own definition.
         (
             "define a Group { use a }",
             "3:22 error: nothing is defined as `a` before this [a] (write `define NAME` and an object first, outside the object that uses it)",
@@ -87,7 +87,7 @@ fn wrong_names_are_errors() {
         assert_eq!(refused(text)[0], expected, "{text}");
     }
     // Each definition doubles the number of objects. The reader must reject this scene before it
-    // needs the memory.
+    // allocates memory for it.
     let mut text = "define a0 Sphere { center 0 0 0 radius 1 }\n".to_string();
     for i in 1..64 {
         text += &format!("define a{i} Group {{ use a{} use a{} }}\n", i - 1, i - 1);

@@ -1,4 +1,4 @@
-//! Finds the byte range of the value at a JSON pointer. It is needed only for diagnostics.
+//! Finds the byte range of the value at a JSON pointer. This module is needed only for diagnostics.
 
 use std::ops::Range;
 

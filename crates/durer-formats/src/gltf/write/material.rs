@@ -207,7 +207,7 @@ impl Writer<'_> {
         extensions: &mut Map<String, Value>,
     ) -> bool {
         match field {
-            // In glTF, this is the base colour texture, which has already been written.
+            // In glTF, the base colour texture has this role, and it has already been written.
             "transmission_color_texture" => return m.base_color_texture.as_ref() == Some(name),
             // In glTF, the texture of the anisotropy strength also contains the rotation.
             "specular_rotation_texture" if m.specular_anisotropy_texture.is_some() => return true,

@@ -432,7 +432,8 @@ fn conductor_tint_applies_at_all_angles() {
         |more: &str| layers(&format!("<bsdf type='conductor'><string name='material' value='Au'/>{more}</bsdf>"));
     let (plain, tinted) = (metal(""), metal("<rgb name='specular_reflectance' value='.5,.25,.5'/>"));
     let tint = Vec3::new(0.5, 0.25, 0.5);
-    // At 82 degrees, a metal reflects Schlick's approximation times its specular colour.
+    // At 82 degrees, the reflectance of a metal is Schlick's approximation times its specular
+    // colour.
     let at_82 = |m: &PrincipledMaterial| {
         let schlick = m.base_color + (Vec3::ONE - m.base_color) * fp::pow(6.0 / 7.0, 5.0);
         schlick * m.specular_color

@@ -81,8 +81,8 @@ impl Reader<'_> {
         if metallic == 0.0 {
             return MaterialDef::Principled(Box::new(m), at);
         }
-        // The other part is a metal. Its reflectance is the colour times Schlick's approximation
-        // for that colour.
+        // The other part is a metal. The reflectance of the metal is the colour times Schlick's
+        // approximation for that colour.
         let mut metal = m.clone();
         let tinted = if metal.base_color_texture.is_some() { Vec3::ONE } else { color };
         metal.base_metalness = 1.0;

@@ -1,6 +1,6 @@
-//! Converts the materials of pbrt-v3. Most of them add a Lambertian lobe and a rough specular lobe,
-//! where pbrt-v4 has layers. Such a sum becomes a mix, in which each part is multiplied by the
-//! inverse of its share.
+//! Converts the materials of pbrt-v3. Most of these materials are sums of a Lambertian lobe and a
+//! rough specular lobe, whereas pbrt-v4 uses layers. Such a sum becomes a mix, in which each part
+//! is multiplied by the inverse of its share.
 //!
 //! Source: *Physically Based Rendering*, 3rd edition, chapters 8 and 9, and *Input File Format*,
 //! pbrt.org/fileformat-v3.

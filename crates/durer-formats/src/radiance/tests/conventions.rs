@@ -37,9 +37,10 @@ fn lit(text: &str, point: Vec3, normal: Vec3, expected: f64) {
 #[test]
 fn emitters_have_the_given_radiance() {
     let light = "void light l 0 0 3 8 8 8\n";
-    // A sphere gives L (r / d)².
+    // The expected value for a sphere is L (r / d)².
     lit(&format!("{light}l sphere s 0 0 4 0 0 5 1"), Vec3::ZERO, Vec3::Z, 8.0 / 25.0);
-    // A disc that faces down gives L r² / (r² + d²). A disc that faces up contributes nothing.
+    // The expected value for a disc that faces down is L r² / (r² + d²). A disc that faces up
+    // contributes nothing.
     lit(&format!("{light}l ring s 0 0 8 0 0 2 0 0 -1 0 1"), Vec3::ZERO, Vec3::Z, 8.0 / 5.0);
     assert_eq!(shown(&format!("{light}l ring s 0 0 8 0 0 2 0 0 1 0 1"), Vec3::ZERO, Vec3::Z), Vec3::ZERO);
     // A polygon emits light on the side from which its corners are in counter-clockwise order.
@@ -49,20 +50,21 @@ fn emitters_have_the_given_radiance() {
     lit(&format!("{light}{square}"), Vec3::ZERO, Vec3::Z, 8.0 * factor);
     let turned = "l polygon s 0 0 9 0 0 1 1 0 1 0 1 1";
     assert_eq!(shown(&format!("{light}{turned}"), Vec3::ZERO, Vec3::Z), Vec3::ZERO);
-    // The sun gives its radiance times its solid angle divided by pi. A sky that covers the whole
-    // sphere gives its radiance.
+    // The expected value for the sun is its radiance times its solid angle, divided by pi. The
+    // expected value for a sky that covers the whole sphere is its radiance.
     lit("void light l 0 0 3 1e5 1e5 1e5\nl source s 0 0 4 0 0 1 .5", Vec3::ZERO, Vec3::Z, {
         let (sin, _) = fp::sin_cos_degrees(0.125);
         1e5 * 4.0 * sin * sin
     });
     lit("void glow l 0 0 4 2 2 2 0\nl source s 0 0 4 0 0 1 180\n", Vec3::ZERO, Vec3::Z, 2.0);
-    // An overcast sky gives 7/9 of the radiance of its zenith.
+    // The expected value for an overcast sky is 7/9 of the radiance of its zenith.
     let overcast =
         "void brightfunc f 2 skybr skybright.cal 0 3 2 9 0\nf glow g 0 0 4 1 1 1 0\ng source s 0 0 4 0 0 1 180";
     let found = f64::from(shown(overcast, Vec3::ZERO, Vec3::Z).x);
     assert!((found / 7.0 - 1.0).abs() < 0.03, "{found}");
-    // On its axis, a spotlight gives L A / d² divided by pi. The distance d is measured from its
-    // focus, which is 2 behind it. The result is zero outside of the cone.
+    // On its axis, the expected value for a spotlight is L A / d² divided by pi. The distance d is
+    // measured from the focus of the spotlight, which is 2 units behind it. The expected value is
+    // zero outside the cone.
     let spot = "void spotlight l 0 0 7 6 6 6 30 0 0 -2\nl ring r 0 0 8 0 0 3 0 0 -1 0 .1";
     lit(spot, Vec3::ZERO, Vec3::Z, 6.0 * 0.01 / 25.0);
     assert_eq!(shown(spot, Vec3::new(1.0, 0.0, 0.0), Vec3::Z), Vec3::ZERO);

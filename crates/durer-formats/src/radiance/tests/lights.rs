@@ -36,8 +36,8 @@ fn sin(degrees: f64) -> f64 {
     fp::sin_cos_degrees(degrees).0
 }
 
-/// Data file that contains a table over two angles. One is 0 to 180 degrees around the axis, and
-/// the other is 0 to 180 degrees from the downward direction.
+/// Data file that contains a table over two angles. One of them ranges from 0 to 180 degrees around
+/// the axis, and the other one from 0 to 180 degrees measured from the downward direction.
 fn by_two() -> String {
     let values =
         (0..=18).flat_map(|i| (0..=36).map(move |j| (1.0 + 0.1 * f64::from(i) + 0.2 * f64::from(j)).to_string()));
@@ -63,8 +63,8 @@ fn intensity_follows_the_table() {
     ]);
     let down = |theta: f64| if theta < 90.0 { cos(theta) } else { 0.0 };
     let cases: [(&str, Expected); 11] = [
-        // The radiance is 3, times 2, times the value of the table, divided by the cosine, times an
-        // area of pi or 4.
+        // The expected intensity is a radiance of 3, times 2, times the value of the table, divided
+        // by the cosine, times an area of pi or 4.
         (
             "void brightdata d 4 flatcorr a.dat source.cal src_theta 0 1 2 d light l 0 0 3 3 3 3 l ring r 0 0 8 0 0 1 0 0 -1 0 1",
             Box::new(move |theta, _| 6.0 * PI * down(theta)),
@@ -112,8 +112,7 @@ fn intensity_follows_the_table() {
             // down.
             Box::new(|theta, _| PI * if theta > 90.0 { 4.0 - 3.0 * (180.0 - theta) / 90.0 } else { theta / 90.0 }),
         ),
-        // The table gives an eighth of the radiance of the ring. The case uses two angles of a type
-        // B photometer.
+        // The table contains only ones. Its coordinate is one of the angles of a type B photometer.
         (
             "void brightdata d 4 corr one.dat source.cal srcB_vert2 0 0 d light l 0 0 3 1 1 1 l sphere r 0 0 4 1 2 3 1",
             Box::new(|_, _| PI),

@@ -1,6 +1,6 @@
 //! Tests of behaviour that the manual does not specify and that was measured with Radiance's own
-//! programs. They cover chains of patterns, skies, folders, standard views, and the reflectance and
-//! transmittance of a sheet.
+//! programs. The tests cover chains of patterns, skies, folders, standard views, and the
+//! reflectance and transmittance of a sheet.
 
 use super::*;
 use crate::radiance::args::RadPrimitive;
@@ -91,8 +91,8 @@ fn skies_match_rtrace() {
 
 #[test]
 fn skies_are_rotated_by_xform_and_by_their_arguments() {
-    // The bright side of a clear sky is at y and is rotated to x. The rotation is in the text, in a
-    // pipe or in a file.
+    // The bright side of a clear sky is at y and is rotated to x. The rotation is given in the
+    // text, in a pipe or in a file.
     let numbers = "0 7 1 30 7 1.1 0 .7 .714143";
     let rest = "f glow g 0 0 4 1 1 1 0 g source s 0 0 4 0 0 1 180";
     let sky = format!("void brightfunc f 2 skybr skybright.cal {numbers} {rest}");
