@@ -376,8 +376,8 @@ impl Reader<'_, '_> {
         self.error(error);
     }
 
-    /// Returns an error if a web colour such as `#b38033`, which is a comment in this language, is
-    /// in the place of the numbers before `next`.
+    /// Returns an error if a web colour such as `#b38033` replaces the numbers before `next`,
+    /// because a web colour is a comment in this language.
     fn commented_color(&self, what: &str, after: &str, next: Span) -> Option<Diagnostic> {
         let last = self.last_span();
         let gap = self.text(Span { start: last.end, end: next.start.max(last.end), ..last });

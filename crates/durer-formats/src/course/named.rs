@@ -33,7 +33,7 @@ impl Reader<'_, '_> {
     /// Reads the number or the name of a material, and returns the number.
     pub(super) fn material_number(&mut self, word: &str) -> Option<u32> {
         let name = self.peek_word().filter(|text| !text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)));
-        // If a word of the language is found here, the number is missing.
+        // If a word of the language comes next, the number is missing.
         let Some(name) = name.filter(|name| self.named.materials.contains_key(name) || dialects_of(name).is_none())
         else {
             return self.integer(word);

@@ -189,7 +189,7 @@ impl Deformation {
 }
 
 /// Returns the matrix that transforms normals, which is the transposed inverse times a positive
-/// factor. This matrix also exists for singular transforms.
+/// factor. The matrix also exists for singular transforms.
 pub(super) fn normal_matrix(map: DMat3) -> DMat3 {
     let [x, y, z] = [map.x_axis, map.y_axis, map.z_axis];
     1f64.copysign(map.determinant()) * DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y))

@@ -1,7 +1,8 @@
 //! Decodes primitives whose triangles are compressed with Draco.
 //!
 //! Source: *KHR_draco_mesh_compression*, Khronos Group. The accessors of such a primitive describe
-//! the decompressed data, but they have no buffer view. This module sets their data.
+//! the decompressed data, but they have no buffer view. This module sets the data of these
+//! accessors.
 
 use super::Model;
 use super::accessor::ComponentType;

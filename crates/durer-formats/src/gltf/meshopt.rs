@@ -358,8 +358,8 @@ mod tests {
 
     #[test]
     fn elements_follow_the_baseline() {
-        // The data has two elements of four bytes. The first is the baseline plus (1, 0, 0, 0), and
-        // the second is the first plus (-1, 0, 0, 5).
+        // The data has two elements of four bytes. The first element is the baseline plus (1, 0, 0,
+        // 0), and the second element is the first one plus (-1, 0, 0, 5).
         let mut packed = vec![0xa0];
         packed.extend([1, 0b1001_0000, 0, 0, 0]); // byte 0: two bits, 2 = +1 and 1 = -1
         packed.extend([0, 0]);

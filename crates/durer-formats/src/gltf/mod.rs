@@ -89,11 +89,12 @@ struct Model<'a> {
     material_count: usize,
     /// Index of the selected material variant, if the file has any variants.
     variant: Option<usize>,
-    /// Flag for each material that is true if its alpha makes it translucent.
+    /// Flag for each material, which is true if the alpha of the material makes it translucent.
     translucent: Vec<bool>,
-    /// Flag for each material that is true if any of the vertices that use it have colours.
+    /// Flag for each material, which is true if any of the vertices that use the material have
+    /// colours.
     colored: Vec<bool>,
-    /// Flag for each material that is true if it needs tangents.
+    /// Flag for each material, which is true if the material needs tangents.
     needs_tangents: Vec<bool>,
     meshes: Vec<Primitives>,
     /// Default weights of the morph targets of each mesh.
@@ -101,8 +102,8 @@ struct Model<'a> {
     skins: Vec<Option<Skin>>,
     cameras: Vec<Option<CameraData>>,
     lights: Vec<Option<LightData>>,
-    /// Amount of decoded data, counted every time it is used. This limit keeps time and memory in
-    /// proportion to the size of the file.
+    /// Amount of decoded data, which is counted every time the data is used. The limit on this
+    /// amount keeps time and memory in proportion to the size of the file.
     work: ResourceLimits,
     /// Number of objects, and number of bytes of data that stay in memory.
     kept: ResourceLimits,

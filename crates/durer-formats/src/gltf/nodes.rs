@@ -27,7 +27,7 @@ pub(super) struct NodeData {
     pub weights: Vec<f32>,
     pub local: LocalTransform,
     /// Transforms of the instances relative to the node (EXT_mesh_gpu_instancing), or `None` if the
-    /// node is not instanced.
+    /// node has no instances.
     copies: Option<Vec<DAffine3>>,
 }
 

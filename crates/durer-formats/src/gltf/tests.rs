@@ -202,8 +202,8 @@ const BOUNDS: &str = r#""min":[0,0,0],"max":[9,9,9]"#;
 
 #[test]
 fn accessors_are_strided_normalised_and_sparse() {
-    // Data of four 16-bit positions in rows of 12 bytes, with 8-bit texture coordinates. One row is
-    // replaced by a sparse value.
+    // Data of four 16-bit positions in rows of 12 bytes, with 8-bit texture coordinates. One of the
+    // rows is replaced by a sparse value.
     let mut bytes: Vec<u8> = Vec::new();
     for i in 0..4u16 {
         [i, 2 * i, 3 * i].iter().for_each(|x| bytes.extend(x.to_le_bytes()));

@@ -228,7 +228,7 @@ impl Reader<'_> {
                 self.scene.render_defaults.bounces = Some(0);
                 plugin.mark_known(&["emitter_samples", "bsdf_samples", "shading_samples"]);
             }
-            // These integrators contain the integrator that renders the picture.
+            // Integrators of these types contain the integrator that renders the picture.
             "aov" | "moment" => {
                 for (_, inner) in self.child_plugins(plugin, Some("integrator")) {
                     self.integrator(&inner, depth + 1);

@@ -28,8 +28,8 @@ impl Reader<'_> {
         plugin.get(name).map_or(Texture::Constant(default), |property| self.texture_of(property, default))
     }
 
-    /// Returns the value of a property that may be a picture with values above 1. Such a picture is
-    /// divided by its maximum. See [`Reader::texture`].
+    /// Returns the value of a property that may be a picture with values above 1. Pictures with
+    /// values above 1 are divided by their maximum. See [`Reader::texture`].
     pub fn bright_texture(&self, plugin: &Plugin, name: &'static str, default: Color) -> Texture {
         let bitmap = self.named_plugin(plugin, name).filter(|part| part.kind == "bitmap");
         let Some(bitmap) = bitmap else { return self.texture(plugin, name, default) };
@@ -98,8 +98,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns a number that may be a texture. `change` is applied to the number. For a picture, it
-    /// is applied to the picture and the number is 1.
+    /// Returns a number that may be a texture. `change` is applied to the number. For a picture,
+    /// `change` is applied to the picture and the number is 1.
     pub fn number_or_texture(
         &mut self,
         plugin: &Plugin,

@@ -158,8 +158,8 @@ impl Reader<'_> {
         ((width, height), crop)
     }
 
-    /// Returns the factor that converts radiance to pixel values. In pbrt-v4 it is the shutter time
-    /// times ISO / 100, and in pbrt-v3 it is the film's `scale`.
+    /// Returns the factor that converts radiance to pixel values. In pbrt-v4, the factor is the
+    /// shutter time times ISO / 100. In pbrt-v3, it is the film's `scale`.
     ///
     /// Source: *Physically Based Rendering*, 4th edition, section 5.4.2, and 3rd edition, section
     /// 7.9.

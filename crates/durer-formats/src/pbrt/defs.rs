@@ -12,7 +12,7 @@ pub(super) enum MaterialDef {
     Principled(Box<PrincipledMaterial>, Span),
     Hair(HairMaterial, Span),
     /// Mix of two materials, given by their indices in the reader's list. `share` is the fraction
-    /// of the first one.
+    /// of the first material.
     Mix {
         parts: [usize; 2],
         share: f32,

@@ -88,8 +88,8 @@ const OLD_TYPES: [&str; 2] = ["color", "xyz"];
 const MAX_FILES: usize = 64;
 const MAX_INCLUDE_DEPTH: usize = 8;
 
-/// Detects the version by the first keyword that exists in only one of the two languages. If there
-/// is none, the version is pbrt-v4.
+/// Detects the version by the first keyword that exists in only one of the two languages. If the
+/// file has no such keyword, the version is pbrt-v4.
 pub(super) fn decide(input: &ReadInput) -> DetectedLanguage {
     let mut left = MAX_FILES;
     let token = search(Lexer::new(input.bytes.clone(), input.file), input, &mut left, 0);

@@ -154,7 +154,7 @@ impl Reader<'_> {
         Some(Medium { density: Some(Density { name: FileName { path, span: place }, to_world }), ..medium })
     }
 
-    /// Sets the media inside and outside the shapes that follow. Both media must already be
+    /// Sets the media inside and outside the shapes that follow. The two media must already be
     /// defined.
     pub fn medium_interface(&mut self, names: &[String; 2], at: Span) {
         for name in names.iter().filter(|name| !name.is_empty() && !self.media.contains_key(*name)) {

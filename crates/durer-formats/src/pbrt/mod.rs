@@ -54,8 +54,9 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     ),
 };
 
-/// Returns true if a file begins with a directive that exists only in pbrt. This excludes
-/// `Transform` and `Material`, because files in the course's format can begin with them too.
+/// Returns true if a file begins with a directive that exists only in pbrt. The directives
+/// `Transform` and `Material` do not count, because files in the course's format can begin with
+/// them too.
 fn recognise(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 12)];
     let (mut text, report) = (Lexer::new(head.into(), 0), SharedReport::default());

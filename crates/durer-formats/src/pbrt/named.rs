@@ -4,8 +4,8 @@ use durer_scene::math::Vec3;
 use durer_scene::spectrum::SpectrumSource;
 use durer_scene::spectrum::space::color_of_chromaticity;
 
-/// Complex indices of refraction of metals (eta, k) for red, green and blue. They are chosen so
-/// that the colours of the reflectances at 0 and 82 degrees equal those of the spectral
+/// Complex indices of refraction of metals (eta, k) for red, green and blue. The indices are chosen
+/// so that the colours of the reflectances at 0 and 82 degrees equal those of the spectral
 /// reflectances under D65, with an error of at most 0.002. The red component of gold is outside the
 /// range of linear sRGB and differs by 0.03.
 ///

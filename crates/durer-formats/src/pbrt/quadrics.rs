@@ -7,8 +7,8 @@ use durer_scene::shape::MeshData;
 use durer_scene::shape::tessellate::revolution;
 use glam::DVec3;
 
-/// Reads `phimax`, the sweep angle around the z axis in degrees. It ranges from 0 to 360, and the
-/// default is 360.
+/// Reads `phimax`, the sweep angle around the z axis in degrees. The angle ranges from 0 to 360,
+/// and the default is 360.
 pub(super) fn sweep_degrees(params: &Params) -> f32 {
     let degrees = params.float("phimax").unwrap_or(360.0);
     if degrees <= 0.0 {

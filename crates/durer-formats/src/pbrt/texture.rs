@@ -204,7 +204,7 @@ impl Reader<'_> {
     }
 
     /// Returns a float parameter that may be a picture. `change` is applied to the value. For a
-    /// picture, it is applied to the picture and the value is 1.
+    /// picture, `change` is applied to the picture and the value is 1.
     pub fn number_or_texture(
         &mut self,
         params: &Params,

@@ -11,7 +11,7 @@ impl Reader<'_> {
         self.convert_below(number, &PatternEffect::default())
     }
 
-    /// Converts a modifier to which `patterns` apply. These patterns come from a surface or from a
+    /// Converts a modifier to which `patterns` apply. The patterns come from a surface or from a
     /// pattern earlier in the chain.
     pub fn convert_below(&mut self, number: usize, patterns: &PatternEffect) -> Rc<ConvertedModifier> {
         // Modifiers to which skies or directional distributions apply are rare, so they are not

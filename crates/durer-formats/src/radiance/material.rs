@@ -1,7 +1,7 @@
 //! Converts materials to OpenPBR parameters.
 //!
-//! Ward's roughness is the mean slope of the surface. This is also the meaning of GGX's alpha,
-//! which is the square of OpenPBR's roughness. Sources: the reference manual of Radiance; Ward,
+//! Ward's roughness is the mean slope of the surface. GGX's alpha is also the mean slope, and it is
+//! the square of OpenPBR's roughness. Sources: the reference manual of Radiance; Ward,
 //! *Measuring and Modeling Anisotropic Reflection*, SIGGRAPH 1992.
 
 use super::args::RadPrimitive;
@@ -274,9 +274,9 @@ impl Reader<'_> {
         ConvertedModifier { number: Some(self.add_material(m, at)), ..ConvertedModifier::void() }
     }
 
-    /// Converts rough plastic to a mix of two parts. One is a white highlight with the same
-    /// reflectance at all angles, and the other is matte. Only smooth plastic reflects more light
-    /// at grazing angles.
+    /// Converts rough plastic to a mix of two parts. The first part is a white highlight with the
+    /// same reflectance at all angles, and the second part is matte. Only smooth plastic reflects
+    /// more light at grazing angles.
     fn rough_plastic(&mut self, color: Color, share: f32, roughness: [f32; 2], at: Span) -> ConvertedModifier {
         let material1 = self.add_material(metal(Vec3::ONE, 1.0, roughness), at);
         let material2 = self.add_material(matte(color), at);

@@ -69,8 +69,7 @@ fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
         false => reader.text(input.bytes, input.file, &PrimitiveContext::default()),
     }
     let mut scene = reader.finish();
-    // These values are from the manual of rtrace, which gives 179 lm/W and the weights of the three
-    // colours.
+    // The value of 179 lm/W and the weights of the three colours are from the manual of rtrace.
     scene.lumens_per_watt = Some(179.0 * Vec3::new(0.265, 0.670, 0.065));
     let sound = !report.has_errors() && !diagnostics.has_errors();
     diagnostics.extend(report.finish());

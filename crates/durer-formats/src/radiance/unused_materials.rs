@@ -18,8 +18,8 @@ const LIBRARY: &str = "Ashikhmin LaFortune LaFortune1 WGMDaniso WGMDiso WalterBS
     tumblin uniq_rgb veil view360stereo vl vonKries vwparab vwplanis window xyz_rgb xyz_srgb";
 
 impl Reader<'_> {
-    /// Warns about files that a primitive names but that do not exist. This applies to types of
-    /// files that are not read.
+    /// Warns about files that a primitive names but that do not exist. Only files of types that are
+    /// not read are checked.
     pub fn warn_missing_files(&self, primitive: &RadPrimitive) {
         for word in &primitive.texts {
             let Some((name, kind)) = word.text.rsplit_once('.') else { continue };

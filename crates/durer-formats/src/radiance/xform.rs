@@ -9,8 +9,8 @@ use glam::{DAffine3, DMat3, DVec3};
 /// Maximum number of copies that nested arrays can create.
 const MAX_PLACES: usize = 1 << 20;
 
-/// Number of times that a part of an `xform` transform is applied, which is fixed or differs
-/// between the copies of an array.
+/// Number of times that a part of an `xform` transform is applied. It is the same for all copies,
+/// or it increases from copy to copy in an array.
 #[derive(Clone, Copy, PartialEq)]
 enum Repetition {
     /// The part is applied a fixed number of times (`-i`).

@@ -10,8 +10,8 @@ fn messages(name: &str, bytes: &[u8]) -> Vec<String> {
     read_in(std::path::Path::new("."), name, bytes).1
 }
 
-/// Returns a GLB file that contains only JSON. Its length is chosen so that the header contains a
-/// line feed byte.
+/// Returns a GLB file that contains only JSON. The length of the file is chosen so that the header
+/// contains a line feed byte.
 fn glb(json: &str) -> Vec<u8> {
     let json = format!("{json:<2560}");
     let length = |bytes: usize| (bytes as u32).to_le_bytes();

@@ -1,5 +1,5 @@
-//! Converts OpenPBR parameters to metallic-roughness materials and KHR extensions. This is the
-//! inverse of the conversion in the reader.
+//! Converts OpenPBR parameters to metallic-roughness materials and KHR extensions. The conversion
+//! is the inverse of that in the reader.
 
 use super::Writer;
 use durer_scene::bsdf::lobe::hair::Fibre;

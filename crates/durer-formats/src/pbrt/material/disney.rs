@@ -15,7 +15,7 @@ use durer_scene::material::principled::Walls;
 use durer_scene::math::{Color, LUMINANCE, Vec3};
 
 /// Mean albedo of Disney's sheen lobe with strength 1, divided by the mean albedo of the fuzz lobe.
-/// Both are averages over all directions.
+/// The two mean albedos are averages over all directions.
 const SHEEN: f32 = 0.1;
 
 impl Reader<'_> {
@@ -33,7 +33,7 @@ impl Reader<'_> {
         let mut m = PrincipledMaterial {
             base_color: color,
             base_color_texture: picture.clone(),
-            // Multiply each specular reflection by the colour again.
+            // Multiply each specular reflection by the colour a second time.
             specular_color: color,
             specular_color_texture: picture,
             specular_ior: self.index_parameter(params, 1.5),

@@ -97,8 +97,9 @@ const CUBE: &str = "\"integer indices\" [ 0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 2 
 
 #[test]
 fn loop_vertices_lie_on_the_limit_surface() {
-    // In an octahedron, each vertex has four neighbours whose mean is the centre. Its limit
-    // position is therefore the vertex scaled by 1 - 4 / (4 + 3 / (8 beta)), with beta = 3 / 32.
+    // In an octahedron, each vertex has four neighbours whose mean is the centre. The limit
+    // position of a vertex is therefore the vertex scaled by 1 - 4 / (4 + 3 / (8 beta)), with beta
+    // = 3 / 32.
     let text = "Shape \"loopsubdiv\" \"point P\" [ 1 0 0 -1 0 0 0 1 0 0 -1 0 0 0 1 0 0 -1 ]\n\
                 \"integer indices\" [ 0 2 4 2 1 4 1 3 4 3 0 4 2 0 5 1 2 5 3 1 5 0 3 5 ]";
     for levels in 0..4 {

@@ -36,7 +36,7 @@ fn sin(degrees: f64) -> f64 {
     fp::sin_cos_degrees(degrees).0
 }
 
-/// Data file that contains a table over two angles. One of them ranges from 0 to 180 degrees around
+/// Data file that contains a table over two angles. One angle ranges from 0 to 180 degrees around
 /// the axis, and the other one from 0 to 180 degrees measured from the downward direction.
 fn by_two() -> String {
     let values =
@@ -98,8 +98,8 @@ fn intensity_follows_the_table() {
              l cylinder r 0 0 7 0 0 0 0 0 3 1 l ring t 0 0 8 0 0 3 0 0 1 0 1 l ring u 0 0 8 0 0 0 0 0 -1 0 1",
             Box::new(of_two),
         ),
-        // The light is rotated by a right angle around z, and turned upside down. This is done by a
-        // command and by explicit options.
+        // The light is rotated by a right angle around z, and turned upside down. The rotation is
+        // given by a command and by explicit options.
         (
             "!xform -rz 90 lamp.rad", // prose: keep
             Box::new(
@@ -112,7 +112,8 @@ fn intensity_follows_the_table() {
             // down.
             Box::new(|theta, _| PI * if theta > 90.0 { 4.0 - 3.0 * (180.0 - theta) / 90.0 } else { theta / 90.0 }),
         ),
-        // The table contains only ones. Its coordinate is one of the angles of a type B photometer.
+        // The table contains only ones. The coordinate of the table is one of the angles of a type
+        // B photometer.
         (
             "void brightdata d 4 corr one.dat source.cal srcB_vert2 0 0 d light l 0 0 3 1 1 1 l sphere r 0 0 4 1 2 3 1",
             Box::new(|_, _| PI),
