@@ -1,4 +1,4 @@
-//! Reads the fields of any described statement.
+//! Reads the fields of any statement that has a description.
 
 use super::lexer::TokenKind;
 use super::reader::{Reader, names};
@@ -9,8 +9,8 @@ use durer_scene::describe::{Constraint, DescribedKind, Field, FieldKind, FileNam
 use durer_scene::dialect::{Dialect, DialectSet, Quirk};
 use durer_scene::math::Vec3;
 
-/// Order in which the fields of a statement must appear: as listed, which the course's parsers
-/// require, or any order.
+/// Order in which the fields of a statement must appear. The order can be free, or it can be the
+/// listed order, which the course's parsers require.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Order {
     Listed,
@@ -18,8 +18,8 @@ pub(super) enum Order {
 }
 
 impl Reader<'_, '_> {
-    /// Reads `{ field value ... }` into `item`. `extra` is called for words that are not fields; it
-    /// returns true if it handled the word.
+    /// Reads `{ field value ... }` into `item`. The function `extra` is called for words that are
+    /// not fields, and returns true if it handled the word.
     pub(super) fn fields<T: DescribedKind>(
         &mut self,
         item: &mut T,
@@ -32,7 +32,8 @@ impl Reader<'_, '_> {
         if !self.open(keyword) {
             return;
         }
-        // If only the Dürer dialect has the statement, report the keyword but not its fields too.
+        // If the statement exists only in the Dürer dialect, report its keyword, but do not report
+        // its fields as well.
         let ours = item.is_durer_only();
         let fields = item.fields();
         let mut given = vec![None; fields.len()];
@@ -76,14 +77,14 @@ impl Reader<'_, '_> {
                 self.skip_values();
             }
         }
-        // A misspelt word may be the field that seems to be missing.
+        // A misspelt word may be the field that appears to be missing.
         if self.errors() > errors || ours && self.options.strict {
             return;
         }
         let dialect = if ours { Dialect::Durer } else { self.options.dialect };
         for (field, _) in fields.iter().zip(&given).filter(|(f, g)| f.required && g.is_none()) {
-            // A field that has no word in this dialect has a fixed value, such as the centre of a
-            // sphere in a node.
+            // If this dialect has no word for a field, the field has a fixed value. For example,
+            // the centre of a sphere in a node is fixed.
             let Some(word) = field.keyword(dialect) else { continue };
             let error = Diagnostic::error(format!("`{name}` has no `{word}`")).code("missing-field").at(keyword);
             self.error(match example(word) {
@@ -93,8 +94,8 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Returns the index of the field that a word names. If two fields share the word, this is the
-    /// first one without a value.
+    /// Returns the index of the field that has the given name. If two fields have the same name,
+    /// returns the first one that has no value yet.
     fn field_of(&self, fields: &[Field], given: &[Option<Span>], word: &str) -> Option<usize> {
         let named = |f: &Field| f.keywords.iter().any(|(w, _)| *w == word);
         let native = |f: &Field| f.keyword(self.options.dialect) == Some(word);
@@ -102,7 +103,8 @@ impl Reader<'_, '_> {
         let all =
             |test: &dyn Fn(&Field) -> bool| -> Vec<usize> { (0..fields.len()).filter(|&i| test(&fields[i])).collect() };
         let mut candidates = all(&native);
-        // `attenuation` takes one number in 2020 and three in 2004, so the count decides.
+        // `attenuation` takes one number in 2020 and three numbers in 2004, so the number of values
+        // decides which one is meant.
         let numbers = (0..3).take_while(|&i| self.number_ahead(i)).count();
         let fits = |f: &Field| match f.kind {
             FieldKind::Float => numbers == 1,
@@ -116,14 +118,14 @@ impl Reader<'_, '_> {
         if candidates.is_empty() {
             candidates = all(&named);
         }
-        // Only fields with equal spellings in all dialects can share a word, as the two
-        // `materialIndex` fields do.
+        // Two fields can have the same name only if their names are the same in all dialects, as
+        // for the two `materialIndex` fields.
         let first = *candidates.first()?;
         candidates.retain(|&i| fields[i].keywords == fields[first].keywords);
         candidates.iter().copied().find(free).or(candidates.last().copied())
     }
 
-    /// Returns true if the token `count` positions ahead is a number.
+    /// Returns true if the token that is `count` positions ahead is a number.
     fn number_ahead(&self, count: usize) -> bool {
         let token = self.ahead(count).filter(|t| t.kind == TokenKind::Word);
         token.is_some_and(|t| {
@@ -132,7 +134,7 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// Returns true if the current block continues after the nested block or the number that comes
+    /// Returns true if the current block continues after the nested block or number that comes
     /// next.
     fn block_continues_after(&self, fields: &[Field]) -> bool {
         let mut depth = 0usize;
@@ -158,7 +160,7 @@ impl Reader<'_, '_> {
         let help = self.advice(word, known()).unwrap_or_else(|| {
             let mut words: Vec<&str> = fields.iter().filter_map(|f| f.keyword(self.options.dialect)).collect();
             words.dedup();
-            // A list of seventy words would not help the user.
+            // A list of seventy words would not be helpful to the user.
             let many = words.len() > 24;
             words.retain(|word| !many || !word.ends_with("Texture"));
             match after_path {
@@ -177,7 +179,8 @@ impl Reader<'_, '_> {
         self.skip_value();
     }
 
-    /// Reads a value of a field's type, and checks its constraint.
+    /// Reads a value that has the type of a field, and checks that it satisfies the field's
+    /// constraint.
     fn value(&mut self, item: &str, field: &Field, word: &str, keyword: Span) -> Option<Value> {
         let start = self.peek().map_or(keyword, |t| t.span);
         let value = match field.kind {
@@ -207,7 +210,7 @@ impl Reader<'_, '_> {
                 return Some(drawn);
             }
             let error = Diagnostic::error(format!("`{word}` {violation}")).code("bad-value").at(span);
-            // If only the sign is wrong, the intended value is clear.
+            // If only the sign is wrong, it is clear which value was intended.
             self.error(match value {
                 Value::Float(x) if x < 0.0 => error.fix(span, self.text(span).trim_start_matches('-')),
                 Value::Vec3(v) if word == "direction" && v == Vec3::ZERO => error.help(
@@ -241,7 +244,7 @@ impl Reader<'_, '_> {
         None
     }
 
-    /// Reads `{ numbers }` as rows of `width` numbers.
+    /// Reads `{ numbers }` as rows that contain `width` numbers each.
     fn rows(&mut self, field: &str, keyword: Span, width: usize) -> Option<Vec<Vec<f32>>> {
         if !self.at_open() {
             self.expected("`{`", field);
@@ -253,7 +256,7 @@ impl Reader<'_, '_> {
             match self.number(field, numbers.len() % width + 1, width) {
                 Some(number) => numbers.push(number),
                 None => {
-                    // One error covers the whole block.
+                    // Errors in the block are reported as a single error.
                     while self.peek().is_some_and(|token| token.kind == TokenKind::Word) {
                         self.advance();
                     }
@@ -288,7 +291,7 @@ impl Reader<'_, '_> {
         Some(Vec3::new(x, y, z))
     }
 
-    /// Reads a whole number, 0 or more.
+    /// Reads an integer that is 0 or more.
     pub(super) fn integer(&mut self, word: &str) -> Option<u32> {
         let value = self.peek_word().and_then(|text| text.parse().ok());
         match value {
@@ -300,17 +303,19 @@ impl Reader<'_, '_> {
         value
     }
 
-    /// Returns true if the quirk `any-values`, which accepts invalid values, is set.
+    /// Returns true if the quirk `any-values` is set, which accepts invalid values.
     pub(super) fn accepts_any_values(&self) -> bool {
         self.options.compat & Quirk::AnyValues.bit() != 0
     }
 
-    /// Reads the `i`-th of `count` finite numbers.
+    /// Reads one finite number, which is the `i`-th of `count` numbers.
     pub(super) fn number(&mut self, word: &str, i: usize, count: usize) -> Option<f32> {
         let text = self.peek_word().unwrap_or_default();
-        // Rust also parses words such as `inf` and `nan`, so require a digit at the start.
+        // Rust also parses words such as `inf` and `nan`, so require that the number begins with a
+        // digit.
         let numeric = text.trim_start_matches(['+', '-', '.']).starts_with(|c: char| c.is_ascii_digit());
-        // C's `scanf`, which all years before 2020 use, accepts hexadecimal numbers.
+        // The function `scanf` of C, which is used in all years before 2020, accepts hexadecimal
+        // numbers.
         if let Some(value) =
             hexadecimal(&text).filter(|_| self.accepts_any_values() && self.options.dialect != Dialect::F23)
         {
@@ -339,7 +344,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Reports that the next token is not the expected value.
+    /// Reports that the next token is not the value that was expected.
     pub(super) fn expected(&mut self, what: &str, after: &str) {
         let Some(token) = self.peek() else {
             let message = format!("`{after}` needs {what}, but the file ends");
@@ -358,7 +363,7 @@ impl Reader<'_, '_> {
             return self.error(error);
         };
         let mut error = error.help(help);
-        // The following numbers most likely contain the same mistake.
+        // The numbers that follow probably contain the same mistake.
         let following = (self.at..).map_while(|i| self.ahead(i - self.at)).map_while(|t| {
             let text = self.text(t.span);
             let suggestion = number_help(&text).and_then(|(_, suggestion)| suggestion);
@@ -371,8 +376,8 @@ impl Reader<'_, '_> {
         self.error(error);
     }
 
-    /// Returns an error if the numbers before `next` were replaced by a web colour such as
-    /// `#b38033`, which is a comment in this language.
+    /// Returns an error if a web colour such as `#b38033` replaces the numbers before `next`,
+    /// because a web colour is a comment in this language.
     fn commented_color(&self, what: &str, after: &str, next: Span) -> Option<Diagnostic> {
         let last = self.last_span();
         let gap = self.text(Span { start: last.end, end: next.start.max(last.end), ..last });
@@ -396,8 +401,8 @@ impl Reader<'_, '_> {
         Some(error.help(format!("colours are three numbers from 0 to 1: `{numbers}`")).fix(span, numbers))
     }
 
-    /// Reports a word that this dialect does not have: an error if strict, otherwise one warning
-    /// per word.
+    /// Reports a word that this dialect does not have. In strict mode this is an error, and
+    /// otherwise there is one warning for each word.
     pub(super) fn report_foreign_word(&mut self, word: &str, span: Span, set: DialectSet) {
         let dialect = self.options.dialect;
         if self.options.strict && set == Dialect::Durer as u8 {
@@ -424,7 +429,8 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Returns help for a word where a number is expected, and the corrected number if it is clear.
+/// Returns help for a word that appears in the place of a number, and the corrected number if it is
+/// clear.
 fn number_help(text: &str) -> Option<(String, Option<String>)> {
     let is_number = |text: &str| !text.is_empty() && text.parse::<f32>().is_ok();
     let bare = text.trim_matches(['(', ')', ',', ';', '<', '>', '[', ']', 'f', 'F']);
@@ -452,13 +458,13 @@ fn number_help(text: &str) -> Option<(String, Option<String>)> {
             _ => format!("numbers have no units: remove `{unit}`"),
         };
         let same = ["deg", "°", "px", "m"].contains(&unit);
-        // An exponent without digits is not a unit.
+        // An exponent without digits must not be taken for a unit.
         let is_unit = !unit.is_empty() && !unit.eq_ignore_ascii_case("e");
         (is_number(number) && is_unit).then(|| (help(), same.then(|| number.to_string())))
     }
 }
 
-/// Returns an example value of a field, for help texts.
+/// Returns an example of a field's value, for use in help texts.
 fn example(field: &str) -> Option<&'static str> {
     Some(match field {
         "radius" => "1",
@@ -477,7 +483,7 @@ fn example(field: &str) -> Option<&'static str> {
     })
 }
 
-/// Parses a finite hexadecimal number, with an optional power of two after `p`, such as `0x1.8p-3`.
+/// Parses a finite hexadecimal number that can end with `p` and a power of two, such as `0x1.8p-3`.
 fn hexadecimal(text: &str) -> Option<f32> {
     let (sign, rest) = match text.strip_prefix(['-', '+']) {
         Some(rest) => (if text.starts_with('-') { -1.0 } else { 1.0 }, rest),

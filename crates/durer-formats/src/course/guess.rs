@@ -1,49 +1,51 @@
-//! Guesses the dialect of a scene, and gives reasons.
+//! Guesses the dialect of a scene and gives reasons for the guess.
 
 use super::lexer::{TokenKind, tokens};
 use super::words::dialects_of;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::dialect::{Dialect, DialectSet, set};
 
-/// Evidence for the dialect of a scene from outside the file, such as an option. A hint that
-/// contradicts the file is ignored.
+/// Evidence for the dialect of a scene that comes from outside the file, such as an option. A hint
+/// that contradicts the file is ignored.
 #[derive(Clone, Debug)]
 pub struct Hint {
-    /// Dialects that are possible according to the hint.
+    /// Dialects that the hint allows.
     pub set: DialectSet,
-    /// Reason, as the end of a sentence.
+    /// Reason that is phrased as the end of a sentence.
     pub reason: String,
-    /// True for a hint that counts only if something else also distinguishes the years.
+    /// True for a hint that is used only if something else also distinguishes the years.
     pub weak: bool,
 }
 
-/// Result of guessing the dialect of a scene file, with the reasons and the alternatives.
+/// Result of guessing the dialect of a scene file, with the reasons for it and the alternatives.
 #[derive(Clone, Debug)]
 pub struct Guess {
     /// Guessed dialect.
     pub dialect: Dialect,
-    /// Reasons that narrowed down the choice, as ends of sentences, with their spans.
+    /// Reasons that narrowed down the choice, with their spans. Each reason is phrased as the end
+    /// of a sentence.
     pub reasons: Vec<(String, Option<Span>)>,
-    /// Other dialects that fit equally well.
+    /// Other dialects that fit the file equally well.
     pub others: Vec<Dialect>,
-    /// Dialects that agree with the keywords and with the strong hints, most likely first.
+    /// Dialects that are consistent with the keywords and with the strong hints, with the most
+    /// likely one first.
     pub fitting: Vec<Dialect>,
-    /// Dialect suggested by the keywords alone.
+    /// Dialect that the keywords suggest if hints are ignored.
     pub by_keywords: Dialect,
 }
 
 impl Guess {
-    /// Returns the guess for a file that states its dialect.
+    /// Returns the result for a file that states its own dialect.
     pub fn certain(dialect: Dialect) -> Self {
         Guess { dialect, reasons: Vec::new(), others: Vec::new(), fitting: vec![dialect], by_keywords: dialect }
     }
 
-    /// Returns true if hints changed the dialect that the keywords alone suggest.
+    /// Returns true if the hints have changed the dialect that the keywords alone suggest.
     pub fn changed_by_hints(&self) -> bool {
         self.dialect != self.by_keywords
     }
 
-    /// Returns the guess as a note to the user.
+    /// Returns a note that explains the guess to the user.
     pub fn note(&self) -> Diagnostic {
         let reasons: Vec<&str> = self.reasons.iter().map(|r| r.0.as_str()).collect();
         let mut message = format!("read as {}", self.dialect.name());
@@ -58,12 +60,12 @@ impl Guess {
     }
 }
 
-/// Dialects in order of preference, used if several remain possible.
+/// Dialects in order of preference, which decides if several of them remain possible.
 const PREFERENCE: [Dialect; 6] =
     [Dialect::F12a4, Dialect::F04, Dialect::F12a5, Dialect::F16, Dialect::F23, Dialect::F03];
 
-/// Guesses the dialect of a scene from its keywords. `exists` returns true if a file named by the
-/// scene exists.
+/// Guesses the dialect of a scene from its keywords. `exists` returns true if a file that the scene
+/// names exists.
 pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> bool) -> Guess {
     let mut left = set::ALL & !set::DURER;
     let mut reasons: Vec<(DialectSet, String, Option<Span>)> = Vec::new();
@@ -78,8 +80,8 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
             reasons.push((keep, why, span));
         }
     };
-    // A file can mix words of the node grammar with words of earlier years. The majority decides,
-    // and the others are treated as foreign.
+    // A file can contain words of the node grammar as well as words of earlier years. The more
+    // frequent kind decides the grammar, and words of the other kind are treated as foreign.
     let (mut nodes, mut classic) = (0_usize, 0_usize);
     for (i, token) in tokens.iter().enumerate().filter(|(_, token)| token.kind == TokenKind::Word) {
         let _ = token;
@@ -116,8 +118,8 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
             (set::DURER, "only the Dürer dialect names materials".into())
         } else if let Some(set) = dialects_of(&word).filter(|set| match *set {
             set::F23 => is_distinctive(&word),
-            // A word of the Dürer dialect counts only if a block follows, because `top` or `min`
-            // could be a file name.
+            // A word of the Dürer dialect counts only if a block follows it, because `top` or `min`
+            // could also be a file name.
             set::DURER => braced,
             _ => true,
         }) {
@@ -125,26 +127,28 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         } else {
             continue;
         };
-        // Words of the minority are reported by separate warnings.
+        // Separate warnings report the words of the less frequent kind.
         if majority == set::F23 && keep & set::F23 == 0 {
             continue;
         }
         narrow(keep, why, Some(token.span));
     }
     if let Some(comment) = tokens.iter().find(|token| token.kind == TokenKind::Comment) {
-        // The Dürer dialect has no nodes, so a file with nodes stays in the dialect of nodes.
+        // The Dürer dialect does not have nodes, so a file with nodes stays in the dialect that has
+        // them.
         let nodes = (0..tokens.len()).any(|i| text(i) == "Scene" || text(i).starts_with("Component<"));
         let keep = if nodes { set::F23 } else { 0 };
         narrow(keep, "it has comments, which the course's language lacks".into(), Some(comment.span));
     }
     let first = |left: DialectSet| PREFERENCE.into_iter().find(|d| d.is_in(left));
     let by_words = first(left);
-    // Apply weak hints last: `fitting` has the dialects that remain before them.
+    // Apply weak hints last. At that point, `fitting` contains the dialects that remain before
+    // them.
     let (weak, strong): (Vec<&Hint>, Vec<&Hint>) = hints.iter().partition(|hint| hint.weak);
     let mut fitting = left;
     for hint in strong.into_iter().chain(weak) {
-        // Ignore a hint that contradicts the file or an earlier hint, since options may be meant
-        // for another year.
+        // Ignore a hint that contradicts the file or an earlier hint, because an option may be
+        // intended for another year.
         let keep = left & hint.set;
         if keep != 0 && keep != left && !(hint.weak && reasons.is_empty()) {
             left = keep;
@@ -152,7 +156,7 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         }
         fitting = if hint.weak { fitting } else { left };
     }
-    // Drop reasons that later ones make redundant.
+    // Remove reasons that later reasons make redundant.
     for i in (0..reasons.len()).rev() {
         let others = reasons.iter().enumerate().filter(|(j, _)| *j != i);
         if others.fold(set::ALL & !set::DURER, |left, (_, reason)| left & reason.0) == left {
@@ -180,7 +184,8 @@ fn names(set: DialectSet) -> String {
     if names.is_empty() { Dialect::Durer.name().into() } else { names.join(", ") }
 }
 
-/// Returns true if a word of 2020 alone proves that year: `sphere` or `point` may be a file name.
+/// Returns true if a word of 2020 proves that year on its own. The words `sphere` and `point` are
+/// not proof, because they may be file names.
 fn is_distinctive(word: &str) -> bool {
     word.contains(['<', '_']) || word.starts_with(char::is_uppercase)
 }

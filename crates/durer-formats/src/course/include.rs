@@ -1,4 +1,4 @@
-//! `include FILE`: replaces these two words with the text of another file.
+//! Handles `include FILE`, which is replaced with the text of another file.
 
 use super::lexer::{Token, TokenKind, tokens};
 use durer_diag::{Diagnostic, Diagnostics, Files, Span};
@@ -7,8 +7,8 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Limits on the depth of nested includes, the number of included files, and the number of words in
-/// all files.
+/// Limits on the depth of nested includes, on the number of included files, and on the total number
+/// of words in all files.
 const MAX_INCLUDE_DEPTH: usize = 32;
 const MAX_FILES: usize = 4096;
 const MAX_WORDS: usize = 1 << 26;
@@ -16,15 +16,15 @@ const MAX_WORDS: usize = 1 << 26;
 /// Result of opening a file that a scene file includes.
 #[derive(Debug)]
 pub enum IncludedFile {
-    /// Index of the file for spans, and its bytes.
+    /// Index of the file for use in spans, and the bytes of the file.
     Text(u32, Arc<[u8]>),
     /// The file cannot be read.
     Failed(SourceError),
-    /// The scene is not in a folder, so it cannot include files.
+    /// The scene is not in a folder, so it cannot include any files.
     NoFolder,
 }
 
-/// Returns a function that opens included files in or below a folder, and registers them.
+/// Returns a function that opens included files in a folder or below it, and registers them.
 pub fn open_below<'a>(source: &'a dyn AssetSource, files: &'a RefCell<Files>) -> impl Fn(&str) -> IncludedFile + 'a {
     move |name| match source.read(name) {
         Ok(bytes) => IncludedFile::Text(files.borrow_mut().add_once(name, &bytes), bytes),
@@ -32,7 +32,8 @@ pub fn open_below<'a>(source: &'a dyn AssetSource, files: &'a RefCell<Files>) ->
     }
 }
 
-/// Texts of a scene, needed to look up spans: the scene's own file, and the files that it includes.
+/// Texts of a scene in which spans can be looked up: the scene's own file and the files that it
+/// includes.
 pub(super) struct Texts<'a> {
     own: (u32, &'a [u8]),
     others: HashMap<u32, Arc<[u8]>>,
@@ -43,34 +44,34 @@ impl<'a> Texts<'a> {
         Texts { own: (file, bytes), others: HashMap::new() }
     }
 
-    /// Returns the bytes of a span.
+    /// Returns the bytes that a span covers.
     pub fn at(&self, span: Span) -> &[u8] {
         let other = self.others.get(&span.file).filter(|_| span.file != self.own.0);
         let bytes = other.map_or(self.own.1, |bytes| bytes);
         &bytes[span.start as usize..span.end as usize]
     }
 
-    /// Returns the end of the scene's own text.
+    /// Returns the position of the end of the scene's own text.
     pub fn end(&self) -> Span {
         let end = self.own.1.len() as u32;
         Span { file: self.own.0, start: end, end }
     }
 }
 
-/// Preprocessor that replaces each `include` in a list of tokens with the tokens of the included
-/// file.
+/// Preprocessor that replaces each `include` in a list of tokens with the tokens of the file that
+/// it names.
 pub(super) struct IncludePreprocessor<'o, 't, 'a> {
     pub open: &'o dyn Fn(&str) -> IncludedFile,
     pub texts: &'t mut Texts<'a>,
     pub diagnostics: &'t mut Diagnostics,
-    /// Names of the files being read, outermost first.
+    /// Names of the files that are being read, starting with the outermost one.
     pub stack: Vec<String>,
     pub files: usize,
     pub words: usize,
 }
 
 impl IncludePreprocessor<'_, '_, '_> {
-    /// Returns the tokens with each `include` replaced by the tokens of its file.
+    /// Returns the tokens after replacing each `include` with the tokens of its file.
     pub fn expand_includes(&mut self, tokens: Vec<Token>) -> Vec<Token> {
         let is_include =
             |texts: &Texts, token: &Token| token.kind == TokenKind::Word && texts.at(token.span) == b"include";
@@ -83,7 +84,7 @@ impl IncludePreprocessor<'_, '_, '_> {
                 all.push(token);
                 continue;
             }
-            // A comment can precede the name.
+            // A comment can come before the name.
             while rest.next_if(|next| next.kind == TokenKind::Comment).is_some() {}
             match rest.next_if(|next| next.kind == TokenKind::Word) {
                 Some(name) => all.extend(self.file(token.span, name.span)),
@@ -110,7 +111,7 @@ impl IncludePreprocessor<'_, '_, '_> {
             () => None,
         };
         if let Some(message) = refused {
-            // Report that there are too many files only once.
+            // Report only once that there are too many files.
             if self.files <= MAX_FILES + 1 {
                 self.diagnostics.push(Diagnostic::error(message).code("include").at(keyword.join(at)));
             }
@@ -148,7 +149,7 @@ impl IncludePreprocessor<'_, '_, '_> {
         all
     }
 
-    /// Returns true if the braces of an included file are balanced; reports an error if not.
+    /// Returns true if the braces of an included file are balanced, and otherwise reports an error.
     fn is_balanced(&mut self, tokens: &[Token], included: Span) -> bool {
         let mut open: Vec<Span> = Vec::new();
         let mut wrong = None;

@@ -1,34 +1,35 @@
-//! Lexer for the scene language: words, braces and comments.
+//! Splits the scene language into words, braces and comments.
 
 use durer_diag::Span;
 
 /// Kind of a token of the scene language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TokenKind {
-    /// Run of characters other than whitespace and braces: a keyword, a number or a path.
+    /// Sequence of characters other than whitespace and braces, which is a keyword, a number or a
+    /// path.
     Word,
     /// `{`
     Open,
     /// `}`
     Close,
-    /// Comment, which ends with its line.
+    /// Comment, which extends to the end of its line.
     Comment,
 }
 
-/// Token of a scene file, with its kind and span.
+/// Token of a scene file, with its kind and its span.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Token {
     pub kind: TokenKind,
     pub span: Span,
-    /// True if the token directly follows the one before it, as `{` does in `Group{`.
+    /// True if there is no space between the token and the one before it, as for `{` in `Group{`.
     pub touches: bool,
 }
 
-/// Splits a file into tokens. `#` or `//` at the start of a word begins a comment.
+/// Splits a file into tokens. A comment begins with `#` or `//` at the start of a word.
 pub(super) fn tokens(bytes: &[u8], file: u32) -> Vec<Token> {
     let mut tokens = Vec::new();
     let mut at = 0;
-    // Windows editors may put a byte order mark first.
+    // Editors on Windows may put a byte order mark at the beginning.
     if bytes.starts_with(b"\xef\xbb\xbf") {
         at = 3;
     }
@@ -58,7 +59,7 @@ pub(super) fn tokens(bytes: &[u8], file: u32) -> Vec<Token> {
     tokens
 }
 
-/// Returns true if a text is a single word, as paths must be.
+/// Returns true if a text is a single word, which is required of paths.
 pub(crate) fn is_word(text: &str) -> bool {
     let whole = |token: &Token| token.kind == TokenKind::Word && token.span.end as usize == text.len();
     matches!(tokens(text.as_bytes(), 0).as_slice(), [token] if whole(token) && token.span.start == 0)

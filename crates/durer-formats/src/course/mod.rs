@@ -1,4 +1,4 @@
-//! Reader and writer of the course's scene language in all its dialects.
+//! Reader and writer of all dialects of the course's scene language.
 
 mod fields;
 pub mod guess;
@@ -28,25 +28,27 @@ pub(super) use lexer::is_word;
 pub(super) use transform::{flat_matrix_error, invalid_matrix_error};
 pub use write::write;
 
-/// Options for reading a scene file: its dialect, and how closely to follow the course's programs.
+/// Options for reading a scene file, which are its dialect and how closely the reader follows the
+/// course's programs.
 #[derive(Clone, Copy, Debug)]
 pub struct ReadOptions {
     /// Dialect of the file.
     pub dialect: Dialect,
-    /// True to allow only what the course's parsers of that dialect accept: no comments, no words
-    /// of other years, and fields and counts in the required order.
+    /// True to allow only what the course's parsers for that dialect accept. In this mode, comments
+    /// and words of other years are not allowed, and fields and counts must be in the required
+    /// order.
     pub strict: bool,
-    /// Quirks of the course's programs to imitate.
+    /// Quirks of the course's programs that the reader imitates.
     pub compat: QuirkSet,
 }
 
-/// Reads a scene that includes no other files. Collects all errors; returns `None` if there are
-/// any.
+/// Reads a scene that does not include other files. Collects all errors, and returns `None` if
+/// there are any.
 pub fn read(bytes: &[u8], file: u32, options: ReadOptions, diagnostics: &mut Diagnostics) -> Option<Scene> {
     read_with(bytes, file, options, &|_| IncludedFile::NoFolder, diagnostics)
 }
 
-/// Reads a scene; `open` is called to open the files that it includes.
+/// Reads a scene. The function `open` is called to open the files that the scene includes.
 pub fn read_with(
     bytes: &[u8],
     file: u32,
@@ -74,14 +76,14 @@ pub fn read_with(
     (!failed).then_some(scene)
 }
 
-/// Returns the reason why a file cannot be a scene; `None` if it can be.
+/// Returns the reason why a file cannot be a scene, or `None` if it can be a scene.
 fn not_text_reason(bytes: &[u8]) -> Option<&'static str> {
     let head = &bytes[..bytes.len().min(1 << 16)];
     let zeros = |from: usize| head.iter().skip(from).step_by(2).filter(|b| **b == 0).count() * 4 > head.len();
     if head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff") || head.len() > 3 && (zeros(0) != zeros(1)) {
         return Some("this file is UTF-16: save it as UTF-8 or ASCII text");
     }
-    // Text copied from a terminal can contain escape characters for colours.
+    // Text that was copied from a terminal can contain escape characters for colours.
     let odd = |b: &&u8| **b < 9 || (14..32).contains(*b) && **b != 27;
     let count = head.iter().filter(odd).count();
     let binary = head.contains(&0) || count * 20 > head.len();

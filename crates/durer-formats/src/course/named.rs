@@ -1,4 +1,4 @@
-//! Names of materials, and of objects that are defined once and used several times.
+//! Handles names of materials, and names of objects that are defined once and used several times.
 
 use super::lexer::TokenKind;
 use super::nodes::set_material;
@@ -10,7 +10,7 @@ use durer_scene::dialect::set;
 use durer_scene::scene::{Group, Object, ObjectKind};
 
 impl Reader<'_, '_> {
-    /// Reads the name of a material, which can precede its block.
+    /// Reads the name of a material, which can come before the block of the material.
     pub(super) fn material_name(&mut self) -> Option<(String, Span)> {
         let named = self.peek_word().filter(|_| self.ahead(1).is_some_and(|next| next.kind == TokenKind::Open));
         let name = named.filter(|name| dialects_of(name).is_none())?;
@@ -19,7 +19,7 @@ impl Reader<'_, '_> {
         Some((name, span))
     }
 
-    /// Gives the next material a name.
+    /// Gives a name to the next material.
     pub(super) fn name_material(&mut self, (name, span): (String, Span)) {
         if !self.is_name(&name, span) {
             return;
@@ -30,10 +30,10 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Reads the number or the name of a material; returns the number.
+    /// Reads the number or the name of a material, and returns the number.
     pub(super) fn material_number(&mut self, word: &str) -> Option<u32> {
         let name = self.peek_word().filter(|text| !text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)));
-        // A word of the language means that the number is missing.
+        // If a word of the language comes next, the number is missing.
         let Some(name) = name.filter(|name| self.named.materials.contains_key(name) || dialects_of(name).is_none())
         else {
             return self.integer(word);
@@ -56,7 +56,7 @@ impl Reader<'_, '_> {
         number
     }
 
-    /// Returns true if a word can be used as a name; reports an error if not.
+    /// Returns true if a word can be used as a name, and otherwise reports an error.
     fn is_name(&mut self, name: &str, span: Span) -> bool {
         let taken = dialects_of(name).is_some();
         let number = name.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
@@ -68,7 +68,7 @@ impl Reader<'_, '_> {
         !taken && !number
     }
 
-    /// Reads the name after a keyword.
+    /// Reads the name that follows a keyword.
     fn name_after(&mut self, word: &str) -> Option<(String, Span)> {
         let Some(name) = self.peek_word() else {
             self.expected("a name", word);
@@ -78,8 +78,8 @@ impl Reader<'_, '_> {
         Some((name, span))
     }
 
-    /// Reads `define NAME object`, without adding the object to the scene. Parts without a material
-    /// take the material that is current at each use.
+    /// Reads `define NAME object`, without adding the object to the scene. Parts that have no
+    /// material get the material that is current at each use.
     pub(super) fn define(&mut self, keyword: Span) {
         self.report_foreign_word("define", keyword, set::DURER);
         let Some((name, span)) = self.name_after("define") else { return };
@@ -89,7 +89,7 @@ impl Reader<'_, '_> {
         let (outer, used) = (self.material.take(), self.named.used_objects);
         let object = self.object(&word, at);
         self.material = outer;
-        // Uses inside a definition are counted at each use of the definition.
+        // If a definition uses other objects, they are counted every time the definition is used.
         self.named.used_objects = used;
         let Some(object) = object.filter(|_| sound) else {
             self.named.invalid_objects.insert(name);
@@ -104,7 +104,7 @@ impl Reader<'_, '_> {
         self.named.objects.insert(name, (object, count, span));
     }
 
-    /// Reads `use NAME`; returns a copy of the defined object.
+    /// Reads `use NAME`, and returns a copy of the object that has been defined.
     pub(super) fn use_object(&mut self, keyword: Span) -> Option<ObjectKind> {
         self.report_foreign_word("use", keyword, set::DURER);
         let (name, span) = self.name_after("use")?;
@@ -133,12 +133,12 @@ impl Reader<'_, '_> {
         if let Some(material) = self.material {
             set_material(&mut object, material);
         }
-        // A group with a single object cannot have a material.
+        // A group that contains a single object cannot have a material.
         Some(ObjectKind::Group(Group { objects: vec![object] }))
     }
 }
 
-/// Returns the number of objects that an object consists of, including itself.
+/// Returns the number of objects of which an object consists, including the object itself.
 fn count(object: &Object) -> usize {
     let all = |objects: &[Object]| objects.iter().map(count).fold(0, usize::saturating_add);
     1 + match &object.node {

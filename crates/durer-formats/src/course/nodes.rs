@@ -1,4 +1,4 @@
-//! Grammar of 2020 to 2023: a tree of nodes with components.
+//! Reads the grammar of 2020 to 2023, in which a scene is a tree of nodes with components.
 
 use super::fields::Order;
 use super::reader::Reader;
@@ -45,7 +45,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Returns the rules for matrix products that the quirks imply.
+    /// Returns the rules for matrix products that follow from the quirks.
     fn matrix_rules(&self) -> MatrixRules {
         let has = |compat: Quirk| self.options.compat & compat.bit() != 0;
         MatrixRules {
@@ -127,7 +127,8 @@ impl Reader<'_, '_> {
         inside
     }
 
-    /// Reads the parts of a solid. Each part is a node without lights.
+    /// Reads the parts of a solid that is built with Boolean operations. Each part is a node that
+    /// has no lights.
     fn node_parts(&mut self, keyword: Span) -> Vec<Object> {
         let mut parts = Vec::new();
         if !self.open(keyword) {
@@ -164,7 +165,7 @@ impl Reader<'_, '_> {
                 "y_rotate" => self.number(&word, 1, 1).map(MatrixOp::YRotate),
                 "z_rotate" => self.number(&word, 1, 1).map(MatrixOp::ZRotate),
                 "rotate" => self.vec3(&word).and_then(|axis| Some(MatrixOp::Rotate(axis, self.number(&word, 1, 1)?))),
-                // Operations that nodes lack have the syntax of earlier years.
+                // For operations that nodes do not have, the syntax of earlier years is used.
                 "Matrix4f" => self.matrix(&word, span).flatten(),
                 _ => {
                     self.unknown(&word, span, "in a transform", &KEYWORDS);
@@ -204,10 +205,11 @@ impl Reader<'_, '_> {
         index
     }
 
-    /// Reads the `type` of a component: one of `known` or `ours`. The `{` is left for the reader of
-    /// the fields.
+    /// Reads the `type` of a component, which must be one of the names in `known` or `ours`. The
+    /// `{` is not consumed, so that the reader of the fields finds it.
     fn component_type(&mut self, keyword: Span, known: &[&str], ours: &[&str]) -> Option<String> {
-        // Look for `{ type` and a word before any field is read: `type` comes first in every file.
+        // Look for `{ type` and a word before any field is read, because `type` comes first in
+        // every file.
         let name = self.text(keyword);
         let at = |reader: &Self, i: usize| reader.ahead(i).map(|t| (reader.text(t.span), t.span));
         let first = at(self, usize::from(self.at_open()));
@@ -237,7 +239,8 @@ impl Reader<'_, '_> {
         None
     }
 
-    /// Reads a light in the space of its node; returns it with its position in double precision.
+    /// Reads a light in the coordinate system of its node, and returns it with its position in
+    /// double precision.
     fn component_light(&mut self, keyword: Span) -> Option<(Spanned<Light>, DVec3)> {
         let kind = self.component_type(keyword, &["point", "directional"], &[])?;
         let mut light = Light::from_keyword(&kind)?;
@@ -250,7 +253,7 @@ impl Reader<'_, '_> {
     }
 
     fn component_object(&mut self, keyword: Span) -> Option<ObjectKind> {
-        // Shapes that nodes lack have the names of the Dürer dialect.
+        // For shapes that nodes do not have, the names of the Dürer dialect are used.
         let own = Primitive::kinds().into_iter().map(|shape| shape.keyword(Dialect::F23));
         let own: Vec<&str> = own.filter(|word| word.starts_with(char::is_uppercase)).chain(["HeightField"]).collect();
         let kind = self.component_type(keyword, &["sphere", "plane", "triangle", "mesh", "Grid"], &own)?;
@@ -275,7 +278,7 @@ impl Reader<'_, '_> {
         Some(ObjectKind::Primitive(shape))
     }
 
-    /// Reads the fields of a component, except `type`.
+    /// Reads the fields of a component other than `type`.
     fn component_fields<T: DescribedKind>(&mut self, item: &mut T, keyword: Span) {
         self.fields(item, keyword, Order::Any, |reader, word, _| {
             let is_type = word == "type";
@@ -287,20 +290,21 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Contents of a node of the 2020 to 2023 grammar: its transform, material, objects and lights.
+/// Contents of a node in the grammar of 2020 to 2023: its transform, material, objects and lights.
 #[derive(Default)]
 struct NodeContent {
-    /// Matrices of the node; `None` if it has no `Transform`.
+    /// Matrices of the node, or `None` if it has no `Transform`.
     ops: Option<Vec<MatrixOp>>,
     material: Option<u32>,
     objects: Vec<Object>,
-    /// Lights of the node and of its child nodes, with their positions in the node's space.
+    /// Lights of the node and of its descendants, with their positions in the coordinate system of
+    /// the node.
     lights: Vec<(Spanned<Light>, DVec3)>,
     has_nodes: bool,
 }
 
 impl NodeContent {
-    /// Converts the node to one object; `None` if it contains only lights.
+    /// Converts the node to one object, or to `None` if it contains only lights.
     fn object(self, span: Span) -> Option<Object> {
         let NodeContent { ops, material, mut objects, lights, has_nodes } = self;
         if objects.is_empty() && !lights.is_empty() {
@@ -318,7 +322,7 @@ impl NodeContent {
     }
 }
 
-/// Sets the material of an object, and of its parts, where they have none.
+/// Sets the material of an object and of its parts if they do not have one.
 pub(super) fn set_material(object: &mut Object, material: u32) {
     object.material.get_or_insert(material);
     match &mut object.node {

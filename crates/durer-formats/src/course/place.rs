@@ -1,13 +1,13 @@
-//! Finds the spans of field values in a scene file, for programs that edit the file.
+//! Finds the spans of field values in a scene file. Programs that edit the file use these spans.
 
 use super::lexer::{Token, TokenKind, tokens};
 use durer_diag::Span;
 
-/// Returns the tokens directly inside the block of a keyword, without those of nested blocks, and
-/// the byte offset of the block's end.
+/// Returns the tokens that are directly inside the block of a keyword, and the byte offset of the
+/// end of the block. Tokens of nested blocks are left out.
 fn inside(bytes: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
     let rest = bytes.get(keyword.start as usize..)?;
-    // Blocks are short, so avoid tokenizing the rest of a long file for each of them.
+    // Blocks are short, so do not split the rest of a long file into tokens for each of them.
     let mut reach = 1 << 10;
     loop {
         let part = &rest[..rest.len().min(reach)];
@@ -18,8 +18,8 @@ fn inside(bytes: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
     }
 }
 
-/// Returns the tokens of a block as [`inside`] does, for a text that begins with the keyword;
-/// `None` if the block does not end within the text.
+/// Returns the tokens of a block as [`inside`] does, for a text that begins with the keyword.
+/// Returns `None` if the block does not end within the text.
 fn block_of(text: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
     let moved = |token: Token| {
         let Span { file, start, end } = token.span;
@@ -27,7 +27,7 @@ fn block_of(text: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
     };
     let mut rest = tokens(text, keyword.file).into_iter().filter(|token| token.kind != TokenKind::Comment).map(moved);
     rest.next()?;
-    // A name can precede the block.
+    // A name can come before the block.
     let next = rest.next()?;
     let open = if next.kind == TokenKind::Word { rest.next()? } else { next };
     if open.kind != TokenKind::Open {
@@ -48,8 +48,9 @@ fn block_of(text: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
     None
 }
 
-/// Returns the span of a field's value: its numbers, or the one word after the field. If the field
-/// is repeated, this is the last value, which takes effect.
+/// Returns the span of the value of a field, which consists of its numbers or of the single word
+/// after the field. If the field is repeated, returns the span of its last value, which takes
+/// effect.
 pub fn value(bytes: &[u8], keyword: Span, field: &str) -> Option<Span> {
     let text = |span: Span| std::str::from_utf8(&bytes[span.start as usize..span.end as usize]).unwrap_or_default();
     let (own, _) = inside(bytes, keyword)?;
@@ -60,13 +61,14 @@ pub fn value(bytes: &[u8], keyword: Span, field: &str) -> Option<Span> {
     Some(first.join(values[numbers.max(1) - 1].span))
 }
 
-/// Returns the span of a complete block, from its keyword to its closing brace.
+/// Returns the span of a complete block, from the keyword to the closing brace.
 pub fn block(bytes: &[u8], keyword: Span) -> Option<Span> {
     inside(bytes, keyword).map(|(_, end)| Span { end, ..keyword })
 }
 
-/// Returns the span of the keyword of a top-level section; of the last one, which takes effect, if
-/// there are several. `None` if there is none.
+/// Returns the span of the keyword of a top-level section. If there are several such sections,
+/// returns the span of the last one, which takes effect. Returns `None` if there is no such
+/// section.
 pub fn section(bytes: &[u8], file: u32, keyword: &str) -> Option<Span> {
     let (mut depth, mut found) = (0, None);
     for token in tokens(bytes, file) {
@@ -84,7 +86,7 @@ pub fn section(bytes: &[u8], file: u32, keyword: &str) -> Option<Span> {
     found
 }
 
-/// Returns the span of the word after each occurrence of a word.
+/// Returns the spans of the words that follow each occurrence of a word.
 pub fn values(bytes: &[u8], file: u32, word: &str) -> Vec<Span> {
     let tokens: Vec<Token> = tokens(bytes, file).into_iter().filter(|token| token.kind != TokenKind::Comment).collect();
     let is_word = |token: &Token| &bytes[token.span.start as usize..token.span.end as usize] == word.as_bytes();

@@ -1,5 +1,5 @@
-//! Random scenes generated from the descriptions of all statements, for tests and for fuzzing. In
-//! fuzzing, the fuzzer's bytes make the choices.
+//! Generates random scenes from the descriptions of all statements, for tests and for fuzzing. In
+//! fuzzing, the bytes from the fuzzer determine the choices.
 
 use durer_scene::camera::Camera;
 use durer_scene::describe::{Constraint, DescribedKind, Field, FieldKind, FileName, Value};
@@ -15,13 +15,13 @@ use durer_scene::scene::{
 };
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
-/// Generator of random scenes for tests; makes its choices from given bytes, then from a linear
-/// congruential generator (Knuth's multiplier, upper half of the state).
+/// Generator of random scenes for tests. The generator uses given bytes to make choices, and then a
+/// linear congruential generator (Knuth's multiplier, upper half of the state).
 pub struct SceneGenerator {
     state: u64,
     bytes: std::vec::IntoIter<u8>,
-    /// True to generate scenes that can be rendered: with small numbers, and only the files `a.obj`
-    /// and `a.ppm`.
+    /// True to generate scenes that can be rendered, with small numbers and with `a.obj` and
+    /// `a.ppm` as the only files.
     renderable: bool,
 }
 
@@ -31,14 +31,15 @@ impl SceneGenerator {
         SceneGenerator { state, bytes: Vec::new().into_iter(), renderable: false }
     }
 
-    /// Creates a generator that makes choices from bytes, for scenes that can be rendered.
+    /// Creates a generator that uses bytes to make choices, and that generates scenes which can be
+    /// rendered.
     pub fn renderable(bytes: &[u8]) -> Self {
         SceneGenerator { state: 1, bytes: Vec::from(bytes).into_iter(), renderable: true }
     }
 
     /// Returns a number below `n`, which must not be 0.
     pub fn below(&mut self, n: usize) -> usize {
-        // More than 256 choices take two bytes.
+        // For more than 256 choices, two bytes are needed.
         let count = if n > 256 { 2 } else { 1 };
         if self.bytes.len() >= count {
             return self.bytes.by_ref().take(count).fold(0, |number, byte| number << 8 | usize::from(byte)) % n;
@@ -47,7 +48,7 @@ impl SceneGenerator {
         (self.state >> 33) as usize % n
     }
 
-    /// Returns any finite number, including special values.
+    /// Returns any finite number, which can be a special value.
     pub fn float(&mut self) -> f32 {
         if self.renderable {
             return self.below(129) as f32 / 16.0 - 4.0;
@@ -68,7 +69,7 @@ impl SceneGenerator {
         Vec3::new(self.float(), self.float(), self.float())
     }
 
-    /// Returns a valid value for a field. Material indices are below `materials`.
+    /// Returns a valid value for a field. Indices of materials are below `materials`.
     fn value(&mut self, field: &Field, materials: usize) -> Value {
         loop {
             let value = match field.kind {
@@ -89,8 +90,8 @@ impl SceneGenerator {
                     Value::Rows((0..self.below(6)).map(|_| (0..width).map(|_| self.float()).collect()).collect())
                 }
             };
-            // A random number is rarely in the range of a narrow constraint, so draw it from that
-            // range.
+            // A random number rarely satisfies a narrow constraint, so draw a number from the range
+            // of the constraint.
             let value = match (field.constraint, value) {
                 (Constraint::Counts(most), _) => {
                     Value::Vec3(Vec3::from([0; 3].map(|_| 1.0 + self.below(most as usize) as f32)))
@@ -115,7 +116,7 @@ impl SceneGenerator {
         let mut kinds = T::kinds();
         let mut entry = kinds.remove(self.below(kinds.len()));
         for (i, field) in entry.fields().iter().enumerate() {
-            // A cube map needs six files.
+            // A cube map requires six files.
             let missing = self.renderable && field.name.to_lowercase().starts_with("cube");
             if field.required || self.below(2) == 0 && !missing {
                 let value = self.value(field, materials);
@@ -191,8 +192,8 @@ impl SceneGenerator {
         assets
     }
 
-    /// Returns a scene that text in the dialect can represent, in the form in which it would be
-    /// read back.
+    /// Returns a scene that can be written in the dialect, in the form that it has after it is read
+    /// back.
     pub fn scene(&mut self, dialect: Dialect) -> Scene {
         let nodes = dialect == Dialect::F23;
         fn spanned<T>(value: T) -> Spanned<T> {
@@ -212,7 +213,7 @@ impl SceneGenerator {
             }));
         }
         let light = |random: &mut Self| {
-            // Scenes with nodes support only two kinds of lights.
+            // Only two kinds of lights are possible in scenes with nodes.
             let mut value = loop {
                 let value = random.item::<Light>(0);
                 if !(nodes && value.is_durer_only()) {
@@ -220,7 +221,7 @@ impl SceneGenerator {
                 }
             };
             if let (Light::Point(point), true) = (&mut value, nodes) {
-                // The node adds its position to 0, which turns -0 into 0.
+                // The reader adds the position of the node to 0, which turns -0 into 0.
                 point.position += Vec3::ZERO;
             }
             Spanned { value, span: Default::default() }

@@ -1,4 +1,5 @@
-//! State of the scene language reader: the tokens of a file, and recovery after errors.
+//! State of the reader of the scene language, which consists of the tokens of a file and of what is
+//! needed to recover from errors.
 
 use super::ReadOptions;
 use super::include::{IncludePreprocessor, IncludedFile, Texts};
@@ -17,20 +18,20 @@ const MAX_DEPTH: usize = 200;
 pub(super) struct NamedItems {
     pub materials: BTreeMap<String, u32>,
     pub objects: BTreeMap<String, (Object, usize, Span)>,
-    /// Names of objects that contain errors, which have already been reported.
+    /// Names of objects that contain errors. The errors have already been reported.
     pub invalid_objects: BTreeSet<String>,
-    /// Number of objects added so far by `use`.
+    /// Number of objects that `use` has added so far.
     pub used_objects: usize,
 }
 
 impl NamedItems {
-    /// Removes the names of materials.
+    /// Removes all names of materials.
     pub fn clear_materials(&mut self) {
         self.materials.clear();
     }
 }
 
-/// Recursive-descent parser of a scene file in the scene language.
+/// Recursive-descent parser for a file in the scene language.
 pub(super) struct Reader<'a, 'd> {
     texts: Texts<'a>,
     tokens: Vec<Token>,
@@ -40,20 +41,20 @@ pub(super) struct Reader<'a, 'd> {
     pub scene: Scene,
     pub reported_words: HashSet<String>,
     pub depth: usize,
-    /// Keywords of the open blocks, outermost first.
+    /// Keywords of the blocks that are open, starting with the outermost one.
     pub blocks: Vec<Span>,
-    /// Index of the token before which a missing `}` was reported. Blocks that end at the same
-    /// token are reported only once.
+    /// Index of the token in front of which a missing `}` was reported. If several blocks end at
+    /// the same token, only one error is reported.
     pub unclosed_at: Option<usize>,
-    /// True after reading was abandoned. Later errors are dropped.
+    /// True if reading has been abandoned. Errors after that point are dropped.
     stopped: bool,
-    /// Current material for the objects that follow.
+    /// Material that is current for the objects that follow.
     pub material: Option<u32>,
-    /// Every `MaterialIndex`; checked when the number of materials is known.
+    /// Uses of `MaterialIndex`, which are checked when the number of materials is known.
     pub material_uses: Vec<(u32, Span)>,
     /// Named materials and objects.
     pub named: NamedItems,
-    /// Number of errors that were merged into an earlier report.
+    /// Number of errors that were merged into an earlier error report.
     pub repeated: usize,
 }
 
@@ -108,8 +109,8 @@ impl<'a, 'd> Reader<'a, 'd> {
         if let Some(comment) = comments.first() {
             self.error(Diagnostic::error("the course's language has no comments").at(comment.span));
         }
-        // The course's parsers read a word up to the next space, but a number only up to the first
-        // character that cannot be part of it.
+        // The course's parsers read a word up to the next space, but they read a number only up to
+        // the first character that cannot belong to it.
         for i in 1..self.tokens.len() {
             let (before, token) = (self.tokens[i - 1], self.tokens[i]);
             let ends_number = token.kind == TokenKind::Close && self.text(before.span).parse::<f32>().is_ok();
@@ -125,7 +126,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
     }
 
-    /// Returns the scene after running the checks that need the complete file.
+    /// Returns the scene after performing the checks that need the complete file.
     pub(super) fn finish(self) -> Scene {
         let count = self.scene.materials.len();
         for (index, span) in self.material_uses.iter().filter(|(index, _)| *index as usize >= count) {
@@ -146,17 +147,17 @@ impl<'a, 'd> Reader<'a, 'd> {
         self.tokens.get(self.at).copied()
     }
 
-    /// Returns the token `count` positions ahead.
+    /// Returns the token that is `count` positions ahead.
     pub(super) fn ahead(&self, count: usize) -> Option<Token> {
         self.tokens.get(self.at + count).copied()
     }
 
-    /// Returns true if `{` comes next.
+    /// Returns true if the next token is `{`.
     pub(super) fn at_open(&self) -> bool {
         self.peek().is_some_and(|t| t.kind == TokenKind::Open)
     }
 
-    /// Returns the text of the next token if it is a word.
+    /// Returns the text of the next token, if it is a word.
     pub(super) fn peek_word(&self) -> Option<String> {
         self.peek().filter(|t| t.kind == TokenKind::Word).map(|t| self.text(t.span))
     }
@@ -175,27 +176,28 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
     }
 
-    /// Returns the span of the last token that was read.
+    /// Returns the span of the token that was read last.
     pub(super) fn last_span(&self) -> Span {
         self.tokens.get(self.at.wrapping_sub(1)).map_or(self.end_span(), |t| t.span)
     }
 
-    /// Returns the span of the end of the file.
+    /// Returns the span of the position at the end of the file.
     pub(super) fn end_span(&self) -> Span {
         self.texts.end()
     }
 
-    /// Returns the text of a span.
+    /// Returns the text that a span covers.
     pub(super) fn text(&self, span: Span) -> String {
         String::from_utf8_lossy(self.texts.at(span)).into_owned()
     }
 
-    /// Returns the number of errors so far. A block is checked as a whole only if it caused none.
+    /// Returns the number of errors that have occurred so far. A block is checked as a whole only
+    /// if it did not cause any errors.
     pub(super) fn errors(&self) -> usize {
         self.diagnostics.error_count() + self.repeated
     }
 
-    /// Reports an error about a name only once, even if the name occurs in many places.
+    /// Reports an error about a name only once, even if the name appears in many places.
     pub(super) fn error_once(&mut self, error: Diagnostic) {
         let known = self.diagnostics.error_count();
         if !self.stopped && !self.diagnostics.push_once(error) {
@@ -206,8 +208,8 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
     }
 
-    /// Reports an error, unless reading has been abandoned. After too many errors, abandons
-    /// reading.
+    /// Reports an error, unless reading has been abandoned. Abandons reading if there are too many
+    /// errors.
     pub(super) fn error(&mut self, error: Diagnostic) {
         if self.stopped {
             return;
@@ -218,13 +220,13 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
     }
 
-    /// Abandons the rest of the file.
+    /// Abandons reading the rest of the file.
     pub(super) fn stop(&mut self) {
         self.stopped = true;
         self.at = self.tokens.len();
     }
 
-    /// Enters one more level of nesting; reports an error if the limit is reached.
+    /// Enters another level of nesting, and reports an error if the limit has been reached.
     pub(super) fn descend(&mut self, what: &str, span: Span) -> bool {
         if self.depth >= MAX_DEPTH {
             self.error(Diagnostic::error(format!("{what} are nested more than {MAX_DEPTH} levels deep")).at(span));
@@ -235,8 +237,8 @@ impl<'a, 'd> Reader<'a, 'd> {
         true
     }
 
-    /// Expects the `{` of a block. If it is missing, but a word that belongs in the block follows,
-    /// continues inside the block.
+    /// Requires the `{` of a block as the next token. If it is missing, but the next word belongs
+    /// in the block, reading continues inside the block.
     pub(super) fn open(&mut self, keyword: Span) -> bool {
         let opens = self.at_open();
         let name = self.text(keyword);
@@ -253,7 +255,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         opens || inside
     }
 
-    /// Returns the next word inside the innermost block; `None` after the block's end.
+    /// Returns the next word inside the innermost block, or `None` at the end of the block.
     pub(super) fn word_before_close(&mut self) -> Option<(String, Span)> {
         let name = self.blocks.last().map(|&block| self.text(block)).unwrap_or_default();
         loop {
@@ -288,7 +290,8 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
     }
 
-    /// Returns true if the next tokens begin a section, which is allowed only at the top of a file.
+    /// Returns true if a section begins with the next tokens. Sections are allowed only at the top
+    /// level of a file.
     fn at_section(&self) -> bool {
         let block = self.ahead(1).is_some_and(|t| t.kind == TokenKind::Open);
         let word = self.peek_word().filter(|_| block).unwrap_or_default();
@@ -299,7 +302,7 @@ impl<'a, 'd> Reader<'a, 'd> {
     }
 }
 
-/// Returns the names of the dialects in a set.
+/// Returns the names of the dialects that are in a set.
 pub(super) fn names(set: DialectSet) -> String {
     let years: Vec<&str> = Dialect::ALL.iter().filter(|d| d.is_in(set)).map(|d| d.name()).collect();
     if years.is_empty() { "no dialect".to_string() } else { years.join(", ") }

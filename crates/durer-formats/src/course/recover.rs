@@ -1,4 +1,4 @@
-//! Recovery after an error, so that one mistake causes only one error.
+//! Recovers from errors, so that one mistake causes only one error message.
 
 use super::lexer::TokenKind;
 use super::reader::{Reader, names};
@@ -9,7 +9,7 @@ use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::dialect::Dialect;
 
 impl Reader<'_, '_> {
-    /// Ends the innermost block before the next token, which is not allowed in the block.
+    /// Ends the innermost block before the next token, because that token is not allowed in it.
     pub(super) fn unclosed(&mut self) {
         let Some(block) = self.blocks.pop() else { return };
         if self.unclosed_at != Some(self.at) {
@@ -23,7 +23,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Reopens the block that was closed by the last `}`, because that brace is superfluous.
+    /// Reopens the block that the last `}` closed, because that brace was superfluous.
     pub(super) fn reopen_block(&mut self, keyword: Span, found: u32) {
         let message = format!("this `}}` ends `{}` after {found} of its elements, but more follow", self.text(keyword));
         let brace = self.last_span();
@@ -32,7 +32,7 @@ impl Reader<'_, '_> {
         self.blocks.push(keyword);
     }
 
-    /// Skips `{ ... }` with all nested blocks.
+    /// Skips `{ ... }` including all nested blocks.
     pub(super) fn skip_block(&mut self) {
         let mut depth = 0usize;
         while let Some(token) = self.peek() {
@@ -48,14 +48,14 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Skips the rest of an invalid value, up to the next word of the language.
+    /// Skips the rest of an invalid value until the next word of the language.
     pub(super) fn skip_values(&mut self) {
         while self.peek_word().is_some_and(|word| dialects_of(&word).is_none()) {
             self.advance();
         }
     }
 
-    /// Skips the value of an unknown word: a word, numbers or a block.
+    /// Skips the value of an unknown word, which can be a word, numbers or a block.
     pub(super) fn skip_value(&mut self) {
         if self.at_open() {
             return self.skip_block();
@@ -74,7 +74,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Reports an unknown word, and skips its values and its block.
+    /// Reports an unknown word, and skips its values or its block.
     pub(super) fn unknown(&mut self, word: &str, span: Span, place: &str, known: &[&str]) {
         let message = match word.parse::<f32>() {
             Ok(_) => format!("unexpected number {} {place}", quoted(word.as_bytes())),
@@ -97,8 +97,8 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Returns the valid word that an unknown word probably stands for. A word that exists in the
-    /// language is replaced only if the two differ in case alone.
+    /// Returns the valid word that was probably intended when an unknown word was written. A word
+    /// that exists in the language is replaced only if the two words differ only in case.
     fn suggest<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
         let known: Vec<&str> = known.into_iter().collect();
         let there = counterpart(word, self.options.dialect);
@@ -112,7 +112,8 @@ impl Reader<'_, '_> {
         (dialects_of(word).is_none() || near.eq_ignore_ascii_case(word)).then_some(near)
     }
 
-    /// Adds a fix to an error about a word: replace it with the probable word, if there is one.
+    /// Adds a fix to an error about a word. The fix replaces the word with the one that was
+    /// probably intended, if there is one.
     pub(super) fn with_suggestion<'w>(
         &self,
         error: Diagnostic,
@@ -124,7 +125,7 @@ impl Reader<'_, '_> {
         error.fix_at(suggestion.map(|_| span), suggestion.unwrap_or_default())
     }
 
-    /// Returns help for a word that is not allowed in its place.
+    /// Returns help for a word that is not allowed where it appears.
     pub(super) fn advice<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<String> {
         let known: Vec<&str> = known.into_iter().collect();
         let year = self.options.dialect.name();

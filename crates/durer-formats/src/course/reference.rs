@@ -1,7 +1,8 @@
-//! Reference of the scene language: each keyword with its fields, its dialects and an example.
+//! Reference of the scene language, which lists each keyword with its fields, its dialects and an
+//! example.
 //!
-//! Keywords with parameters are taken from the descriptions of their statements. The table
-//! `GRAMMAR` lists the others, which belong to the grammar itself.
+//! Keywords with fields are taken from the descriptions of the statements. The table `GRAMMAR`
+//! lists the remaining keywords, which belong to the grammar itself.
 
 use super::write::write_item;
 use durer_scene::camera::Camera;
@@ -14,10 +15,10 @@ use durer_scene::medium::Fog;
 use durer_scene::scene::{Background, CsgOperation, NamedTexture};
 use durer_scene::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
 
-/// Chapter of the scene language reference, by which its entries are grouped.
+/// Chapter of the scene language reference, into which its entries are grouped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Chapter {
-    /// Structure of a scene file: sections, groups, counts.
+    /// Structure of a scene file, such as its sections, groups and counts.
     Structure,
     /// Cameras.
     Cameras,
@@ -34,7 +35,7 @@ pub enum Chapter {
 }
 
 impl Chapter {
-    /// Chapters in reading order.
+    /// All chapters in the order in which they are read.
     pub const ALL: [Chapter; 7] = [
         Chapter::Structure,
         Chapter::Cameras,
@@ -59,57 +60,59 @@ impl Chapter {
     }
 }
 
-/// A keyword or field name, with the dialects that spell it this way.
+/// Keyword or field name, with the dialects that spell it this way.
 pub type Spelling = (&'static str, DialectSet);
 
-/// Entry of the scene language reference: a keyword with its description, fields and example.
+/// Entry of the scene language reference, which has a keyword with its description, its fields and
+/// an example.
 #[derive(Clone, Debug)]
 pub struct Entry {
-    /// Spellings of the keyword by dialect; the first one is the name of the entry.
+    /// Spellings of the keyword with their dialects. The first one is the name of the entry.
     pub keywords: Vec<Spelling>,
-    /// Chapter that contains the entry.
+    /// Chapter to which the entry belongs.
     pub chapter: Chapter,
     /// Description of the keyword.
     pub doc: String,
-    /// Values after a keyword without a block, such as `x y z`.
+    /// Values that follow a keyword without a block, such as `x y z`.
     pub values: &'static str,
-    /// Fields of the keyword's block.
+    /// Fields in the keyword's block.
     pub fields: Vec<FieldEntry>,
-    /// Example in the Dürer dialect, or in the keyword's own dialect if the Dürer dialect lacks it.
+    /// Example in the Dürer dialect, or in the keyword's own dialect if the Dürer dialect does not
+    /// have it.
     pub example: String,
 }
 
-/// Field of a keyword's block, as listed in the scene language reference.
+/// Field of a keyword's block, as it is listed in the scene language reference.
 #[derive(Clone, Debug)]
 pub struct FieldEntry {
-    /// Name of the field in code.
+    /// Name of the field in the code.
     pub name: &'static str,
     /// Type of the value.
     pub kind: FieldKind,
-    /// Spellings of the field's name, by dialect.
+    /// Spellings of the field's name with their dialects.
     pub words: Vec<Spelling>,
-    /// Type and range of the value, as text.
+    /// Type and range of the value as text.
     pub value: String,
-    /// True if the field is required.
+    /// True if the field must be present.
     pub required: bool,
     /// Default value as text, if there is one.
     pub default: Option<String>,
-    /// Meaning and unit.
+    /// Meaning of the field and its unit.
     pub doc: String,
 }
 
 impl Entry {
-    /// Returns the name of the entry in the reference.
+    /// Returns the name of the entry.
     pub fn name(&self) -> &'static str {
         self.keywords[0].0
     }
 
-    /// Returns the dialects that have the keyword.
+    /// Returns the dialects that have this keyword.
     pub fn dialects(&self) -> DialectSet {
         self.keywords.iter().fold(0, |all, keyword| all | keyword.1)
     }
 
-    /// Returns a scene that shows the example, if the example is something visible.
+    /// Returns a scene that shows the example, if the example is visible.
     pub fn scene(&self) -> Option<String> {
         let example = &self.example;
         Some(match self.chapter {
@@ -174,7 +177,7 @@ Group {
 }
 ";
 
-/// Examples that show more than a statement's defaults.
+/// Examples that show more than the default values of a statement.
 const EXAMPLES: [(&str, &str); 30] = [
     ("Fog", "Fog { extinction 0.25 color 0.9 0.95 1 }"),
     ("Texture", "Texture { name bark picture bark.png wrapU mirror uvTransform { 4 0 0  0 4 0 } }"),
@@ -217,7 +220,7 @@ const EXAMPLES: [(&str, &str); 30] = [
     ("Grid", "Grid { min -1 -1.2 -1 max 1 0.8 1 numCells 10 10 10 rasterizeSphere { center 0 -0.2 0 radius 0.95 } }"),
 ];
 
-/// Description of `preset`.
+/// Description of the field `preset`.
 const PRESET: &str = "A real material by name, as the first field of a `PrincipledMaterial`; later fields change it. Names: aluminum-brushed, \
     beryllium, blackboard, blood, brass, brick, carpaint, cesium, charcoal, chromium, cobalt, coffee, concrete, \
     cooking-oil, copper, diamond, egg-shell, eye-cornea, eye-lens, gasoline, germanium, glass, gold, gray-card, \
@@ -227,7 +230,8 @@ const PRESET: &str = "A real material by name, as the first field of a `Principl
     sapphire, silicon, silver, sodium, stainless-steel, tire, titanium, toner-black, tungsten, vanadium, velvet, \
     water, whiteboard, zinc.";
 
-/// Keywords of the grammar itself: spellings, chapter, values, description, example.
+/// Keywords of the grammar itself. Each entry has the spellings, the chapter, the values, a
+/// description and an example.
 #[rustfmt::skip]
 const GRAMMAR: &[(&[Spelling], Chapter, &str, &str, &str)] = &[
     (&[("Lights", set::CLASSIC)], Chapter::Structure, "{ lights }",
@@ -340,7 +344,7 @@ pub fn entries() -> Vec<Entry> {
     all
 }
 
-/// Returns the entries for a list of described statements.
+/// Returns the entries for a list of statements that have descriptions.
 fn of<T: DescribedKind>(chapter: Chapter) -> Vec<Entry> {
     let entry = |mut kind: T| {
         let keywords = kind.keywords().to_vec();
@@ -384,7 +388,7 @@ fn field<T: DescribedKind>(kind: &T, i: usize, own: DialectSet) -> FieldEntry {
     }
 }
 
-/// Returns the names of the dialects in a set; `all dialects` for the full set.
+/// Returns the names of the dialects that are in a set, or `all dialects` for the complete set.
 pub fn dialect_names(dialects: DialectSet) -> String {
     if dialects == set::ALL {
         return "all dialects".into();
@@ -393,7 +397,7 @@ pub fn dialect_names(dialects: DialectSet) -> String {
     names.join(", ")
 }
 
-/// Describes the values that a type and a constraint allow.
+/// Describes in words the values that a type and a constraint allow.
 fn value_of(kind: FieldKind, rule: Constraint) -> String {
     let kind = match kind {
         FieldKind::Float => "number".to_string(),
@@ -436,8 +440,8 @@ fn one_line(doc: &str) -> String {
     doc.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Returns every word of the language, including field names and values, sorted. Used by editors
-/// and for suggestions.
+/// Returns all words of the language in sorted order, including names of fields and values. The
+/// list is used by editors and for suggestions.
 pub fn all_words() -> Vec<&'static str> {
     let mut words: Vec<&'static str> = Vec::new();
     for entry in entries() {

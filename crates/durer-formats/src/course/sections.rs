@@ -1,4 +1,4 @@
-//! Grammar of 2003 to 2019: sections, groups and objects.
+//! Reads the grammar of 2003 to 2019, in which a scene consists of sections, groups and objects.
 
 use super::fields::Order;
 use super::lexer::TokenKind;
@@ -15,7 +15,7 @@ use durer_scene::medium::Fog;
 use durer_scene::scene::{Background, CsgOperation, Group, Material, NamedTexture, Object, ObjectKind, Spanned};
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
-/// Words allowed in a group. The first [`OBJECTS`] of them begin objects.
+/// Words that are allowed in a group. The first [`OBJECTS`] of these words begin objects.
 #[rustfmt::skip]
 pub(super) const IN_GROUP: [&str; OBJECTS + 4] = [
     "Group", "Transform", "use", "Sphere", "Plane", "Triangle", "TriangleMesh",
@@ -24,13 +24,13 @@ pub(super) const IN_GROUP: [&str; OBJECTS + 4] = [
     "MaterialIndex", "numObjects", "Grid", "define",
 ];
 
-/// Number of words in [`IN_GROUP`] that begin an object; these are suggested in a transform.
+/// Number of words in [`IN_GROUP`] that begin an object, and that are suggested inside a transform.
 pub(super) const OBJECTS: usize = 21;
 
 impl Reader<'_, '_> {
     /// Reads the whole file.
     pub(super) fn scene_file(&mut self) {
-        // The course's dialects have only two cameras.
+        // The dialects of the course have only two kinds of cameras.
         let dialect = self.options.dialect;
         let kinds = Camera::kinds();
         let cameras = kinds.iter().filter(|c| dialect == Dialect::Durer || c.keywords()[0].1 != set::DURER);
@@ -54,7 +54,8 @@ impl Reader<'_, '_> {
         });
     }
 
-    /// Reads sections up to the end of the file. `section` returns true if it handled the word.
+    /// Reads sections until the end of the file. The function `section` returns true if it has
+    /// handled the word.
     pub(super) fn top(&mut self, known: &[&str], mut section: impl FnMut(&mut Self, &str, Span) -> bool) {
         let mut seen: Vec<(String, Span)> = Vec::new();
         while let Some(token) = self.peek() {
@@ -71,7 +72,7 @@ impl Reader<'_, '_> {
             } else if !section(self, &word, span) {
                 self.unknown(&word, span, "at the top of a scene", known);
             } else if word != "define" {
-                // A scene has only one camera, of whatever kind.
+                // A scene can have only one camera of any kind.
                 let kind = if word.ends_with("Camera") { "Camera".to_string() } else { word.clone() };
                 if let Some((_, first)) = seen.iter().find(|(earlier, _)| *earlier == kind) {
                     let message = format!("this is another `{kind}`: only the last is used");
@@ -85,7 +86,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Reads the block of a camera and makes it the scene's camera.
+    /// Reads the block of a camera, and makes this camera the camera of the scene.
     pub(super) fn camera(&mut self, mut camera: Camera, keyword: Span) {
         self.check_keyword(&camera, keyword);
         self.fields(&mut camera, keyword, Order::Listed, |_, _, _| false);
@@ -115,7 +116,7 @@ impl Reader<'_, '_> {
         self.report_foreign_word(&word, keyword, set);
     }
 
-    /// Reads `{ count n element ... }`. The count must equal the number of elements.
+    /// Reads `{ count n element ... }`. The count must be equal to the number of elements.
     fn counted(&mut self, keyword: Span, count_word: &str, mut element: impl FnMut(&mut Self, &str, Span) -> bool) {
         let errors = self.errors();
         let name = self.text(keyword);
@@ -170,8 +171,8 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Returns true if a superfluous `}` ended a top-level section. In that case, the next word
-    /// belongs in that section.
+    /// Returns true if a superfluous `}` has ended a top-level section. In that case, the next word
+    /// belongs to that section.
     fn closed_early(&self, name: &str) -> bool {
         let word = self.peek_word().unwrap_or_default();
         self.depth == 0 && !is_section(&word) && block_of(&word) == Some(name)
@@ -186,7 +187,7 @@ impl Reader<'_, '_> {
                 return false;
             };
             reader.check_keyword(&light, span);
-            // Since the last assignment of 2012, point lights can have their fields in any order.
+            // Since the last assignment of 2012, the fields of point lights can be in any order.
             let free = matches!(reader.options.dialect, Dialect::F12a5 | Dialect::F16 | Dialect::Durer);
             let order = if free && matches!(light, Light::Point(_)) { Order::Any } else { Order::Listed };
             reader.fields(&mut light, span, order, |_, _, _| false);
@@ -234,7 +235,7 @@ impl Reader<'_, '_> {
         });
     }
 
-    /// Reads a material if the word begins one.
+    /// Reads a material if it begins with the given word.
     pub(super) fn material(&mut self, word: &str, span: Span) -> Option<Material> {
         let errors = self.errors();
         if let Some(mut solid) = PatternMaterial::from_keyword(word) {
@@ -254,7 +255,7 @@ impl Reader<'_, '_> {
         }
         if let Some(mut principled) = PrincipledMaterial::from_keyword(word) {
             self.check_keyword(&principled, span);
-            // A preset comes first, so that later fields can change it.
+            // If a preset comes first, later fields can change its values.
             let first = self.ahead(1).filter(|token| self.at_open() && self.text(token.span) == "preset");
             let name = first.and_then(|_| self.ahead(2)).map(|token| self.text(token.span));
             principled = name.as_deref().and_then(presets::preset).unwrap_or(principled);
@@ -305,7 +306,8 @@ impl Reader<'_, '_> {
         Some(Material::Phong(Box::new(phong), noise))
     }
 
-    /// Reads the name of a preset. A preset that comes first has already been applied.
+    /// Reads the name of a preset. A preset that comes first has already been applied at this
+    /// point.
     fn preset(&mut self, word: Span, first: bool) {
         let Some(name) = self.peek_word() else { return self.expected("a name", "preset") };
         let span = self.advance();
@@ -322,7 +324,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Checks that a solid texture uses only earlier materials, which prevents cycles.
+    /// Checks that a solid texture uses only earlier materials, because this prevents cycles.
     fn check_solid(&mut self, solid: &PatternMaterial, span: Span) {
         let own = self.scene.materials.len() as u32;
         if let Some(index) = durer_scene::material::Pattern::materials(solid).into_iter().find(|index| *index >= own) {
@@ -350,7 +352,7 @@ impl Reader<'_, '_> {
                     reader.define(span);
                     false
                 }
-                // The dialect of 2003 defines materials where they are used.
+                // In the dialect of 2003, materials are defined where they are used.
                 "Material" | "PhongMaterial" => {
                     reader.report_foreign_word("Material in Group", span, set::F03);
                     if let Some(value) = reader.material(word, span) {
@@ -365,8 +367,8 @@ impl Reader<'_, '_> {
         Group { objects }
     }
 
-    /// Reads a voxel grid: a box of cells, and spheres that fill cells. In files with nodes, it is
-    /// a component of type `Grid`.
+    /// Reads a voxel grid, which is a box of cells, and spheres that fill some of the cells. In
+    /// files with nodes, a voxel grid is a component of type `Grid`.
     pub(super) fn voxels(&mut self, keyword: Span) -> ObjectKind {
         let (mut grid, mut balls) = (VoxelGrid::default(), Vec::new());
         self.fields(&mut grid, keyword, Order::Any, |reader, word, span| {
@@ -386,13 +388,13 @@ impl Reader<'_, '_> {
         ObjectKind::Voxels(grid, balls)
     }
 
-    /// Reads an object if the word begins one.
+    /// Reads an object if it begins with the given word.
     pub(super) fn object(&mut self, word: &str, span: Span) -> Option<Object> {
         if !self.descend("objects", span) {
             return None;
         }
-        // The current material belongs to this object. If the object is a group, the material can
-        // change inside it.
+        // The current material is the material of this object. If the object is a group, the
+        // material can change inside it.
         let material = self.material;
         let classic = |words: &[(&str, DialectSet)]| words.iter().any(|(w, s)| *w == word && s & set::CLASSIC != 0);
         let node = if word == "Group" {

@@ -1,9 +1,9 @@
-//! Suggestions for words that the language, or the file's dialect, does not have.
+//! Suggestions for words that do not exist in the language or in the dialect of the file.
 
 use super::words::dialects_of;
 use durer_scene::dialect::Dialect;
 
-/// Words of the first grammar, and their counterparts in the grammar of nodes.
+/// Words of the older grammar and their counterparts in the grammar of nodes.
 const COUNTERPARTS: [(&str, &str); 20] = [
     ("angle", "fov"),
     ("ambientLight", "ambient_light"),
@@ -27,8 +27,8 @@ const COUNTERPARTS: [(&str, &str); 20] = [
     ("ZRotate", "z_rotate"),
 ];
 
-/// Common mistakes: the wrong word, the words that may be meant, and a remark. The first of these
-/// words that is valid in the block is suggested.
+/// Common mistakes. Each entry has the wrong word, the words that may have been intended, and a
+/// remark. The first of the intended words that is valid in the block is suggested.
 const COMMON_MISTAKES: [(&str, &[&str], &str); 29] = [
     ("plain", &["Plane", "plane"], ""),
     ("ball", &["Sphere", "sphere"], ""),
@@ -69,7 +69,7 @@ const COMMON_MISTAKES: [(&str, &[&str], &str); 29] = [
     ("material", &["MaterialIndex"], ""),
 ];
 
-/// Returns the word of this dialect's grammar for a word of the other grammar.
+/// Returns the word in this dialect's grammar for a word of the other grammar.
 pub(super) fn counterpart(word: &str, dialect: Dialect) -> Option<&'static str> {
     let nodes = dialect == Dialect::F23;
     let row = COUNTERPARTS.iter().find(|(classic, node)| if nodes { *classic == word } else { *node == word })?;
@@ -77,7 +77,7 @@ pub(super) fn counterpart(word: &str, dialect: Dialect) -> Option<&'static str> 
     dialects_of(there).filter(|set| dialect.is_in(*set) || dialect == Dialect::Durer).map(|_| there)
 }
 
-/// Pairs of words with the same meaning in different years of the first grammar.
+/// Pairs of words that have the same meaning in different years of the older grammar.
 const YEARS: [(&str, &str); 5] = [
     ("exponent", "shininess"),
     ("falloff", "attenuation"),
@@ -86,14 +86,14 @@ const YEARS: [(&str, &str); 5] = [
     ("Matrix", "Matrix4f"),
 ];
 
-/// Returns the word of this dialect for a word of another year.
+/// Returns the word in this dialect for a word of another year.
 pub(super) fn word_in_dialect(word: &str, dialect: Dialect) -> Option<&'static str> {
     let other = YEARS.iter().find_map(|&(a, b)| (a == word).then_some(b).or((b == word).then_some(a)));
     let known = |word: &&str| dialects_of(word).is_some_and(|set| dialect.is_in(set));
     counterpart(word, dialect).or(other.filter(known))
 }
 
-/// Returns the valid word that is meant by a common mistake, with a remark.
+/// Returns the valid word that corrects a common mistake, and a remark about it.
 pub(super) fn common_mistake<'w>(
     word: &str,
     known: impl IntoIterator<Item = &'w str>,
@@ -104,7 +104,8 @@ pub(super) fn common_mistake<'w>(
     (*suggestion != word).then_some((suggestion, row.2))
 }
 
-/// Returns a remark on a word that exists in the language, but not in this block.
+/// Returns a remark about a word that exists in the language, but that is not allowed in this
+/// block.
 pub(super) fn misplaced(word: &str, place: &str) -> Option<&'static str> {
     let within = |block: &str| place.contains(block);
     Some(match word {

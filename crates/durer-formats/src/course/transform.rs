@@ -1,4 +1,4 @@
-//! Reads transforms: matrices followed by one object.
+//! Reads transforms, which consist of matrices followed by one object.
 
 use super::lexer::TokenKind;
 use super::reader::Reader;
@@ -54,7 +54,7 @@ impl Reader<'_, '_> {
         Some(ObjectKind::Transform(ops, Box::new(object?)))
     }
 
-    /// Reads the matrices of a block whose `{` is already read.
+    /// Reads the matrices of a block whose `{` has already been read.
     pub(super) fn matrices(&mut self) -> Vec<MatrixOp> {
         let mut ops = Vec::new();
         while let Some((word, span)) = self.word_before_close() {
@@ -66,7 +66,7 @@ impl Reader<'_, '_> {
         ops
     }
 
-    /// Reports a matrix that alone flattens space.
+    /// Reports a single matrix that flattens space.
     pub(super) fn check_flat(&mut self, op: Option<MatrixOp>, span: Span) {
         if let Some(error) = op.and_then(flat_matrix_error) {
             let at = span.join(self.last_span());
@@ -78,7 +78,8 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Reads a matrix if the word begins one. The inner `None` means that there was an error.
+    /// Reads a matrix if it begins with the given word. The inner `None` means that an error was
+    /// reported.
     pub(super) fn matrix(&mut self, word: &str, span: Span) -> Option<Option<MatrixOp>> {
         let braces_needed = matches!(word, "Rotate" | "Matrix" | "Matrix4f");
         if !braces_needed && !MatrixOp::words().contains(&word) {
@@ -116,14 +117,14 @@ impl Reader<'_, '_> {
         Some(op)
     }
 
-    /// Returns the number of numbers that follow, and the span of the last one.
+    /// Returns how many numbers follow, and the span of the last one.
     fn numbers_ahead(&self) -> (usize, Span) {
         let number = |i: usize| self.ahead(i).filter(|t| self.text(t.span).parse::<f32>().is_ok());
         let count = (0..17).take_while(|i| number(*i).is_some()).count();
         (count, number(count.saturating_sub(1)).map_or(self.last_span(), |token| token.span))
     }
 
-    /// Reports `Rotate 0 1 0 45`, which lacks braces, and skips the numbers.
+    /// Reports `Rotate 0 1 0 45`, in which the braces are missing, and skips the numbers.
     fn rotate_without_braces(&mut self, word: Span) -> bool {
         let (count, last) = self.numbers_ahead();
         if count != 4 && count != 1 {
@@ -144,10 +145,10 @@ impl Reader<'_, '_> {
         true
     }
 
-    /// Reports `Scale 2`, which has a single number, and skips it.
+    /// Reports `Scale 2`, which has only one number, and skips the number.
     fn scale_by_one(&mut self, word: Span) -> bool {
         let (count, last) = self.numbers_ahead();
-        // Incomplete values, and words other than numbers, have their own errors.
+        // Incomplete values, and words in the place of numbers, cause errors of their own.
         let ends = |text: &str| text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '}');
         if count != 1 || !self.ahead(1).is_some_and(|next| ends(&self.text(next.span))) {
             return false;
@@ -181,8 +182,8 @@ impl Reader<'_, '_> {
                 for (i, value) in rows.iter_mut().enumerate() {
                     *value = self.number(word, i + 1, 16)?;
                 }
-                // `Matrix` of 2003 and 2004 lists rows. `Matrix4f`, and `Matrix` of later years,
-                // list columns.
+                // In 2003 and 2004, `Matrix` lists the rows of the matrix. `Matrix4f` and the
+                // `Matrix` of later years list the columns.
                 let rows_listed =
                     word == "Matrix" && matches!(self.options.dialect, Dialect::F03 | Dialect::F04 | Dialect::Durer);
                 MatrixOp::Matrix(if rows_listed { rows } else { std::array::from_fn(|i| rows[i % 4 * 4 + i / 4]) })
@@ -190,8 +191,8 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// Expects `}`, skipping any values before it. If a word of the language comes first, the `}`
-    /// is missing.
+    /// Requires `}` as the next token, after skipping any values before it. If a word of the
+    /// language comes before the `}`, the `}` is missing.
     fn close(&mut self, block: &str, complain: bool) {
         if complain && self.peek().is_none_or(|t| t.kind != TokenKind::Close) {
             self.expected("`}`", block);
@@ -214,7 +215,7 @@ pub(crate) fn flat_matrix_error(op: MatrixOp) -> Option<Diagnostic> {
     flat.then(|| error.help("use a scale of 1 along axes that keep their size"))
 }
 
-/// Returns an error if the values of a complete matrix are invalid.
+/// Returns an error if the values of a complete matrix are not valid.
 pub(crate) fn invalid_matrix_error(op: MatrixOp) -> Option<Diagnostic> {
     match op {
         MatrixOp::Rotate(axis, _) if axis == Vec3::ZERO => {

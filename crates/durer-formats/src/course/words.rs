@@ -1,4 +1,4 @@
-//! Table of all words of the language.
+//! Table of all words of the scene language.
 
 use durer_scene::camera::Camera;
 use durer_scene::describe::DescribedKind;
@@ -11,7 +11,7 @@ use durer_scene::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-/// Words of the grammar itself, which belong to no described statement.
+/// Words that belong to the grammar itself, and not to any described statement.
 const GRAMMAR: [(&str, DialectSet); 37] = [
     ("include", set::DURER),
     ("define", set::DURER),
@@ -84,12 +84,12 @@ fn list<T: DescribedKind>(words: &mut HashMap<&'static str, DialectSet>) {
     }
 }
 
-/// Returns the dialects that have a word; `None` if the word is not in the language.
+/// Returns the dialects that have a word, or `None` if the word is not in the language.
 pub(super) fn dialects_of(word: &str) -> Option<DialectSet> {
     WORDS.get(word).copied()
 }
 
-/// Returns every word.
+/// Returns all words of the language.
 #[cfg(test)]
 pub(super) fn all() -> impl Iterator<Item = &'static str> {
     WORDS.keys().copied()
@@ -100,7 +100,7 @@ pub(super) fn begins_block(word: &str) -> bool {
     word.starts_with(|c: char| c.is_ascii_uppercase()) && WORDS.contains_key(word)
 }
 
-/// Returns the block in which a misplaced word belongs.
+/// Returns the block to which a misplaced word belongs.
 pub(super) fn block_of(word: &str) -> Option<&'static str> {
     Some(match word {
         "TriangleMesh" | "HeightField" | "Grid" | "Transform" | "MaterialIndex" | "Group" | "use" | "define" => "Group",
@@ -122,12 +122,13 @@ pub(super) const SECTIONS: [&str; 6] = ["Background", "Fog", "Lights", "Textures
 /// Sections that exist only in the Dürer dialect.
 pub(super) const DURER_SECTIONS: [&str; 2] = ["Fog", "Textures"];
 
-/// Returns the camera that a word begins, in files of the grammar without nodes.
+/// Returns the camera whose block begins with the given word, for files in the grammar without
+/// nodes.
 pub(super) fn camera_of(word: &str) -> Option<Camera> {
     Camera::from_keyword(word).filter(|_| word != "Camera")
 }
 
-/// Returns true if a word begins a section at the top of a file.
+/// Returns true if a section at the top level of a file begins with the given word.
 pub(super) fn is_section(word: &str) -> bool {
     SECTIONS.contains(&word) || camera_of(word).is_some()
 }

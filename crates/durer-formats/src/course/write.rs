@@ -8,7 +8,8 @@ use durer_scene::scene::{Group, Material, MatrixOp, Object, ObjectKind, Scene};
 use durer_scene::shape::{Sphere, VoxelGrid};
 use std::fmt::Write;
 
-/// Formats a scene in a dialect. Where the dialect lacks a word, uses a word of another year.
+/// Formats a scene in the given dialect. If the dialect does not have a word, a word of another
+/// year is used.
 pub fn write(scene: &Scene, dialect: Dialect) -> String {
     let mut writer = Writer { out: String::new(), depth: 0, dialect, material: None };
     match dialect {
@@ -18,26 +19,26 @@ pub fn write(scene: &Scene, dialect: Dialect) -> String {
     writer.out
 }
 
-/// Formats one statement alone, as [`write`] does.
+/// Formats a single statement, in the way that [`write`] formats a scene.
 pub(super) fn write_item<T: DescribedKind>(item: &T, dialect: Dialect) -> String {
     let mut writer = Writer { out: String::new(), depth: 0, dialect, material: None };
     writer.item(item);
     writer.out
 }
 
-/// Writer that appends the text of a scene in one dialect.
+/// Writer that appends the text of a scene in a single dialect.
 struct Writer {
     out: String,
     depth: usize,
     dialect: Dialect,
-    /// Current material for the objects that follow.
+    /// Material that is current for the objects that follow.
     material: Option<u32>,
 }
 
 impl Writer {
     fn line(&mut self, text: impl AsRef<str>) {
         let indent = "    ".repeat(self.depth);
-        // Writing to a String cannot fail.
+        // Writing to a `String` cannot fail.
         let _ = writeln!(self.out, "{indent}{}", text.as_ref());
     }
 
@@ -51,14 +52,14 @@ impl Writer {
 
     fn fields<T: DescribedKind>(&mut self, item: &T) {
         let plain = T::from_keyword(item.keywords()[0].0);
-        // Statements of the Dürer dialect use only its own words.
+        // Statements that exist only in the Dürer dialect use only words of that dialect.
         let ours = item.is_durer_only();
         let dialect = if ours { Dialect::Durer } else { self.dialect };
         for (i, field) in item.fields().iter().enumerate() {
             let Some(value) = item.get(i) else { continue };
             let (word, text) = (field.keyword(dialect), value_text(&value));
-            // Omit a default value if the dialect has no word for the field. Compare texts, since
-            // they distinguish 0 from -0.
+            // Omit a default value if the dialect has no word for the field. Compare the values as
+            // text, because text distinguishes 0 from -0.
             let plain_text = plain.as_ref().and_then(|plain| plain.get(i)).map(|value| value_text(&value));
             if word.is_none() && plain_text.as_ref() == Some(&text) {
                 continue;
@@ -234,7 +235,7 @@ impl Writer {
         self.block("Node", |w| match light {
             Light::Point(point) => {
                 w.block("Transform", |w| w.node_matrix(&MatrixOp::Translate(point.position)));
-                // The node's transform places the light.
+                // The transform of the node determines the position of the light.
                 w.component("Light", &Light::Point(PointLight { position: Vec3::ZERO, ..point.clone() }));
             }
             Light::Directional(_) | Light::Spot(_) | Light::Photometric(_) => w.component("Light", light),

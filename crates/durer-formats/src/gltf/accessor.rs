@@ -1,5 +1,5 @@
-//! Reads accessors: numbers of all component types in buffers, with strides, normalization and
-//! sparse values.
+//! Reads accessors, which describe numbers of all component types in buffers, with strides,
+//! normalization and sparse values.
 
 use super::Model;
 use super::buffers::BufferView;
@@ -39,8 +39,8 @@ impl ComponentType {
         }
     }
 
-    /// Returns the number at the start of `b`. A normalized number is between 0 or -1 and 1
-    /// (chapter 3.11 of the specification).
+    /// Returns the number at the start of `b`. A normalized number is between -1 and 1 if its type
+    /// is signed, and between 0 and 1 otherwise (chapter 3.11 of the specification).
     fn float(self, b: &[u8], normalized: bool) -> f32 {
         let (value, most) = match self {
             ComponentType::I8 => (f32::from(b[0] as i8), 127.0),
@@ -62,12 +62,12 @@ impl ComponentType {
     }
 }
 
-/// glTF accessor: describes rows of numbers in a buffer view, and reads them.
+/// glTF accessor, which describes rows of numbers in a buffer view and reads them.
 #[derive(Clone)]
 pub(super) struct Accessor {
     pub component: ComponentType,
     pub normalized: bool,
-    /// Number of components in a row: 1 to 4, or for matrices 4, 9 or 16.
+    /// Number of components in a row, which is 1 to 4, or 4, 9 or 16 for matrices.
     pub width: usize,
     pub is_matrix: bool,
     pub count: usize,
@@ -75,11 +75,11 @@ pub(super) struct Accessor {
     offset: usize,
     sparse: Option<SparseValues>,
     pub has_bounds: bool,
-    /// True if the buffer view has an explicit stride.
+    /// True if the buffer view states a stride.
     pub strided: bool,
 }
 
-/// Sparse part of an accessor: rows that replace those with the given indices.
+/// Sparse part of an accessor: rows of values, and the indices of the rows that they replace.
 #[derive(Clone)]
 struct SparseValues {
     count: usize,
@@ -92,7 +92,7 @@ const TYPES: [(&str, usize); 7] =
     [("SCALAR", 1), ("VEC2", 2), ("VEC3", 3), ("VEC4", 4), ("MAT2", 4), ("MAT3", 9), ("MAT4", 16)];
 
 impl Model<'_> {
-    /// Reads all accessors; `None` for each invalid one.
+    /// Reads all accessors, and returns `None` in place of each invalid one.
     pub(super) fn accessors(&self, root: &JsonRef) -> Vec<Option<Accessor>> {
         let Some(accessors) = root.get("accessors") else { return Vec::new() };
         accessors.items().map(|accessor| self.accessor_of(&accessor)).collect()
@@ -141,7 +141,7 @@ impl Model<'_> {
             strided,
         };
         accessor.check(at)?;
-        // Missing bytes were already reported.
+        // Missing bytes have already been reported.
         accessor.view.as_ref().map_or(Some(()), |view| view.slice.as_ref().map(|_| ()))?;
         accessor.sparse = match at.get("sparse") {
             Some(sparse) => Some(self.sparse(&sparse, &accessor)?),
@@ -211,8 +211,8 @@ impl SparseValues {
 }
 
 impl Accessor {
-    /// Returns the byte offset of the i-th number in a row. Matrix columns are aligned to four
-    /// bytes.
+    /// Returns the byte offset of the i-th number in a row. The columns of a matrix are aligned to
+    /// multiples of four bytes.
     fn byte_offset(&self, i: usize) -> usize {
         let size = self.component.size();
         let rows = match self.width {
@@ -257,7 +257,7 @@ impl Accessor {
         Some(())
     }
 
-    /// Replaces the data with tightly packed numbers of another component type.
+    /// Replaces the data with tightly packed numbers that may have another component type.
     pub fn fill(&mut self, component: ComponentType, view: BufferView) {
         (self.component, self.view, self.offset, self.sparse, self.strided) = (component, Some(view), 0, None, false);
     }
@@ -269,7 +269,7 @@ impl Accessor {
         }
         let Some(view) = &self.view else { return };
         let (bytes, stride, last) = (&view.bytes()[self.offset..], self.stride(), self.byte_offset(self.width - 1));
-        // Fast path for the usual case: tightly packed data without infinities and NaN.
+        // Fast path for the usual case of tightly packed data without infinities or NaN.
         const EXPONENT: u32 = 0x7f80_0000;
         let is_finite = |number: &[u8; 4]| u32::from_le_bytes(*number) & EXPONENT != EXPONENT;
         let are_finite = |some: &[[u8; 4]]| some.iter().fold(true, |all, number| all & is_finite(number));
@@ -277,7 +277,7 @@ impl Accessor {
         if !dense.is_empty() && dense.as_chunks::<4>().0.par_chunks(1 << 15).all(are_finite) {
             return;
         }
-        // Columns of single-precision matrices need no padding.
+        // The columns of single-precision matrices need no padding.
         let is_sound = |i: &usize| {
             let (numbers, _) = bytes[i * stride..][..last + 4].as_chunks::<4>();
             numbers.iter().all(is_finite)
@@ -298,7 +298,7 @@ impl Accessor {
         }
     }
 
-    /// Returns all rows, each mapped by `of`. Missing components are 0.
+    /// Returns all rows after applying `of` to each of them. Missing components are 0.
     pub fn rows<const N: usize, T: Send>(&self, of: impl Fn([f32; N]) -> T + Sync + Send) -> Vec<T> {
         let width = self.width.min(N);
         let is_plain = self.component == ComponentType::F32 && !self.is_matrix;

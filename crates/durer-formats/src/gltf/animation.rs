@@ -1,4 +1,5 @@
-//! Evaluates animations: transforms of nodes and weights of morph targets at a given time.
+//! Evaluates animations, which give transforms of nodes and weights of morph targets at a given
+//! time.
 //!
 //! Source: *glTF 2.0 Specification*, chapter 3.11 and appendix C.
 
@@ -9,7 +10,7 @@ use crate::report::count_text;
 use durer_scene::math::fp;
 use glam::{DQuat, DVec3, DVec4};
 
-/// Interpolation between key frames of a glTF animation.
+/// Interpolation between the key frames of a glTF animation.
 #[derive(Clone, Copy, PartialEq)]
 enum Interpolation {
     Step,
@@ -17,18 +18,18 @@ enum Interpolation {
     Cubic,
 }
 
-/// Key frames of a glTF animation sampler: times, values and interpolation.
+/// Key frames of a glTF animation sampler, with their times, their values and the interpolation.
 struct Sampler {
     times: Vec<f32>,
-    /// Values of the key frames, one after the other. For cubic splines, each key frame has its
-    /// in-tangent, value and out-tangent.
+    /// Values of all key frames in order. For cubic splines, each key frame has an in-tangent, a
+    /// value and an out-tangent.
     values: Vec<f32>,
     interpolation: Interpolation,
 }
 
 impl Model<'_> {
-    /// Sets the transforms and weights of the nodes to those of the first animation at the
-    /// requested time.
+    /// Sets the transforms and weights of the nodes to the values that the first animation has at
+    /// the requested time.
     pub(super) fn animate(&self, root: &JsonRef, nodes: &mut [NodeData]) {
         let (at, animations) = match (self.input.scene_defaults.animation_time, root.get("animations")) {
             (Some(at), Some(animations)) => (at, animations),
@@ -77,7 +78,7 @@ impl Model<'_> {
 }
 
 impl Sampler {
-    /// Returns the number of components per key frame.
+    /// Returns the number of components for each key frame.
     fn width(&self) -> Option<usize> {
         let rows = self.times.len() * if self.interpolation == Interpolation::Cubic { 3 } else { 1 };
         self.values.len().checked_div(rows).filter(|&width| width > 0)
@@ -98,8 +99,8 @@ impl Sampler {
         (q.length() > 1e-6).then(|| q.normalize())
     }
 
-    /// Returns the last key frame before a time, the position of the time within the interval to
-    /// the next one (0 to 1), and the length of the interval in seconds.
+    /// Returns the last key frame before a time, the relative position of the time in the interval
+    /// to the next key frame (0 to 1), and the length of the interval in seconds.
     fn keyframes_around(&self, at: f32) -> (usize, f32, f32) {
         let next = self.times.partition_point(|&time| time <= at);
         match (next.checked_sub(1), self.times.get(next)) {
@@ -107,7 +108,7 @@ impl Sampler {
                 let length = end - self.times[i];
                 (i, (at - self.times[i]) / length, length)
             }
-            // Clamp times before the first and after the last key frame.
+            // Clamp times that are before the first key frame or after the last one.
             (Some(i), None) => (i, 0.0, 0.0),
             (None, _) => (0, 0.0, 0.0),
         }
@@ -128,8 +129,8 @@ impl Sampler {
         if self.interpolation == Interpolation::Linear {
             return Some(first.iter().zip(second).map(|(a, b)| a + t * (b - a)).collect());
         }
-        // Cubic Hermite spline, with the out-tangent of the first key frame and the in-tangent of
-        // the second.
+        // Cubic Hermite spline that uses the out-tangent of the first key frame and the in-tangent
+        // of the second one.
         let out = self.values.get((3 * i + 2) * width..(3 * i + 3) * width)?;
         let into = self.values.get(3 * (i + 1) * width..(3 * (i + 1) + 1) * width)?;
         let (t2, t3) = (t * t, t * t * t);
@@ -143,7 +144,7 @@ impl Sampler {
     }
 }
 
-/// Adds a note that the file has animations but is shown at rest.
+/// Adds a note that the file has animations and that they are not applied.
 fn at_rest(animations: &JsonRef) {
     let mut all = animations.items();
     let count = all.len();
@@ -157,7 +158,7 @@ fn at_rest(animations: &JsonRef) {
     animations.note("animations", format!("the file has {count} and is shown at rest: `--at 0` shows {moment}"));
 }
 
-/// Interpolates between quaternions along the shorter arc (slerp).
+/// Interpolates between two quaternions along the shorter arc (slerp).
 fn slerp(a: &[f32], b: &[f32], t: f32) -> Vec<f32> {
     let four = |q: &[f32]| DVec4::new(q[0].into(), q[1].into(), q[2].into(), q[3].into()).normalize_or(DVec4::W);
     let (a, b) = (four(a), four(b));

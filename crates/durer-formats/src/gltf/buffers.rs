@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 const MESHOPT: &str = "EXT_meshopt_compression";
 
-/// Range of bytes of a file or of decoded data, shared by reference counting.
+/// Range of bytes in a file or in decoded data, which is shared by reference counting.
 #[derive(Clone)]
 pub(super) struct SharedBytes {
     bytes: Arc<[u8]>,
@@ -33,20 +33,20 @@ impl SharedBytes {
         SharedBytes { range: 0..bytes.len(), bytes }
     }
 
-    /// Returns a slice of a range of these bytes; `None` if the range is too long.
+    /// Returns a part of these bytes, or `None` if the part extends beyond their end.
     pub fn part(&self, range: Range<usize>) -> Option<SharedBytes> {
         let (start, end) = (self.range.start.checked_add(range.start)?, self.range.start.checked_add(range.end)?);
         (start <= end && end <= self.range.end).then(|| SharedBytes { bytes: self.bytes.clone(), range: start..end })
     }
 }
 
-/// Buffer of a glTF file: its declared length, and its bytes if they can be read.
+/// Buffer of a glTF file, with its declared length, and with its bytes if they can be read.
 pub(super) struct Buffer {
     length: usize,
     pub slice: Option<SharedBytes>,
 }
 
-/// Buffer view of a glTF file: part of a buffer, with an optional stride.
+/// Buffer view of a glTF file, which is a part of a buffer with an optional stride.
 #[derive(Clone)]
 pub(super) struct BufferView {
     pub length: usize,
@@ -55,24 +55,24 @@ pub(super) struct BufferView {
 }
 
 impl BufferView {
-    /// Returns the bytes of the view; empty if they cannot be read.
+    /// Returns the bytes of the view, or no bytes if they cannot be read.
     pub fn bytes(&self) -> &[u8] {
         self.slice.as_ref().map_or(&[], SharedBytes::bytes)
     }
 }
 
-/// Target of a URI in a glTF file: embedded data, or another file.
+/// Target of a URI in a glTF file, which is embedded data or another file.
 pub(super) enum UriTarget<'a> {
-    /// Embedded data, with its media type.
+    /// Embedded data with its media type.
     Data(&'a str, Arc<[u8]>),
     /// Path of a file, relative to the glTF file.
     File(String),
 }
 
-/// Resolves a URI, which can be a data URI or a relative path.
+/// Resolves a URI, which must be a data URI or a relative path.
 ///
-/// Source: RFC 3986 and RFC 2397. Implementations of [`durer_scene::source::AssetSource`] that read
-/// folders reject paths that leave the folder.
+/// Source: RFC 3986 and RFC 2397. An implementation of [`durer_scene::source::AssetSource`] that
+/// reads a folder rejects paths that lead out of that folder.
 pub(super) fn resolve_uri<'a>(at: &JsonRef<'a>) -> Option<UriTarget<'a>> {
     let uri = at.string()?;
     if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
@@ -121,7 +121,7 @@ impl Model<'_> {
     fn buffer(&self, number: usize, at: &JsonRef) -> Option<Buffer> {
         at.object()?;
         let length = at.required("byteLength")?.integer(1..)? as usize;
-        // A fallback buffer is only for readers that do not support compressed views.
+        // Fallback buffers are only for readers that do not support compressed views.
         let is_fallback = compression(at).is_some_and(|packed| packed["fallback"] == true);
         Some(Buffer { length, slice: if is_fallback { None } else { self.data(number, length, at) } })
     }
@@ -164,7 +164,7 @@ impl Model<'_> {
         Some(SharedBytes { bytes, range: 0..length })
     }
 
-    /// Reads a file named by a URI.
+    /// Reads the file that a URI names.
     pub(super) fn file(&self, uri: &JsonRef, path: &str) -> Option<Arc<[u8]>> {
         let name = FileName { path: path.to_string(), span: uri.span() };
         match self.input.source.read(&name.path) {
@@ -176,7 +176,7 @@ impl Model<'_> {
         }
     }
 
-    /// Reads all buffer views; `None` for each invalid one.
+    /// Reads all buffer views, and returns `None` in place of each invalid one.
     pub(super) fn views(&self, root: &JsonRef) -> Vec<Option<BufferView>> {
         let Some(views) = root.get("bufferViews") else { return Vec::new() };
         views.items().map(|view| self.view_of(&view)).collect()
@@ -217,7 +217,7 @@ impl Model<'_> {
     }
 }
 
-/// Returns the compression extension of a buffer or buffer view, if it has one.
+/// Returns the compression extension of a buffer or buffer view, if there is one.
 fn compression<'a>(at: &JsonRef<'a>) -> Option<&'a Value> {
     at.value.get("extensions")?.get(MESHOPT)
 }

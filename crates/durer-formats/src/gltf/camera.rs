@@ -11,7 +11,7 @@ use durer_scene::scene::{Scene, Spanned};
 use glam::{DAffine3, DVec3};
 use std::f32::consts::PI;
 
-/// Camera of a glTF file, before a node places it.
+/// Camera of a glTF file, before a node gives it a position.
 #[derive(Clone)]
 pub(super) struct CameraData {
     name: String,
@@ -21,24 +21,24 @@ pub(super) struct CameraData {
 /// Projection of a glTF camera.
 #[derive(Clone, Copy)]
 enum Projection {
-    /// Vertical field of view in radians, and the aspect ratio if the file has one.
+    /// Vertical field of view in radians, and the aspect ratio if the file states one.
     Perspective(f32, Option<f32>),
-    /// Half the height of the view.
+    /// Half of the height of the view.
     Orthographic(f32),
 }
 
-/// Light of a glTF file, before a node places it.
+/// Light of a glTF file, before a node gives it a position.
 #[derive(Clone)]
 pub(super) struct LightData {
     is_directional: bool,
-    /// Inner and outer angle of a spot light's cone, in degrees from its axis; `None` if the light
-    /// is not a spot light.
+    /// Inner and outer angles of the cone of a spot light, in degrees from its axis. The value is
+    /// `None` if the light is not a spot light.
     cone: Option<[f32; 2]>,
     color: Vec3,
 }
 
 impl Model<'_> {
-    /// Reads all cameras; `None` for each invalid one.
+    /// Reads all cameras, and returns `None` in place of each invalid one.
     pub(super) fn read_cameras(&self, root: &JsonRef) -> Vec<Option<CameraData>> {
         root.list("cameras", |at| {
             at.object()?;
@@ -69,7 +69,7 @@ impl Model<'_> {
         })
     }
 
-    /// Reads all lights of KHR_lights_punctual; `None` for each invalid one.
+    /// Reads all lights of KHR_lights_punctual, and returns `None` in place of each invalid one.
     pub(super) fn read_lights(&self, root: &JsonRef) -> Vec<Option<LightData>> {
         let extensions = root.get("extensions");
         let Some(punctual) = extensions.as_ref().and_then(|e| e.get("KHR_lights_punctual")) else { return Vec::new() };
@@ -85,12 +85,14 @@ impl Model<'_> {
                     |name: &str, default: f32| spot.get(name).and_then(|a| a.number_in(0.0..)).unwrap_or(default);
                 [angle("innerConeAngle", 0.0), angle("outerConeAngle", 0.25 * PI)].map(f32::to_degrees)
             });
-            // Intensities are photometric: a white diffuse surface reflects 1 / pi of them.
+            // Intensities are photometric, and a white diffuse surface reflects 1 / pi of the
+            // incident light in each direction.
             Some(LightData { is_directional, cone, color: color * (intensity / PI) })
         })
     }
 
-    /// Returns the requested camera, or the first camera of the scene, and the index of its node.
+    /// Returns the requested camera, or otherwise the first camera of the scene, and the index of
+    /// its node.
     pub(super) fn camera(&self, order: &[usize], nodes: &[NodeData], maps: &[DAffine3]) -> Option<(Camera, usize)> {
         let there = order.iter().filter_map(|&i| Some((i, self.cameras[nodes[i].camera?].as_ref()?)));
         let there: Vec<(usize, &CameraData)> = there.collect();
@@ -124,7 +126,7 @@ impl Model<'_> {
         let direction = map.transform_vector3(DVec3::NEG_Z).normalize_or(DVec3::NEG_Z).as_vec3();
         let up = map.transform_vector3(DVec3::Y).normalize_or(DVec3::Y).as_vec3();
         let center = map.translation.as_vec3();
-        // The scene's angles and sizes refer to the picture's larger side.
+        // Angles and sizes in a Dürer scene are measured across the larger side of the picture.
         let own = if let Projection::Perspective(_, aspect) = camera.view { aspect } else { None };
         let wide = self.input.scene_defaults.aspect.or(own).unwrap_or(1.0).max(1.0);
         let camera = match camera.view {
@@ -140,7 +142,7 @@ impl Model<'_> {
         Some((camera, node))
     }
 
-    /// Adds the light of a node to the scene, if the node has one.
+    /// Adds the light of a node to the scene if the node has one.
     pub(super) fn light(&self, number: usize, node: &NodeData, map: DAffine3, scene: &mut Scene) {
         let Some(LightData { is_directional, cone, color }) = node.light.and_then(|i| self.lights[i].clone()) else {
             return;

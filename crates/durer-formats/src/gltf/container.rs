@@ -1,4 +1,4 @@
-//! Containers of glTF: plain JSON, or a GLB file with JSON and a binary buffer.
+//! Reads the containers of glTF, which are plain JSON and GLB files with JSON and a binary buffer.
 //!
 //! Source: *glTF 2.0 Specification*, Khronos Group, chapter 4.
 
@@ -10,24 +10,24 @@ const MAGIC: &[u8] = b"glTF";
 const JSON: u32 = 0x4e4f_534a;
 const BIN: u32 = 0x004e_4942;
 
-/// Byte ranges of the JSON and of the binary buffer in a glTF file.
+/// Ranges of bytes of the JSON and of the binary buffer in a glTF file.
 pub(super) struct Parts {
     pub json: Range<usize>,
-    /// Binary buffer of a GLB file, if it has one.
+    /// Binary buffer of a GLB file, if there is one.
     pub bin: Option<Range<usize>>,
     pub is_glb: bool,
 }
 
-/// Returns true if a file begins like a glTF file.
+/// Returns true if a file begins in the way that a glTF file does.
 pub(crate) fn recognise(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 14)];
     let is_json = head.trim_ascii_start().first() == Some(&b'{');
     bytes.starts_with(MAGIC) || is_json && head.windows(7).any(|part| part == b"\"asset\"")
 }
 
-/// Finds the parts of a glTF file; `None` after reporting an error.
+/// Finds the parts of a glTF file. Returns `None` after reporting an error.
 pub(super) fn open(bytes: &[u8], name: &str, report: &mut Report) -> Option<Parts> {
-    // If a file is named `.glb` but has no magic number, its first bytes are damaged.
+    // A file that is named `.glb` but has no magic number must be damaged at its beginning.
     if bytes.starts_with(MAGIC) || name.to_lowercase().ends_with(".glb") {
         return glb(bytes, report);
     }
@@ -117,7 +117,7 @@ fn chunks(bytes: &[u8], end: usize, report: &mut Report) -> Option<Parts> {
                 report_error(report, at + 4..at + 8, "GLB_DUPLICATE_CHUNK", "a second binary chunk")
             }
             (BIN, _) => bin = Some(chunk.clone()),
-            // Ignore other chunks, which belong to extensions.
+            // Ignore all other chunks, which belong to extensions.
             _ => {}
         }
         (at, number) = (chunk.end, number + 1);

@@ -1,4 +1,4 @@
-//! Deforms vertices by morph targets and skins.
+//! Deforms vertices with morph targets and skins.
 //!
 //! Source: *glTF 2.0 Specification*, chapters 3.7.2.2 and 3.7.3.
 
@@ -10,7 +10,7 @@ use durer_scene::shape::MeshData;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 
 /// Data that deforms the vertices of a glTF primitive: its morph targets, and the joints and
-/// weights of each vertex.
+/// weights for each vertex.
 #[derive(Clone, Default)]
 pub(super) struct Deformation {
     targets: Vec<MorphTarget>,
@@ -18,30 +18,32 @@ pub(super) struct Deformation {
     weights: Vec<[f32; 4]>,
 }
 
-/// Morph target: offsets of positions and normals, or empty lists if it has none.
+/// Offsets that a morph target adds to positions and to normals. A list is empty if the target does
+/// not change these values.
 #[derive(Clone, Default)]
 struct MorphTarget {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
 }
 
-/// Skin of a glTF file: the nodes that are its joints, and their inverse bind matrices.
+/// Skin of a glTF file, which consists of the nodes that are its joints and of their inverse bind
+/// matrices.
 #[derive(Clone)]
 pub(super) struct Skin {
     joints: Vec<usize>,
-    /// Transforms from mesh space to each joint's space.
+    /// Transforms from mesh space to the space of each joint.
     inverse: Vec<DAffine3>,
 }
 
 impl Skin {
-    /// Returns the transform from mesh space to world space for each joint.
+    /// Returns the transform from mesh space to world space for each joint of a skin.
     pub fn bones(&self, maps: &[DAffine3]) -> Vec<DAffine3> {
         self.joints.iter().zip(&self.inverse).map(|(&joint, inverse)| maps[joint] * *inverse).collect()
     }
 }
 
 impl Model<'_> {
-    /// Reads all skins; `None` for each invalid one.
+    /// Reads all skins, and returns `None` in place of each invalid one.
     pub(super) fn read_skins(&self, root: &JsonRef) -> Vec<Option<Skin>> {
         let nodes = root.get("nodes").and_then(|nodes| nodes.value.as_array()).map_or(0, Vec::len);
         root.list("skins", |skin| self.skin(skin, nodes))
@@ -76,7 +78,7 @@ impl Model<'_> {
         Some(Skin { joints, inverse: rows.into_iter().map(map).collect() })
     }
 
-    /// Reads the morph targets and joints of a primitive, if it has any.
+    /// Reads the morph targets and joints of a primitive, if there are any.
     pub(super) fn pose(&self, primitive: &JsonRef, attributes: &JsonRef, count: usize) -> Option<Deformation> {
         let targets = primitive.list("targets", |target| self.target(target, count));
         let joints = attributes.get("JOINTS_0");
@@ -126,12 +128,13 @@ impl Model<'_> {
 }
 
 impl Deformation {
-    /// Returns true if morph target weights or joints move vertices.
+    /// Returns true if morph target weights or joints move any vertices.
     pub fn moves(&self, weights: &[f32], skinned: bool) -> bool {
         skinned && !self.joints.is_empty() || weights.iter().zip(&self.targets).any(|(weight, _)| *weight != 0.0)
     }
 
-    /// Duplicates the deformation data for vertices that are copies of `originals`.
+    /// Duplicates the deformation data for new vertices that are copies of the vertices in
+    /// `originals`.
     pub fn copy(&mut self, originals: &[u32]) {
         copy(&mut self.joints, originals);
         copy(&mut self.weights, originals);
@@ -141,7 +144,7 @@ impl Deformation {
         }
     }
 
-    /// Deforms the vertices of a mesh, which are those of the primitive.
+    /// Deforms the vertices of a mesh, which must be those of the primitive.
     pub fn apply(&self, data: &mut MeshData, weights: &[f32], bones: Option<&[DAffine3]>) {
         for (target, &weight) in self.targets.iter().zip(weights) {
             let add = |values: &mut [Vec3], moves: &[Vec3]| {
@@ -163,11 +166,11 @@ impl Deformation {
                 }
             }
         }
-        // Joint transforms from the file can overflow.
+        // The joint transforms in a file can cause an overflow.
         data.positions.iter_mut().filter(|p| !p.is_finite()).for_each(|p| *p = Vec3::ZERO);
     }
 
-    /// Returns the weighted mean of the joint transforms of a vertex.
+    /// Returns the weighted mean of the joint transforms that affect a vertex.
     fn bone(&self, vertex: usize, bones: &[DAffine3]) -> DAffine3 {
         let (joints, weights) = (self.joints[vertex], self.weights[vertex]);
         let total: f64 = weights.iter().map(|&w| f64::from(w)).sum();
@@ -185,14 +188,14 @@ impl Deformation {
     }
 }
 
-/// Returns the matrix that transforms normals: the transposed inverse times a positive factor. It
-/// also exists for singular maps.
+/// Returns the matrix that transforms normals, which is the transposed inverse times a positive
+/// factor. The matrix also exists for singular transforms.
 pub(super) fn normal_matrix(map: DMat3) -> DMat3 {
     let [x, y, z] = [map.x_axis, map.y_axis, map.z_axis];
     1f64.copysign(map.determinant()) * DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y))
 }
 
-/// Appends copies of the values at `originals`, unless the list is empty.
+/// Appends copies of the values at the indices `originals`, unless the list is empty.
 pub(super) fn copy<T: Copy>(values: &mut Vec<T>, originals: &[u32]) {
     if !values.is_empty() {
         values.extend(originals.iter().map(|&i| values[i as usize]).collect::<Vec<_>>());

@@ -1,7 +1,8 @@
-//! Decodes primitives whose triangles are compressed by Draco.
+//! Decodes primitives whose triangles are compressed with Draco.
 //!
 //! Source: *KHR_draco_mesh_compression*, Khronos Group. The accessors of such a primitive describe
-//! the decompressed data but have no buffer view; this module sets their data.
+//! the decompressed data, but they have no buffer view. This module sets the data of these
+//! accessors.
 
 use super::Model;
 use super::accessor::ComponentType;
@@ -13,7 +14,7 @@ use durer_image::panics::catch_panic;
 const DRACO: &str = "KHR_draco_mesh_compression";
 
 impl Model<'_> {
-    /// Decodes all primitives that are compressed by Draco.
+    /// Decodes all primitives that are compressed with Draco.
     pub(super) fn unpack_primitives(&mut self, root: &JsonRef) {
         let Some(meshes) = root.get("meshes") else { return };
         for mesh in meshes.items() {
@@ -68,8 +69,8 @@ impl Model<'_> {
         Some(())
     }
 
-    /// Stores decoded bytes in the accessor with the index in `at`: `count` rows of `width`
-    /// numbers.
+    /// Stores decoded bytes, which are `count` rows of `width` numbers, in the accessor whose index
+    /// is the value `at`.
     fn set_accessor_data(
         &mut self,
         at: &JsonRef,
@@ -95,7 +96,7 @@ impl Model<'_> {
     }
 }
 
-/// Decodes points and triangles, using at most `left` bytes of memory.
+/// Decodes points and triangles with at most `left` bytes of memory.
 fn decode(bytes: &[u8], left: u64) -> Result<Mesh, String> {
     let limits =
         DecodeLimits::default().with_max_points(left / 16).with_max_faces(left / 64).with_max_decoded_bytes(left);
@@ -112,7 +113,8 @@ fn decode(bytes: &[u8], left: u64) -> Result<Mesh, String> {
     }
 }
 
-/// Returns the tightly packed rows of an attribute, one for each point. Missing data is 0.
+/// Returns the tightly packed rows of an attribute, with one row for each point. Missing data is
+/// replaced with 0.
 fn rows(attribute: &PointAttribute, points: usize, size: usize) -> Vec<u8> {
     let (data, stride) = (attribute.buffer().data(), attribute.byte_stride().max(0) as usize);
     let mut all = vec![0; points * size];

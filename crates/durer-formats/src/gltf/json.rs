@@ -1,7 +1,7 @@
-//! Access to the JSON of a glTF file: each value knows its JSON pointer, so that diagnostics can
-//! state line and column.
+//! Gives access to the JSON of a glTF file. Each value knows its JSON pointer, so that diagnostics
+//! can state its line and column.
 //!
-//! Error codes are those of the Khronos validator (see its ISSUES.md).
+//! Error codes are those of the Khronos glTF validator (see its ISSUES.md).
 
 mod locate;
 
@@ -12,15 +12,15 @@ use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::ops::{Range, RangeBounds};
 
-/// Collector for the diagnostics of a glTF file, shared by its readers; finds the byte ranges of
-/// JSON values.
+/// Collector for the diagnostics of a glTF file, which all parts of the reader share. The collector
+/// also finds the byte ranges of JSON values.
 pub(super) struct JsonReport<'a> {
-    /// JSON text: the file, or the JSON chunk of a binary file.
+    /// JSON text, which is the whole file or the JSON chunk of a binary file.
     text: &'a [u8],
-    /// Byte offsets of the items of top-level lists, filled in on demand.
+    /// Byte offsets of the items of top-level lists, which are computed when they are first needed.
     starts: RefCell<HashMap<String, Vec<usize>>>,
     report: RefCell<Report>,
-    /// True if an error was reported.
+    /// True if an error has been reported.
     failed: Cell<bool>,
 }
 
@@ -34,12 +34,13 @@ impl<'a> JsonReport<'a> {
         self.report.into_inner()
     }
 
-    /// Returns true if an error was reported, even if the report dropped it.
+    /// Returns true if an error has been reported, even if the report dropped it.
     pub fn has_errors(&self) -> bool {
         self.failed.get() || self.report.borrow().has_errors()
     }
 
-    /// Returns the byte range of a value in the file, or of the nearest existing value around it.
+    /// Returns the byte range of a value in the file, or that of the closest enclosing value that
+    /// exists.
     fn range(&self, pointer: &str) -> Range<usize> {
         self.in_list(pointer).unwrap_or_else(|| locate::locate(self.text, pointer))
     }
@@ -60,19 +61,19 @@ impl<'a> JsonReport<'a> {
         self.report.borrow().span(self.range(pointer))
     }
 
-    /// Returns the span of the node with this index: of its name, if it has one.
+    /// Returns the span of the node with this index, which is the span of its name if it has one.
     pub fn node(&self, number: usize) -> Span {
         self.span(&format!("/nodes/{number}/name"))
     }
 
     /// Reports an error, warning or note about the value at a JSON pointer. The message begins with
-    /// the pointer.
+    /// the JSON pointer.
     pub fn report(&self, kind: fn(String) -> Diagnostic, code: &'static str, pointer: &str, message: &str) {
         let is_error = kind(String::new()).severity == Severity::Error;
-        // Record errors even if the report is full and drops the message.
+        // Record that there was an error even if the report is full and drops the message.
         self.failed.set(self.failed.get() || is_error);
-        // Skip the search for byte ranges if the report is full, because each search scans the
-        // file.
+        // Skip the search for byte ranges if the report is full, because each search has to scan
+        // the file.
         let (full, count) = (self.report.borrow().is_full(), self.report.borrow().count());
         if full || !is_error && count > 256 {
             return;
@@ -82,8 +83,8 @@ impl<'a> JsonReport<'a> {
     }
 }
 
-/// JSON value of a glTF file with the path that leads to it, for reading the value and reporting
-/// errors in it.
+/// JSON value of a glTF file with its path, which is used to read the value and to report errors in
+/// it.
 #[derive(Clone, Copy)]
 pub(super) struct JsonRef<'a> {
     pub value: &'a Value,
@@ -92,7 +93,7 @@ pub(super) struct JsonRef<'a> {
     step: PathStep<'a>,
 }
 
-/// Last step of the path to a JSON value: a key in an object, or an index in an array.
+/// Last step of the path to a JSON value, which is a key of an object or an index in an array.
 #[derive(Clone, Copy)]
 enum PathStep<'a> {
     Key(&'a str),
@@ -105,7 +106,7 @@ impl<'a> JsonRef<'a> {
         JsonRef { value, report, parent: None, step: PathStep::Key("") }
     }
 
-    /// Returns the JSON pointer (RFC 6901) to this value.
+    /// Returns the JSON pointer (RFC 6901) of this value.
     pub fn pointer(&self) -> String {
         let Some(parent) = self.parent else { return String::new() };
         match self.step {
@@ -119,8 +120,9 @@ impl<'a> JsonRef<'a> {
         self.report.span(&self.pointer())
     }
 
-    /// Returns the name of the innermost named value around this one, to be put after a noun: a
-    /// space and the name in backquotes. Empty if there is none.
+    /// Returns the name of this value, or of the innermost enclosing value that has a name, for use
+    /// after a noun. The text consists of a space and the name in backquotes. The text is empty if
+    /// there is no name.
     pub fn name(&self) -> String {
         let own = self.value.get("name").and_then(Value::as_str).filter(|name| !name.is_empty());
         match (own, self.parent) {
@@ -145,13 +147,13 @@ impl<'a> JsonRef<'a> {
         self.report.report(Diagnostic::note, code, &self.pointer(), message.as_ref());
     }
 
-    /// Returns a member of this object, if present.
+    /// Returns a member of this object, if it is present.
     pub fn get(&'a self, key: &'a str) -> Option<JsonRef<'a>> {
         let value = self.value.as_object()?.get(key)?;
         Some(JsonRef { value, report: self.report, parent: Some(self), step: PathStep::Key(key) })
     }
 
-    /// Returns a required member; reports an error if it is missing.
+    /// Returns a required member, and reports an error if it is missing.
     pub fn required(&'a self, key: &'a str) -> Option<JsonRef<'a>> {
         let count = self.get(key);
         if count.is_none() && self.value.is_object() {
@@ -165,7 +167,7 @@ impl<'a> JsonRef<'a> {
         self.error("TYPE_MISMATCH", format!("expected {wanted}, found {}", quoted(text.as_bytes())));
     }
 
-    /// Returns this value as an object; reports any other value.
+    /// Returns this value if it is an object, and otherwise reports an error.
     pub fn object(&self) -> Option<&'a Map<String, Value>> {
         let object = self.value.as_object();
         if object.is_none() {
@@ -174,7 +176,8 @@ impl<'a> JsonRef<'a> {
         object
     }
 
-    /// Returns the items of this array, which must not be empty; reports any other value.
+    /// Returns the items of this array, which must not be empty. Reports an error for any other
+    /// value.
     pub fn items(&'a self) -> impl ExactSizeIterator<Item = JsonRef<'a>> {
         let items = match self.value {
             Value::Array(items) => {
@@ -196,7 +199,7 @@ impl<'a> JsonRef<'a> {
         })
     }
 
-    /// Reads each item of an array member; empty if the member is missing.
+    /// Reads each item of an array member. The result is empty if the member is missing.
     pub fn list<T>(&'a self, key: &'a str, mut read: impl FnMut(&JsonRef) -> T) -> Vec<T> {
         match self.get(key) {
             Some(array) => array.items().map(|item| read(&item)).collect(),
@@ -204,7 +207,7 @@ impl<'a> JsonRef<'a> {
         }
     }
 
-    /// Returns this value as a string; reports any other value.
+    /// Returns this value if it is a string, and otherwise reports an error.
     pub fn string(&self) -> Option<&'a str> {
         let text = self.value.as_str();
         if text.is_none() {
@@ -213,7 +216,7 @@ impl<'a> JsonRef<'a> {
         text
     }
 
-    /// Returns this value as a boolean; reports any other value.
+    /// Returns this value if it is a boolean, and otherwise reports an error.
     pub fn boolean(&self) -> Option<bool> {
         let value = self.value.as_bool();
         if value.is_none() {
@@ -222,7 +225,7 @@ impl<'a> JsonRef<'a> {
         value
     }
 
-    /// Returns this value as an `f32`; reports any other value.
+    /// Returns this value as an `f32` if it is a number, and otherwise reports an error.
     pub fn number(&self) -> Option<f32> {
         match self.value.as_f64() {
             Some(x) if (x as f32).is_finite() => Some(x as f32),
@@ -237,7 +240,7 @@ impl<'a> JsonRef<'a> {
         }
     }
 
-    /// Returns a number, which must be in a range.
+    /// Returns this value as a number, which must be in the given range.
     pub fn number_in(&self, range: impl RangeBounds<f32>) -> Option<f32> {
         let number = self.number()?;
         if range.contains(&number) {
@@ -247,7 +250,8 @@ impl<'a> JsonRef<'a> {
         None
     }
 
-    /// Returns an integer in a range. It may be written as 4.0.
+    /// Returns this value as an integer, which must be in the given range. An integer can also be
+    /// written as 4.0, for example.
     pub fn integer(&self, range: impl RangeBounds<u64>) -> Option<u64> {
         let exact = |x: f64| (x.fract() == 0.0 && (0.0..9.0e15).contains(&x)).then_some(x as u64);
         match self.value.as_u64().or_else(|| self.value.as_f64().and_then(exact)) {
@@ -266,7 +270,7 @@ impl<'a> JsonRef<'a> {
         }
     }
 
-    /// Returns an index into a list of `count` items.
+    /// Returns this value as an index into a list of `count` items.
     pub fn index(&self, count: usize) -> Option<usize> {
         let number = self.integer(..)?;
         if number < count as u64 {
@@ -276,7 +280,7 @@ impl<'a> JsonRef<'a> {
         None
     }
 
-    /// Returns the numbers of this array, which must have exactly `N`.
+    /// Returns the numbers of this array, which must have exactly `N` items.
     pub fn numbers<const N: usize>(&'a self) -> Option<[f32; N]> {
         let items = self.items();
         if self.value.is_array() && items.len() != N {

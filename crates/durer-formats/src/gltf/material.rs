@@ -1,7 +1,7 @@
-//! Converts materials to OpenPBR: metallic-roughness and the KHR extensions.
+//! Converts materials to OpenPBR, including the metallic-roughness model and the KHR extensions.
 //!
-//! Sources: *glTF 2.0 Specification*, chapter 3.9 and appendix B; the KHR_materials extensions; for
-//! the conversion, *OpenPBR Surface specification* 1.1, section on translation of other models.
+//! Sources: *glTF 2.0 Specification*, chapter 3.9 and appendix B; the KHR_materials extensions. The
+//! conversion follows *OpenPBR Surface specification* 1.1, section on translation of other models.
 
 use super::Model;
 use super::json::JsonRef;
@@ -14,10 +14,11 @@ use durer_scene::math::Vec3;
 use durer_scene::texture::{Channel, Mapping};
 use std::f32::consts::TAU;
 
-/// Extensions without a counterpart, and what happens instead.
+/// Extensions that have no counterpart in Dürer, and what is done instead.
 const WITHOUT_COUNTERPART: [(&str, &str); 1] = [("KHR_materials_subsurface", "subsurface scattering is left out")];
 
-/// Textures of extensions that have no counterpart: extension, key, and what happens instead.
+/// Textures of extensions that have no counterpart in Dürer. Each entry has the extension, the key,
+/// and what is done instead.
 const TEXTURES: [(&str, &str, &str); 3] = [
     ("KHR_materials_volume", "thicknessTexture", "the body's actual thickness is used"),
     ("KHR_materials_clearcoat", "clearcoatNormalTexture", "the coat uses the normals of its base"),
@@ -32,7 +33,7 @@ enum Alpha {
     Blend,
 }
 
-/// Returns true if a material depends on the orientation of the tangent.
+/// Returns true if the appearance of a material depends on the direction of the tangent.
 pub(super) fn needs_tangents(at: &JsonRef) -> bool {
     let anisotropic = |e: JsonRef| e.get("KHR_materials_anisotropy").is_some();
     at.get("normalTexture").is_some() || at.get("extensions").is_some_and(anisotropic)
@@ -45,7 +46,8 @@ impl Model<'_> {
         materials.items().enumerate().map(|(i, material)| self.material(i, &material)).collect()
     }
 
-    /// Returns a flag for each material: true if some of the vertices that use it have colours.
+    /// Returns a flag for each material, which is true if any of the vertices that use it have
+    /// colours.
     pub(super) fn colored(root: &JsonRef) -> Vec<bool> {
         let mut colored = vec![false; root.get("materials").map_or(0, |materials| materials.items().count())];
         let meshes = root.value.get("meshes").and_then(|meshes| meshes.as_array()).into_iter().flatten();
@@ -58,7 +60,8 @@ impl Model<'_> {
     }
 
     fn material(&self, number: usize, at: &JsonRef) -> PrincipledMaterial {
-        // glTF's default material: white, fully metallic, fully rough, with an index of 1.5.
+        // Default material of glTF, which is white, fully metallic and fully rough, with an index
+        // of refraction of 1.5.
         let mut m = PrincipledMaterial {
             base_color: Vec3::ONE,
             base_metalness: 1.0,
@@ -84,7 +87,7 @@ impl Model<'_> {
         }
         let is_colored = self.colored.get(number) == Some(&true);
         if alpha == Alpha::Mask && is_colored {
-            // The vertices' alpha is multiplied in before the cutoff is applied.
+            // The product includes the alpha of the vertices before the cutoff is applied.
             self.set_mask(&mut m, at, cutoff);
         }
         m.normal_texture = at.get("normalTexture").and_then(|texture| {
@@ -104,12 +107,12 @@ impl Model<'_> {
                 m.emission_vertex_colors = Switch::On;
             }
         }
-        // Both sides of a transmissive surface are visible anyway.
+        // Transmissive surfaces are visible from both sides anyway.
         let both = at.get("doubleSided").and_then(|both| both.boolean()).unwrap_or(false);
         if m.transmission_weight == 0.0 {
             match both {
                 false => m.backs = Backs::Hidden,
-                // Thin walls emit on both sides.
+                // Thin walls emit light on both sides.
                 true if m.emission_luminance > 0.0 => m.walls = Walls::Thin,
                 true => {}
             }
@@ -127,8 +130,8 @@ impl Model<'_> {
             pbr.get("metallicRoughnessTexture").and_then(|texture| self.texture(&texture, |_| ()));
     }
 
-    /// Sets up a mask: the cutoff is applied to the product of the alphas of factor, texture and
-    /// vertices.
+    /// Sets up an alpha mask. The cutoff is applied to the product of the alpha values of the
+    /// factor, the texture and the vertices.
     fn set_mask(&self, m: &mut PrincipledMaterial, at: &JsonRef, cutoff: f32) {
         let extensions = at.get("extensions");
         let old = extensions.as_ref().and_then(|extensions| extensions.get("KHR_materials_pbrSpecularGlossiness"));
@@ -146,10 +149,10 @@ impl Model<'_> {
         }
     }
 
-    /// Reads the base colour texture, and sets the opacity from the alphas of the texture and of
-    /// the factor.
+    /// Reads the base colour texture, and sets the opacity from the alpha values of the texture and
+    /// of the factor.
     fn base(&self, m: &mut PrincipledMaterial, texture: Option<JsonRef>, factor: f32, alpha: Alpha, cutoff: f32) {
-        // The cutoff applies to the product of the texture's alpha and the factor.
+        // The cutoff applies to the alpha of the texture multiplied by that of the factor.
         let least = match alpha {
             Alpha::Opaque => Some(0.0),
             Alpha::Mask if factor > 0.0 => Some(cutoff / factor),
@@ -174,7 +177,7 @@ impl Model<'_> {
         m.base_metalness = 0.0;
         m.specular_roughness = 1.0 - unit_factor(old, "glossinessFactor", 1.0);
         let most = specular.max_element();
-        // An index of 1.5 reflects 0.04 at normal incidence.
+        // An index of refraction of 1.5 gives a reflectance of 0.04 at normal incidence.
         m.specular_weight = most / 0.04;
         m.specular_color = if most > 0.0 { specular / most } else { Vec3::ONE };
         if most > 0.5 && m.base_color.max_element() < 0.2 {
@@ -187,8 +190,8 @@ impl Model<'_> {
             true => m.base_color_texture = color,
             false => m.specular_color_texture = color,
         }
-        // Roughness is 1 minus glossiness times alpha, so the texture is applied to a roughness of
-        // 1.
+        // The roughness is 1 minus the product of glossiness and alpha, so the texture is applied
+        // to a roughness of 1.
         let glossiness = 1.0 - m.specular_roughness;
         m.specular_roughness = 1.0;
         m.specular_roughness_texture = self.number(&texture, Channel::Alpha, [1.0, 1.0 - glossiness]);
@@ -209,7 +212,8 @@ impl Model<'_> {
             }
         }
         if let Some(e) = extensions.get("KHR_materials_ior") {
-            // An index of 0 stands for an infinite index, which reflects all light.
+            // An index of refraction of 0 stands for an infinite index, with which all light is
+            // reflected.
             m.specular_ior = match e.get("ior") {
                 Some(ior) if ior.value.as_f64() == Some(0.0) => 1e4,
                 ior => ior.and_then(|ior| ior.number_in(1.0..)).unwrap_or(1.5),
@@ -226,7 +230,7 @@ impl Model<'_> {
         }
         if let Some(e) = extensions.get("KHR_materials_transmission") {
             m.transmission_weight = unit_factor(&e, "transmissionFactor", 0.0);
-            // Transmitted light is tinted by the base colour.
+            // The base colour tints transmitted light.
             m.transmission_color = m.base_color;
             m.transmission_color_texture = m.base_color_texture.clone();
             m.transmission_weight_texture = number(&e, "transmissionTexture", Channel::Red);
@@ -265,8 +269,9 @@ impl Model<'_> {
             m.specular_rotation = turn / TAU;
             let pictured = m.metallic_roughness_texture.is_some() || e.get("anisotropyTexture").is_some();
             if m.specular_anisotropy > 0.0 && !pictured {
-                // Along the highlight, alpha increases towards 1 with the squared strength; across
-                // it, alpha is the squared roughness. With textures this is only approximate.
+                // Along the highlight, alpha increases towards 1 with the square of the strength.
+                // Across the highlight, alpha is the square of the roughness. If there are
+                // textures, this conversion is only approximate.
                 let alpha = (m.specular_roughness * m.specular_roughness).max(1e-3);
                 let along = alpha + (1.0 - alpha) * m.specular_anisotropy * m.specular_anisotropy;
                 [m.specular_roughness, m.specular_anisotropy, _] = Ggx::parameters([along, alpha]);
@@ -279,8 +284,8 @@ impl Model<'_> {
             m.thin_film_weight = unit_factor(&e, "iridescenceFactor", 0.0);
             m.thin_film_weight_texture = number(&e, "iridescenceTexture", Channel::Red);
             m.thin_film_ior = at_least("iridescenceIor", 1.3, 1.0);
-            // glTF uses nanometres, the scene uses micrometres. Without a texture, the maximum
-            // thickness applies.
+            // glTF uses nanometres, but a Dürer scene uses micrometres. Without a texture, the
+            // thickness is the maximum thickness.
             let [thin, thick] = [("iridescenceThicknessMinimum", 100.0), ("iridescenceThicknessMaximum", 400.0)]
                 .map(|(key, or)| at_least(key, or, 0.0));
             m.thin_film_thickness = 1e-3 * thick;
@@ -289,8 +294,8 @@ impl Model<'_> {
                 texture.and_then(|texture| self.number(&texture, Channel::Green, [thin / thick, 1.0]));
         }
         if let Some(e) = extensions.get("KHR_materials_dispersion") {
-            // Dispersion is 20 / Abbe number; the scene has the Abbe number and a scale that
-            // divides it.
+            // In glTF, dispersion is 20 divided by the Abbe number. A Dürer scene has the Abbe
+            // number and a scale that divides it.
             let dispersion = e.get("dispersion").and_then(|x| x.number_in(0.0..)).unwrap_or(0.0);
             m.transmission_dispersion_scale = dispersion.min(1.0);
             m.transmission_dispersion_abbe_number = 20.0 / dispersion.max(1.0);
@@ -299,7 +304,7 @@ impl Model<'_> {
             self.diffuse_transmission(m, &e);
         }
         if extensions.get("KHR_materials_unlit").is_some() {
-            // Unlit materials emit their base colour.
+            // Unlit materials emit their base colour as light.
             m.emission_color = m.base_color;
             m.emission_texture = m.base_color_texture.clone();
             (m.emission_luminance, m.base_weight, m.specular_weight, m.base_metalness) = (1.0, 0.0, 0.0, 0.0);
@@ -308,14 +313,15 @@ impl Model<'_> {
 }
 
 /// Removes the effect of KHR_materials_specular on metals. The extension applies only to
-/// dielectrics, but OpenPBR's specular parameters apply to metals too.
+/// dielectrics, but OpenPBR's specular parameters apply to metals as well.
 fn without_specular_on_metals(m: &mut PrincipledMaterial, clear: bool) {
     let is_metal = m.base_metalness == 1.0 && m.metallic_roughness_texture.is_none();
     if is_metal {
         (m.specular_weight, m.specular_color) = (1.0, Vec3::ONE);
         (m.specular_weight_texture, m.specular_color_texture) = (None, None);
     } else if m.base_metalness > 0.0 && m.specular_weight < 1.0 && !clear {
-        // For an opaque dielectric, a smaller index has the same effect as a smaller weight.
+        // For an opaque dielectric, a smaller index of refraction has the same effect as a smaller
+        // weight.
         (m.specular_ior, m.specular_weight) = (opaque_ior(m), 1.0);
     }
 }
@@ -336,15 +342,15 @@ fn normalize_specular_color(m: &mut PrincipledMaterial, clear: bool) {
 }
 
 impl Model<'_> {
-    /// Reads KHR_materials_diffuse_transmission: a thin sheet transmits a fraction of the diffuse
-    /// light, with its own colour.
+    /// Reads KHR_materials_diffuse_transmission, which describes a thin sheet that transmits a
+    /// fraction of the diffuse light and gives it a colour.
     fn diffuse_transmission(&self, m: &mut PrincipledMaterial, e: &JsonRef) {
         let through = unit_factor(e, "diffuseTransmissionFactor", 0.0);
         if through == 0.0 || m.walls == Walls::Solid && m.transmission_weight > 0.0 {
             return;
         }
-        // The subsurface lobe with full forward scattering is the transmitted part, and the diffuse
-        // base lobe is the reflected part.
+        // The subsurface lobe with full forward scattering represents the transmitted part, and the
+        // diffuse base lobe represents the reflected part.
         m.walls = Walls::Thin;
         m.subsurface_weight = through;
         m.subsurface_scatter_anisotropy = 1.0 - f32::EPSILON;
@@ -353,7 +359,8 @@ impl Model<'_> {
         m.subsurface_color_texture = picture.and_then(|texture| self.texture(&texture, |_| ()));
     }
 
-    /// Reads a texture whose channel scales a parameter. Texel values from 0 to 1 map to `range`.
+    /// Reads a texture in which one channel scales a parameter. Texel values from 0 to 1 are mapped
+    /// to `range`.
     fn number(&self, texture: &JsonRef, channel: Channel, range: [f32; 2]) -> Option<FileName> {
         let change = |mapping: &mut Mapping| (mapping.channel, mapping.range) = (Some(channel), range);
         // One texture can scale several parameters.
@@ -361,12 +368,12 @@ impl Model<'_> {
     }
 }
 
-/// Reads a factor from 0 to 1; `or` is the default.
+/// Reads a factor between 0 and 1. The default is `or`.
 fn unit_factor(at: &JsonRef, key: &str, or: f32) -> f32 {
     at.get(key).and_then(|factor| factor.number_in(0.0..=1.0)).unwrap_or(or)
 }
 
-/// Reads a colour, and clamps negative components to 0.
+/// Reads a colour, and replaces negative components with 0.
 fn color(at: &JsonRef) -> Option<Vec3> {
     at.numbers::<3>().map(|rgb| Vec3::from_array(rgb).max(Vec3::ZERO))
 }

@@ -1,14 +1,14 @@
-//! Decodes buffer views that were compressed by meshoptimizer: attributes, triangles and indices,
-//! and the filters of attributes.
+//! Decodes buffer views that meshoptimizer compressed. The views contain attributes, triangles or
+//! indices, and attributes can have a filter.
 //!
-//! Source: *EXT_meshopt_compression*, Khronos Group, appendices A (bitstream) and B (filters),
-//! whose names are used here.
+//! Source: *EXT_meshopt_compression*, Khronos Group, appendices A (bitstream) and B (filters). The
+//! names in this file are those of the appendices.
 
 use super::Model;
 use super::buffers::SharedBytes;
 use super::json::JsonRef;
 
-/// Compression mode of a meshopt buffer view: what kind of data it contains.
+/// Compression mode of a meshopt buffer view, which says what kind of data the view contains.
 #[derive(Clone, Copy, PartialEq)]
 enum Mode {
     Attributes,
@@ -67,7 +67,7 @@ impl Model<'_> {
             at.error("BUFFER_VIEW_TOO_LONG", format!("{size} bytes from {offset} on do not fit into the buffer"));
             return None;
         };
-        // A byte encodes at most four groups of 16 equal bytes, or one triangle.
+        // One byte encodes at most four groups of 16 equal bytes, or one triangle.
         if size.saturating_mul(64) < length {
             at.error("compressed-data", format!("{size} bytes cannot hold {length}"));
             return None;
@@ -99,7 +99,8 @@ impl Model<'_> {
             }),
             Filter::Exponential => decoded.as_chunks_mut::<4>().0.iter_mut().for_each(|word| {
                 let n = i32::from_le_bytes(*word);
-                // The exponent is between -128 and 127, so the power of two is a normal number.
+                // The exponent is between -128 and 127, so the power of two is a normal
+                // floating-point number.
                 let power = f32::from_bits(((n >> 24) + 127).clamp(0, 254) as u32 * (1 << 23));
                 *word = (power * ((n << 8) >> 8) as f32).to_le_bytes();
             }),
@@ -124,7 +125,8 @@ impl<'a> Reader<'a> {
         Some(some)
     }
 
-    /// Reads a variable-length integer: seven bits per byte, least significant first.
+    /// Reads a variable-length integer, which has seven bits in each byte and begins with the least
+    /// significant ones.
     fn varint(&mut self) -> Option<u32> {
         let mut value = 0;
         for shift in [0, 7, 14, 21, 28] {
@@ -142,8 +144,8 @@ fn zigzag(v: u32) -> u32 {
     if v & 1 != 0 { !(v >> 1) } else { v >> 1 }
 }
 
-/// Decodes mode 0 (attributes): blocks of elements, split into byte planes. Each byte is stored as
-/// the difference from the same byte of the previous element.
+/// Decodes mode 0 (attributes), in which blocks of elements are split into planes of bytes. Each
+/// byte is stored as its difference from the same byte of the previous element.
 fn attributes(packed: &[u8], count: usize, stride: usize) -> Option<Vec<u8>> {
     let tail = stride.max(32);
     let data = packed.strip_prefix(&[0xa0])?;
@@ -169,8 +171,8 @@ fn attributes(packed: &[u8], count: usize, stride: usize) -> Option<Vec<u8>> {
     reader.0.is_empty().then_some(all)
 }
 
-/// Decodes sixteen differences: all zero, or two or four bits each with larger values appended, or
-/// eight bits each.
+/// Decodes sixteen differences. The differences are all zero, have eight bits each, or have two or
+/// four bits each with the larger values appended.
 fn deltas(reader: &mut Reader, mode: u8) -> Option<[u8; 16]> {
     let bits = match mode {
         0 => return Some([0; 16]),
@@ -190,7 +192,7 @@ fn deltas(reader: &mut Reader, mode: u8) -> Option<[u8; 16]> {
     Some(all)
 }
 
-/// Ring buffer of the last sixteen edges or vertices, which meshopt codes refer to.
+/// Ring buffer of the last sixteen edges or vertices, to which meshopt codes refer.
 #[derive(Default)]
 struct RecentValues<T> {
     all: [T; 16],
@@ -203,14 +205,14 @@ impl<T: Copy> RecentValues<T> {
         self.next += 1;
     }
 
-    /// Returns the value that was pushed `back` pushes before the last one.
+    /// Returns the value that was pushed `back` steps before the last one.
     fn get(&self, back: usize) -> T {
         self.all[(self.next + 15 - back) % 16]
     }
 }
 
-/// Decodes mode 1 (triangles). A triangle that shares an edge with a recent one takes one byte;
-/// others take more.
+/// Decodes mode 1 (triangles). A triangle that shares an edge with a recent triangle takes one
+/// byte, and all others take more.
 fn triangles(packed: &[u8], count: usize) -> Option<Vec<u32>> {
     let data = packed.strip_prefix(&[0xe1])?;
     let (data, table) = data.split_at_checked(data.len().checked_sub(16)?)?;
@@ -277,7 +279,8 @@ fn triangles(packed: &[u8], count: usize) -> Option<Vec<u32>> {
     reader.0.is_empty().then_some(all)
 }
 
-/// Decodes mode 2 (indices): differences from the last value of one of two sequences.
+/// Decodes mode 2 (indices), in which each index is stored as its difference from the last value of
+/// one of two sequences.
 fn indices(packed: &[u8], count: usize) -> Option<Vec<u32>> {
     let data = packed.strip_prefix(&[0xd1])?;
     let mut reader = Reader(data.get(..data.len().checked_sub(4)?)?);
@@ -305,9 +308,10 @@ fn put(row: &mut [u8; 8], values: [i16; 4]) {
     row.as_chunks_mut::<2>().0.iter_mut().zip(values).for_each(|(bytes, value)| *bytes = value.to_le_bytes());
 }
 
-/// Filter 1: decodes a direction in octahedral encoding; `most` stands for 1.
+/// Decodes filter 1, which stores a direction in octahedral encoding. The integer `most` represents
+/// 1.
 fn octahedral([x, y, one]: [f32; 3], most: f32) -> [f32; 3] {
-    // A length of 0 is invalid.
+    // A length of 0 is not valid.
     let one = if one == 0.0 { 1.0 } else { one };
     let (x, y) = (x / one, y / one);
     let z = 1.0 - x.abs() - y.abs();
@@ -317,7 +321,7 @@ fn octahedral([x, y, one]: [f32; 3], most: f32) -> [f32; 3] {
     [x, y, z].map(|v| (v / length * most).round())
 }
 
-/// Filter 2: decodes a unit quaternion from its three smaller components.
+/// Decodes filter 2, which stores the three smaller components of a unit quaternion.
 fn quaternion([x, y, z, word]: [i16; 4]) -> [i16; 4] {
     let scale = std::f32::consts::FRAC_1_SQRT_2 / f32::from(word | 3);
     let [x, y, z] = [x, y, z].map(|v| f32::from(v) * scale);
@@ -334,7 +338,7 @@ fn quaternion([x, y, z, word]: [i16; 4]) -> [i16; 4] {
 mod tests {
     use super::*;
 
-    /// Sixteen differences from the specification's example, before zigzag decoding.
+    /// Sixteen differences from the example in the specification, before zigzag decoding.
     #[test]
     fn deltas_match_the_specification() {
         let packed = [0x17, 0x5f, 0xf0, 0xbc, 0x77, 0xa9, 0x21, 0x00, 0x34, 0xb5];
@@ -354,8 +358,8 @@ mod tests {
 
     #[test]
     fn elements_follow_the_baseline() {
-        // Two elements of four bytes: the first is the baseline plus (1, 0, 0, 0), the second is
-        // the first plus (-1, 0, 0, 5).
+        // The data has two elements of four bytes. The first element is the baseline plus (1, 0, 0,
+        // 0), and the second element is the first one plus (-1, 0, 0, 5).
         let mut packed = vec![0xa0];
         packed.extend([1, 0b1001_0000, 0, 0, 0]); // byte 0: two bits, 2 = +1 and 1 = -1
         packed.extend([0, 0]);
@@ -370,7 +374,8 @@ mod tests {
 
     #[test]
     fn triangles_share_edges() {
-        // Three new vertices encoded by the table's first pair, then one across the last edge.
+        // The first triangle has three new vertices and is encoded by the first pair of the table.
+        // The second triangle shares the last edge.
         let mut packed = vec![0xe1, 0xf0, 0x00];
         packed.extend([0; 16]);
         assert_eq!(triangles(&packed, 6), Some(vec![0, 1, 2, 0, 2, 3]));

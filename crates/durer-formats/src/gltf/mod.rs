@@ -1,8 +1,9 @@
-//! Reader and writer of glTF 2.0, as `.gltf` and `.glb`: scenes with nodes, meshes, materials,
+//! Reader and writer of glTF 2.0 (`.gltf` and `.glb`): scenes with nodes, meshes, materials,
 //! textures, cameras, lights, skins and animations.
 //!
 //! Source: *glTF 2.0 Specification*, Khronos Group, 2021, and the extensions named in the
-//! submodules. Errors have the codes of the Khronos validator, and state the JSON pointer.
+//! submodules. Errors have the codes of the Khronos glTF validator, and their messages include the
+//! JSON pointer.
 
 mod accessor;
 mod animation;
@@ -40,7 +41,8 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use write::write;
 
-/// Extensions that a file may require. Readers warn about parts of them that they do not support.
+/// Extensions that a file is allowed to require. The reader warns about the parts of an extension
+/// that it does not support.
 const SUPPORTED_EXTENSIONS: [&str; 24] = [
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
@@ -68,8 +70,8 @@ const SUPPORTED_EXTENSIONS: [&str; 24] = [
     "KHR_node_visibility",
 ];
 
-/// Contents of a glTF file that is being read: buffers, images, meshes and the other arrays, in
-/// reading order.
+/// Contents of a glTF file during reading: its buffers, images, meshes and other arrays, in the
+/// order in which they are read.
 struct Model<'a> {
     input: &'a ReadInput<'a>,
     report: &'a JsonReport<'a>,
@@ -80,18 +82,19 @@ struct Model<'a> {
     views: Vec<Option<BufferView>>,
     accessors: Vec<Option<Accessor>>,
     images: Vec<Option<PictureBytes>>,
-    /// Picture, mapping, and span of the picture's name, for each texture.
+    /// Picture of each texture, its mapping, and the span of the picture's name.
     textures: Vec<Option<(PictureBytes, Mapping, Span)>>,
-    /// Pictures used by materials, by asset name.
+    /// Pictures that materials use, by asset name.
     pictures: RefCell<BTreeMap<String, TextureImage>>,
     material_count: usize,
-    /// Index of the selected material variant, if the file has variants.
+    /// Index of the selected material variant, if the file has any variants.
     variant: Option<usize>,
-    /// For each material, true if its alpha makes it translucent.
+    /// Flag for each material, which is true if the alpha of the material makes it translucent.
     translucent: Vec<bool>,
-    /// For each material, true if some of the vertices that use it have colours.
+    /// Flag for each material, which is true if any of the vertices that use the material have
+    /// colours.
     colored: Vec<bool>,
-    /// For each material, true if it needs tangents.
+    /// Flag for each material, which is true if the material needs tangents.
     needs_tangents: Vec<bool>,
     meshes: Vec<Primitives>,
     /// Default weights of the morph targets of each mesh.
@@ -99,16 +102,16 @@ struct Model<'a> {
     skins: Vec<Option<Skin>>,
     cameras: Vec<Option<CameraData>>,
     lights: Vec<Option<LightData>>,
-    /// Amount of decoded data, counted at each use. Limits time and memory in proportion to the
-    /// file's size.
+    /// Amount of decoded data, which is counted every time the data is used. The limit on this
+    /// amount keeps time and memory in proportion to the size of the file.
     work: ResourceLimits,
-    /// Number of objects, and bytes of data that stay in memory.
+    /// Number of objects, and number of bytes of data that stay in memory.
     kept: ResourceLimits,
     /// Codes of the warnings that have been reported.
     reported: RefCell<BTreeSet<&'static str>>,
 }
 
-/// Scene format entry for glTF.
+/// Entry for glTF in the list of scene formats.
 pub(super) const FORMAT: SceneFormat = SceneFormat {
     name: "glTF",
     extensions: &["gltf", "glb"],
@@ -130,7 +133,7 @@ fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let text = &input.bytes[parts.json.clone()];
     let mut end = parts.json.end;
     if parts.is_glb {
-        // Report lines and columns of the JSON text inside the binary file.
+        // Report the lines and columns of the JSON text inside the binary file.
         report.finish(diagnostics, ());
         let mut files = input.files.borrow_mut();
         let name = files.name(input.file).unwrap_or(input.name).to_string();
@@ -189,7 +192,7 @@ fn scene(input: &ReadInput, parts: Parts, root: JsonRef) -> Option<Scene> {
         kept: ResourceLimits::with_memory(input.memory),
         reported: RefCell::default(),
     };
-    // Each step depends on the steps before it.
+    // Each step depends on the results of the steps before it.
     model.buffers = model.buffers(&root);
     let slices = model.buffers.iter().flatten().filter_map(|buffer| buffer.slice.as_ref());
     let bytes: u64 = slices.map(|slice| slice.bytes().len() as u64).sum();
@@ -276,7 +279,7 @@ fn check_version(root: &JsonRef) -> Option<()> {
     Some(())
 }
 
-/// Rejects required extensions that are not supported; returns true if attributes may be quantized.
+/// Rejects required extensions that are not supported. Returns true if attributes may be quantized.
 fn required(root: &JsonRef) -> bool {
     let mut quantized = false;
     for key in ["extensionsUsed", "extensionsRequired"] {
@@ -308,14 +311,14 @@ impl Model<'_> {
         self.once_at(code, "", message);
     }
 
-    /// Reports a warning only once, at the first place where it applies.
+    /// Reports a warning only once, at the first place to which it applies.
     fn once_at(&self, code: &'static str, pointer: &str, message: &str) {
         if self.reported.borrow_mut().insert(code) {
             self.report.report(Diagnostic::warning, code, pointer, message);
         }
     }
 
-    /// Counts decoded data against the memory budget, which is in proportion to the file's size.
+    /// Counts decoded data towards the memory limit, which is proportional to the size of the file.
     fn charge(&self, count: usize, size: usize, at: &JsonRef) -> Option<()> {
         self.charge_at(count, size, &|| at.pointer())
     }
@@ -334,7 +337,7 @@ impl Model<'_> {
         self.report_limit(self.kept.bytes(count, size), &|| at.pointer())
     }
 
-    /// Reports that a limit was exceeded, but only the first time.
+    /// Reports that a limit was exceeded, but only when this happens for the first time.
     fn report_limit(&self, counted: Result<(), LimitExceeded>, pointer: &dyn Fn() -> String) -> Option<()> {
         let found = counted.map_err(|LimitExceeded { message, is_first }| {
             if is_first {
@@ -349,7 +352,7 @@ impl Model<'_> {
         self.rows_as(accessor, at, |row| row)
     }
 
-    /// Returns all rows of an accessor, each mapped by `of`.
+    /// Returns all rows of an accessor after applying `of` to each of them.
     fn rows_as<const N: usize, T: Send>(
         &self,
         accessor: &Accessor,

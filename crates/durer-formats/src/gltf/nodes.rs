@@ -1,4 +1,4 @@
-//! Reads the node hierarchy: transforms, and the objects of each node.
+//! Reads the node hierarchy: the transform of each node and the objects that it contains.
 
 use super::Model;
 use super::deform::Skin;
@@ -13,7 +13,7 @@ use durer_scene::shape::MeshData;
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use std::sync::Arc;
 
-/// Node of a glTF file, before it is placed in the scene: its children, its transform and the
+/// Node of a glTF file before it is added to the scene, with its children, its transform and the
 /// indices of its contents.
 #[derive(Clone, Default)]
 pub(super) struct NodeData {
@@ -26,12 +26,13 @@ pub(super) struct NodeData {
     pub light: Option<usize>,
     pub weights: Vec<f32>,
     pub local: LocalTransform,
-    /// Transforms of instances, relative to the node (EXT_mesh_gpu_instancing); `None` if the node
-    /// is not instanced.
+    /// Transforms of the instances relative to the node (EXT_mesh_gpu_instancing), or `None` if the
+    /// node has no instances.
     copies: Option<Vec<DAffine3>>,
 }
 
-/// Transform of a glTF node relative to its parent: a matrix, or translation, rotation and scale.
+/// Transform of a glTF node relative to its parent, given as a matrix or as translation, rotation
+/// and scale.
 #[derive(Clone, Copy)]
 pub(super) struct LocalTransform {
     matrix: Option<DAffine3>,
@@ -53,7 +54,7 @@ impl LocalTransform {
     }
 }
 
-/// Mesh of a glTF node with its transform, ready to be added to the scene.
+/// Mesh of a glTF node and its transform, ready to be added to the scene.
 struct Instance {
     to_world: DAffine3,
     name: String,
@@ -61,7 +62,7 @@ struct Instance {
     span: Span,
 }
 
-/// Returns a map as a matrix operation; `None` if it is singular or its numbers overflow.
+/// Returns a transform as a matrix operation, or `None` if it is singular or its numbers overflow.
 fn matrix_of(map: DAffine3) -> Option<MatrixOp> {
     let op = MatrixOp::Matrix(DMat4::from(map).transpose().to_cols_array().map(|x| x as f32));
     Affine::new(op.matrix()).map(|_| op)
@@ -87,7 +88,7 @@ impl Model<'_> {
                 }
             }
         }
-        // A node that cannot be reached from a root is part of a cycle, or below one.
+        // A node that cannot be reached from any root is part of a cycle or a descendant of one.
         let mut reached = vec![false; count];
         let mut stack: Vec<usize> = (0..count).filter(|&i| nodes[i].parent.is_none()).collect();
         while let Some(i) = stack.pop() {
@@ -168,8 +169,8 @@ impl Model<'_> {
         Some((0..count).map(copy).collect())
     }
 
-    /// Returns the nodes of the visible scene, parents first, and the transforms from all nodes to
-    /// world space. Joints can be nodes outside the visible scene.
+    /// Returns the nodes of the visible scene with parents first, and the transforms of all nodes
+    /// to world space. Joints can be nodes that are outside the visible scene.
     pub(super) fn world_transforms(&self, root: &JsonRef, nodes: &[NodeData]) -> (Vec<usize>, Vec<DAffine3>) {
         let mut maps = vec![DAffine3::IDENTITY; nodes.len()];
         let mut order = Vec::with_capacity(nodes.len());
@@ -188,8 +189,8 @@ impl Model<'_> {
         (order, maps)
     }
 
-    /// Returns the roots of the visible scene: of the default scene, otherwise of the first scene,
-    /// otherwise all roots if the file has no scenes.
+    /// Returns the roots of the visible scene, which is the default scene or otherwise the first
+    /// scene. If the file has no scenes, returns all roots.
     fn root_nodes(&self, root: &JsonRef, nodes: &[NodeData]) -> Vec<usize> {
         let all = || (0..nodes.len()).filter(|&i| nodes[i].parent.is_none()).collect();
         let Some(scenes) = root.get("scenes") else {
@@ -213,7 +214,7 @@ impl Model<'_> {
         all.into_iter().nth(wanted).unwrap_or_default().into_iter().flatten().collect()
     }
 
-    /// Adds the mesh of a node to the scene, transformed to world space.
+    /// Adds the mesh of a node to the scene after transforming it to world space.
     pub(super) fn add_mesh(&self, number: usize, nodes: &[NodeData], maps: &[DAffine3], scene: &mut Scene) {
         let node = &nodes[number];
         let Some(mesh) = node.mesh else { return };
@@ -237,7 +238,7 @@ impl Model<'_> {
             if data.triangles.is_empty() {
                 continue;
             }
-            // The joint matrices already include the transform to world space.
+            // The joint matrices already contain the transform to world space.
             let here = if bones.is_some() { DAffine3::IDENTITY } else { maps[number] };
             let own = [DAffine3::IDENTITY];
             let copies = node.copies.as_deref().unwrap_or(&own);
@@ -265,7 +266,7 @@ impl Model<'_> {
         }
     }
 
-    /// Counts a copy of a mesh against the memory limit.
+    /// Counts a copy of a mesh towards the memory limit.
     fn copied(&self, data: &MeshData, pointer: &dyn Fn() -> String) -> Option<()> {
         self.charge_at(data.bytes(), 1, pointer)?;
         self.report_limit(self.kept.bytes(data.bytes(), 1), pointer)
@@ -293,8 +294,8 @@ impl Model<'_> {
         Some(Object { node: ObjectKind::Transform(vec![op], Box::new(inner)), material, span })
     }
 
-    /// Returns the index of a white material for meshes with vertex colours but without a material.
-    /// The default grey would darken the colours.
+    /// Returns the index of a white material for meshes that have vertex colours but no material.
+    /// The default grey material would darken the colours.
     fn white(&self, span: Span, scene: &mut Scene) -> u32 {
         if scene.materials.len() == self.material_count {
             let white = PrincipledMaterial { base_color: Vec3::ONE, ..PrincipledMaterial::default() };

@@ -13,22 +13,23 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Primitives of a glTF mesh; `None` for those that are left out.
+/// Primitives of a glTF mesh, with `None` in place of those that are left out.
 pub(super) type Primitives = Vec<Option<Primitive>>;
 
-/// Primitive of a glTF mesh, converted to triangles that share a material.
+/// Primitive of a glTF mesh after its conversion to triangles that share a material.
 #[derive(Clone)]
 pub(super) struct Primitive {
     pub data: Arc<MeshData>,
     pub material: Option<u32>,
-    /// True if the file has vertex normals, which are then deformed together with the positions.
+    /// True if the file has vertex normals, in which case the normals are deformed together with
+    /// the positions.
     pub has_normals: bool,
-    /// Joints and morph targets, if the primitive has any.
+    /// Joints and morph targets of the primitive, if there are any.
     pub pose: Option<Arc<Deformation>>,
 }
 
 impl Primitive {
-    /// Returns the mesh with its vertices deformed.
+    /// Returns the mesh after its vertices have been deformed.
     pub fn deformed(&self, pose: &Deformation, weights: &[f32], bones: Option<&[DAffine3]>) -> MeshData {
         let mut data = MeshData::clone(&self.data);
         pose.apply(&mut data, weights, bones);
@@ -37,7 +38,7 @@ impl Primitive {
     }
 }
 
-/// Primitive modes; see chapter 3.7.2.1 of the specification.
+/// Modes of primitives; see chapter 3.7.2.1 of the specification.
 const POINTS: u64 = 0;
 const LINES: u64 = 1;
 const LINE_LOOP: u64 = 2;
@@ -72,13 +73,13 @@ impl Model<'_> {
         primitives.items().map(|primitive| self.primitive(&primitive)).collect()
     }
 
-    /// Returns the accessor with the index in this value.
+    /// Returns the accessor whose index is this value.
     pub(super) fn accessor(&self, at: &JsonRef) -> Option<&Accessor> {
         self.accessors[at.index(self.accessors.len())?].as_ref()
     }
 
-    /// Returns the accessor of an attribute; reports an error if its format is invalid for the
-    /// attribute.
+    /// Returns the accessor of an attribute, and reports an error if its format is not valid for
+    /// the attribute.
     fn attribute(&self, at: &JsonRef, name: &str, widths: &[usize], whole: &[ComponentType]) -> Option<&Accessor> {
         let accessor = self.accessor(at)?;
         let quantized = self.quantized && !matches!(accessor.component, ComponentType::U32);
@@ -129,21 +130,21 @@ impl Model<'_> {
         }
         let mut pose = self.pose(at, &attributes, count);
         let order = self.order(at, count)?;
-        // Account for the corners with their normals and texture coordinates. A strip has almost
-        // one triangle per index.
+        // Count the memory for the corners with their normals and texture coordinates. A strip has
+        // almost as many triangles as indices.
         let triangles = if mode == TRIANGLES { order.len() / 3 } else { order.len() };
         let lists = 1 + usize::from(has_normals) + usize::from(!data.uvs.is_empty());
         self.count_kept(triangles, 12 * lists, at)?;
-        // Account for the flags of the vertices in use.
+        // Count the memory for the flags that mark the vertices in use.
         self.count_kept(count, 5, at)?;
         data.triangles = match mode {
             TRIANGLES => order.as_chunks::<3>().0.par_iter().copied().collect(),
-            // Every other triangle of a strip has the opposite winding.
+            // Every second triangle of a strip has the opposite winding.
             STRIP => order.windows(3).enumerate().map(|(i, t)| [t[0], t[1 + i % 2], t[2 - i % 2]]).collect(),
             FAN => order.windows(2).skip(1).map(|t| [order[0], t[0], t[1]]).collect(),
             _ => return self.thickened(&data, mode, &order, material, at),
         };
-        // Degenerate triangles only join strips.
+        // Degenerate triangles only connect strips.
         let has_area = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
         if !data.triangles.par_iter().all(has_area) {
             data.triangles.retain(has_area);
@@ -160,7 +161,7 @@ impl Model<'_> {
         Some(Primitive { data: Arc::new(data), material, has_normals, pose: pose.map(Arc::new) })
     }
 
-    /// Converts points and lines, which have no surface, to small balls and thin sticks.
+    /// Converts points and lines, which have no surface, to small balls and thin cylinders.
     fn thickened(
         &self,
         data: &MeshData,
@@ -172,7 +173,7 @@ impl Model<'_> {
         let name = at.name();
         let message = format!("points and lines of mesh{name} have no surface: small balls and thin sticks are shown");
         self.once_at("points-and-lines", &at.pointer(), &message);
-        // Each point or line becomes about a dozen vertices.
+        // About a dozen vertices are needed for each point or line.
         self.charge(order.len(), 12 * 64, at)?;
         self.count_kept(order.len(), 12 * 64, at)?;
         let strip = || order.windows(2).map(|pair| [pair[0], pair[1]]);
@@ -187,7 +188,7 @@ impl Model<'_> {
         Some(Primitive { data, material, has_normals: true, pose: None })
     }
 
-    /// Reads an attribute other than the positions.
+    /// Reads an attribute other than the vertex positions.
     fn fill(&self, data: &mut MeshData, key: &str, at: &JsonRef) {
         const UNSIGNED: &[ComponentType] = &[ComponentType::U8, ComponentType::U16];
         match key {
@@ -203,7 +204,7 @@ impl Model<'_> {
             }
             "TEXCOORD_0" | "TEXCOORD_1" => {
                 let accessor = self.attribute(at, key, &[2], UNSIGNED);
-                // In a Dürer scene, v points up.
+                // In a Dürer scene, v increases upwards.
                 let uvs = accessor.and_then(|accessor| self.rows_as(accessor, at, |[u, v]| Vec2::new(u, 1.0 - v)));
                 let uvs = uvs.unwrap_or_default();
                 *(if key == "TEXCOORD_0" { &mut data.uvs } else { &mut data.second_uvs }) = uvs;
@@ -229,7 +230,7 @@ impl Model<'_> {
         }
     }
 
-    /// Returns the vertex indices of the primitive in drawing order.
+    /// Returns the vertex indices of the primitive in the order of drawing.
     fn order(&self, at: &JsonRef, count: usize) -> Option<Vec<u32>> {
         let Some(indices) = at.get("indices") else {
             self.count_kept(count, 4, at)?;
@@ -265,7 +266,7 @@ impl Model<'_> {
     }
 }
 
-/// Removes unused vertices, because many primitives often share one vertex list.
+/// Removes unused vertices, because many primitives often share one list of vertices.
 fn compact(data: &mut MeshData, keep: bool) {
     const UNUSED: u32 = u32::MAX;
     if keep {
@@ -296,8 +297,8 @@ fn compact(data: &mut MeshData, keep: bool) {
     data.triangles.iter_mut().flatten().for_each(|i| *i = numbers[*i as usize]);
 }
 
-/// Sets the indices of normals and texture coordinates to those of the vertices. If the file has no
-/// normals, shading is flat.
+/// Sets the indices of normals and texture coordinates to the vertex indices. Shading is flat if
+/// the file has no normals.
 fn index(data: &mut MeshData, has_normals: bool) {
     data.flat = !has_normals;
     let own = || data.triangles.par_iter().copied().collect();

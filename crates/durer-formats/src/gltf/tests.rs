@@ -1,4 +1,5 @@
-//! Tests with the reports of the Khronos validator, and tests of accessors and of damaged files.
+//! Tests that compare with the reports of the Khronos glTF validator, and tests of accessors and of
+//! damaged files.
 
 use crate::folder::FolderSource;
 use crate::scene::{ReadInput, find_scene_format, read_model};
@@ -16,7 +17,8 @@ use std::path::{Path, PathBuf};
 mod places;
 mod vertices;
 
-/// Reads bytes as a file in a folder; returns the diagnostics with severity, code and message.
+/// Reads bytes as a file in a folder, and returns the diagnostics with their severity, code and
+/// message.
 fn read(
     bytes: &[u8],
     folder: &Path,
@@ -72,7 +74,8 @@ fn files_below(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Errors of the validator that Dürer accepts: code, part of the path, and reason.
+/// Errors that the validator reports but Dürer accepts. Each entry has the code, a part of the
+/// path, and the reason.
 const SURVIVED: &[(&str, &str, &str)] = &[
     ("", "/animation", "animations are read only if a time is requested"),
     ("ACCESSOR_ELEMENT_OUT_OF_", "accessor_data/", "bounds are computed from the data; declared bounds are ignored"),
@@ -176,7 +179,7 @@ fn khronos_models_are_read_at_rest_and_animated() {
     }
 }
 
-/// Returns a document with one mesh of one primitive and a buffer of the given bytes.
+/// Returns a document that has one mesh with one primitive, and a buffer of the given bytes.
 fn document(views: &str, accessors: &str, primitive: &str, bytes: &[u8]) -> String {
     use base64::Engine;
     let data = base64::engine::general_purpose::STANDARD.encode(bytes);
@@ -199,8 +202,8 @@ const BOUNDS: &str = r#""min":[0,0,0],"max":[9,9,9]"#;
 
 #[test]
 fn accessors_are_strided_normalised_and_sparse() {
-    // Four 16-bit positions in rows of 12 bytes, with 8-bit texture coordinates, and one row
-    // replaced by a sparse value.
+    // Data of four 16-bit positions in rows of 12 bytes, with 8-bit texture coordinates. One of the
+    // rows is replaced by a sparse value.
     let mut bytes: Vec<u8> = Vec::new();
     for i in 0..4u16 {
         [i, 2 * i, 3 * i].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
@@ -221,7 +224,7 @@ fn accessors_are_strided_normalised_and_sparse() {
     let at = |x: f32| Vec3::new(x, 2.0 * x, 3.0 * x);
     assert_eq!(data.positions, [at(0.0), at(1.0), Vec3::new(7.0, 8.0, 9.0), at(3.0)]);
     assert_eq!(data.uvs[1], Vec2::new(1.0, 1.0 - 0.2));
-    // Every other triangle of a strip is reversed, and all of its triangles are flat.
+    // Every second triangle of a strip is reversed, and all triangles have flat shading.
     assert_eq!(data.triangles, [[0, 1, 2], [1, 3, 2]]);
     assert!(data.flat && data.triangle_normals.is_empty());
 }
@@ -290,7 +293,7 @@ fn textures_of_extensions_change_their_parameters() {
     assert!((m.specular_rotation - 0.25).abs() < 1e-4);
 }
 
-/// Returns the material of a triangle with these factors and extensions.
+/// Returns the material of a triangle for the given factors and extensions.
 fn layers(factors: &str, extensions: &str) -> PrincipledMaterial {
     material(&format!(r#""pbrMetallicRoughness":{{{factors}}},"extensions":{{{extensions}}}"#))
 }
@@ -346,10 +349,10 @@ fn specular_extension_applies_to_dielectrics_only() {
     };
     let red = Vec3::X;
     assert_eq!(of(0.0, ""), (0.25, 1.5, red));
-    // The extension does not affect metals.
+    // The extension has no effect on metals.
     assert_eq!(of(1.0, ""), (1.0, 1.5, Vec3::ONE));
-    // For a partial metal, a smaller index replaces the weight: a quarter of 0.04 at normal
-    // incidence.
+    // For a material that is partly metallic, the weight is replaced with a smaller index of
+    // refraction, which reflects a quarter of 0.04 at normal incidence.
     let (weight, ior, _) = of(0.5, "");
     let root = (ior - 1.0) / (ior + 1.0);
     assert!(weight == 1.0 && (root * root - 0.01).abs() < 1e-6, "{weight} {ior}");
@@ -357,7 +360,8 @@ fn specular_extension_applies_to_dielectrics_only() {
     assert_eq!(of(0.5, r#","KHR_materials_transmission":{"transmissionFactor":1}"#), (0.25, 1.5, red));
 }
 
-/// The reflectance is 0.04 times weight and colour at normal incidence, and 1 at grazing angles.
+/// At normal incidence, the reflectance is 0.04 times the weight and the colour. At grazing angles,
+/// the reflectance is 1.
 #[test]
 fn specular_color_brightness_becomes_the_weight() {
     let of = |weight: f32, color: &str| {
@@ -413,7 +417,7 @@ fn damaged_files_do_not_panic() {
         match random(3) {
             0 => changed[at] = random(256) as u8,
             1 => {
-                // Replace a number by another value.
+                // Replace a number with another value.
                 let from = (at..changed.len()).find(|&i| changed[i].is_ascii_digit()).unwrap_or(at);
                 changed.splice(from..from + 1, words[random(words.len())].bytes());
             }
@@ -434,25 +438,26 @@ fn joints_morph_targets_and_key_frames_move_vertices() {
     };
     let positions = |scene: &Scene| scene.assets.meshes.values().next().unwrap().positions.clone();
     // The morph targets move the tip of the triangle by (-1, 1, 0) and by (1, 1, 0). At rest and at
-    // the start, both weights are 0.
+    // the start of the animation, both weights are 0.
     let rest = positions(&at("SimpleMorph/glTF/SimpleMorph.gltf", Some(0.0)));
     let moved = positions(&at("SimpleMorph/glTF/SimpleMorph.gltf", Some(2.0)));
     assert_eq!(rest, [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 0.5, 0.0)]);
     assert!(moved[2].y > 1.0 && moved[..2] == rest[..2], "{moved:?}");
-    // After a quarter of the rotation about z, which takes one second, the triangle has turned by
-    // 90 degrees.
+    // The animation makes one turn around z in one second. After a quarter of the turn, the
+    // triangle has rotated by 90 degrees.
     let turned = at("AnimatedTriangle/glTF/AnimatedTriangle.gltf", Some(0.25));
     let mut reached = Vec::new();
     durer_scene::scene::extent::points(&turned, &mut |p| reached.push(p.as_vec3()));
     assert!(reached.iter().any(|p| p.abs_diff_eq(Vec3::new(0.0, 1.0, 0.0), 1e-5)), "{reached:?}");
     assert!(reached.iter().any(|p| p.abs_diff_eq(Vec3::new(-1.0, 0.0, 0.0), 1e-5)), "{reached:?}");
-    // A rotating joint moves the upper end of the strip but not the lower one.
+    // A rotating joint moves the upper end of the strip, but not the lower end.
     let bent = positions(&at("SimpleSkin/glTF/SimpleSkin.gltf", Some(1.0)));
     let straight = positions(&at("SimpleSkin/glTF/SimpleSkin.gltf", Some(0.0)));
     assert!(bent[0].abs_diff_eq(straight[0], 1e-6) && !bent[9].abs_diff_eq(straight[9], 0.1), "{bent:?} {straight:?}");
 }
 
-/// Returns the number of triangles, the bounds and the area of all meshes in world space.
+/// Returns the number of triangles of all meshes, their bounds and their total area, in world
+/// space.
 fn measures(root: &Path, name: &str) -> (usize, [Vec3; 2], f64) {
     let path = root.join(name);
     let file = path.file_name().unwrap().to_string_lossy().into_owned();
@@ -496,7 +501,7 @@ fn compressed_models_match_uncompressed_ones() {
         }
         let (packed_count, packed_box, packed_area) = measures(&root, packed);
         let (count, corners, area) = measures(&root, plain);
-        // Coordinates are rounded to 11 bits or more.
+        // Coordinates are rounded to at least 11 bits.
         let step = (corners[1] - corners[0]).max_element() / 1024.0;
         assert_eq!(packed_count, count, "{packed}");
         let same = (0..2).all(|i| packed_box[i].abs_diff_eq(corners[i], step));
@@ -528,7 +533,7 @@ fn damaged_compressed_data_do_not_panic() {
         const TRIES: usize = 400;
         for i in 0..TRIES {
             let mut changed = sound.clone();
-            // Most of the important numbers are in the first bytes.
+            // Most of the important numbers are in the first few bytes.
             let at = random(if i % 2 == 0 { changed.len() } else { changed.len().min(64) });
             let end = changed.len().min(at + 1 + random(8));
             match i % 5 {
@@ -571,11 +576,11 @@ fn variant_is_selected_by_name_or_number() {
     assert!(shown(Some("3")).unwrap_err().contains("no variant `3`"));
 }
 
-/// Indices out of range are errors even if the diagnostics are full.
+/// Indices out of range are errors even if the list of diagnostics is full.
 #[test]
 fn errors_count_if_diagnostics_are_full() {
     let lost = r#"{"asset":{"version":"2.0"},"nodes":[{"children":[7]}],"scenes":[{"nodes":[0]}]}"#;
-    // The diagnostics are already full.
+    // The list of diagnostics is already full.
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     (0..100).for_each(|_| diagnostics.push(durer_diag::Diagnostic::error("before")));
     let file = files.add("a.gltf", lost.as_bytes().into());
@@ -591,7 +596,7 @@ fn errors_count_if_diagnostics_are_full() {
         memory: 1 << 30,
     };
     assert!(read_model(find_scene_format(lost.as_bytes(), name).unwrap(), &input, &mut diagnostics).is_none());
-    // Many warnings precede the error.
+    // Many warnings come before the error.
     let wide = r#"{"type":"perspective","perspective":{"yfov":4,"znear":0.1}},"#.repeat(400);
     let text = lost.replace(r#""nodes":[{"#, &format!(r#""cameras":[{}],"nodes":[{{"#, wide.trim_end_matches(',')));
     let (scene, messages) = read(text.as_bytes(), Path::new("."), "a.gltf", None);

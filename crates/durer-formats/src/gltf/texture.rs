@@ -1,4 +1,4 @@
-//! Reads textures: images with samplers and coordinate transforms.
+//! Reads textures, which combine images with samplers and coordinate transforms.
 
 use super::Model;
 use super::buffers::{UriTarget, resolve_uri};
@@ -9,7 +9,7 @@ use durer_scene::math::fp;
 use durer_scene::scene::{PictureBytes, TextureImage};
 use durer_scene::texture::{Mapping, Wrap};
 
-/// Returns the wrap mode for a sampler's `wrapS` or `wrapT`.
+/// Returns the wrap mode for the `wrapS` or `wrapT` of a sampler.
 fn wrap(at: &JsonRef) -> Option<Wrap> {
     match at.integer(..)? {
         10497 => Some(Wrap::Repeat),
@@ -62,13 +62,13 @@ impl Model<'_> {
         Some(picture)
     }
 
-    /// Reads a `textureInfo` and changes its mapping; returns the name of the new asset.
+    /// Reads a `textureInfo`, changes its mapping, and returns the name of the new asset.
     pub(super) fn texture(&self, at: &JsonRef, change: impl FnOnce(&mut Mapping)) -> Option<FileName> {
         self.texture_as(at, "", change)
     }
 
-    /// Reads a `textureInfo` as [`Model::texture`] does. `role` distinguishes different uses of the
-    /// same texture.
+    /// Reads a `textureInfo` as [`Model::texture`] does. The text `role` distinguishes different
+    /// uses of the same texture.
     pub(super) fn texture_as(&self, at: &JsonRef, role: &str, change: impl FnOnce(&mut Mapping)) -> Option<FileName> {
         at.object()?;
         let number = at.required("index")?.index(self.textures.len())?;
@@ -92,7 +92,7 @@ impl Model<'_> {
         Some(FileName { path, span })
     }
 
-    /// Reads all textures; `None` for each one without a usable image.
+    /// Reads all textures, and returns `None` in place of each texture that has no usable image.
     pub(super) fn textures(&self, root: &JsonRef) -> Vec<Option<(PictureBytes, Mapping, Span)>> {
         let samplers = match root.get("samplers") {
             Some(samplers) => samplers.items().map(|sampler| self.sampler(&sampler)).collect(),
@@ -123,7 +123,7 @@ impl Model<'_> {
                 return None;
             };
             let image = source.index(self.images.len())?;
-            // Errors in a picture are reported where the file names the picture.
+            // Errors in a picture are reported at the place where the file names the picture.
             let span = self.report.span(&format!("/images/{image}/uri"));
             Some((self.images[image].clone()?, mapping, span))
         };
@@ -133,13 +133,13 @@ impl Model<'_> {
     fn sampler(&self, at: &JsonRef) -> Mapping {
         let mode = |key| at.get(key).and_then(|mode| wrap(&mode)).unwrap_or_default();
         let nearest = at.get("magFilter").and_then(|filter| filter.integer(9728..=9729)) == Some(9728);
-        // These filters use mipmaps.
+        // The filters from 9984 on use mipmaps.
         let mipmaps = at.get("minFilter").is_some_and(|filter| matches!(filter.integer(9728..=9987), Some(9984..)));
         Mapping { wrap: [mode("wrapS"), mode("wrapT")], nearest, mipmaps, ..Mapping::default() }
     }
 }
 
-/// Returns the matrix of KHR_texture_transform from offset, rotation and scale.
+/// Returns the matrix that KHR_texture_transform defines for an offset, a rotation and a scale.
 ///
 /// Source: KHR_texture_transform: T R S with R = (cos r, sin r; -sin r, cos r).
 fn transformed(at: &JsonRef) -> [[f32; 3]; 2] {

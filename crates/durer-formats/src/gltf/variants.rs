@@ -1,4 +1,4 @@
-//! Selects material variants (KHR_materials_variants).
+//! Selects variants of materials (KHR_materials_variants).
 
 use super::Model;
 use super::json::JsonRef;
@@ -37,8 +37,8 @@ impl Model<'_> {
         index
     }
 
-    /// Returns the material of a primitive: for the selected variant if it defines one, otherwise
-    /// its own.
+    /// Returns the material that the selected variant defines for a primitive, or otherwise the
+    /// primitive's own material.
     pub(super) fn material_of(&self, at: &JsonRef) -> Option<Option<u32>> {
         let number = |material: &JsonRef| material.index(self.material_count).map(|number| Some(number as u32));
         if let Some(variant) = self.variant

@@ -1,7 +1,7 @@
-//! Reads the sensor, film, sampler and integrator.
+//! Reads the sensor, the film, the sampler and the integrator.
 //!
 //! Source: *Mitsuba 3 documentation*, "Sensors", "Films" and "Integrators". A camera looks along
-//! +z; +y is up and +x is to the left.
+//! +z, with +y pointing up and +x pointing to the left.
 
 use super::plugin::Plugin;
 use super::state::Reader;
@@ -15,16 +15,17 @@ use std::rc::Rc;
 
 /// Default size of a film, in pixels.
 const SIZE: [u32; 2] = [768, 576];
-/// Default near and far clipping distance of Mitsuba's cameras.
+/// Default distances of the near and far clipping planes of Mitsuba's cameras.
 const NEAR: f32 = 0.01;
 const FAR: f32 = 10_000.0;
-/// Number of bounces used for paths of unlimited length.
+/// Number of bounces that replaces an unlimited path length.
 const UNLIMITED_BOUNCES: u32 = 64;
 
 const SENSORS: [&str; 3] = ["perspective", "thinlens", "orthographic"];
 
 impl Reader<'_> {
-    /// Reads the camera: the sensor selected by id or number, otherwise the first.
+    /// Reads the camera, which is the sensor selected by id or number, or otherwise the first
+    /// sensor.
     pub fn camera(&mut self, sensors: &[Rc<Plugin>]) {
         let Some(sensor) = self.chosen(sensors) else { return };
         let report = self.report;
@@ -129,12 +130,13 @@ impl Reader<'_> {
         let report = self.report;
         let half = self.half_view(sensor, size);
         let (right, up, forward) = axes(to_world);
-        // Ignore the scale: Mitsuba forbids it in a camera's transform.
+        // Ignore the scale, because Mitsuba forbids scaling in the transform of a camera.
         let (center, handedness) = (to_world.translation.as_vec3(), handedness(right, up, forward));
         let angle = ((2.0 * fp::atan_f64(half.max_element())).to_degrees() as f32).clamp(1e-4, 179.99);
         let [direction, up] = [forward, up].map(|v| v.normalize_or(DVec3::Y).as_vec3());
         let offset = |name| f64::from(sensor.number(report, name).unwrap_or(0.0));
-        // Offset as a fraction of the film's width and height; it moves the view right and down.
+        // The offset is a fraction of the film's width and height, and moves the view to the right
+        // and down.
         let offset = 2.0 * DVec2::new(offset("principal_point_offset_x"), offset("principal_point_offset_y"));
         let shift = offset * half / half.max_element();
         let aperture = match sensor.kind.as_str() {
@@ -145,7 +147,7 @@ impl Reader<'_> {
         if sensor.kind == "thinlens" && aperture == 0.0 {
             report.error(sensor.at, "a `thinlens` needs an `aperture_radius`");
         }
-        // Ignore the default clipping planes, since they clip nothing visible.
+        // Ignore the default clipping planes, because they do not clip anything visible.
         let near = sensor.number(report, "near_clip").filter(|near| *near > NEAR).unwrap_or(0.0);
         let far = sensor.positive(report, "far_clip");
         let far = far.filter(|far| *far < FAR);
@@ -186,7 +188,7 @@ impl Reader<'_> {
                     let message = format!("expected a length in millimetres such as `50mm`, found `{text}`");
                     report.error(sensor.span("focal_length"), message);
                 }
-                // The field of view is that across the diagonal of a 36 x 24 mm film.
+                // The field of view is measured across the diagonal of a 36 x 24 mm film.
                 let half = (36f64 * 36.0 + 24.0 * 24.0).sqrt() / 2.0;
                 fov = 2.0 * fp::atan_f64(half / length.unwrap_or(50.0)).to_degrees();
                 axis = "diagonal".into();
@@ -213,7 +215,8 @@ impl Reader<'_> {
         DVec2::new(x, x / aspect)
     }
 
-    /// Reads the integrator. `max_depth` counts path segments, so `bounces` is two less.
+    /// Reads the integrator. `max_depth` counts the segments of a path, so `bounces` is smaller by
+    /// two.
     pub fn integrator(&mut self, plugin: &Plugin, depth: u32) {
         let report = self.report;
         if self.too_deep(depth, plugin.at) {
@@ -225,7 +228,7 @@ impl Reader<'_> {
                 self.scene.render_defaults.bounces = Some(0);
                 plugin.mark_known(&["emitter_samples", "bsdf_samples", "shading_samples"]);
             }
-            // These integrators wrap the one that renders the picture.
+            // Integrators of these types contain the integrator that renders the picture.
             "aov" | "moment" => {
                 for (_, inner) in self.child_plugins(plugin, Some("integrator")) {
                     self.integrator(&inner, depth + 1);
@@ -259,18 +262,20 @@ impl Reader<'_> {
     }
 }
 
-/// Returns the right, up and forward axes. The length of each is one unit of camera space.
+/// Returns the axes that point right, up and forward. The length of each axis is the length of one
+/// unit of camera space along that axis.
 fn axes(to_world: DAffine3) -> (DVec3, DVec3, DVec3) {
     let m = to_world.matrix3;
     (-m.x_axis, m.y_axis, m.z_axis)
 }
 
-/// Returns the handedness of the picture for a viewer who looks along `forward`.
+/// Returns `Handedness::Left` if the picture is mirrored, which means that `right` points to the
+/// left of a viewer who looks along `forward`.
 fn handedness(right: DVec3, up: DVec3, forward: DVec3) -> Handedness {
     if forward.cross(up).dot(right) < 0.0 { Handedness::Left } else { Handedness::Right }
 }
 
-/// Returns an orthographic camera whose view is 2 units of camera space wide.
+/// Returns an orthographic camera whose view has a width of 2 units of camera space.
 fn orthographic(to_world: DAffine3, size: DVec2) -> Camera {
     let (right, up, forward) = axes(to_world);
     let across = 2.0 * right.length();

@@ -1,8 +1,9 @@
-//! Reads colours of reflectances and lights, and indices of refraction.
+//! Reads the colours of reflectances and lights, and reads indices of refraction.
 //!
-//! Conversion as in Mitsuba's RGB variants: a reflectance spectrum is converted under daylight. An
-//! emission spectrum is converted without a white point, so a spectrum of 1 at all wavelengths is
-//! slightly red. An emission written as a number or a colour is used unchanged.
+//! Spectra are converted as in Mitsuba's RGB variants: a reflectance spectrum is converted under
+//! daylight. An emission spectrum is converted without a white point, so a spectrum that is 1 at
+//! all wavelengths becomes slightly red. An emission that is written as a number or as a colour is
+//! used unchanged.
 
 use super::plugin::{Plugin, Property, Value};
 use super::state::Reader;
@@ -11,8 +12,8 @@ use durer_scene::spectrum::black_body::planck;
 use durer_scene::spectrum::{SpectrumSource, radiance};
 
 impl Reader<'_> {
-    /// Returns the colour of a reflectance, transmittance or absorption; `None` if the property is
-    /// not a colour.
+    /// Returns the colour of a reflectance, transmittance or absorption, or `None` if the property
+    /// is not a colour.
     pub fn reflectance(&self, property: &Property) -> Option<Color> {
         match &property.value {
             Value::Number(number) => Some(Vec3::splat(*number as f32)),
@@ -23,7 +24,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns the colour of a light; `None` if the property is not a colour.
+    /// Returns the colour of a light, or `None` if the property is not a colour.
     pub fn emission(&self, property: &Property) -> Option<Color> {
         match &property.value {
             Value::Number(number) => Some(Vec3::splat(*number as f32)),
@@ -37,7 +38,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns the colour of a spectrum plugin.
+    /// Returns the colour that a spectrum plugin represents.
     fn spectrum_plugin(&self, property: &Property, emits: bool) -> Option<Color> {
         let plugin = self.child_plugin(property)?;
         let report = self.report;
@@ -66,7 +67,7 @@ impl Reader<'_> {
         Some(color)
     }
 
-    /// Returns the wavelengths and values of the plugins `regular` and `irregular`.
+    /// Returns the wavelengths and values of a `regular` or `irregular` spectrum plugin.
     fn sampled_spectrum(&self, plugin: &Plugin) -> Option<Vec<[f32; 2]>> {
         let report = self.report;
         let list = |name| {

@@ -1,4 +1,5 @@
-//! Reader of curve files: each line is a point and its radius, and an empty line ends a curve.
+//! Reads curve files, in which each line gives a point and its radius, and an empty line ends a
+//! curve.
 
 use crate::files::read_named;
 use crate::model::ReadInput;
@@ -10,12 +11,12 @@ use durer_scene::shape::tessellate::tube::{Piece, add_tube, from_b_spline, sampl
 use glam::DVec4;
 use std::ops::Range;
 
-/// Maximum number of segments of all curves, and the number from which tubes have fewer sides. The
-/// maximum is low in tests, which build all of them.
+/// Maximum total number of segments of all curves, and the number of segments above which tubes
+/// have fewer sides. Tests use a low maximum so that they can reach it quickly.
 const MAX_PIECES: usize = if cfg!(test) { 1 << 12 } else { 1 << 19 };
 const MANY: usize = 1 << 12;
 
-/// Builds tubes around the curves of a file, which are B-splines or polylines.
+/// Builds tubes around the curves in a file, which are B-splines or polylines.
 pub(super) fn tubes(
     input: &ReadInput,
     report: &SharedReport,
@@ -47,8 +48,8 @@ pub(super) fn tubes(
     Some(data)
 }
 
-/// Splits a curve into ranges of segments, each of which becomes one tube. Where joints are
-/// rounded, a sharp bend starts a new tube.
+/// Splits the segments of a curve into ranges, each of which becomes one tube. Where joints are
+/// rounded, a new tube starts at each sharp bend.
 fn runs(pieces: &[Piece], is_round: bool) -> Vec<Range<usize>> {
     let along = |i: usize| (pieces[i][3] - pieces[i][0]).truncate().normalize_or_zero();
     let ends =
@@ -57,13 +58,13 @@ fn runs(pieces: &[Piece], is_round: bool) -> Vec<Range<usize>> {
     ends.map(|end| std::mem::replace(&mut start, end)..end).collect()
 }
 
-/// Cosine of the smallest bend angle that starts a new tube.
+/// Cosine of the smallest bend angle at which a new tube starts.
 const MIN_BEND_COSINE: f64 = 0.99;
 
-/// Byte range and message of an error.
+/// Byte range in which an error occurred, and the error message.
 type ParseError = (Range<usize>, String);
 
-/// Parses a curve file; returns the segments of each curve.
+/// Parses a curve file and returns the segments of each curve.
 fn parse(bytes: &[u8], is_spline: bool) -> Result<Vec<Vec<Piece>>, ParseError> {
     let (mut curves, mut points, mut start) = (Vec::new(), Vec::<DVec4>::new(), 0);
     for line in bytes.split_inclusive(|byte| *byte == b'\n').chain([&b""[..]]) {

@@ -1,4 +1,4 @@
-//! Results of reading plugins: materials, emission and infinite lights.
+//! Materials, emission and infinite lights that result from reading plugins.
 
 use super::plugin::Key;
 use durer_diag::Span;
@@ -10,26 +10,27 @@ use durer_scene::texture::Sky;
 use glam::DAffine3;
 use std::rc::Rc;
 
-/// Material read from a Mitsuba BSDF plugin, before it gets an index in the scene.
+/// Material that was read from a Mitsuba BSDF plugin, before it gets an index in the scene.
 pub(super) enum MaterialDef {
     Principled(Box<PrincipledMaterial>),
     Hair(HairMaterial),
-    /// Mix of two materials: the share of the first, and a picture that multiplies the share.
+    /// Mix of two materials: both materials, the share of the first one, and a picture that
+    /// multiplies the share.
     Mix(Rc<MaterialDef>, Rc<MaterialDef>, f32, Option<FileName>),
-    /// One material on the front and another on the back.
+    /// One material for the front side and another one for the back side.
     TwoSided(Rc<MaterialDef>, Rc<MaterialDef>),
-    /// Material of a surface that is not rendered (`null`).
+    /// Material of a surface that is not rendered (the plugin `null`).
     Null,
 }
 
 impl MaterialDef {
-    /// Returns a matte grey material. Shapes without a material use 0.5.
+    /// Returns a grey matte material. Shapes without a material use a reflectance of 0.5.
     pub fn matte(grey: f32) -> MaterialDef {
         MaterialDef::Principled(Box::new(matte(Vec3::splat(grey))))
     }
 
-    /// Returns the number of materials it consists of, counting repeated ones each time; stops at
-    /// `most + 1`.
+    /// Returns the number of materials that this material consists of, counting repeated ones each
+    /// time. Stops counting at `most + 1`.
     pub fn count(&self, most: usize) -> usize {
         match self {
             MaterialDef::Mix(a, b, ..) | MaterialDef::TwoSided(a, b) => {
@@ -40,7 +41,7 @@ impl MaterialDef {
         }
     }
 
-    /// Returns a copy with `change` applied to each `PrincipledMaterial` in it.
+    /// Returns a copy in which `change` has been applied to each `PrincipledMaterial`.
     pub fn changed(&self, change: &impl Fn(&mut PrincipledMaterial)) -> MaterialDef {
         match self {
             MaterialDef::Principled(layers) => {
@@ -60,23 +61,24 @@ impl MaterialDef {
     }
 }
 
-/// Returns a diffuse material without a specular boundary.
+/// Returns a diffuse material that has no specular boundary.
 pub(super) fn matte(base_color: Color) -> PrincipledMaterial {
     PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
 }
 
-/// Emission of a shape, from its `area` emitter: radiance, and a picture that multiplies it.
+/// Emission of a shape, from its `area` emitter: a radiance, and optionally a picture that
+/// multiplies it.
 pub(super) struct AreaEmitter {
     pub color: Color,
     pub picture: Option<TextureImage>,
-    /// True if both sides emit.
+    /// True if both sides of the surface emit light.
     pub two_sided: bool,
     pub at: Span,
     pub key: Key,
 }
 
-/// Light from infinitely far away: constant, an environment map, or a sky. A Mitsuba scene has at
-/// most one.
+/// Light from infinitely far away: a constant colour, an environment map or a sky. A Mitsuba scene
+/// has at most one such light.
 pub(super) enum InfiniteLight {
     Constant(Color, Span),
     Picture {
@@ -85,7 +87,7 @@ pub(super) enum InfiniteLight {
         scale: f32,
         to_world: DAffine3,
     },
-    /// Clear sky with y up, and the transform from its axes to world space.
+    /// Clear sky with y up, and the transform from the axes of the sky to world space.
     Sky {
         sky: Sky,
         at: Span,

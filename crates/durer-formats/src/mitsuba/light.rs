@@ -1,4 +1,5 @@
-//! Converts point, distant, infinite and area lights. Values are radiance.
+//! Converts point lights, distant lights, infinite lights and area lights. The values of these
+//! lights are radiances.
 //!
 //! Source: *Mitsuba 3 documentation*, "Emitters".
 
@@ -20,14 +21,14 @@ use glam::{DAffine3, DVec2, DVec3};
 use std::f32::consts::PI;
 use std::rc::Rc;
 
-/// Height in pixels of the picture of a clear sky.
+/// Height in pixels of the picture that represents a clear sky.
 const SKY_ROWS: u32 = 512;
 
-/// Number of steps of the vertical and the horizontal angle in the profile of a projected picture.
+/// Number of vertical and of horizontal angular steps in the profile of a projected picture.
 const STEPS: [u32; 2] = [360, 720];
 
-/// Minimum height in pixels of a picture that is used without resampling. Mitsuba places the first
-/// and the last row at the poles; from this height on, the difference is negligible.
+/// Minimum height in pixels at which a picture is used without resampling. Mitsuba places the first
+/// and last rows exactly at the poles. At this height or above, the difference is negligible.
 const FINE_ROWS: u32 = 256;
 
 /// Maximum height in pixels of a resampled environment map.
@@ -44,14 +45,14 @@ impl Reader<'_> {
         color.max(Vec3::ZERO)
     }
 
-    /// Reads a light that is not part of a shape.
+    /// Reads a light that does not belong to a shape.
     pub fn emitter(&mut self, plugin: &Rc<Plugin>) {
         let report = self.report;
         let to_world = plugin.transform(report, "to_world");
         let place = |name| plugin.vector(report, name).unwrap_or(to_world.translation).as_vec3();
         let along = |local: DVec3| to_world.transform_vector3(local).normalize_or(DVec3::Z).as_vec3();
-        // A light's colour in Dürer is the radiance of a white diffuse surface that it illuminates:
-        // illuminance over pi.
+        // In Dürer, the colour of a light is the radiance of a white diffuse surface that it
+        // illuminates, which is the illuminance divided by pi.
         let value: Light = match plugin.kind.as_str() {
             "point" => {
                 let color = self.light_color(plugin, "intensity") / PI;
@@ -102,8 +103,8 @@ impl Reader<'_> {
         self.scene.lights.get_or_insert_default().push(Spanned { value, span: plugin.at });
     }
 
-    /// Reads a spotlight. If it has a falloff or a picture, it is added as a measured light with
-    /// that directional distribution, and `None` is returned.
+    /// Reads a spotlight. If the spotlight has a falloff or a picture, this function adds it as a
+    /// measured light with that directional distribution and returns `None`.
     fn spot(&mut self, plugin: &Plugin, to_world: DAffine3) -> Option<SpotLight> {
         let report = self.report;
         let angle = plugin.positive(report, "cutoff_angle").unwrap_or(20.0);
@@ -122,7 +123,7 @@ impl Reader<'_> {
         }
         plugin.mark_known(&["sampling_weight"]);
         plugin.warn_unused(report);
-        // The falloff is linear in the angle.
+        // The intensity decreases linearly with the angle.
         let lookup = |dir: Vec3| {
             let degrees = fp::atan2(dir.truncate().length(), dir.z).to_degrees();
             ((angle - degrees) / (angle - inner_angle).max(1e-6)).clamp(0.0, 1.0)
@@ -133,7 +134,7 @@ impl Reader<'_> {
                 ProfileLight::new([vec![0.0, inner_angle, angle], vec![0.0]], &axes, |dir| Vec3::splat(lookup(dir)))
             }
             Some(image) => {
-                // The picture covers a square as wide as the cone at distance 1.
+                // At distance 1, the picture covers a square as wide as the cone.
                 let half = fp::tan_f64(f64::from(angle).to_radians()) as f32;
                 ProfileLight::new([steps(angle, STEPS[0]), steps(360.0, STEPS[1])], &axes, |dir| {
                     let lookup = lookup(dir);
@@ -149,8 +150,8 @@ impl Reader<'_> {
         None
     }
 
-    /// Adds a projector as a measured light, whose distribution is that of its picture on the plane
-    /// at distance 1.
+    /// Adds a projector as a measured light. The distribution of the light is that of its picture
+    /// on the plane at distance 1.
     fn projector(&mut self, plugin: &Plugin, to_world: DAffine3) {
         let report = self.report;
         let image = self.named_plugin(plugin, "irradiance").and_then(|texture| self.projected_picture(&texture));
@@ -169,7 +170,7 @@ impl Reader<'_> {
             if dir.z <= 0.0 || place.abs().max_element() > 1.0 {
                 return Vec3::ZERO;
             }
-            // As seen by a camera: +x is left, and +y is up.
+            // Axes as seen by a camera: +x points left and +y points up.
             bilinear(&image, 0.5 - 0.5 * place) / (dir.z * dir.z * dir.z)
         });
         lights.add(&mut self.scene, self.input.name, (to_world, axes), Vec3::splat(PI * scale), plugin.at);
@@ -192,7 +193,7 @@ impl Reader<'_> {
         self.pictures().decoded(&self.loader.path(&name), texture.span("filename"), decode)
     }
 
-    /// Sets the infinite light; reports an error if there is a second one.
+    /// Sets the infinite light. Reports an error if the scene already has one.
     pub(super) fn set_infinite_light(&mut self, light: InfiniteLight) {
         if let Some(first) = &self.infinite {
             let error = Diagnostic::error("a scene may have only one infinite light").code("bad-value");
@@ -201,7 +202,7 @@ impl Reader<'_> {
         self.infinite = Some(light);
     }
 
-    /// Reads the area light of a shape.
+    /// Reads the area light that belongs to a shape.
     pub fn area_light(&mut self, plugin: &Plugin) -> Option<AreaEmitter> {
         if plugin.kind != "area" {
             self.report.unsupported_once(
@@ -229,7 +230,7 @@ impl Reader<'_> {
         Some(AreaEmitter { color, picture, two_sided: false, at: plugin.at, key: plugin.key() })
     }
 
-    /// Converts the infinite light to the scene's environment.
+    /// Converts the infinite light to the environment of the scene.
     pub fn set_environment(&mut self) {
         let background = &mut self.scene.background;
         (background.color, background.ambient_light) = (Vec3::ZERO, Vec3::ZERO);
@@ -255,7 +256,7 @@ impl Reader<'_> {
                 let is_fine = picture.height >= FINE_ROWS;
                 let rows = picture.height.clamp(FINE_ROWS, MAX_ROWS);
                 let y = to_world.matrix3.y_axis;
-                // The middle of an environment map is +z in Mitsuba and -z in Dürer.
+                // The centre of an environment map is +z in Mitsuba and -z in Dürer.
                 if is_fine && y.x == 0.0 && y.z == 0.0 && y.y > 0.0 && to_world.matrix3.determinant() > 0.0 {
                     let z = to_world.matrix3.z_axis.as_vec3();
                     let degrees = 180.0 - fp::atan2(z.x, z.z).to_degrees();

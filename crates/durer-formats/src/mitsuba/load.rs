@@ -1,7 +1,7 @@
-//! Converts XML to plugins; handles variables, included files and values.
+//! Converts XML to plugins, and handles variables, included files and values.
 //!
-//! Source: *Mitsuba 3 documentation*, section "Scene XML file format", 2022 to 2025. Names of
-//! Mitsuba 0.6 (`toWorld`) are converted to current names (`to_world`).
+//! Source: *Mitsuba 3 documentation*, section "Scene XML file format", versions of 2022 to 2025.
+//! Property names of Mitsuba 0.6 (`toWorld`) are converted to current names (`to_world`).
 
 use super::plugin::{Plugin, Property, Value};
 use crate::growth::ResourceLimits;
@@ -18,14 +18,14 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Limits on the depth of includes, the number of files and the number of elements.
+/// Limits on the depth of nested includes, the number of files and the number of elements.
 const MAX_INCLUDE_DEPTH: usize = 15;
 const MAX_FILES: usize = 4096;
 const MAX_ELEMENTS: usize = 1 << 22;
-/// Maximum size in bytes of a value after variable substitution.
+/// Maximum size of a value in bytes after variables have been substituted.
 const MAX_VALUE: usize = 1 << 20;
 
-/// Element names of plugins; `camera` is from Mitsuba 0.6.
+/// Element names that define plugins. The name `camera` is from Mitsuba 0.6.
 const CLASSES: [&str; 14] = [
     "scene",
     "sensor",
@@ -61,28 +61,28 @@ const OTHER_ELEMENTS: [&str; 15] = [
     "path",
 ];
 
-/// Loader that converts the XML of a Mitsuba scene, and of the files that it includes, to plugins.
+/// Loader that converts the XML of a Mitsuba scene and of its included files to plugins.
 pub(super) struct Loader<'a> {
     input: &'a ReadInput<'a>,
     report: &'a SharedReport,
     variables: BTreeMap<String, String>,
-    /// Plugins by id.
+    /// Plugins by their ids.
     pub plugins: BTreeMap<String, Rc<Plugin>>,
-    /// Additional folders in which files are searched.
+    /// Additional folders that are searched for files.
     pub folders: Vec<String>,
-    /// Names of the files being read, outermost first.
+    /// Names of the files that are being read, starting with the outermost one.
     open_files: Vec<String>,
     files: usize,
     elements: usize,
     pub limits: ResourceLimits,
-    /// True if the file is older than Mitsuba 2.
+    /// True if the file was written for a version before Mitsuba 2.
     pub(super) is_old: bool,
 }
 
-/// Error type of the loader: loading cannot continue, and the error has already been reported.
+/// Error that ends loading and that has already been reported.
 pub(super) struct ErrorReported;
 
-/// Converts a name to snake case: `toWorld` to `to_world`, `intIOR` to `int_ior`.
+/// Converts a name to snake case, for example `toWorld` to `to_world` and `intIOR` to `int_ior`.
 fn snake_case(name: &str) -> String {
     let mut words = String::new();
     let mut small = false;
@@ -96,7 +96,7 @@ fn snake_case(name: &str) -> String {
     words
 }
 
-/// Parses numbers separated by whitespace or commas.
+/// Parses numbers that are separated by whitespace or commas.
 pub(super) fn numbers(text: &str) -> Option<Vec<f64>> {
     let words = text.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty());
     words.map(|word| word.parse::<f64>().ok().filter(|x| (*x as f32).is_finite())).collect()
@@ -118,8 +118,8 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// Loads the scene of the main file. A root element other than `<scene>` becomes the only child
-    /// of a scene.
+    /// Loads the scene from the main file. If the root element is not `<scene>`, it becomes the
+    /// only child of a scene.
     pub fn scene(&mut self) -> Result<Plugin, ErrorReported> {
         let at = Span { file: self.input.file, start: 0, end: 0 };
         let mut scene = Plugin::new("scene", String::new(), at);
@@ -149,7 +149,7 @@ impl<'a> Loader<'a> {
         Ok(())
     }
 
-    /// Returns the next child element, or `None` at the end of the open element.
+    /// Returns the next child element, or `None` at the end of the current element.
     fn next<'x>(&mut self, xml: &mut Xml<'x>) -> Result<Option<Tag<'x>>, ErrorReported> {
         self.elements += 1;
         match xml.next() {
@@ -168,7 +168,7 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// Skips the content of an element; reports child elements.
+    /// Skips the content of an element, and reports any child elements.
     fn leaf(&mut self, xml: &mut Xml, of: &str) -> Result<(), ErrorReported> {
         while let Some(tag) = self.next(xml)? {
             self.report.error(tag.at, format!("a `{of}` must have no child elements"));
@@ -220,7 +220,7 @@ impl<'a> Loader<'a> {
                 }
             }
             class if CLASSES.contains(&class) => return self.plugin(xml, tag, parent),
-            // A spectrum is a number, a list of numbers or a plugin.
+            // A spectrum can be a number, a list of numbers or a plugin.
             "spectrum" if tag.get("type").is_some() => return self.plugin(xml, tag, parent),
             kind if OTHER_ELEMENTS.contains(&kind) => {
                 if let (Some(name), Some((value, at))) = (self.name(tag), self.value(tag)) {
@@ -276,7 +276,7 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// Adds a property; reports a second one with the same name.
+    /// Adds a property, and reports an error if there is already one with the same name.
     fn add_property(&self, parent: &mut Plugin, name: String, value: Value, at: Span) {
         if let Some(other) = parent.properties.iter().find(|other| !name.is_empty() && other.name == name) {
             let error = Diagnostic::error(format!("`{name}` is given twice")).code("bad-value").at(at);
@@ -289,7 +289,8 @@ impl<'a> Loader<'a> {
         let (Some((name, _)), Some((value, _))) = (self.attribute(tag, "name"), self.attribute(tag, "value")) else {
             return;
         };
-        // The first value counts, so that an including file can override the included file.
+        // The first value takes effect, so that an including file can override the file that it
+        // includes.
         self.variables.entry(name).or_insert(value);
     }
 
@@ -331,14 +332,14 @@ impl<'a> Loader<'a> {
         self.report.push(Diagnostic { help, ..Diagnostic::error(error.to_string()).code("missing-file").at(at) });
     }
 
-    /// Returns the path of a file: in the scene's folder, or in a folder added by `<path>`.
+    /// Returns the path of a file, which is in the scene's folder or in a folder added by `<path>`.
     pub fn path(&self, name: &str) -> String {
         let source = self.input.source;
         let others = self.folders.iter().map(|folder| format!("{folder}/{name}"));
         others.into_iter().find(|path| !source.contains(name) && source.contains(path)).unwrap_or(name.into())
     }
 
-    /// Returns a required attribute with its variables replaced.
+    /// Returns the value of a required attribute after substituting its variables.
     pub fn attribute(&self, tag: &Tag, name: &str) -> Option<(String, Span)> {
         match tag.get(name) {
             Some(attribute) => Some((self.substituted(attribute)?, attribute.at)),
@@ -353,8 +354,8 @@ impl<'a> Loader<'a> {
         self.attribute(tag, "name").map(|(name, _)| snake_case(&name))
     }
 
-    /// Returns a value with its variables replaced; the longest matching name counts. Reports an
-    /// undefined variable and returns `None`.
+    /// Returns a value after substituting its variables. If several variable names match, the
+    /// longest one is used. Reports an undefined variable and returns `None`.
     pub fn substituted(&self, attribute: &Attribute) -> Option<String> {
         let mut text = String::new();
         let mut rest: &str = &attribute.value;
@@ -388,7 +389,7 @@ impl<'a> Loader<'a> {
         Some(text + rest)
     }
 
-    /// Parses the `N` numbers of an attribute.
+    /// Parses `N` numbers from an attribute.
     pub fn numbers<const N: usize>(&self, (text, at): &(String, Span)) -> Option<[f64; N]> {
         let variable = numbers(text).and_then(|all| <[f64; N]>::try_from(all).ok());
         if variable.is_none() {
@@ -398,7 +399,7 @@ impl<'a> Loader<'a> {
         variable
     }
 
-    /// Reads three coordinates: `x`, `y` and `z`, or all three as `value`.
+    /// Reads three coordinates, given as `x`, `y` and `z`, or all together as `value`.
     pub fn triple(&self, tag: &Tag, default: f64) -> Option<DVec3> {
         if let Some(value) = tag.get("value") {
             return self.numbers(&(self.substituted(value)?, value.at)).map(DVec3::from_array);
@@ -454,7 +455,7 @@ impl<'a> Loader<'a> {
         value.map(|value| (value, at))
     }
 
-    /// Parses three numbers, one for all three, or `#rrggbb` in sRGB.
+    /// Parses three numbers, a single number for all three, or a colour `#rrggbb` in sRGB.
     fn rgb(&self, attribute: &(String, Span), curved: bool) -> Option<Vec3> {
         let text = attribute.0.trim();
         if let Some(digits) = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii()) {
@@ -474,11 +475,11 @@ impl<'a> Loader<'a> {
         Some(if curved { color.map(|share| decode_srgb((255.0 * share).round() as u8)) } else { color })
     }
 
-    /// Parses a number, or pairs of wavelength and value: `400:0.1, 500:0.2`.
+    /// Parses a number, or pairs of a wavelength and a value, such as `400:0.1, 500:0.2`.
     fn spectrum(&self, attribute: &(String, Span)) -> Option<Value> {
         if !attribute.0.contains(':') {
             return match numbers(&attribute.0).as_deref() {
-                // Mitsuba 0.6 also allows colours here.
+                // In Mitsuba 0.6, the value can also be a colour.
                 Some(&[r, g, b]) => Some(Value::Rgb(DVec3::new(r, g, b).as_vec3())),
                 _ => self.numbers(attribute).map(|[number]| Value::ConstantSpectrum(number as f32)),
             };
@@ -502,17 +503,17 @@ impl<'a> Loader<'a> {
         Some(Value::Spectrum(curve))
     }
 
-    /// Reports an error in an element.
+    /// Reports an error at an element.
     pub fn error(&self, at: Span, message: impl Into<String>, help: Option<String>) {
         self.report.error_with_help(at, message, help);
     }
 
-    /// Warns that something in an element has no exact counterpart.
+    /// Warns that part of an element has no exact counterpart in Dürer.
     pub fn warn(&self, at: Span, message: &str) {
         self.report.unsupported_once(at, message);
     }
 
-    /// Returns the next element of a transform, and consumes its end tag too.
+    /// Returns the next element of a transform, and also consumes its end tag.
     pub fn next_leaf<'x>(&mut self, xml: &mut Xml<'x>) -> Result<Option<Tag<'x>>, ErrorReported> {
         let Some(tag) = self.next(xml)? else { return Ok(None) };
         self.leaf(xml, tag.name)?;

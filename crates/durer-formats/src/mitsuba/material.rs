@@ -48,11 +48,11 @@ const BSDFS: [&str; 18] = [
 /// Index of refraction of air.
 const AIR: f32 = 1.000277;
 
-/// Maximum number of materials that one material may consist of, counting repeated ones each time.
+/// Maximum number of materials that one material can consist of, counting repeated ones each time.
 const MAX_PARTS: usize = 4096;
 
 impl Reader<'_> {
-    /// Converts the material of a plugin. Each plugin is converted only once.
+    /// Converts the material that a plugin defines. Each plugin is converted only once.
     pub fn material(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<MaterialDef> {
         let key = (plugin.key(), self.inside_out);
         if let Some(cached) = self.materials.get(&key) {
@@ -70,7 +70,8 @@ impl Reader<'_> {
         material
     }
 
-    /// Returns true if a material has few enough parts to be copied; reports an error if not.
+    /// Returns true if a material has few enough parts to be copied, and otherwise reports an
+    /// error.
     fn has_room_for(&self, material: &MaterialDef, at: Span) -> bool {
         let count = material.count(MAX_PARTS);
         if count > MAX_PARTS {
@@ -101,7 +102,7 @@ impl Reader<'_> {
                 return match parts.as_slice() {
                     [(_, front), (_, back)] => {
                         let sides = [front, back].map(|side| both(&self.material(side, depth + 1)));
-                        // The front of an inverted sphere is the back in Dürer.
+                        // The front side of an inverted sphere is the back side in Dürer.
                         let [front, back] = sides;
                         Rc::new(if self.inside_out {
                             MaterialDef::TwoSided(back, front)
@@ -138,7 +139,8 @@ impl Reader<'_> {
                 let message = format!("the material `{other}` has no counterpart: diffuse grey is used");
                 let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(plugin.at);
                 self.report.push(Diagnostic { help: suggest(other, BSDFS), ..warning });
-                // Do not report its properties as unused: they were not read.
+                // Do not report the properties of this plugin as unused, because they were not
+                // read.
                 plugin.properties.iter().for_each(|property| property.used.set(true));
                 return Rc::new(MaterialDef::matte(0.5));
             }
@@ -151,7 +153,7 @@ impl Reader<'_> {
         Rc::new(MaterialDef::Principled(Box::new(m)))
     }
 
-    /// Reads a hair material, defined by absorption or by melanin.
+    /// Reads a hair material, which is defined by its absorption or by its melanin.
     fn hair(&self, plugin: &Plugin) -> MaterialDef {
         let default = HairMaterial::default();
         let number = |name| plugin.number(self.report, name);
@@ -171,7 +173,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Returns the material that another material wraps.
+    /// Returns the material that is nested in another material.
     fn nested_material(&mut self, plugin: &Plugin, depth: u32) -> Rc<MaterialDef> {
         match self.child_plugins(plugin, Some("bsdf")).first() {
             Some((_, part)) => self.material(part, depth + 1),
@@ -182,7 +184,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads a bump map; `scale` is the height where the picture is 1.
+    /// Reads a bump map. `scale` is the height at a picture value of 1.
     fn bump_map(&mut self, plugin: &Plugin, depth: u32) -> Rc<MaterialDef> {
         let inner = self.nested_material(plugin, depth);
         let height = plugin.number(self.report, "scale").unwrap_or(1.0);
@@ -215,7 +217,7 @@ impl Reader<'_> {
         Rc::new(inner.changed(&|m| (m.normal_texture, m.normal_bending) = (Some(name.clone()), Switch::Off)))
     }
 
-    /// Reads an index of refraction: a number or the name of a material.
+    /// Reads an index of refraction, which is given as a number or as the name of a substance.
     fn index(&self, plugin: &Plugin, name: &'static str, default: f32) -> f32 {
         let Some(property) = plugin.get(name) else { return default };
         if let Value::Text(text) = &property.value {
@@ -232,12 +234,12 @@ impl Reader<'_> {
         plugin.positive(self.report, name).unwrap_or(default)
     }
 
-    /// Returns the interior index divided by the exterior index.
+    /// Returns the interior index of refraction divided by the exterior one.
     fn relative_index(&self, plugin: &Plugin, default: f32) -> f32 {
         self.index(plugin, "int_ior", default) / self.index(plugin, "ext_ior", AIR)
     }
 
-    /// Sets roughness, anisotropy and rotation from GGX's alpha along u and v.
+    /// Computes roughness, anisotropy and rotation from GGX's alpha along u and v.
     fn roughness(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
         m.energy_compensation = Switch::Off;
         if !plugin.kind.starts_with("rough") {
@@ -287,7 +289,7 @@ impl Reader<'_> {
         let index = self.relative_index(plugin, 1.5046);
         let is_thin = plugin.kind == "thindielectric";
         m.specular_ior = if self.inside_out && !is_thin { 1.0 / index } else { index };
-        // `ext_ior` replaces the index of refraction of any surrounding medium.
+        // `ext_ior` is used instead of the index of refraction of the surrounding medium.
         m.surroundings = Surroundings::Ignored;
         self.tint(plugin, m);
         (m.transmission_color, m.transmission_color_texture) =
@@ -317,7 +319,7 @@ impl Reader<'_> {
                 .map(|(name, default)| SpectrumSource::Rgb(self.color(plugin, name, Vec3::from_array(default))));
             conductor_colors(&eta, &k, self.index(plugin, "ext_eta", 1.0))
         };
-        // The tint applies at all angles, so the reflectance at 82 degrees includes it too.
+        // The tint applies at all angles, so it also affects the reflectance at 82 degrees.
         let over = |tint: Vec3| f82 * tint / schlick_82(f0 * tint).max(Vec3::splat(1e-6));
         let (tint, picture) = self.color_or_texture(plugin, "specular_reflectance", 1.0);
         let at = plugin.span("specular_reflectance");
@@ -344,13 +346,14 @@ impl Reader<'_> {
             let beckmann = plugin.text(self.report, "distribution").is_none_or(|distribution| distribution != "ggx");
             let boundary = Boundary::new(index, m.specular_roughness, beckmann);
             m.base_color = match m.base_color_texture.is_some() {
-                // If the colour is a picture, assume middle grey.
+                // If the colour is given by a picture, assume middle grey.
                 true => m.base_color * boundary.below(nonlinear.then_some(0.5)),
                 false => m.base_color.map(|color| boundary.base(color, nonlinear)),
             };
         }
         if nonlinear {
-            // Light reflected between base and boundary corresponds to a coat's darkening.
+            // Use the darkening of a coat for the light that is reflected between the base and the
+            // boundary.
             (m.coat_weight, m.coat_ior, m.coat_roughness) = (1.0, index, m.specular_roughness);
             m.coat_roughness_texture = m.specular_roughness_texture.take();
             m.specular_weight = 0.0;
@@ -368,7 +371,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns the scene index of a material with emission and an interior medium; `None` for a
+    /// Returns the scene index of a material with its emission and interior medium, or `None` for a
     /// material that is not rendered.
     pub fn material_index(
         &mut self,
@@ -446,7 +449,7 @@ impl Reader<'_> {
     }
 }
 
-/// Returns the material with its interior filled by a medium.
+/// Returns the material after filling its interior with a medium.
 fn with_medium(material: &MaterialDef, medium: &Medium) -> MaterialDef {
     match material {
         MaterialDef::Null => {
@@ -455,7 +458,7 @@ fn with_medium(material: &MaterialDef, medium: &Medium) -> MaterialDef {
             medium.fill(&mut m);
             MaterialDef::Principled(Box::new(m))
         }
-        // Light does not enter opaque materials.
+        // Light does not enter objects made of opaque materials.
         _ => material.changed(&|m| {
             if m.transmission_weight > 0.0 && m.walls == Walls::Solid {
                 medium.fill(m);

@@ -1,4 +1,4 @@
-//! Participating media: homogeneous, or with a volume as density.
+//! Converts participating media, which are homogeneous or have a volume as their density.
 
 use super::plugin::{Key, Plugin};
 use super::state::Reader;
@@ -13,7 +13,8 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 impl Reader<'_> {
-    /// Reads a medium; returns it with the key of its plugin, or `None` if it has no counterpart.
+    /// Reads a medium and returns it with the key of its plugin, or `None` if Dürer has no
+    /// counterpart.
     pub fn medium(&mut self, plugin: &Rc<Plugin>) -> Option<(Medium, Key)> {
         let report = self.report;
         if !matches!(plugin.kind.as_str(), "homogeneous" | "heterogeneous") {
@@ -25,11 +26,11 @@ impl Reader<'_> {
         let density = self.density(plugin);
         let color = |name, default| self.volume_color(plugin, name, default).max(Vec3::ZERO);
         let (absorption, scattering) = match plugin.get("sigma_s").is_some() || plugin.get("sigma_a").is_some() {
-            // Parameters from Mitsuba 0.6.
+            // These parameters are from Mitsuba 0.6.
             true => (color("sigma_a", Vec3::ZERO), color("sigma_s", Vec3::ZERO)),
             false => {
-                // If the extinction is a volume, it becomes the density of a medium with an
-                // extinction of 1.
+                // If the extinction is a volume, the volume becomes the density of a medium whose
+                // extinction is 1.
                 let extinction = if density.is_some() { Vec3::ONE } else { color("sigma_t", Vec3::ONE) };
                 let albedo = color("albedo", Vec3::splat(0.75)).min(Vec3::ONE);
                 (extinction * (Vec3::ONE - albedo), extinction * albedo)
@@ -52,7 +53,7 @@ impl Reader<'_> {
         Some((medium, plugin.key()))
     }
 
-    /// Returns a colour that may be a volume; for a grid, its mean.
+    /// Returns a colour that may be given by a volume. For a grid, returns the mean of its values.
     fn volume_color(&self, plugin: &Plugin, name: &'static str, default: Color) -> Color {
         let volume = self.named_plugin(plugin, name).filter(|volume| volume.kind.ends_with("volume"));
         let Some(volume) = volume else {
@@ -77,7 +78,7 @@ impl Reader<'_> {
         color
     }
 
-    /// Runs a reader that pushes to a `Diagnostics`, and adds its diagnostics to the report.
+    /// Runs a reader that writes to a `Diagnostics`, and adds its diagnostics to the report.
     fn collect_diagnostics<T>(&self, read: impl FnOnce(&mut Diagnostics) -> T) -> T {
         let mut diagnostics = Diagnostics::default();
         let result = read(&mut diagnostics);

@@ -1,6 +1,7 @@
-//! Named indices of refraction of metals and of transparent materials.
+//! Indices of refraction of metals and of transparent materials, by name.
 
-/// Complex indices of refraction of metals: real and imaginary parts for red, green and blue.
+/// Complex indices of refraction of metals, as the real and imaginary parts for red, green and
+/// blue.
 ///
 /// Source: the spectra of Palik, *Handbook of Optical Constants of Solids*, 1985, and of the SOPRA
 /// and Luxpop collections, as Mitsuba 3.9 converts them to RGB.
@@ -45,8 +46,8 @@ const METALS: [(&str, [f32; 3], [f32; 3]); 37] = [
     ("W", [4.3708, 3.3002, 2.9984], [3.5006, 2.6049, 2.2732]),
 ];
 
-/// Indices of refraction of transparent materials. Source: *Mitsuba 3 documentation*, "Smooth
-/// dielectric material", table of names.
+/// Indices of refraction of transparent materials. Source: the table of names in *Mitsuba 3
+/// documentation*, "Smooth dielectric material".
 #[rustfmt::skip]
 const DIELECTRICS: [(&str, f32); 23] = [
     ("vacuum", 1.0), ("helium", 1.000036), ("hydrogen", 1.000132), ("air", 1.000277), ("carbon dioxide", 1.00045),
@@ -56,22 +57,22 @@ const DIELECTRICS: [(&str, f32); 23] = [
     ("amber", 1.55), ("pet", 1.575), ("diamond", 2.419),
 ];
 
-/// Returns the real and imaginary index of a metal.
+/// Returns the real and imaginary parts of the index of refraction of a metal.
 pub(super) fn metal(name: &str) -> Option<[[f32; 3]; 2]> {
     METALS.iter().find(|row| row.0.eq_ignore_ascii_case(name)).map(|row| [row.1, row.2])
 }
 
-/// Returns the names of metals, for suggestions.
+/// Returns the names of all metals, for suggestions in error messages.
 pub(super) fn metal_names() -> impl Iterator<Item = &'static str> {
     METALS.iter().map(|row| row.0).chain(["none"])
 }
 
-/// Returns the index of a transparent material.
+/// Returns the index of refraction of a transparent material.
 pub(super) fn dielectric_ior(name: &str) -> Option<f32> {
     DIELECTRICS.iter().find(|row| row.0.eq_ignore_ascii_case(name)).map(|row| row.1)
 }
 
-/// Returns the names of transparent materials, for suggestions.
+/// Returns the names of all transparent materials, for suggestions in error messages.
 pub(super) fn dielectric_names() -> impl Iterator<Item = &'static str> {
     DIELECTRICS.iter().map(|row| row.0)
 }

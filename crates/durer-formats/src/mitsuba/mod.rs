@@ -1,8 +1,8 @@
-//! Reader of Mitsuba 3 scenes in XML, and of Mitsuba 0.6 scenes that use the same plugins.
+//! Reader of Mitsuba 3 scenes in XML, and of those Mitsuba 0.6 scenes that use the same plugins.
 //!
-//! Source: *Mitsuba 3 documentation*, "Plugin reference", 2022 to 2025. A scene consists of plugins
-//! (shapes, materials, lights), which contain properties and other plugins. A pixel value of 1 is a
-//! radiance of 1.
+//! Source: *Mitsuba 3 documentation*, "Plugin reference", versions of 2022 to 2025. A scene
+//! consists of plugins (shapes, materials, lights), which contain properties and other plugins. A
+//! pixel value of 1 is a radiance of 1.
 
 mod camera;
 mod color;
@@ -35,7 +35,7 @@ use durer_scene::scene::{Axis, Scene};
 use load::Loader;
 use state::Reader;
 
-/// Scene format entry for Mitsuba.
+/// Entry for Mitsuba in the list of scene formats.
 pub(super) const FORMAT: SceneFormat = SceneFormat {
     name: "Mitsuba",
     extensions: &["xml"],

@@ -1,4 +1,4 @@
-//! Mitsuba plugins: a type and named properties.
+//! Represents Mitsuba plugins, which have a type and named properties.
 
 use crate::shared_report::{SharedReport, suggest};
 use durer_diag::Span;
@@ -7,23 +7,25 @@ use glam::{DAffine3, DVec3};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
-/// Identifies a plugin by its position: file index and byte offset.
+/// Position that identifies a plugin: the file index and the byte offset.
 pub(super) type Key = (u32, u32);
 
-/// Mitsuba plugin: an element with a `type`, such as `<shape type="sphere">`, and its properties.
+/// Mitsuba plugin: an element that has a `type`, such as `<shape type="sphere">`, with its
+/// properties.
 pub(super) struct Plugin {
     /// Name of the element, such as `shape`.
     pub element: String,
-    /// Value of `type`; empty for the scene.
+    /// Value of the attribute `type`, which is empty for the scene.
     pub kind: String,
-    /// Span of the type, or of the tag.
+    /// Span of the type, or of the whole tag if it has no type.
     pub at: Span,
     pub properties: Vec<Property>,
-    /// Property names that the reader has asked for; all others are reported as unknown.
+    /// Property names that the reader has asked for. All other properties are reported as unknown.
     known_names: RefCell<Vec<&'static str>>,
 }
 
-/// Property of a Mitsuba plugin: a name and a value. Nested plugins may have no name.
+/// Property of a Mitsuba plugin, with a name and a value. The name can be empty if the value is a
+/// nested plugin.
 pub(super) struct Property {
     pub name: String,
     pub value: Value,
@@ -42,11 +44,11 @@ pub(super) enum Value {
     Rgb(Vec3),
     /// Spectrum with the same value at all wavelengths.
     ConstantSpectrum(f32),
-    /// Wavelengths in nanometres, in ascending order, with values.
+    /// Pairs of a wavelength in nanometres and a value, in ascending order of wavelength.
     Spectrum(Vec<[f32; 2]>),
     Transform(DAffine3),
     Plugin(Rc<Plugin>),
-    /// Reference to a plugin by its `id`.
+    /// Reference to another plugin by its `id`.
     Ref(String),
 }
 
@@ -71,29 +73,30 @@ impl Plugin {
         Plugin { element: class.into(), kind, at, properties: Vec::new(), known_names }
     }
 
-    /// Returns a key that is unique to the plugin.
+    /// Returns a key that identifies the plugin.
     pub fn key(&self) -> Key {
         (self.at.file, self.at.start)
     }
 
-    /// Marks properties as known, so that they are not reported as unknown.
+    /// Marks properties as known, so that no warning is reported for them.
     pub fn mark_known(&self, names: &[&'static str]) {
         self.known_names.borrow_mut().extend(names);
     }
 
-    /// Returns a property by name, and marks it as used.
+    /// Finds a property by name, marks it as used and returns it.
     pub fn get(&self, name: &'static str) -> Option<&Property> {
         self.mark_known(&[name]);
         let found = self.properties.iter().find(|property| property.name == name);
         found.inspect(|property| property.used.set(true))
     }
 
-    /// Returns the span of a property's value, or of the plugin if it has no such property.
+    /// Returns the span of a property's value, or the span of the plugin if the property is
+    /// missing.
     pub fn span(&self, name: &'static str) -> Span {
         self.get(name).map_or(self.at, |property| property.at)
     }
 
-    /// Returns the value of a property if it has the expected type; reports an error if not.
+    /// Returns the value of a property if it has the expected type, and otherwise reports an error.
     fn typed<T>(
         &self,
         report: &SharedReport,
@@ -109,7 +112,7 @@ impl Plugin {
         value
     }
 
-    /// Returns a number; reports an error for a value of another type.
+    /// Returns a number, and reports an error if the value has another type.
     pub fn number(&self, report: &SharedReport, name: &'static str) -> Option<f32> {
         self.typed(report, name, "a number", |value| match value {
             Value::Number(number) => Some(*number as f32),
@@ -118,7 +121,7 @@ impl Plugin {
         })
     }
 
-    /// Returns a number, which must be more than 0.
+    /// Returns a number, which must be greater than 0.
     pub fn positive(&self, report: &SharedReport, name: &'static str) -> Option<f32> {
         let number = self.number(report, name)?;
         if number <= 0.0 {
@@ -127,7 +130,7 @@ impl Plugin {
         Some(number).filter(|number| *number > 0.0)
     }
 
-    /// Returns a boolean; reports an error for a value of another type.
+    /// Returns a boolean, and reports an error if the value has another type.
     pub fn boolean(&self, report: &SharedReport, name: &'static str) -> Option<bool> {
         self.typed(report, name, "`true` or `false`", |value| match value {
             Value::Bool(truth) => Some(*truth),
@@ -135,7 +138,7 @@ impl Plugin {
         })
     }
 
-    /// Returns a string; reports an error for a value of another type.
+    /// Returns a string, and reports an error if the value has another type.
     pub fn text(&self, report: &SharedReport, name: &'static str) -> Option<String> {
         self.typed(report, name, "a string", |value| match value {
             Value::Text(text) => Some(text.clone()),
@@ -143,7 +146,7 @@ impl Plugin {
         })
     }
 
-    /// Returns a vector or point; reports an error for a value of another type.
+    /// Returns a vector or point, and reports an error if the value has another type.
     pub fn vector(&self, report: &SharedReport, name: &'static str) -> Option<DVec3> {
         self.typed(report, name, "a vector or point", |value| match value {
             Value::Vector(vector) => Some(*vector),
@@ -151,7 +154,7 @@ impl Plugin {
         })
     }
 
-    /// Returns a transform; the identity if the property is missing.
+    /// Returns a transform, which is the identity if the property is missing.
     pub fn transform(&self, report: &SharedReport, name: &'static str) -> DAffine3 {
         let transform = self.typed(report, name, "a transform", |value| match value {
             Value::Transform(transform) => Some(*transform),
@@ -160,7 +163,8 @@ impl Plugin {
         transform.unwrap_or(DAffine3::IDENTITY)
     }
 
-    /// Warns about properties that have no counterpart in Dürer; `instead` names the substitute.
+    /// Warns about properties that have no counterpart in Dürer. `instead` says what is used
+    /// instead.
     pub fn warn_unsupported(&self, report: &SharedReport, names: &[&'static str], instead: &str) {
         for name in names {
             if let Some(property) = self.get(name) {
@@ -169,7 +173,7 @@ impl Plugin {
         }
     }
 
-    /// Warns about properties that are unknown or not used.
+    /// Warns about properties that are unknown or unused.
     pub fn warn_unused(&self, report: &SharedReport) {
         let known_names = self.known_names.borrow();
         for property in &self.properties {
@@ -188,8 +192,8 @@ impl Plugin {
     }
 }
 
-/// Returns true if a shape is a sphere with inward normals, by `flip_normals` or by a mirroring
-/// transform.
+/// Returns true if a shape is a sphere whose normals point inwards because of `flip_normals` or a
+/// mirroring transform.
 pub(super) fn is_inside_out(plugin: &Plugin, report: &SharedReport) -> bool {
     let flipped = || plugin.boolean(report, "flip_normals").unwrap_or(false);
     plugin.kind == "sphere" && flipped() != (plugin.transform(report, "to_world").matrix3.determinant() < 0.0)

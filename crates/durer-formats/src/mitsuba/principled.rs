@@ -1,4 +1,4 @@
-//! Converts Disney's material, which is Mitsuba's `principled`.
+//! Converts Disney's material, which Mitsuba calls `principled`.
 //!
 //! Source: Burley, *Physically-Based Shading at Disney*, SIGGRAPH 2012, and *Extending the Disney
 //! BRDF to a BSDF*, 2015, with the parameters of *Mitsuba 3 documentation*.
@@ -20,7 +20,8 @@ impl Reader<'_> {
         let (roughness, roughness_texture) = self.number_or_texture(plugin, "roughness", 0.5, whole);
         let (metalness, metalness_texture) = self.number_or_texture(plugin, "metallic", 0.0, whole);
         let share = |name, default: f32| self.value(plugin, name, default).clamp(0.0, 1.0);
-        // Disney's alpha is the square of the roughness, stretched by the aspect ratio.
+        // Disney's alpha is the square of the roughness, and the aspect ratio stretches it along
+        // one direction.
         let aspect = (1.0 - 0.9 * share("anisotropic", 0.0)).sqrt();
         let [u, v] = [roughness * roughness / aspect, roughness * roughness * aspect];
         let luminance = base_color.dot(LUMINANCE).max(1e-6);
@@ -35,7 +36,7 @@ impl Reader<'_> {
         };
         let clear = share("spec_trans", 0.0);
         let metallic = if thin { 0.0 } else { metalness };
-        // If the roughness is a picture, assume a medium roughness.
+        // If the roughness is given by a picture, assume a medium roughness.
         let rough = if roughness_texture.is_some() { 0.5 } else { roughness };
         let matte = match (thin, &metalness_texture) {
             (true, _) => disney::diffuse_albedo(rough) * base_color,
@@ -44,7 +45,8 @@ impl Reader<'_> {
         };
         let sheen = share("sheen", 0.0);
         let fuzz_weight = if sheen > 0.0 { sheen * disney::fuzz_weight_of_sheen() } else { 0.0 };
-        // 0: all diffuse light leaves on the lit side; 2: all of it on the other side.
+        // With a value of 0, all diffuse light leaves on the side from which it came. With a value
+        // of 2, all of it leaves on the other side.
         let through = if thin { self.value(plugin, "diff_trans", 0.0).clamp(0.0, 2.0) } else { 0.0 };
         let m = PrincipledMaterial {
             base_color: matte,
@@ -55,7 +57,7 @@ impl Reader<'_> {
             subsurface_scatter_anisotropy: (through - 1.0).max(0.0),
             base_metalness: metallic,
             base_metalness_texture: metalness_texture.filter(|_| !thin),
-            // A thin sheet has specular reflection only with `spec_trans`.
+            // A thin sheet reflects light specularly only if it has `spec_trans`.
             specular_weight: if thin { 0.0 } else { 1.0 },
             specular_ior: if thin { thin_pane_index(ior) } else { ior },
             specular_color: tinted(share("spec_tint", 0.0)),
@@ -65,9 +67,10 @@ impl Reader<'_> {
             energy_compensation: Switch::Off,
             surroundings: Surroundings::Ignored,
             transmission_weight: clear,
-            // Disney's glass takes the square root of the colour at each of two surfaces.
+            // Light crosses two surfaces of Disney's glass, and each multiplies it by the square
+            // root of the colour.
             transmission_color: if thin { base_color } else { base_color.map(f32::sqrt) }.clamp(Vec3::ZERO, Vec3::ONE),
-            // The coat has a quarter of the weight, and an index of 1.5.
+            // The coat has a quarter of the weight and an index of refraction of 1.5.
             coat_weight: if thin { 0.0 } else { 0.25 * share("clearcoat", 0.0) },
             coat_ior: 1.5,
             coat_darkening: 0.0,
@@ -89,8 +92,8 @@ impl Reader<'_> {
     }
 }
 
-/// Returns the index of a thin pane that reflects as much at normal incidence as one surface of
-/// index `ior`, because `principledthin` has no second surface.
+/// Returns the index of refraction of a thin pane that reflects as much light at normal incidence
+/// as a single surface with the index `ior`, because `principledthin` has no second surface.
 fn thin_pane_index(ior: f32) -> f32 {
     let root = (ior - 1.0) / (ior + 1.0);
     let r0 = root * root;

@@ -1,31 +1,32 @@
-//! Transmittance of Mitsuba's rough boundaries, which lose the light that bounces between
-//! microfacets.
+//! Computes the transmittance of Mitsuba's rough boundaries, which lose the light that bounces
+//! between microfacets.
 
 use crate::disney::boundary_transmittance;
 use durer_scene::bsdf::albedo::single_means;
 use durer_scene::bsdf::fresnel;
 use durer_scene::math::{Vec3, fp};
 
-/// Rough dielectric boundary of a `roughplastic`: mean transmittance and reflectance in Mitsuba and
-/// in Dürer, for matching the base colour.
+/// Rough dielectric boundary of a `roughplastic`. The boundary stores the mean transmittance and
+/// reflectance in Mitsuba and in Dürer, which are needed to match the colour of the base.
 pub(super) struct Boundary {
     index: f32,
-    /// Mean transmittance from outside and mean reflectance from inside, in Mitsuba, of the rough
-    /// boundary. `smooth` has those of a smooth one.
+    /// Mean transmittance of the rough boundary from outside and its mean reflectance from inside,
+    /// in Mitsuba. `smooth` has the values of a smooth boundary.
     rough: [f32; 2],
     smooth: [f32; 2],
-    /// Mean transmittance to the base and back out, in Dürer.
+    /// Mean transmittance in Dürer for light that enters the base and leaves it again.
     transmittance: f32,
-    /// Mean reflectance in Dürer minus that in Mitsuba.
+    /// Mean reflectance in Dürer minus the mean reflectance in Mitsuba.
     reflectance_difference: f32,
 }
 
 impl Boundary {
-    /// Computes the means. `roughness` is the square root of alpha, and must not be 0.
+    /// Computes the mean values. `roughness` is the square root of alpha, and must not be 0.
     pub fn new(index: f32, roughness: f32, beckmann: bool) -> Boundary {
         let theirs = |index: f32| means(index, roughness * roughness, beckmann);
         let ([reflected, all], [inside, _]) = (theirs(index), theirs(1.0 / index));
-        // Mitsuba sums over 64 cosines from 0 to 1, with full weight at both ends.
+        // Mitsuba sums over 64 values of the cosine from 0 to 1, and gives both ends their full
+        // weight.
         let straight = (index - 1.0) / (index + 1.0);
         let inside = (63.0 * inside + straight * straight) / 64.0;
         let ([mirrored, sum], [within, _]) = (single_means(index, 0.0), single_means(1.0 / index, 0.0));
@@ -39,29 +40,30 @@ impl Boundary {
         }
     }
 
-    /// Returns the colour of a diffuse base that looks below this boundary as `color` does in
-    /// Mitsuba. If `fades`, the base tints light again at each reflection between base and
-    /// boundary.
+    /// Returns the colour of a diffuse base that, below this boundary, looks like a base with the
+    /// colour `color` does in Mitsuba. If `fades` is true, light is tinted by the base again each
+    /// time it is reflected between the base and the boundary.
     pub fn base(&self, color: f32, fades: bool) -> f32 {
         let below = color * self.below(fades.then_some(color));
         if fades { below } else { (below - self.reflectance_difference / self.transmittance).max(0.0) }
     }
 
-    /// Returns the mean radiance of a diffuse base through the boundary in Mitsuba, divided by that
-    /// in Dürer. Mitsuba loses light both on the way in and on the way out. `left` is the share of
-    /// light that remains after each bounce, if bounces change the colour.
+    /// Returns the mean radiance of a diffuse base seen through the boundary in Mitsuba, divided by
+    /// its value in Dürer. In Mitsuba, light is lost each time that it crosses the boundary, both
+    /// on the way in and on the way out. If bounces change the colour, `left` is the fraction of
+    /// light that remains after each bounce.
     pub fn below(&self, left: Option<f32>) -> f32 {
         let shown = |[through, inside]: [f32; 2]| {
             let through = through / self.index;
             through * through / (1.0 - inside * left.unwrap_or(1.0))
         };
-        // A smooth coat darkens the base as Mitsuba's coat does.
+        // A smooth coat darkens the base by the same amount as Mitsuba's coat.
         shown(self.rough) / if left.is_some() { shown(self.smooth) } else { self.transmittance }
     }
 }
 
-/// Computes the mean albedos of [`single_means`], but with Mitsuba's separable masking, which masks
-/// more than height-correlated masking does.
+/// Computes the mean albedos as [`single_means`] does, but with Mitsuba's separable masking, which
+/// blocks more light than height-correlated masking.
 ///
 /// Source: Walter, Marschner, Li and Torrance, *Microfacet Models for Refraction through Rough
 /// Surfaces*, EGSR 2007, with their fit of Beckmann's masking.
@@ -79,8 +81,8 @@ fn means(eta: f32, alpha: f32, beckmann: bool) -> [f32; 2] {
     for (i, j, k) in (0..STEPS.pow(3)).map(|n| (n % STEPS, n / STEPS % STEPS, n / (STEPS * STEPS))) {
         let z = step(i).sqrt();
         let wo = Vec3::new((1.0 - z * z).sqrt(), 0.0, z);
-        // Sample microfacets according to their distribution. Half a turn is enough because of
-        // symmetry.
+        // Sample microfacets according to their distribution. Half a turn is enough because the
+        // integrand is symmetric.
         let u = step(j);
         let slope = alpha * alpha * if beckmann { -fp::ln(1.0 - u) } else { u / (1.0 - u) };
         let cosine = 1.0 / (1.0 + slope).sqrt();
@@ -113,7 +115,7 @@ mod tests {
 
     #[test]
     fn rough_boundaries_lose_more_with_roughness() {
-        // A nearly smooth boundary loses nothing.
+        // A nearly smooth boundary does not lose any light.
         let [reflected, all] = means(1.5, 0.02, true);
         let [smooth, _] = single_means(1.5, 0.0);
         assert!((reflected - smooth).abs() < 0.01 && (all - 1.0).abs() < 0.01, "{reflected} {smooth} {all}");
@@ -124,7 +126,7 @@ mod tests {
                 let of = |roughness: f32| below(roughness, beckmann, left);
                 assert!(of(0.3) > of(0.5) && of(0.5) > of(0.8) && of(0.8) > 0.2, "{beckmann} {left:?}");
             }
-            // Beckmann's microfacets are less steep.
+            // Beckmann's distribution has fewer steep microfacets.
             assert!(below(0.6, true, left) > below(0.6, false, left));
         }
     }

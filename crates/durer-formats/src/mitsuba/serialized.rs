@@ -1,10 +1,11 @@
-//! Reader of `.serialized` files, each of which can contain several meshes.
+//! Reads `.serialized` files, each of which can contain several meshes.
 //!
 //! All values are little-endian. Each mesh begins with the number 0x041C and the version (3 or 4),
-//! 16 bits each. A zlib stream follows: flags, a zero-terminated name (version 4 only), the numbers
-//! of vertices and triangles, then lists of positions, normals, texture coordinates, colours and
-//! vertex indices. The file ends with the offsets of the meshes and their number. Source: Mitsuba
-//! 3's documentation, `serialized`.
+//! each of which has 16 bits. A zlib stream follows. The stream contains flags, a zero-terminated
+//! name (only in version 4), the numbers of vertices and triangles, and then the lists of
+//! positions, normals, texture coordinates, colours and vertex indices. The file ends with the
+//! offsets of all meshes, followed by the number of meshes. Source: *Mitsuba 3 documentation*,
+//! `serialized`.
 
 use crate::files::read_named;
 use crate::model::ReadInput;
@@ -16,25 +17,26 @@ use flate2::bufread::ZlibDecoder;
 use std::io::{ErrorKind, Read};
 
 const MARK: u16 = 0x041c;
-/// Size in bytes of the header of a mesh: the number 0x041C and the version.
+/// Size in bytes of the header of a mesh, which consists of the number 0x041C and the version.
 const HEAD: usize = 4;
 
-/// Flags of a mesh: which lists are present, and whether numbers have 64 bits.
+/// Flags of a mesh, which say which lists are present and whether numbers have 64 bits.
 const NORMALS: u32 = 0x0001;
 const UVS: u32 = 0x0002;
 const COLORS: u32 = 0x0008;
 const DOUBLE: u32 = 0x2000;
 
 const MAX_NAME_LENGTH: usize = 1 << 12;
-/// Maximum ratio of decompressed bytes to the size of the file, and number of bytes that even the
-/// smallest file may take. Meshes rarely compress to less than a tenth.
+/// Maximum ratio of the number of decompressed bytes to the file size, and the number of
+/// decompressed bytes that is allowed even for the smallest file. Compression rarely makes a mesh
+/// smaller than a tenth of its size.
 const MAX_RATIO: u64 = 200;
 const FREE_BYTES: u64 = 1 << 24;
 
-/// Byte offset and message of an error.
+/// Byte offset at which an error occurred, and the error message.
 type ParseError = (usize, String);
 
-/// Reads the mesh with a given index from a file.
+/// Reads the mesh that has the given index in a file.
 pub(super) fn mesh(
     input: &ReadInput,
     report: &SharedReport,
@@ -70,7 +72,7 @@ fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, ParseError>
     let size = if has(DOUBLE) { 8 } else { 4 };
     let lists = [(true, 3), (has(NORMALS), 3), (has(UVS), 2), (has(COLORS), 3)];
     let row = lists.iter().filter(|(there, _)| *there).map(|(_, width)| size * width).sum::<u64>();
-    // Indices have 64 bits only if there are more vertices than this.
+    // Indices have 64 bits only if the mesh has more vertices than this.
     if vertices > u64::from(u32::MAX) {
         return Err((unpacked.position(), format!("{vertices} vertices are more than 32-bit indices allow")));
     }
@@ -87,7 +89,7 @@ fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, ParseError>
     let positions = list("positions", true, 3)?;
     let normals = list("normals", has(NORMALS), 3)?;
     let uvs = list("texture coordinates", has(UVS), 2)?;
-    // Mitsuba 3 ignores these colours.
+    // Mitsuba 3 ignores these vertex colours.
     list("colours", has(COLORS), 3)?;
     let corners = unpacked.bytes("corners", triangles * 12)?;
     let corners: Vec<u32> = corners.as_chunks().0.iter().map(|four| u32::from_le_bytes(*four)).collect();
@@ -109,7 +111,7 @@ fn parse(bytes: &[u8], number: u32, memory: u64) -> Result<MeshData, ParseError>
     })
 }
 
-/// Finds a mesh by its index; returns its offset and the file's version.
+/// Finds a mesh by its index. Returns the offset of the mesh and the version of the file.
 fn find_mesh(bytes: &[u8], number: u32) -> Result<(usize, u16), ParseError> {
     let begins = |at: usize| {
         let found =
@@ -144,7 +146,8 @@ fn find_mesh(bytes: &[u8], number: u32) -> Result<(usize, u16), ParseError> {
     }
 }
 
-/// Zlib stream of one mesh in a `.serialized` file, decompressed as its values are read.
+/// Zlib stream of one mesh in a `.serialized` file, which is decompressed while its values are
+/// read.
 struct ZlibReader<'a> {
     inner: ZlibDecoder<&'a [u8]>,
     /// Offset of the compressed data in the file.
@@ -152,12 +155,12 @@ struct ZlibReader<'a> {
 }
 
 impl ZlibReader<'_> {
-    /// Returns the offset in the file up to which data was read.
+    /// Returns the offset in the file up to which data has been read.
     fn position(&self) -> usize {
         self.start + self.inner.total_in() as usize
     }
 
-    /// Reads `count` bytes. Allocates memory only for bytes that exist.
+    /// Reads `count` bytes. Memory is allocated only for bytes that exist.
     fn bytes(&mut self, what: &str, count: u64) -> Result<Vec<u8>, ParseError> {
         let mut bytes = Vec::new();
         let read = (&mut self.inner).take(count).read_to_end(&mut bytes);
@@ -184,7 +187,7 @@ impl ZlibReader<'_> {
         Err((self.position(), format!("the name of the mesh is too long: more than {MAX_NAME_LENGTH} bytes")))
     }
 
-    /// Reads `count` finite numbers of 32 or 64 bits.
+    /// Reads `count` finite numbers that have 32 or 64 bits each.
     fn numbers(&mut self, what: &str, count: u64, double: bool) -> Result<Vec<f32>, ParseError> {
         let bytes = self.bytes(what, count * if double { 8 } else { 4 })?;
         let numbers: Vec<f32> = match double {
@@ -206,7 +209,7 @@ pub(super) mod tests {
     use flate2::write::ZlibEncoder;
     use std::io::Write;
 
-    /// Returns an uncompressed mesh of two triangles, with the lists in `flags`.
+    /// Returns an uncompressed mesh of two triangles with the lists that `flags` selects.
     pub fn stream(version: u16, flags: u32) -> Vec<u8> {
         let mut bytes = flags.to_le_bytes().to_vec();
         if version == 4 {
@@ -231,7 +234,7 @@ pub(super) mod tests {
         bytes
     }
 
-    /// Returns a file with several meshes.
+    /// Returns a file that contains several meshes.
     pub fn file(version: u16, streams: &[Vec<u8>]) -> Vec<u8> {
         let (mut bytes, mut places) = (Vec::new(), Vec::new());
         for stream in streams {
@@ -267,7 +270,8 @@ pub(super) mod tests {
         assert_eq!(refused(&good, 2, MEMORY, "the file has no mesh 2: it has 2"), good.len() - 4);
         refused(b"\x1c\x04\x04\x00\x09\x00\x00\x00", 5, MEMORY, "too short for the offsets of 9");
         refused(&good, 1, 100, "more than a file of this size can contain");
-        // Excessive counts, indices out of range, numbers that are not finite.
+        // Tests with counts that are too large, indices out of range, and numbers that are not
+        // finite.
         let changed = |at: usize, byte: u8, message: &str| {
             let mut inner = stream(3, 0x1000);
             inner[at] = byte;
@@ -301,7 +305,7 @@ pub(super) mod tests {
                     }
                 }
             };
-            // Half of the meshes are damaged before compression.
+            // Half of the meshes are damaged before they are compressed.
             if round % 4 < 2 {
                 change(&mut inner);
             }

@@ -1,4 +1,4 @@
-//! Converts shapes to objects.
+//! Converts shapes to scene objects.
 //!
 //! Source: *Mitsuba 3 documentation*, "Shapes".
 
@@ -38,7 +38,7 @@ const SHAPES: [&str; 13] = [
 ];
 
 impl Reader<'_> {
-    /// Converts a shape plugin to objects and appends them to a list.
+    /// Converts a shape plugin to objects, and appends them to a list.
     pub fn shape(&mut self, plugin: &Rc<Plugin>, objects: &mut Vec<Object>, depth: u32) {
         if self.too_deep(depth, plugin.at) {
             return;
@@ -46,7 +46,7 @@ impl Reader<'_> {
         let (report, at) = (self.report, plugin.at);
         let to_world = plugin.transform(report, "to_world");
         let shape = match plugin.kind.as_str() {
-            // Shape groups are only shown by instances.
+            // Shape groups are visible only through instances.
             "shapegroup" => return,
             "instance" => self.instance(plugin, to_world, objects, depth),
             "merge" => {
@@ -88,7 +88,7 @@ impl Reader<'_> {
                 None => {}
             }
         } else if !matches!(plugin.kind.as_str(), "instance" | "merge") {
-            // The shape has been reported, so do not also report its materials as unused.
+            // The shape has already been reported, so do not report its materials as unused too.
             for class in ["bsdf", "emitter", "medium"] {
                 self.child_plugins(plugin, Some(class));
             }
@@ -121,7 +121,7 @@ impl Reader<'_> {
                 entry
             }
         };
-        // Count the instance itself too, since its content may be empty.
+        // Count the instance itself as well, because its content may be empty.
         if self.count_objects(count + 1, property.at) {
             let inner = Object { node: ObjectKind::Group((*group).clone()), material: None, span: plugin.at };
             objects.push(inner.transformed(to_world));
@@ -129,27 +129,28 @@ impl Reader<'_> {
         None
     }
 
-    /// Reads the medium inside a shape.
+    /// Reads the medium that is inside a shape.
     fn interior_medium(&mut self, plugin: &Plugin) -> Option<(Medium, Key)> {
         let media = self.child_plugins(plugin, Some("medium"));
-        // Ignore `exterior`: it is either the interior of another shape or the medium around the
+        // Ignore `exterior`, which is either the interior of another shape or the medium around the
         // camera.
         let (_, medium) = media.into_iter().find(|(property, _)| property.name == "interior")?;
         self.medium(&medium)
     }
 
-    /// Returns true if a shape has a picture in its material or emitter.
+    /// Returns true if the material or emitter of a shape uses a picture.
     fn has_picture(&self, plugin: &Plugin) -> bool {
         self.has_texture(plugin, &["bitmap", "checkerboard"])
     }
 
-    /// Returns true if a shape has a texture of one of these types.
+    /// Returns true if a shape has a texture of one of the given types.
     fn has_texture(&self, plugin: &Plugin, kinds: &[&str]) -> bool {
         let parts = self.reachable(plugin, &["texture", "bsdf", "emitter"]);
         parts.iter().any(|part| part.element == "texture" && kinds.contains(&part.kind.as_str()))
     }
 
-    /// Returns true if a shape has an anisotropic material. If so, the direction of u matters.
+    /// Returns true if the material of a shape is anisotropic. In that case, the direction of u
+    /// matters.
     fn is_anisotropic(&self, plugin: &Plugin) -> bool {
         let words = ["alpha_u", "alpha_v", "anisotropic"];
         let parts = self.reachable(plugin, &["bsdf"]);
@@ -174,8 +175,8 @@ impl Reader<'_> {
         }
         let to_world = to_world * DAffine3::from_translation(center);
         let (center, to_world) = match self.has_picture(plugin) || self.is_anisotropic(plugin) {
-            // Mitsuba's poles are on the z axis, and u begins at x. In Dürer the poles are on the y
-            // axis, and u = 1/2 is at -z.
+            // In Mitsuba, the poles are on the z axis, and u is 0 at +x. In Dürer the poles are on
+            // the y axis, and u = 1/2 is at -z.
             true => {
                 let turned = DMat3::from_cols(DVec3::NEG_Y, DVec3::Z, DVec3::X);
                 (Vec3::ZERO, to_world * DAffine3::from_mat3(turned))
@@ -187,7 +188,7 @@ impl Reader<'_> {
     }
 
     fn disk(&mut self, plugin: &Plugin, to_world: DAffine3) -> Option<(ObjectKind, DAffine3)> {
-        // Discs have different texture coordinates in Dürer.
+        // The texture coordinates of discs differ in Dürer.
         if self.has_picture(plugin) || self.is_anisotropic(plugin) || self.has_normal_map(plugin) {
             return self.mesh(plugin, "disk", to_world, || Some(tessellate::with_tangents(tessellate::disk())));
         }
@@ -213,7 +214,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Returns the path of the shape's file, and its span in the scene.
+    /// Returns the path of the file that a shape names, and the span of that name in the scene.
     fn path(&self, plugin: &Plugin) -> Option<(String, Span)> {
         let Some(name) = plugin.text(self.report, "filename") else {
             self.report.error(plugin.at, format!("the shape `{}` needs a `filename`", plugin.kind));
@@ -222,7 +223,7 @@ impl Reader<'_> {
         Some((self.loader.path(&name), plugin.span("filename")))
     }
 
-    /// Returns the index of the shape's mesh within its file.
+    /// Returns the index of the mesh that the shape uses within its file.
     fn shape_index(&self, plugin: &Plugin) -> Option<u32> {
         let number = plugin.number(self.report, "shape_index").unwrap_or(0.0);
         if !(0.0..=16_777_216.0).contains(&number) || number.fract() != 0.0 {
@@ -241,7 +242,8 @@ impl Reader<'_> {
         };
         let flat = plugin.boolean(report, "face_normals").unwrap_or(false);
         let is_obj = plugin.kind == "obj";
-        // Mitsuba flips v in OBJ files, where it points up as in Dürer, but not in PLY files.
+        // Mitsuba flips v in OBJ files, where v points up as it does in Dürer. Mitsuba does not
+        // flip v in PLY files.
         let over = plugin.boolean(report, "flip_tex_coords").unwrap_or(is_obj);
         let mirrored = to_world.matrix3.determinant() < 0.0;
         let input = self.input;
@@ -264,17 +266,19 @@ impl Reader<'_> {
             if flat {
                 (data.normals, data.triangle_normals) = (Vec::new(), Vec::new());
             }
-            // Faces without normals are oriented by the winding of their corners in world space.
+            // The orientation of faces without normals follows from the order of their corners in
+            // world space.
             if mirrored && data.triangle_normals.is_empty() {
                 data = data.oriented(true);
             }
             if !flat && data.triangle_normals.is_empty() {
-                // Vertices at the same position with different texture coordinates are not merged.
+                // Vertices at the same position are not merged if their texture coordinates differ.
                 let uvs = std::mem::take(&mut data.triangle_uvs);
                 smoothed(&mut data, |i, k| Some(uvs.get(i).map_or(0, |uvs| uvs[k])));
                 data.triangle_uvs = uvs;
             }
-            // Keep vertex colours only if a texture uses them. Convert those of PLY files to sRGB.
+            // Keep vertex colours only if a texture uses them. Convert the vertex colours of PLY
+            // files to sRGB.
             let number = |x: f32| f32::from(Transfer::Srgb.encode(x)) / 255.0;
             data.colors
                 .iter_mut()
@@ -290,7 +294,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Builds tubes for a curve file.
+    /// Builds tubes for the curves in a file.
     fn curves(&mut self, plugin: &Plugin, to_world: DAffine3) -> Option<(ObjectKind, DAffine3)> {
         let report = self.report;
         let (path, at) = self.path(plugin)?;
@@ -299,7 +303,7 @@ impl Reader<'_> {
         self.mesh(plugin, &key, to_world, || curve::tubes(input, report, (&path, at), is_spline))
     }
 
-    /// Returns a mesh with v downwards, and its transform.
+    /// Returns a mesh and its transform. As in Mitsuba, v = 0 is the upper edge of a picture.
     fn mesh(
         &mut self,
         plugin: &Plugin,

@@ -1,8 +1,8 @@
-//! Reads daylight: `sunsky`, and `sky` and `sun` of Mitsuba 0.6.
+//! Reads daylight emitters: `sunsky`, and `sky` and `sun` of Mitsuba 0.6.
 //!
 //! Mitsuba uses the sky of Hosek and Wilkie, *An Analytic Model for Full Spectral Sky-Dome
-//! Radiance*, SIGGRAPH 2012. Dürer uses Preetham's sky, scaled to the same illuminance, and
-//! Preetham's sun.
+//! Radiance*, SIGGRAPH 2012. Dürer uses Preetham's sun, and Preetham's sky scaled to the same
+//! illuminance.
 
 use super::defs::InfiniteLight;
 use super::plugin::Plugin;
@@ -16,13 +16,14 @@ use durer_scene::texture::sky::SUN_RADIUS;
 use glam::{DAffine3, DMat3, DVec3};
 use std::f32::consts::PI;
 
-/// Lumens per watt of a constant spectrum. Mitsuba's unit is the mean in watts per nanometre, so
-/// this is 683 lm/W times the integral of the CIE's y over wavelengths.
+/// Luminous efficacy of a constant spectrum in lumens per watt. Mitsuba's unit is the mean number
+/// of watts per nanometre, so the value is 683 lm/W times the integral of the CIE function y over
+/// all wavelengths.
 const LUMENS: f32 = 683.0 * 106.856_9;
 
-/// Illuminance of level ground under the Hosek-Wilkie sky in lux, with ground albedo 0.2. Rows are
-/// turbidities, and columns are elevations of the sun in degrees. Values are sums over 1,152
-/// directions of `sunsky` in Mitsuba 3.9.1, times [`LUMENS`].
+/// Illuminance in lux of level ground under the Hosek-Wilkie sky, for a ground albedo of 0.2. Each
+/// row is for one turbidity, and each column is for one elevation of the sun in degrees. Each value
+/// is a sum over 1,152 directions of `sunsky` in Mitsuba 3.9.1, multiplied by [`LUMENS`].
 const TURBIDITIES: [f32; 4] = [2.0, 3.0, 5.0, 8.0];
 const HEIGHTS: [f32; 5] = [5.0, 20.0, 40.0, 60.0, 85.0];
 const LEVEL: [[f32; 5]; 4] = [
@@ -32,15 +33,15 @@ const LEVEL: [[f32; 5]; 4] = [
     [8416.0, 21362.0, 34504.0, 40648.0, 38652.0],
 ];
 
-/// Interpolates the table bilinearly.
+/// Interpolates bilinearly in the table.
 fn illuminance(turbidity: f32, height: f32) -> f32 {
     let ((i, a), (j, b)) = (interval(&TURBIDITIES, turbidity), interval(&HEIGHTS, height));
     let row = |i: usize| LEVEL[i][j] + b * (LEVEL[i][j + 1] - LEVEL[i][j]);
     row(i) + a * (row(i + 1) - row(i))
 }
 
-/// Finds the interval of an ascending list that contains `x`; returns its index and the fraction
-/// within it.
+/// Finds the interval of an ascending list that contains `x`. Returns the index of the interval and
+/// the relative position of `x` within it.
 fn interval(steps: &[f32], x: f32) -> (usize, f32) {
     let x = x.clamp(steps[0], steps[steps.len() - 1]);
     let i = steps[1..steps.len() - 1].iter().take_while(|step| **step < x).count();
@@ -55,8 +56,8 @@ impl Reader<'_> {
         let turbidity = number("turbidity", 3.0);
         let all = number("scale", 1.0);
         let [sky_scale, sun_scale] = ["sky_scale", "sun_scale"].map(|name| (all * number(name, 1.0)).max(0.0));
-        // Rotation to axes with x east, y up and z south. In Mitsuba 3, x is south, y west and z
-        // up.
+        // Rotation to axes in which x is east, y is up and z is south. In Mitsuba 3, x is south, y
+        // is west and z is up.
         let up = match self.loader.is_old {
             true => DMat3::IDENTITY,
             false => DMat3::from_cols(DVec3::Z, DVec3::NEG_X, DVec3::Y),
@@ -92,14 +93,14 @@ impl Reader<'_> {
         }
         if plugin.kind != "sky" && sun_scale > 0.0 {
             let direction = -to_world.transform_vector3(way).normalize_or(DVec3::Y).as_vec3();
-            // A light's colour is illuminance over pi.
+            // The colour of a light is its illuminance divided by pi.
             let color = sky.sun() * (sun_scale / LUMENS / PI);
             let sun = DirectionalLight { direction, color, spread: Some(SUN_RADIUS), ..DirectionalLight::default() };
             self.scene.lights.get_or_insert_default().push(Spanned { value: sun.into(), span: plugin.at });
         }
     }
 
-    /// Returns the direction to the sun from location, date and time.
+    /// Returns the direction to the sun for a location, date and time.
     fn sun_direction_by_time(&self, plugin: &Plugin) -> Vec3 {
         let number = |name, default: f32| f64::from(plugin.number(self.report, name).unwrap_or(default));
         let date = [number("year", 2010.0), number("month", 7.0), number("day", 10.0)].map(|x| x as i32);

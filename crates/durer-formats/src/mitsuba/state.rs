@@ -1,4 +1,4 @@
-//! Converts plugins to a scene.
+//! Converts plugins to a Dürer scene.
 
 use super::defs::{InfiniteLight, MaterialDef};
 use super::load::Loader;
@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, HashSet};
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Maximum depth of nested plugins, counting references.
+/// Maximum depth of nested plugins, including plugins that are nested by reference.
 pub(super) const MAX_DEPTH: u32 = 32;
 
 /// Reader that converts the plugins of a Mitsuba scene to a Dürer scene.
@@ -23,20 +23,21 @@ pub(super) struct Reader<'a> {
     pub input: &'a ReadInput<'a>,
     pub report: &'a SharedReport,
     pub loader: Loader<'a>,
-    /// Converted materials by plugin; the flag is true if their shape is turned inside out.
+    /// Converted materials by plugin. The flag is true if the shape that uses the material is
+    /// turned inside out.
     pub materials: BTreeMap<(Key, bool), Rc<MaterialDef>>,
-    /// Material indices in the scene, by the plugins of the material, the light and the interior
-    /// medium. The flag is true if the shape is turned inside out.
+    /// Indices of materials in the scene, by the plugins of the material, the light and the
+    /// interior medium. The flag is true if the shape is turned inside out.
     pub material_indices: BTreeMap<([Option<Key>; 3], bool), Option<u32>>,
-    /// Meshes by file name and by the changes made to them.
+    /// Meshes by file name and by the changes that were applied to them.
     pub meshes: BTreeMap<String, Option<Arc<MeshData>>>,
-    /// Contents of shape groups, with their number of objects.
+    /// Contents of shape groups, with the number of objects in each group.
     pub groups: BTreeMap<Key, (Rc<Group>, usize)>,
-    /// True if the current shape is turned inside out, so that the interior index of its glass is
-    /// on the outside.
+    /// True if the current shape is turned inside out, so that the interior index of refraction of
+    /// its glass applies outside it.
     pub inside_out: bool,
     pub infinite: Option<InfiniteLight>,
-    /// True if scattered light is not rendered (`max_depth` below 2).
+    /// True if scattered light is not rendered because `max_depth` is below 2.
     pub emitters_only: bool,
     pub scene: Scene,
 }
@@ -58,7 +59,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Converts all plugins to a scene.
+    /// Converts all plugins to a Dürer scene.
     pub fn read(mut self, all: &Plugin) -> Scene {
         let mut sensors = Vec::new();
         for (property, plugin) in self.child_plugins(all, None) {
@@ -76,7 +77,7 @@ impl<'a> Reader<'a> {
                 "sensor" => sensors.push(plugin),
                 "integrator" => self.integrator(&plugin, 0),
                 // Ignore plugins that have no effect on their own, such as materials. Shapes refer
-                // to them.
+                // to these plugins.
                 _ => {}
             }
         }
@@ -94,8 +95,9 @@ impl<'a> Reader<'a> {
         self.scene
     }
 
-    /// Returns each plugin of the given classes that can be reached from a plugin through plugins
-    /// of these classes. Reports nothing, and does not mark anything as used.
+    /// Returns every plugin of the given classes that is connected to a plugin by a chain of
+    /// plugins of these classes. This function does not report anything, and does not mark any
+    /// property as used.
     pub fn reachable(&self, plugin: &Plugin, classes: &[&str]) -> Vec<Rc<Plugin>> {
         let part = |property: &Property| match &property.value {
             Value::Plugin(part) => Some(part.clone()),
@@ -116,12 +118,13 @@ impl<'a> Reader<'a> {
         plugins
     }
 
-    /// Returns a reader for pictures that the scene names.
+    /// Returns a reader for the pictures that the scene names.
     pub fn pictures(&self) -> Pictures<'a> {
         Pictures { input: self.input, report: self.report }
     }
 
-    /// Returns the child plugins in file order; `class` selects one class.
+    /// Returns the child plugins in the order of the file. If `class` is given, returns only those
+    /// of that class.
     pub fn child_plugins<'p>(&self, plugin: &'p Plugin, class: Option<&str>) -> Vec<(&'p Property, Rc<Plugin>)> {
         let plugins = plugin.properties.iter().filter_map(|property| {
             let part = self.child_plugin(property)?;
@@ -154,7 +157,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Returns true and reports an error if plugins are nested more than [`MAX_DEPTH`] levels deep,
+    /// Reports an error and returns true if plugins are nested more than [`MAX_DEPTH`] levels deep,
     /// for example because they refer to each other in a cycle.
     pub fn too_deep(&self, depth: u32, at: Span) -> bool {
         if depth > MAX_DEPTH {
@@ -164,7 +167,8 @@ impl<'a> Reader<'a> {
         depth > MAX_DEPTH
     }
 
-    /// Counts `more` objects; returns false and reports an error if the limit is exceeded.
+    /// Counts `more` additional objects. If the limit is exceeded, reports an error and returns
+    /// false.
     pub fn count_objects(&self, more: usize, at: Span) -> bool {
         self.loader.limits.count_objects_or_report(more, self.report, at)
     }

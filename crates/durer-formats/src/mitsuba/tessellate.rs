@@ -1,11 +1,11 @@
-//! Mitsuba shapes that are converted to triangle meshes.
+//! Builds triangle meshes for shapes of Mitsuba that Dürer represents as meshes.
 
 use durer_scene::math::{Vec2, Vec3, fp};
 use durer_scene::shape::MeshData;
 use durer_scene::shape::mesh::NO_INDEX;
 use durer_scene::shape::tessellate::revolution;
 
-/// Corners and normal of each face of a cube. The texture coordinates of the corners are
+/// Corners and normal of each face of a cube. The texture coordinates of the corners are those of
 /// [`AROUND`], in the same order.
 const FACES: [([[f32; 3]; 4], [f32; 3]); 6] = [
     ([[1.0, -1.0, -1.0], [1.0, -1.0, 1.0], [-1.0, -1.0, 1.0], [-1.0, -1.0, -1.0]], [0.0, -1.0, 0.0]),
@@ -19,7 +19,7 @@ const FACES: [([[f32; 3]; 4], [f32; 3]); 6] = [
 const SIDES: u32 = 128;
 const AROUND: [[f32; 2]; 4] = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
 
-/// Returns the cube from -1 to 1, with v downwards.
+/// Returns the cube that extends from -1 to 1. As in Mitsuba, v = 0 is the upper edge of a picture.
 pub(super) fn cube() -> MeshData {
     let mut data = MeshData { flat: true, ..MeshData::default() };
     for (corners, normal) in FACES {
@@ -33,7 +33,8 @@ pub(super) fn cube() -> MeshData {
     data
 }
 
-/// Returns the square from -1 to 1 that faces +z, with v downwards.
+/// Returns the square from -1 to 1 that faces +z. As in Mitsuba, v = 0 is the upper edge of a
+/// picture.
 pub(super) fn rectangle() -> MeshData {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Vec2::from_array);
     let triangles = vec![[0, 1, 2], [0, 2, 3]];
@@ -49,8 +50,8 @@ pub(super) fn rectangle() -> MeshData {
     }
 }
 
-/// Returns a triangulated disc of radius 1 that faces +z; u grows outwards from the centre, and v
-/// around it from +x.
+/// Returns a triangulated disc of radius 1 that faces +z. The coordinate u increases from the
+/// centre outwards, and v increases with the angle from +x.
 pub(super) fn disk() -> MeshData {
     let rim = |i: f32| {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(360.0 * i / SIDES as f32));
@@ -62,8 +63,8 @@ pub(super) fn disk() -> MeshData {
         data.positions.push(rim(i as f32));
         data.uvs.push(Vec2::new(1.0, around(i as f32)));
         if i < SIDES {
-            // Each triangle has its own centre vertex, whose v is halfway between those of its two
-            // outer corners.
+            // Each triangle has its own vertex at the centre of the disc. The v of this vertex is
+            // the mean of those of the two outer corners.
             data.positions.push(Vec3::ZERO);
             data.uvs.push(Vec2::new(0.0, around(i as f32 + 0.5)));
             data.triangles.push([2 * i + 1, 2 * i, 2 * i + 2]);
@@ -74,13 +75,14 @@ pub(super) fn disk() -> MeshData {
     data
 }
 
-/// Returns an open cylinder of length 1 about the z axis, with v downwards.
+/// Returns an open cylinder of length 1 around the z axis. As in Mitsuba, v = 0 is the upper edge
+/// of a picture.
 pub(super) fn cylinder(radius: f32) -> MeshData {
     revolution::cylinder(radius, [0.0, 1.0], 360.0)
 }
 
-/// Adds tangents in the direction of increasing u. The bitangent follows from the normal and the
-/// tangent, regardless of the direction of v.
+/// Adds tangents that point in the direction of increasing u. The bitangent is computed from the
+/// normal and the tangent, regardless of the direction of v.
 pub(super) fn with_tangents(mut data: MeshData) -> MeshData {
     let mut tangents = vec![Vec3::ZERO; data.positions.len()];
     for (corners, uvs) in data.triangles.iter().zip(&data.triangle_uvs).filter(|(_, uvs)| !uvs.contains(&NO_INDEX)) {
@@ -94,7 +96,8 @@ pub(super) fn with_tangents(mut data: MeshData) -> MeshData {
     data
 }
 
-/// Flips v: converts a mesh with v downwards to one with v upwards, and vice versa.
+/// Flips the texture coordinate v of a mesh, so that the upper edge of a picture moves from v = 0
+/// to v = 1, or vice versa.
 pub(super) fn with_flipped_v(mut data: MeshData) -> MeshData {
     data.uvs.iter_mut().chain(&mut data.second_uvs).for_each(|uv| uv.y = 1.0 - uv.y);
     data

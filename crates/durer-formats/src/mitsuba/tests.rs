@@ -1,5 +1,5 @@
-//! Tests of the Mitsuba reader: syntax, conventions compared with closed forms, and positions of
-//! errors.
+//! Tests of the Mitsuba reader: its syntax, its conventions compared with analytic results, and the
+//! positions of errors.
 
 mod bright;
 mod conventions;
@@ -15,20 +15,20 @@ fn read(text: &str) -> (Option<Scene>, Vec<String>) {
     read_in(&std::env::temp_dir(), "scene.xml", text)
 }
 
-/// Reads elements inside a scene, which must cause no diagnostics.
+/// Reads elements inside a scene, which must not cause any diagnostics.
 fn clean(inner: &str) -> Scene {
     let (scene, messages) = read(&format!("<scene version='3.0.0'>{inner}</scene>"));
     assert_eq!(messages, [""; 0], "{inner}");
     scene.unwrap()
 }
 
-/// Returns the objects with a shape, in order.
+/// Returns the objects that have a shape, in order.
 fn objects(scene: &Scene) -> Vec<&Object> {
     fn gather<'a>(object: &'a Object, all: &mut Vec<&'a Object>) {
         match &object.node {
             ObjectKind::Group(group) => group.objects.iter().for_each(|object| gather(object, all)),
             ObjectKind::Transform(_, inner) => gather(inner, all),
-            // Skip the ground of the default scene setup.
+            // Skip the ground that belongs to the default scene setup.
             ObjectKind::Primitive(Primitive::Plane(_)) => {}
             _ => all.push(object),
         }
@@ -69,7 +69,8 @@ fn variables_includes_and_old_names_are_read() {
 
 #[test]
 fn diagnostics_have_their_place() {
-    // Scene, text at whose last occurrence the diagnostic is expected, and the diagnostic.
+    // Each entry has a scene, a text at whose last occurrence the diagnostic is expected, and the
+    // diagnostic.
     for (inner, there, expected) in [
         ("<shape type='sphere'><float name='radius' value='x'/></shape>", "x'/>", "error expected a number, found `x`"),
         ("<shape type='sphere'><float name='radius' value='-1'/></shape>", "-1", "error `radius` must be more than 0"),
@@ -189,8 +190,8 @@ fn errors_are_reported_once() {
 
 #[test]
 fn hostile_files_are_refused() {
-    // Cycles of materials, shapes and files; an entity expansion bomb; deep nesting; instances of
-    // instances.
+    // Cycles of materials, shapes and files, an XML entity expansion attack, deep nesting, and
+    // instances of instances.
     let (scene, messages) = read(
         "<scene><bsdf type='twosided' id='a'><ref id='b'/></bsdf><bsdf type='twosided' id='b'><ref id='a'/></bsdf>\
         <shape type='sphere'><ref id='a'/></shape></scene>",

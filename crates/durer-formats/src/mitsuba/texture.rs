@@ -1,4 +1,4 @@
-//! Reads textures, which become a constant or a picture.
+//! Reads textures, each of which becomes a constant or a picture.
 
 use super::plugin::{Plugin, Property};
 use super::state::Reader;
@@ -12,22 +12,24 @@ use durer_scene::scene::{PictureBytes, TextureImage};
 use durer_scene::texture::{Mapping, Wrap};
 use glam::DAffine3;
 
-/// Value of a Mitsuba texture plugin: a constant colour or a picture.
+/// Value of a Mitsuba texture plugin, which is a constant colour or a picture.
 #[derive(Clone)]
 pub(super) enum Texture {
     Constant(Color),
-    /// Picture, the factor on its values, and true if its bytes are linear (`raw`).
+    /// Picture, the factor that multiplies its values, and a flag that is true if its bytes are
+    /// linear (`raw`).
     Picture(TextureImage, Color, bool),
 }
 
 impl Reader<'_> {
-    /// Returns the value of a property that may be a texture; `default` is used if it is missing.
+    /// Returns the value of a property that may be a texture, or `default` if the property is
+    /// missing.
     pub fn texture(&self, plugin: &Plugin, name: &'static str, default: Color) -> Texture {
         plugin.get(name).map_or(Texture::Constant(default), |property| self.texture_of(property, default))
     }
 
-    /// Returns the value of a property that may be a picture with values above 1. Such a picture is
-    /// divided by its maximum. See [`Reader::texture`].
+    /// Returns the value of a property that may be a picture with values above 1. Pictures with
+    /// values above 1 are divided by their maximum. See [`Reader::texture`].
     pub fn bright_texture(&self, plugin: &Plugin, name: &'static str, default: Color) -> Texture {
         let bitmap = self.named_plugin(plugin, name).filter(|part| part.kind == "bitmap");
         let Some(bitmap) = bitmap else { return self.texture(plugin, name, default) };
@@ -38,7 +40,7 @@ impl Reader<'_> {
             .map_or(Texture::Constant(default), |(picture, scale)| Texture::Picture(picture, Vec3::splat(scale), raw))
     }
 
-    /// Returns the picture with sRGB encoding; converts it if its bytes are linear (`raw`).
+    /// Returns the picture in sRGB encoding, after converting it if its bytes are linear (`raw`).
     pub fn srgb_encoded(&self, picture: TextureImage, raw: bool, at: Span) -> TextureImage {
         if raw { self.pictures().reencoded(&picture, at, true, |x| x).unwrap_or(picture) } else { picture }
     }
@@ -77,7 +79,7 @@ impl Reader<'_> {
         value.unwrap_or(Texture::Constant(default))
     }
 
-    /// Returns the colour of a property, and the picture that it multiplies.
+    /// Returns the colour of a property and the picture that the colour multiplies.
     pub fn color_or_texture(&mut self, plugin: &Plugin, name: &'static str, default: f32) -> (Color, Option<FileName>) {
         match self.texture(plugin, name, Vec3::splat(default)) {
             Texture::Constant(color) => {
@@ -96,8 +98,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns a number that may be a texture: `change` applied to the number, or 1 and the changed
-    /// picture.
+    /// Returns a number that may be a texture. `change` is applied to the number. For a picture,
+    /// `change` is applied to the picture and the number is 1.
     pub fn number_or_texture(
         &mut self,
         plugin: &Plugin,
@@ -111,7 +113,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns the picture of a property with `change` applied to its luminance; `None` if the
+    /// Returns the picture of a property after applying `change` to its luminance, or `None` if the
     /// property is not a picture.
     pub fn number_texture(&mut self, property: &Property, change: impl Fn(f32) -> f32) -> Option<FileName> {
         let fields =
@@ -127,19 +129,19 @@ impl Reader<'_> {
         };
         let Texture::Picture(picture, scale, raw) = texture else { return None };
         let decode = if raw { decode_linear } else { decode_srgb };
-        // A colour is converted to a number by its luminance.
+        // The luminance of a colour is used where a number is expected.
         let number = |p: Color| change(scale.x * p.dot(LUMINANCE));
         let picture = self.pictures().changed(&picture, property.at, decode, number)?;
         Some(asset(&mut self.scene, picture, property.at))
     }
 
-    /// Returns a number that may be a texture; for a picture, its mean.
+    /// Returns a number that may be a texture. For a picture, returns its mean.
     pub fn value(&self, plugin: &Plugin, name: &'static str, default: f32) -> f32 {
         let color = self.color(plugin, name, Vec3::splat(default));
         color.dot(LUMINANCE)
     }
 
-    /// Returns a colour that may be a texture; for a picture, its mean.
+    /// Returns a colour that may be a texture. For a picture, returns its mean.
     pub fn color(&self, plugin: &Plugin, name: &'static str, default: Color) -> Color {
         match self.texture(plugin, name, default) {
             Texture::Constant(color) => color,
@@ -158,7 +160,8 @@ impl Reader<'_> {
         self.bitmap_as(texture, eight_bits).map(|(picture, _)| picture)
     }
 
-    /// Reads the picture of a `bitmap` texture and its factor; `make` reads the file.
+    /// Reads the picture of a `bitmap` texture and the factor that multiplies it. The function
+    /// `make` reads the file.
     fn bitmap_as(
         &self,
         texture: &Plugin,
@@ -182,7 +185,7 @@ impl Reader<'_> {
             }
         };
         mapping.nearest = match word("filter_type", "bilinear").as_str() {
-            // The last two are from Mitsuba 0.6.
+            // The last two filters are from Mitsuba 0.6.
             "bilinear" | "ewa" | "trilinear" => false,
             "nearest" => true,
             other => {
@@ -192,19 +195,20 @@ impl Reader<'_> {
             }
         };
         texture.mark_known(&["raw", "accel", "format"]);
-        // In Mitsuba, a picture's alpha does not cut holes; only `mask` does.
+        // In Mitsuba, the alpha channel of a picture does not make the surface transparent. Only
+        // `mask` makes a surface transparent.
         mapping.cutoff = Some(0.0);
         let (bytes, scale) = make(&self.loader.path(&name), texture.span("filename"))?;
         Some((TextureImage { bytes, mapping }, scale))
     }
 
-    /// Reads the mapping of a texture. In Mitsuba, v grows downwards from the upper edge, as in
-    /// Dürer's pictures.
+    /// Reads the mapping from texture coordinates to a texture. In Mitsuba, v increases downwards
+    /// from the upper edge, as in Dürer's pictures.
     fn mapping(&self, texture: &Plugin) -> Mapping {
         let report = self.report;
         let mut transform = texture.transform(report, "to_uv");
         let old = |name, default: f32| f64::from(texture.number(report, name).unwrap_or(default));
-        // Parameters from Mitsuba 0.6.
+        // These parameters are from Mitsuba 0.6.
         let scale = glam::DVec3::new(old("uscale", 1.0), old("vscale", 1.0), 1.0);
         transform *= DAffine3::from_scale(scale);
         transform.translation += glam::DVec3::new(old("uoffset", 0.0), old("voffset", 0.0), 0.0);
@@ -213,8 +217,8 @@ impl Reader<'_> {
         Mapping { transform: [[x.x, y.x, t.x], [x.y, y.y, t.y]], ..Mapping::default() }
     }
 
-    /// Returns a checkerboard with squares of half a unit, as a picture of 2 x 2 texels. The first
-    /// square is at the origin.
+    /// Returns a checkerboard whose squares are half a unit wide, as a picture of 2 x 2 texels. The
+    /// first square is at the origin.
     fn checkerboard(&self, texture: &Plugin, fields: [(&'static str, f32); 2]) -> Texture {
         let mapping = Mapping { nearest: true, ..self.mapping(texture) };
         let [one, other] = fields.map(|(name, default)| {

@@ -1,4 +1,4 @@
-//! Reads transforms. The first element in the file is applied first.
+//! Reads transforms. The transform that comes first in the file is applied first.
 
 use super::load::{ErrorReported, Loader, numbers};
 use crate::shared_report::suggest;
@@ -10,7 +10,7 @@ use glam::{DAffine3, DMat3, DMat4, DVec3};
 const TRANSFORMS: [&str; 6] = ["translate", "rotate", "scale", "matrix", "lookat", "lookAt"];
 
 impl Loader<'_> {
-    /// Reads a `<transform>` element as one affine matrix.
+    /// Reads a `<transform>` element and combines its operations into one affine matrix.
     pub(super) fn transform(&mut self, xml: &mut Xml) -> Result<DAffine3, ErrorReported> {
         let mut transform = DAffine3::IDENTITY;
         while let Some(tag) = self.next_leaf(xml)? {
@@ -26,8 +26,8 @@ impl Loader<'_> {
     }
 }
 
-/// Returns the matrix of Rodrigues' formula for an axis of any length. It is a rotation only if the
-/// length is 1.
+/// Returns the matrix of Rodrigues' rotation formula for an axis of any length. The matrix is a
+/// rotation only if the length is 1.
 fn stretched(axis: DVec3, degrees: f64) -> DMat3 {
     let (sin, cos) = fp::sin_cos_degrees(degrees);
     let across = DMat3::from_cols(
@@ -39,7 +39,7 @@ fn stretched(axis: DVec3, degrees: f64) -> DMat3 {
     DMat3::from_diagonal(DVec3::splat(cos)) + across * sin + along * (1.0 - cos)
 }
 
-/// Returns Mitsuba's orthonormal basis around a direction, which is the third axis.
+/// Returns Mitsuba's orthonormal basis whose third axis is the given direction.
 ///
 /// Source: Duff and others, *Building an Orthonormal Basis, Revisited*, JCGT 6(1), 2017.
 pub(super) fn frame(n: DVec3) -> DMat3 {
@@ -57,7 +57,7 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
     match tag.name {
         "translate" => loader.triple(tag, 0.0).map(DAffine3::from_translation),
         "scale" => {
-            // A single number applies to all three axes.
+            // A single number is used for all three axes.
             let one = match tag.get("value") {
                 Some(value) => numbers(&loader.substituted(value)?),
                 None => None,
@@ -103,7 +103,7 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
             let (origin, target) = (point("origin")?, point("target")?);
             let forward = (target - origin).try_normalize();
             let up = if tag.get("up").is_some() { point("up")? } else { DVec3::ZERO };
-            // Without `up`, use the first axis of Mitsuba's basis around the direction.
+            // If `up` is missing, use the first axis of Mitsuba's basis around the view direction.
             let up = if up == DVec3::ZERO { frame(forward.unwrap_or(DVec3::Z)).x_axis } else { up };
             let left = forward.and_then(|forward| up.cross(forward).try_normalize());
             let (Some(forward), Some(left)) = (forward, left) else {
@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn rotation_about_axis_of_any_length_is_that_of_mitsuba_3() {
-        // Columns of `rotate([1, 2, .5], 40)` in Mitsuba 3.9.
+        // Columns of the matrix that `rotate([1, 2, .5], 40)` returns in Mitsuba 3.9.
         let theirs = [
             1.0,
             0.789_304_9,

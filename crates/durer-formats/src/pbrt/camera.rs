@@ -11,12 +11,12 @@ use durer_scene::camera::{
 use durer_scene::math::fp;
 use glam::{DAffine3, DVec2, DVec3};
 
-/// Default resolution of a film, in pbrt-v4 and in pbrt-v3.
+/// Default resolution of the film in pbrt-v4, then in pbrt-v3.
 const SIZE: (u32, u32) = (1280, 720);
 const OLD_SIZE: (u32, u32) = (640, 480);
 
-/// Position and axes (right, up and forward) of a pbrt camera in world space. The length of an axis
-/// is one unit of camera space.
+/// Position and axes (right, up and forward) of a pbrt camera in world space. The length of each
+/// axis is the length of one unit of camera space along that axis.
 struct CameraFrame {
     center: DVec3,
     axes: [DVec3; 3],
@@ -28,20 +28,23 @@ impl CameraFrame {
         CameraFrame { center: to_world.translation, axes: [m.x_axis, m.y_axis, m.z_axis] }
     }
 
-    /// Returns the handedness of the picture for a viewer who looks along `forward`.
+    /// Returns `Handedness::Left` if the picture is mirrored, which means that `right` points to
+    /// the left of a viewer who looks along `forward`.
     fn handedness(right: DVec3, up: DVec3, forward: DVec3) -> Handedness {
         if forward.cross(up).dot(right) < 0.0 { Handedness::Left } else { Handedness::Right }
     }
 }
 
-/// Part of a film in pixels: first column, first row, number of columns and number of rows.
+/// Part of a film in pixels: its first column, its first row, its number of columns and its number
+/// of rows.
 type CropWindow = (u32, u32, u32, u32);
 
 /// Reads the crop window of a film.
 ///
-/// Source: *Physically Based Rendering*, 4th edition, section 5.4.2: `pixelbounds` in pixels, or
-/// `cropwindow` in fractions, which are rounded up. Both list the first and last x, then the first
-/// and last y; the last ones are excluded.
+/// Source: *Physically Based Rendering*, 4th edition, section 5.4.2. The window is given as
+/// `pixelbounds` in pixels, or as `cropwindow` in fractions of the film, which are rounded up to
+/// whole pixels. Both parameters list the first and last x, then the first and last y. The last x
+/// and y are exclusive.
 fn crop(params: &Params, (width, height): (u32, u32)) -> Option<CropWindow> {
     let sides = [width, width, height, height].map(f64::from);
     let mut part = [0.0, sides[0], 0.0, sides[2]];
@@ -64,7 +67,8 @@ fn crop(params: &Params, (width, height): (u32, u32)) -> Option<CropWindow> {
     size_parameter.map(|_| (left, top, right - left, bottom - top))
 }
 
-/// Screen window of a pbrt camera: the visible part of the plane in front of it, with y up.
+/// Screen window of a pbrt camera: the visible rectangle of the plane in front of the camera, with
+/// y pointing up.
 struct Window {
     middle: DVec2,
     half: DVec2,
@@ -154,8 +158,8 @@ impl Reader<'_> {
         ((width, height), crop)
     }
 
-    /// Returns the factor from radiance to pixel values: shutter time times ISO / 100 in pbrt-v4,
-    /// or the film's `scale` in pbrt-v3.
+    /// Returns the factor that converts radiance to pixel values. In pbrt-v4, the factor is the
+    /// shutter time times ISO / 100. In pbrt-v3, it is the film's `scale`.
     ///
     /// Source: *Physically Based Rendering*, 4th edition, section 5.4.2, and 3rd edition, section
     /// 7.9.
@@ -172,7 +176,7 @@ impl Reader<'_> {
         (open.unwrap_or(1.0) * film.unwrap_or(100.0) / 100.0).max(0.0)
     }
 
-    /// Reads the screen window, in units of half the picture's shorter side.
+    /// Reads the screen window, in units of half the length of the picture's shorter side.
     fn window(&self, params: &Params, (width, height): (u32, u32)) -> Window {
         let aspect = params.positive("frameaspectratio").unwrap_or(width as f32 / height as f32);
         let aspect = f64::from(aspect);
@@ -192,8 +196,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns half the larger side, and the offset of the middle as a fraction of it. Warns if
-    /// pixels are not square.
+    /// Returns half the length of the window's larger side, and the offset of its centre as a
+    /// fraction of that length. Warns if the pixels are not square.
     fn half_larger_side(&self, window: &Window, (width, height): (u32, u32), params: &Params) -> (f64, DVec2) {
         let (x, y) = (window.half.x / f64::from(width), window.half.y / f64::from(height));
         if (x / y - 1.0).abs() > 2e-3 {
@@ -206,8 +210,8 @@ impl Reader<'_> {
         (half, window.middle / half)
     }
 
-    /// Reads a perspective camera. If `half` is given, it is half the shorter side at distance 1,
-    /// and replaces the field of view.
+    /// Reads a perspective camera. If `half` is given, it is half the width of the picture's
+    /// shorter side at distance 1, and it replaces the field of view.
     fn perspective(&self, placed: &CameraFrame, params: &Params, size: (u32, u32), half: Option<f64>) -> Camera {
         let [a, b, c] = placed.axes;
         let (default, mut window) = (half.map_or(90.0, |_| 90.0), self.window(params, size));
@@ -217,7 +221,7 @@ impl Reader<'_> {
             params.report.error(params.span("fov"), "a field of view must be more than 0 and less than 180 degrees");
         }
         let scale = half.unwrap_or_else(|| fp::tan_f64(f64::from(fov.clamp(1e-3, 179.9)).to_radians() / 2.0));
-        // A non-uniform scale of camera space widens the view.
+        // A non-uniform scale of camera space changes the width of the view.
         let across = scale * DVec2::new(a.length(), b.length()) / c.length();
         (window.half, window.middle) = (window.half * across, window.middle * across);
         let (half, shift) = self.half_larger_side(&window, size, params);
@@ -263,7 +267,7 @@ impl Reader<'_> {
         Some(camera.into())
     }
 
-    /// Reads a spherical camera. The middle of the picture is the direction -x.
+    /// Reads a spherical camera. The centre of the picture shows the direction -x.
     fn spherical(&self, placed: &CameraFrame, params: &Params) -> Camera {
         let [a, b, c] = placed.axes;
         if self.language == Language::V3 {
@@ -283,7 +287,7 @@ impl Reader<'_> {
         .into()
     }
 
-    /// Reads the integrator. `maxdepth` counts the first scattering event too; Dürer's `bounces`
+    /// Reads the integrator. `maxdepth` includes the first scattering event, but Dürer's `bounces`
     /// does not.
     pub fn integrator(&mut self, directive: &DeferredDirective) {
         const V3_NAMES: [&str; 9] =

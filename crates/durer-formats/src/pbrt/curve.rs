@@ -1,4 +1,4 @@
-//! Curves with a width, tessellated as tubes and ribbons.
+//! Tessellates curves that have a width into tubes and ribbons.
 //!
 //! Source: *Physically Based Rendering*, 4th edition, section 6.7, and 3rd edition, section 3.7.
 
@@ -13,7 +13,7 @@ use glam::{DVec3, DVec4};
 /// Maximum number of control points of a curve.
 const MAX_POINTS: usize = 1 << 14;
 
-/// Tessellates a curve. It has fewer sides if the scene has `many` triangles already.
+/// Tessellates a curve. Uses fewer sides if the scene already has `many` triangles.
 pub(super) fn mesh(params: &Params, reversed: bool, many: bool) -> Option<MeshData> {
     let report = params.report;
     params.mark_known(&["splitdepth"]);

@@ -1,4 +1,4 @@
-//! Results of executing directives: materials, textures and lights.
+//! Materials, textures and lights that result from executing directives.
 
 use durer_diag::Span;
 use durer_scene::describe::FileName;
@@ -7,16 +7,16 @@ use durer_scene::math::Color;
 use durer_scene::scene::TextureImage;
 use glam::DAffine3;
 
-/// Material defined in a pbrt file, before a shape uses it and it gets an index in the scene.
+/// Material that a pbrt file defines, before a shape uses it and it gets an index in the scene.
 pub(super) enum MaterialDef {
     Principled(Box<PrincipledMaterial>, Span),
     Hair(HairMaterial, Span),
-    /// Mix of two materials, which are indices into the reader's list; `share` is that of the
-    /// first.
+    /// Mix of two materials, given by their indices in the reader's list. `share` is the fraction
+    /// of the first material.
     Mix {
         parts: [usize; 2],
         share: f32,
-        /// Picture that multiplies the share.
+        /// Picture whose values multiply the share.
         picture: Option<FileName>,
         depth: u32,
         has_picture: bool,
@@ -26,7 +26,8 @@ pub(super) enum MaterialDef {
     Interface,
 }
 
-/// Opacity of a shape, from its `alpha` parameter: a constant, and a picture that multiplies it.
+/// Opacity of a shape, from its `alpha` parameter: a constant, and a picture that the constant
+/// multiplies.
 #[derive(Debug)]
 pub(super) struct Opacity {
     pub share: f32,
@@ -37,14 +38,14 @@ pub(super) struct Opacity {
 #[derive(Clone)]
 pub(super) enum Texture {
     Constant(Color),
-    /// Picture, and the factor on its values.
+    /// Picture, and the factor that multiplies its values.
     Picture(TextureImage, Color),
 }
 
-/// Area light of pbrt that applies to the shapes after it.
+/// Area light of pbrt, which applies to all shapes that follow it.
 #[derive(Clone, Debug)]
 pub(super) struct AreaLight {
-    /// Radiance; only the colour of the light if `power` is given.
+    /// Radiance of the light. If `power` is given, only the light's colour is used.
     pub radiance: Color,
     /// Luminous flux of each shape or triangle in lumens.
     pub power: Option<f32>,
@@ -54,26 +55,26 @@ pub(super) struct AreaLight {
     pub at: Span,
 }
 
-/// Mapping between directions and positions in an environment map.
+/// Mapping from directions to positions in an environment map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum EnvironmentMapping {
-    /// Equal-area square mapping of pbrt-v4.
+    /// Equal-area square mapping, as in pbrt-v4.
     EqualArea,
-    /// Longitude and latitude (equirectangular) mapping of pbrt-v3, with z up.
+    /// Equirectangular mapping (longitude and latitude) with z up, as in pbrt-v3.
     Equirectangular,
 }
 
-/// Infinite light of pbrt: constant, or an environment map.
+/// Infinite light of pbrt: a constant colour or an environment map.
 pub(super) enum InfiniteLight {
     /// Constant radiance.
     Constant(Color),
     Picture {
         name: String,
         at: Span,
-        /// Factor on the values of the environment map.
+        /// Factor that multiplies the values of the environment map.
         scale: Color,
         map: EnvironmentMapping,
-        /// Transform from world space to the axes of the environment map.
+        /// Transform from world space to the coordinate system of the environment map.
         to_light: DAffine3,
         /// Illuminance to which the upper half of the map is scaled.
         illuminance: Option<f32>,

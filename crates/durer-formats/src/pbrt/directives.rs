@@ -14,7 +14,7 @@ use durer_scene::spectrum::space::RgbSpace;
 use glam::{DAffine3, DVec3};
 use std::rc::Rc;
 
-/// Names of the directives; true if a string follows.
+/// Names of all directives. The flag is true if a string follows the directive.
 pub(super) const DIRECTIVES: [(&str, bool); 44] = [
     ("Accelerator", true),
     ("ActiveTransform", false),
@@ -63,7 +63,7 @@ pub(super) const DIRECTIVES: [(&str, bool); 44] = [
     ("Renderer", true),
 ];
 
-/// Directives allowed only after `WorldBegin`; then those allowed only before it.
+/// Directives that are allowed only after `WorldBegin`, then those that are allowed only before it.
 const WORLD_DIRECTIVES: [&str; 10] = [
     "AreaLightSource",
     "LightSource",
@@ -79,16 +79,18 @@ const WORLD_DIRECTIVES: [&str; 10] = [
 const BEFORE_WORLD: [&str; 8] =
     ["Accelerator", "Camera", "Film", "Integrator", "Option", "PixelFilter", "Sampler", "TransformTimes"];
 
-/// Targets of `Attribute`, in the order of [`State::attributes`](super::state::State).
+/// Targets of the `Attribute` directive, in the order of
+/// [`State::attributes`](super::state::State).
 const TARGETS: [&str; 5] = ["shape", "light", "material", "medium", "texture"];
 
-/// Limits on the number of included files, the depth of includes and the depth of scopes.
+/// Limits on the number of included files, the depth of nested includes and the depth of nested
+/// scopes.
 const MAX_FILES: usize = 1 << 16;
 const MAX_INCLUDE_DEPTH: usize = 64;
 const MAX_SCOPE_DEPTH: usize = 1 << 12;
 
 impl Reader<'_> {
-    /// Reads the whole file and returns the scene. Errors are added to the reader's report.
+    /// Reads the whole file and returns its scene. Errors are added to the reader's report.
     pub fn read(mut self) -> Scene {
         while !self.report.is_full() {
             let report = self.report;
@@ -126,12 +128,12 @@ impl Reader<'_> {
     }
 
     fn text(&mut self) -> &mut Lexer {
-        // A directive is only executed while a file is open.
+        // There is always an open file while a directive is executed.
         let last = self.texts.len() - 1;
         &mut self.texts[last].text
     }
 
-    /// Skips to the next directive.
+    /// Skips all tokens up to the next directive.
     fn skip(&mut self) {
         let report = self.report;
         let text = self.text();
@@ -144,7 +146,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads the string after a directive; returns it with its span.
+    /// Reads the string after a directive, and returns the string and its span.
     fn name(&mut self, directive: Span) -> Option<(String, Span)> {
         let report = self.report;
         let text = self.text();
@@ -165,7 +167,7 @@ impl Reader<'_> {
         numbers(self.text(), directive, report)
     }
 
-    /// Executes a directive; `None` if its arguments cannot be read.
+    /// Executes a directive. Returns `None` if its arguments cannot be read.
     fn directive(&mut self, word: &str, at: Span) -> Option<()> {
         let report = self.report;
         if !self.in_world && WORLD_DIRECTIVES.contains(&word) {
@@ -271,7 +273,7 @@ impl Reader<'_> {
         match word {
             "Attribute" => match TARGETS.iter().position(|target| *target == name) {
                 Some(target) => {
-                    // Later values replace earlier ones.
+                    // If a parameter is set twice, the later value replaces the earlier one.
                     let attributes = &mut self.state.attributes[target];
                     attributes.retain(|old| list.iter().all(|new| new.name != old.name));
                     attributes.extend(list);
@@ -296,13 +298,13 @@ impl Reader<'_> {
             "MakeNamedMaterial" => self.make_named_material(name, at, list),
             "MakeNamedMedium" => self.make_named_medium(name, at, list),
             "Shape" => self.shape(&name, at, list),
-            // Ignore accelerators and pixel filters: they have no counterpart.
+            // Ignore accelerators and pixel filters because Dürer has no counterpart for them.
             _ => {}
         }
     }
 
-    /// Skips the value of an `Option`, whose string has the form of a parameter. Options have no
-    /// effect in Dürer.
+    /// Skips the value of an `Option` directive, whose string has the form of a parameter. Options
+    /// have no effect in Dürer.
     fn skip_value(&mut self) {
         let report = self.report;
         let text = self.text();
@@ -445,7 +447,7 @@ impl Reader<'_> {
         if !open.imported {
             return;
         }
-        // Restore the state from before the import.
+        // Restore the state that was current before the import.
         while let Some((scope, state, at)) = self.stack.pop() {
             if scope == Scope::Import {
                 self.state = state;

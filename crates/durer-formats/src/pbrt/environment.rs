@@ -1,5 +1,5 @@
-//! Infinite lights: constant, or environment maps. They are merged into one equirectangular
-//! environment map.
+//! Converts infinite lights: constant colours and environment maps. All of them are merged into one
+//! equirectangular environment map.
 
 use super::defs::{EnvironmentMapping, InfiniteLight};
 use super::state::Reader;
@@ -14,8 +14,8 @@ use std::f32::consts::{FRAC_2_PI, PI, TAU};
 /// Maximum height in pixels of the merged environment map.
 const MAX_ROWS: u32 = 2048;
 
-/// Environment map of one infinite light, with its transform and scale; merged with others into the
-/// scene's environment.
+/// Environment map of one infinite light, with its transform and scale. The map is merged with the
+/// other maps into the environment of the scene.
 struct Source {
     image: Image,
     to_light: DAffine3,
@@ -48,8 +48,9 @@ impl Reader<'_> {
         }
         (self.scene.background.color, self.scene.background.ambient_light) = (even, Color::ZERO);
         let Some((name, at)) = first else { return };
-        // Double the rows for an equirectangular source: its fine detail near the poles is at other
-        // directions in the result.
+        // Double the number of rows for an equirectangular source. Fine detail near the poles of
+        // the source may be far from the poles of the merged map, where fewer texels are available
+        // for it.
         let finer = |source: &Source| {
             source.image.height * if source.map == EnvironmentMapping::Equirectangular { 2 } else { 1 }
         };
@@ -61,7 +62,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads an environment map and determines its mapping.
+    /// Reads an environment map and determines which mapping it uses.
     fn environment(
         &self,
         name: &str,
@@ -76,7 +77,7 @@ impl Reader<'_> {
                 return None;
             }
         };
-        // pbrt-v3 reads the bytes of an environment map as linear values.
+        // pbrt-v3 treats the bytes of an environment map as linear values.
         let decode = if map == EnvironmentMapping::Equirectangular { image::decode_linear } else { image::decode_srgb };
         let read = Encoded::open(&bytes, name).and_then(|encoded| encoded.read(memory, decode));
         match read {
@@ -106,8 +107,8 @@ impl Reader<'_> {
 }
 
 impl Source {
-    /// Returns the radiance from a direction in world space: of the nearest texel as in pbrt-v4, or
-    /// bilinearly interpolated as in pbrt-v3.
+    /// Returns the radiance from a direction in world space. The equal-area map of pbrt-v4 uses
+    /// the nearest texel, and the equirectangular map of pbrt-v3 uses bilinear interpolation.
     fn at(&self, dir: DVec3) -> Color {
         let dir = self.to_light.transform_vector3(dir).normalize_or(DVec3::Z).as_vec3();
         let (width, height) = (self.image.width, self.image.height);
@@ -130,21 +131,21 @@ impl Source {
     }
 }
 
-/// Returns the position of a unit vector in the unit square of the equal-area mapping.
+/// Returns the position in the unit square that the equal-area mapping assigns to a unit vector.
 ///
 /// Source: Petrik Clarberg, *Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD*, Journal of
 /// Graphics Tools 13(3), 2008.
 pub(super) fn equal_area(dir: Vec3) -> Vec2 {
     let Vec3 { x, y, z } = dir.abs();
     let radius = (1.0 - z).max(0.0).sqrt();
-    // Fraction of the quarter turn from x to y.
+    // Angle from the x axis towards the y axis, as a fraction of a quarter turn.
     let turn = if x == 0.0 && y == 0.0 { 0.0 } else { FRAC_2_PI * fp::atan2(y, x) };
     let upper = Vec2::new(radius * (1.0 - turn), radius * turn);
     let place = if dir.z < 0.0 { Vec2::new(1.0 - upper.y, 1.0 - upper.x) } else { upper };
     0.5 * (Vec2::new(place.x.copysign(dir.x), place.y.copysign(dir.y)) + 1.0)
 }
 
-/// Returns the unit vector for a position in the square of the equal-area mapping.
+/// Returns the unit vector that the equal-area mapping assigns to a position in the unit square.
 pub(super) fn equal_area_direction(place: Vec2) -> Vec3 {
     let place = 2.0 * place - 1.0;
     let across = place.abs();
@@ -156,8 +157,8 @@ pub(super) fn equal_area_direction(place: Vec2) -> Vec3 {
     Vec3::new((fp::cos(turn) * flat).copysign(place.x), (fp::sin(turn) * flat).copysign(place.y), z)
 }
 
-/// Returns the illuminance of a surface facing +z, lit by the upper half (z > 0) of an environment
-/// map.
+/// Returns the illuminance of a surface that faces +z and is lit by the upper half (z > 0) of an
+/// environment map.
 fn upper_illuminance(image: &Image, map: EnvironmentMapping) -> f32 {
     let mut sum = 0.0_f64;
     let (width, height) = (image.width, image.height);

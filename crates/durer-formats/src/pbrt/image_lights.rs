@@ -1,5 +1,5 @@
-//! Goniometric lights and projectors, converted to measured point lights: one each for red, green
-//! and blue.
+//! Converts goniometric lights and projectors to measured point lights, with a separate light for
+//! each of red, green and blue.
 //!
 //! Source: *Physically Based Rendering*, 3rd edition, sections 12.3.2 and 12.3.3, and 4th edition,
 //! sections 12.2.2 and 12.2.3.
@@ -16,14 +16,14 @@ use durer_scene::math::{Color, Vec2, Vec3, fp};
 use glam::DAffine3;
 use std::f32::consts::{PI, TAU};
 
-/// Maximum number of steps of an angle in a profile.
+/// Maximum number of angular steps in a light profile.
 const STEPS: u32 = 720;
 
-/// Number of steps of the vertical and horizontal angles in a projector's profile.
+/// Number of vertical and of horizontal angular steps in the profile of a projector.
 const PROJECTED: [u32; 2] = [360, 720];
 
 /// Directional distribution of a goniometric or projection light, with the vertical and horizontal
-/// angles in degrees at which it is sampled.
+/// angles in degrees at which the distribution is sampled.
 struct DirectionalPattern {
     axes: Axes,
     angles: [Vec<f32>; 2],
@@ -31,8 +31,8 @@ struct DirectionalPattern {
 }
 
 impl Reader<'_> {
-    /// Adds a light at the origin of the current space; `color` is its intensity where the picture
-    /// has the value 1.
+    /// Adds a light at the origin of the current space. `color` is its intensity in directions
+    /// where the picture has the value 1.
     pub fn pictured_light(&mut self, kind: &str, params: &Params, map: DAffine3, (color, power): (Color, Option<f32>)) {
         let third = self.language == Language::V3;
         let fov = if kind == "projection" { Some(self.fov(params, third)) } else { None };
@@ -61,7 +61,8 @@ impl Reader<'_> {
         lights.add(&mut self.scene, self.input.name, (map, axes), color * strength, params.at);
     }
 
-    /// Reads the field of view of a projector across the shorter side of its picture, in degrees.
+    /// Reads the field of view of a projector in degrees, measured across the shorter side of its
+    /// picture.
     fn fov(&self, params: &Params, third: bool) -> f32 {
         let fov = params.float("fov").unwrap_or(if third { 45.0 } else { 90.0 });
         if !(fov > 0.0 && fov < 180.0) {
@@ -70,7 +71,7 @@ impl Reader<'_> {
         fov.clamp(1e-2, 179.0)
     }
 
-    /// Reads the picture of a light; white if a pbrt-v3 light has none.
+    /// Reads the picture of a light. The picture is white if a pbrt-v3 light does not have one.
     fn light_picture(&self, kind: &str, params: &Params, third: bool) -> Option<Image> {
         let name = if third { "mapname" } else { "filename" };
         let Some(file) = params.text(name).filter(|file| !file.is_empty()).map(str::to_string) else {
@@ -82,7 +83,7 @@ impl Reader<'_> {
         };
         let at = params.get(name).map_or(params.at, |param| param.values_at);
         let bytes = Pictures { input: self.input, report: self.report }.bytes(&file, at)?;
-        // pbrt-v3 reads the bytes of a light's picture as linear values.
+        // pbrt-v3 treats the bytes of a light's picture as linear values.
         let decode = if third { image::decode_linear } else { image::decode_srgb };
         let image = match Encoded::open(&bytes, &file).and_then(|encoded| encoded.read(self.input.memory, decode)) {
             Ok(image) => image,
@@ -103,7 +104,7 @@ impl Reader<'_> {
     }
 }
 
-/// Rectangle on the plane at distance 1 onto which a projector projects its picture.
+/// Rectangle in the plane at distance 1 onto which a projector projects its picture.
 struct Screen {
     half: Vec2,
 }
@@ -115,13 +116,13 @@ impl Screen {
         Screen { half: short * Vec2::new(aspect.max(1.0), (1.0 / aspect).max(1.0)) }
     }
 
-    /// Returns the angle between the axis and a corner, in degrees.
+    /// Returns the angle in degrees between the optical axis and a corner of the rectangle.
     fn widest(&self) -> f32 {
         fp::atan2(self.half.length(), 1.0).to_degrees()
     }
 
-    /// Returns the picture's value in a direction. As in pbrt, the first row of the picture is at
-    /// the lowest y.
+    /// Returns the value of the picture in a given direction. As in pbrt, the first row of the
+    /// picture is at the lowest y.
     fn at(&self, image: &Image, dir: Vec3) -> Color {
         let place = Vec2::new(dir.x, dir.y) / (dir.z * self.half);
         if dir.z <= 0.0 || place.abs().max_element() > 1.0 {
@@ -131,15 +132,16 @@ impl Screen {
     }
 }
 
-/// Returns the value in a direction of a picture whose columns are longitudes, from x towards z,
-/// and whose rows are polar angles from y.
+/// Returns the value in a given direction of a picture whose columns are longitudes, measured from
+/// x towards z, and whose rows are polar angles, measured from y.
 fn lookup_equirectangular(image: &Image, dir: Vec3) -> Color {
     let turn = fp::atan2(dir.z, dir.x) / TAU;
     let down = fp::atan2((dir.x * dir.x + dir.z * dir.z).sqrt(), dir.y) / PI;
     bilinear(image, Vec2::new(turn - turn.floor(), down))
 }
 
-/// Returns the grey value in a direction of a square equal-area picture: the mean of its channels.
+/// Returns the grey value of a square equal-area picture in a given direction, which is the mean of
+/// its channels.
 fn lookup_equal_area(image: &Image, dir: Vec3) -> Color {
     let place = equal_area(dir);
     let texel = |share: f32, count: u32| ((share * count as f32) as u32).min(count - 1);

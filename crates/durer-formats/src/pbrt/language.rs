@@ -1,4 +1,5 @@
-//! Detects the pbrt version. Files do not state it, so it is inferred from their words.
+//! Detects which version of pbrt a scene file is written for. Files do not state the version, so it
+//! is inferred from the keywords that they use.
 //!
 //! Sources: *Input File Format* of pbrt-v3 and of pbrt-v4, pbrt.org/fileformat-v3 and
 //! pbrt.org/fileformat-v4.
@@ -16,22 +17,22 @@ pub(super) enum Language {
     V4,
 }
 
-/// Result of detecting the pbrt version, with the word that decided it. `by` is `None` if no word
-/// did, or if the word is in an included file.
+/// Result of detecting the pbrt version, with the keyword that decided it. `by` is `None` if no
+/// keyword decided the version, or if the keyword is in an included file.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DetectedLanguage {
     pub language: Language,
     pub by: Option<Span>,
 }
 
-/// Directives that only pbrt-v3 has.
+/// Directives that exist only in pbrt-v3.
 const OLD_DIRECTIVES: [&str; 4] = ["Renderer", "SurfaceIntegrator", "VolumeIntegrator", "WorldEnd"];
 
-/// Directives that only pbrt-v4 has.
+/// Directives that exist only in pbrt-v4.
 const NEW_DIRECTIVES: [&str; 4] = ["Attribute", "ColorSpace", "Import", "Option"];
 
-/// Types that may follow a directive: the directives, types that only pbrt-v3 has, and types that
-/// only pbrt-v4 has.
+/// Types that can follow a directive. Each entry lists the directives, the types that exist only in
+/// pbrt-v3, and the types that exist only in pbrt-v4.
 const NAMES: [(&[&str], &[&str], &[&str]); 9] = [
     (&["Film"], &["image"], &["rgb", "gbuffer", "spectral"]),
     (&["Camera"], &["environment"], &["spherical"]),
@@ -66,7 +67,7 @@ const OLD_MATERIALS: [&str; 11] = [
     "uber",
 ];
 
-/// Materials that only pbrt-v4 has.
+/// Materials that exist only in pbrt-v4.
 pub(super) const NEW_MATERIALS: [&str; 9] = [
     "coatedconductor",
     "coateddiffuse",
@@ -79,16 +80,16 @@ pub(super) const NEW_MATERIALS: [&str; 9] = [
     "thindielectric",
 ];
 
-/// Parameter names and types that only pbrt-v3 has.
+/// Parameter names and types that exist only in pbrt-v3.
 const OLD_PARAMETERS: [&str; 8] = ["Kd", "Ks", "Kr", "Kt", "bumpmap", "mapname", "namedmaterial1", "namedmaterial2"];
 const OLD_TYPES: [&str; 2] = ["color", "xyz"];
 
-/// Maximum number of included files that are searched, and maximum depth of includes.
+/// Maximum number of included files that are searched, and maximum depth of nested includes.
 const MAX_FILES: usize = 64;
 const MAX_INCLUDE_DEPTH: usize = 8;
 
-/// Detects the version by the first word that only one of the two languages has; without one, it is
-/// pbrt-v4.
+/// Detects the version by the first keyword that exists in only one of the two languages. If the
+/// file has no such keyword, the version is pbrt-v4.
 pub(super) fn decide(input: &ReadInput) -> DetectedLanguage {
     let mut left = MAX_FILES;
     let token = search(Lexer::new(input.bytes.clone(), input.file), input, &mut left, 0);
@@ -96,13 +97,13 @@ pub(super) fn decide(input: &ReadInput) -> DetectedLanguage {
     DetectedLanguage { language, by }
 }
 
-/// Finds the deciding word, and its span if it is in the first file. Included files have no file
-/// index yet.
+/// Finds the keyword that decides the version, and its span if the keyword is in the first file.
+/// Included files do not have a file index yet.
 fn search(mut text: Lexer, input: &ReadInput, left: &mut usize, depth: usize) -> Option<(Language, Option<Span>)> {
-    // Ignore errors here: they are reported when the file is read.
+    // Ignore errors here, because they are reported when the file is read.
     let report = SharedReport::default();
-    // Current directive, number of strings after it, and the last string that is the type and name
-    // of a parameter.
+    // Current directive, the number of strings that have followed it, and the last string that gave
+    // the type and name of a parameter.
     let (mut directive, mut names, mut head) = (String::new(), 0, String::new());
     while let Some(token) = text.next(&report) {
         let here = (depth == 0).then_some(token.at);
@@ -115,7 +116,7 @@ fn search(mut text: Lexer, input: &ReadInput, left: &mut usize, depth: usize) ->
                 if NEW_DIRECTIVES.contains(&word) {
                     return Some((Language::V4, here));
                 }
-                // Numbers do not begin with a letter.
+                // A token that begins with a letter is not a number.
                 if word.starts_with(|first: char| first.is_ascii_uppercase()) {
                     (directive, names, head) = (word.to_string(), 0, String::new());
                 }
@@ -147,8 +148,8 @@ fn search(mut text: Lexer, input: &ReadInput, left: &mut usize, depth: usize) ->
     None
 }
 
-/// Returns the language implied by string number `number` after a directive. `head` is the type and
-/// name of the preceding parameter.
+/// Returns the language that the string at position `number` after a directive implies. `head` is
+/// the string that gives the type and name of the preceding parameter.
 fn language_of(directive: &str, number: usize, head: &str, text: &str) -> Option<Language> {
     let mut words = text.split_ascii_whitespace();
     if let (Some(kind), Some(name), None) = (words.next(), words.next(), words.next()) {

@@ -1,5 +1,5 @@
-//! Lexer for pbrt files: words (directives and numbers), quoted strings and brackets. `#` begins a
-//! comment.
+//! Lexer for pbrt files, which splits them into words (directives and numbers), quoted strings and
+//! brackets. `#` starts a comment.
 
 use crate::report::quoted;
 use crate::shared_report::SharedReport;
@@ -9,9 +9,9 @@ use std::sync::Arc;
 /// Token of a pbrt scene file: a word, a quoted string or a bracket.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Token {
-    /// A directive, a number, `true` or `false`.
+    /// Word: a directive, a number, `true` or `false`.
     Word,
-    /// Quoted string, with its escapes resolved.
+    /// Quoted string, after its escape sequences have been replaced.
     Text(String),
     /// `[`
     Open,
@@ -35,7 +35,7 @@ pub(super) struct Lexer {
 }
 
 impl Lexer {
-    /// Creates a lexer for a file of less than 4 GiB. Skips a byte order mark.
+    /// Creates a lexer for a file, which must be smaller than 4 GiB. Skips a byte order mark.
     pub fn new(bytes: Arc<[u8]>, file: u32) -> Self {
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         Lexer { bytes, file, at, peeked: None }
@@ -46,12 +46,12 @@ impl Lexer {
         &self.bytes[at.start as usize..at.end as usize]
     }
 
-    /// Returns the text of a token; empty if it is not UTF-8.
+    /// Returns the text of a token, or an empty string if it is not valid UTF-8.
     pub fn word(&self, at: Span) -> &str {
         std::str::from_utf8(self.bytes(at)).unwrap_or_default()
     }
 
-    /// Returns the text of a token, quoted for messages.
+    /// Returns the text of a token in quotes, for use in messages.
     pub fn quoted(&self, at: Span) -> String {
         quoted(self.bytes(at))
     }
@@ -96,7 +96,8 @@ impl Lexer {
         Some(SpannedToken { token, at: self.span(start, self.at) })
     }
 
-    /// Reads a quoted string, which must end on the same line. Its span excludes the quotes.
+    /// Reads a quoted string, which must end on the same line. The returned span excludes the
+    /// quotes.
     fn text(&mut self, start: usize, report: &SharedReport) -> SpannedToken {
         let mut text = Vec::new();
         self.at = start + 1;
@@ -121,7 +122,8 @@ impl Lexer {
                             b'\\'
                         }
                     });
-                    // Skip the backslash and the next byte, even if the escape is unknown.
+                    // Skip the backslash and the byte after it, even if the escape sequence is
+                    // unknown.
                     self.at = (self.at + 2).min(self.bytes.len());
                 }
                 Some(b'\n') | None => {

@@ -1,9 +1,9 @@
-//! Converts point, distant, infinite and area lights. Values are radiance: a pixel value of 1 is a
-//! radiance of 1.
+//! Converts point lights, distant lights, infinite lights and area lights. Values are radiances: a
+//! pixel value of 1 is a radiance of 1.
 //!
-//! Source: *Physically Based Rendering*, 4th edition, chapter 12. A spectrum has luminance 1 times
-//! `scale`; `power` is luminous flux. In pbrt-v3 (3rd edition, chapter 12) values are absolute and
-//! `scale` is a colour.
+//! Source: *Physically Based Rendering*, 4th edition, chapter 12. In pbrt-v4, the spectrum of a
+//! light is normalized to a luminance of `scale`, and `power` is a luminous flux. In pbrt-v3 (3rd
+//! edition, chapter 12), values are absolute and `scale` is a colour.
 
 use super::defs::{AreaLight, EnvironmentMapping, InfiniteLight};
 use super::language::Language;
@@ -18,7 +18,7 @@ use glam::DVec3;
 use std::f32::consts::PI;
 use std::rc::Rc;
 
-/// Returns the colour of a light: the parameter `name` times `scale`.
+/// Returns the colour of a light, which is the parameter `name` times `scale`.
 fn color(params: &Params, name: &'static str) -> Color {
     if params.language == Language::V3 {
         return params.spectrum(name).map_or(Vec3::ONE, |spectrum| spectrum.pbrt_v3_color()) * colored_scale(params);
@@ -27,7 +27,8 @@ fn color(params: &Params, name: &'static str) -> Color {
     color * params.float("scale").unwrap_or(1.0).max(0.0)
 }
 
-/// Returns the `scale` of a pbrt-v3 light, a colour. A number is ignored, as in pbrt-v3.
+/// Returns the `scale` parameter of a pbrt-v3 light, which is a colour. A single number is ignored,
+/// as in pbrt-v3.
 fn colored_scale(params: &Params) -> Color {
     match params.get("scale") {
         Some(param) if param.kind == Kind::Float => {
@@ -59,8 +60,8 @@ impl Reader<'_> {
         let third = self.language == Language::V3;
         let flux = || params.float("power").filter(|power| *power > 0.0);
         let power = if third { None } else { flux() };
-        // A light's colour in Dürer is the radiance of a white diffuse surface that it illuminates:
-        // illuminance over pi.
+        // In Dürer, the colour of a light is the radiance of a white diffuse surface that it
+        // illuminates, which is the illuminance divided by pi.
         let value: Light = match kind {
             "goniometric" | "projection" => {
                 let color = color(&params, "I") * exposure;
@@ -81,7 +82,7 @@ impl Reader<'_> {
                 }
                 let [outer, inner] = [cone[0], (cone[0] - cone[1]).max(0.0)];
                 let cosine = |degrees: f32| fp::sin_cos_degrees(f64::from(degrees)).1 as f32;
-                // Count half of the solid angle between the two cones.
+                // Count half of the solid angle of the region between the two cones.
                 let solid_angle = PI * (2.0 - cosine(inner) - cosine(outer));
                 let strength = power.map_or(1.0, |power| power / solid_angle);
                 let color = color(&params, "I") * (strength * exposure / PI);

@@ -1,6 +1,7 @@
-//! Reads participating media, inside shapes and around the camera.
+//! Reads participating media, which can be inside shapes or around the camera.
 //!
-//! Coefficients are per unit of world space. Source, including the default coefficients:
+//! Coefficients are given per unit of length in world space. Source of the conventions and of the
+//! default coefficients:
 //! *Physically Based Rendering*, 4th edition, chapter 11.
 
 use super::defs::MaterialDef;
@@ -38,16 +39,17 @@ const MEASURED_MEDIA: [(&str, [f32; 3], [f32; 3]); 12] = [
     ("Wholemilk", [2.55, 3.21, 3.77], [0.0011, 0.0024, 0.014]),
 ];
 
-/// Default absorption and scattering coefficients.
+/// Default coefficients of absorption and of scattering.
 const DEFAULT_COEFFICIENTS: [[f32; 3]; 2] = [[0.0011, 0.0024, 0.014], [2.55, 3.21, 3.77]];
 
-/// Returns the medium defined by `sigma_a`, `sigma_s`, `g` and `scale`, or a measured medium named
-/// by the parameter `preset`.
+/// Returns the medium defined by `sigma_a`, `sigma_s`, `g` and `scale`, or the measured medium that
+/// the parameter `preset` names.
 pub(super) fn medium_of(params: &Params, preset: &'static str) -> Medium {
     with_preset(params, preset, DEFAULT_COEFFICIENTS)
 }
 
-/// Returns the medium for the given default absorption and scattering. See [`medium_of`].
+/// Returns the medium, using the given default coefficients of absorption and scattering. See
+/// [`medium_of`].
 fn with_preset(params: &Params, preset: &'static str, [usual_a, usual_s]: [[f32; 3]; 2]) -> Medium {
     let scale = params.float("scale").unwrap_or(1.0).max(0.0);
     if let Some(name) = params.text(preset).filter(|name| !name.is_empty()) {
@@ -103,7 +105,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads a medium whose density is a grid of values at cell centres.
+    /// Reads a medium whose density is given by a grid of values at the cell centres.
     fn grid(&mut self, name: &str, params: &Params) -> Option<Medium> {
         let default = match params.language {
             Language::V3 => DEFAULT_COEFFICIENTS,
@@ -135,7 +137,7 @@ impl Reader<'_> {
             self.report.error(place, format!("density {} is {}: it must be 0 or more", bad + 1, densities[bad]));
             return None;
         }
-        // Surround the grid with zeros, since the density outside is 0.
+        // Surround the grid with zeros, because the density outside it is 0.
         let [nx, ny, nz] = counts.map(|n| n as usize);
         let mut values = vec![0.0; (nx + 2) * (ny + 2) * (nz + 2)];
         for (i, row) in densities.chunks_exact(nx).enumerate() {
@@ -152,7 +154,8 @@ impl Reader<'_> {
         Some(Medium { density: Some(Density { name: FileName { path, span: place }, to_world }), ..medium })
     }
 
-    /// Sets the media inside and outside of shapes, which must be defined.
+    /// Sets the media inside and outside the shapes that follow. The two media must already be
+    /// defined.
     pub fn medium_interface(&mut self, names: &[String; 2], at: Span) {
         for name in names.iter().filter(|name| !name.is_empty() && !self.media.contains_key(*name)) {
             let help = suggest(name, self.media.keys().map(String::as_str));
@@ -162,7 +165,7 @@ impl Reader<'_> {
         (self.state.inside, self.state.outside) = (inside, outside);
     }
 
-    /// Returns the index of the current material filled with the medium inside the shape.
+    /// Returns the index of the current material, filled with the medium that is inside the shape.
     pub fn material_with_medium(&mut self) -> usize {
         let plain = self.state.material;
         let Some(name) = self.state.inside.clone() else { return plain };
@@ -182,7 +185,7 @@ impl Reader<'_> {
                 medium.fill(&mut m);
                 MaterialDef::Principled(m, *at)
             }
-            // Light does not enter other materials.
+            // Light does not enter shapes that have other materials.
             _ => return plain,
         };
         self.materials.push(material);
@@ -191,7 +194,7 @@ impl Reader<'_> {
         number
     }
 
-    /// Sets the medium around the camera as fog.
+    /// Represents the medium around the camera as fog.
     pub fn fog(&mut self, at: Span) {
         let Some(Some(medium)) = self.state.outside.as_ref().and_then(|name| self.media.get(name)).cloned() else {
             return;

@@ -7,7 +7,8 @@ use durer_scene::shape::tessellate::net::{self, Patches};
 use durer_scene::shape::tessellate::revolution;
 use durer_scene::shape::tessellate::subdivision::loop_surface;
 
-/// Maximum number of triangles of a subdivided surface. Low in tests, which build all of them.
+/// Maximum number of triangles of a subdivision surface. Tests use a low limit so that they can
+/// reach it quickly.
 const MAX_TRIANGLES: usize = if cfg!(test) { 1 << 14 } else { 1 << 20 };
 
 /// Vertices and faces of a mesh as listed in a pbrt file. All faces have the same number of
@@ -19,8 +20,8 @@ struct MeshArrays {
     faces: Vec<Vec<u32>>,
 }
 
-/// Reads vertices and faces with `size` corners each. If `indices` is missing, there is one face,
-/// whose corners are `default`.
+/// Reads the vertices, and the faces with `size` corners each. If `indices` is missing, there is a
+/// single face whose corners are `default`.
 fn read_arrays(params: &Params, size: usize, default: &[u32]) -> Option<MeshArrays> {
     let report = params.report;
     let Some(positions) = params.triples("P") else {
@@ -84,7 +85,7 @@ pub(super) fn bilinear(params: &Params, reversed: bool) -> Option<MeshData> {
     Some(net::bilinear(&Patches { positions, normals, uvs, faces }).oriented(reversed))
 }
 
-/// Reads a `loopsubdiv`, and subdivides it into at most `left` triangles.
+/// Reads a `loopsubdiv` and subdivides it into at most `left` triangles.
 pub(super) fn subdivided(params: &Params, reversed: bool, left: usize) -> Option<MeshData> {
     params.mark_known(&["scheme"]);
     let levels = params.integer("levels").or_else(|| params.integer("nlevels")).unwrap_or(3);
@@ -102,7 +103,8 @@ pub(super) fn subdivided(params: &Params, reversed: bool, left: usize) -> Option
     Some(data.oriented(reversed))
 }
 
-/// Reads a cylinder as flat strips with the normals of the round surface. It has no caps.
+/// Reads a cylinder as flat strips that have the normals of the round surface. The cylinder has no
+/// caps.
 pub(super) fn cylinder(params: &Params, reversed: bool) -> Option<MeshData> {
     let radius = params.positive("radius").unwrap_or(1.0);
     let (low, high) = (params.float("zmin").unwrap_or(-1.0), params.float("zmax").unwrap_or(1.0));

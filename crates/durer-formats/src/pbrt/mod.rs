@@ -3,7 +3,8 @@
 //!
 //! Sources: *Input File Format*, pbrt.org/fileformat-v4 and pbrt.org/fileformat-v3; Pharr, Jakob
 //! and Humphreys, *Physically Based Rendering*, 4th edition, 2023, and 3rd edition, 2016.
-//! Directives change a graphics state; a shape or light takes the current state.
+//! Directives change a graphics state, and each shape or light uses the state that is current when
+//! it is created.
 
 mod camera;
 mod curve;
@@ -39,7 +40,7 @@ use durer_scene::scene::{Axis, Scene};
 use lexer::{Lexer, Token};
 use state::Reader;
 
-/// Scene format entry for pbrt.
+/// Entry for pbrt in the list of scene formats.
 pub(super) const FORMAT: SceneFormat = SceneFormat {
     name: "pbrt",
     extensions: &["pbrt"],
@@ -53,8 +54,9 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     ),
 };
 
-/// Returns true if a file begins with a directive that only pbrt has. Files in the course's format
-/// can also begin with `Transform` or `Material`.
+/// Returns true if a file begins with a directive that exists only in pbrt. The directives
+/// `Transform` and `Material` do not count, because files in the course's format can begin with
+/// them too.
 fn recognise(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 12)];
     let (mut text, report) = (Lexer::new(head.into(), 0), SharedReport::default());

@@ -1,12 +1,13 @@
-//! Named spectra of pbrt, as RGB values or chromaticities.
+//! Named spectra of pbrt, given as RGB values or chromaticities.
 
 use durer_scene::math::Vec3;
 use durer_scene::spectrum::SpectrumSource;
 use durer_scene::spectrum::space::color_of_chromaticity;
 
-/// Complex indices of refraction of metals (eta, k) for red, green and blue. They are chosen so
-/// that the reflectances at 0 and 82 degrees have the colour of the spectral reflectance under D65,
-/// within 0.002. Gold's red is outside of linear sRGB and differs by 0.03.
+/// Complex indices of refraction of metals (eta, k) for red, green and blue. The indices are chosen
+/// so that the colours of the reflectances at 0 and 82 degrees equal those of the spectral
+/// reflectances under D65, with an error of at most 0.002. The red component of gold is outside the
+/// range of linear sRGB and differs by 0.03.
 ///
 /// Source of the spectra: Palik, *Handbook of Optical Constants of Solids*, 1985, and the SOPRA
 /// collection, as distributed with pbrt-v4.
@@ -20,7 +21,7 @@ const METALS: [(&str, [f32; 3], [f32; 3]); 7] = [
     ("TiO2", [2.8601, 2.9571, 3.1855], [0.0; 3]),
 ];
 
-/// Indices of refraction of glasses at 587.6 nm. Source: Schott's data sheets.
+/// Indices of refraction of types of glass at 587.6 nm. Source: Schott's data sheets.
 const GLASSES: [(&str, f32); 10] = [
     ("BK7", 1.5168),
     ("BAF10", 1.67),
@@ -55,7 +56,7 @@ const ILLUMINANTS: [(&str, [f64; 2]); 16] = [
     ("illum-acesD60", [0.32168, 0.33767]),
 ];
 
-/// Returns the spectrum with a name.
+/// Returns the spectrum that has the given name.
 pub(super) fn spectrum(name: &str) -> Option<SpectrumSource> {
     if let Some((metal, which)) = name.strip_prefix("metal-").and_then(|rest| rest.rsplit_once('-')) {
         let (_, eta, k) = METALS.iter().find(|row| row.0 == metal)?;
@@ -71,7 +72,7 @@ pub(super) fn spectrum(name: &str) -> Option<SpectrumSource> {
     ILLUMINANTS.iter().find(|row| row.0 == name).map(|row| SpectrumSource::Illuminant(color_of_chromaticity(row.1)))
 }
 
-/// Returns the names of all spectra, for suggestions in messages.
+/// Returns the names of all spectra, for suggestions in error messages.
 pub(super) fn names() -> impl Iterator<Item = &'static str> {
     const METAL_NAMES: [&str; 14] = [
         "metal-Ag-eta",

@@ -19,9 +19,9 @@ pub(super) enum Kind {
     Bool,
     Text,
     Texture,
-    /// Rows of two numbers.
+    /// Pairs of numbers.
     Vec2,
-    /// Rows of three numbers.
+    /// Triples of numbers.
     Vec3,
     Rgb,
     Xyz,
@@ -29,7 +29,8 @@ pub(super) enum Kind {
     Spectrum,
 }
 
-/// Type names, and the type that each stands for; `color` and `xyz` are from pbrt-v3.
+/// Names of parameter types, and the type that each of them stands for. `color` and `xyz` come from
+/// pbrt-v3.
 const KINDS: [(&str, Kind); 18] = [
     ("integer", Kind::Integer),
     ("float", Kind::Float),
@@ -60,7 +61,7 @@ pub(super) enum Values {
 }
 
 impl Values {
-    /// Returns the number of values with their type, for messages.
+    /// Returns the number of values and their type as text for messages.
     fn counted(&self) -> String {
         let (one, many) = match self {
             Values::Numbers(_) => ("number", "numbers"),
@@ -85,15 +86,15 @@ pub(super) struct Param {
     pub kind: Kind,
     pub name: String,
     pub values: Values,
-    /// Span of its type and name.
+    /// Span of the string that gives the type and name.
     pub at: Span,
-    /// Span of its values.
+    /// Span of the parameter's values.
     pub values_at: Span,
     used: Cell<bool>,
 }
 
 impl Param {
-    /// Returns the first number; 0 if there is none.
+    /// Returns the first number, or 0 if there is none.
     pub fn number(&self) -> f32 {
         match &self.values {
             Values::Numbers(all) => all.first().copied().unwrap_or_default() as f32,
@@ -101,12 +102,12 @@ impl Param {
         }
     }
 
-    /// Returns all numbers; empty if the values are not numbers.
+    /// Returns all numbers, or an empty list if the values are not numbers.
     pub fn numbers(&self) -> &[f64] {
         if let Values::Numbers(all) = &self.values { all } else { &[] }
     }
 
-    /// Returns the first string; empty if there is none.
+    /// Returns the first string, or an empty string if there is none.
     pub fn text(&self) -> &str {
         match &self.values {
             Values::Texts(all) => all.first().map_or("", String::as_str),
@@ -114,18 +115,19 @@ impl Param {
         }
     }
 
-    /// Returns the numbers in rows of three.
+    /// Returns the numbers as triples.
     pub fn triples(&self) -> Vec<Vec3> {
         self.numbers().chunks_exact(3).map(|p| Vec3::new(p[0] as f32, p[1] as f32, p[2] as f32)).collect()
     }
 }
 
-/// Parameters of a pbrt directive, followed by those set by `Attribute`; tracks which are used.
+/// Parameters of a pbrt directive, followed by the parameters set by `Attribute`. Keeps track of
+/// which parameters are used.
 pub(super) struct Params<'s> {
     list: Vec<Rc<Param>>,
-    /// Number of the directive's own parameters.
+    /// Number of parameters that belong to the directive itself.
     own_count: usize,
-    /// Span of the directive's word, or of the string after it.
+    /// Span of the directive, or of the string after it.
     pub at: Span,
     pub report: &'s SharedReport,
     pub input: &'s ReadInput<'s>,
@@ -135,7 +137,7 @@ pub(super) struct Params<'s> {
     known_names: RefCell<Vec<&'static str>>,
 }
 
-/// Reads parameters as long as strings follow.
+/// Reads parameters for as long as strings follow.
 pub(super) fn read(text: &mut Lexer, language: Language, report: &SharedReport) -> Vec<Rc<Param>> {
     let mut list: Vec<Rc<Param>> = Vec::new();
     while !report.is_full() {
@@ -178,7 +180,7 @@ fn parse_declaration(head: &str, at: Span, language: Language, report: &SharedRe
     Some((row?.1, name.to_string()))
 }
 
-/// Reads the values after a parameter's name: one value, or several in brackets.
+/// Reads the values after the name of a parameter: one value, or several values in brackets.
 fn values(text: &mut Lexer, head: Span, report: &SharedReport) -> Option<(Values, Span)> {
     let Some(first) = text.peek(report).cloned() else {
         report.error(head, "this parameter has no value");
@@ -270,7 +272,7 @@ pub(super) fn number(text: &Lexer, at: Span, report: &SharedReport) -> Option<f6
     None
 }
 
-/// Checks that the values fit the type.
+/// Checks that the values match the declared type.
 fn fits(kind: Kind, name: &str, values: &Values, at: Span, report: &SharedReport) -> bool {
     let complain = |wanted: &str| {
         let actual = match values.len() {
@@ -286,7 +288,7 @@ fn fits(kind: Kind, name: &str, values: &Values, at: Span, report: &SharedReport
     };
     match (kind, values) {
         (Kind::Bool, Values::Bools(_)) => true,
-        // pbrt-v3 writes booleans as strings.
+        // In pbrt-v3, booleans are written as strings.
         (Kind::Bool, Values::Texts(all)) if all.iter().all(|word| word == "true" || word == "false") => true,
         (Kind::Bool, _) => complain("`true` or `false`"),
         (Kind::Text | Kind::Texture, Values::Texts(_)) => true,
@@ -307,7 +309,8 @@ fn fits(kind: Kind, name: &str, values: &Values, at: Span, report: &SharedReport
 }
 
 impl<'s> Params<'s> {
-    /// Combines a directive's own parameters with those set by `Attribute`; its own come first.
+    /// Combines the parameters of a directive with those set by `Attribute`. The directive's own
+    /// parameters come first.
     pub fn new(
         own: Vec<Rc<Param>>,
         others: &[Rc<Param>],
@@ -320,7 +323,7 @@ impl<'s> Params<'s> {
         Params { list, own_count: count, at, report, input, space, language, known_names: RefCell::default() }
     }
 
-    /// Returns a parameter by name, and marks it as used.
+    /// Finds a parameter by name, marks it as used and returns it.
     pub fn get(&self, name: &'static str) -> Option<&Param> {
         self.known_names.borrow_mut().push(name);
         let found = self.list.iter().find(|param| param.name == name)?;
@@ -328,7 +331,7 @@ impl<'s> Params<'s> {
         Some(found)
     }
 
-    /// Returns a parameter that has at least one value; reports an error if its type is not in
+    /// Returns a parameter if it has at least one value. Reports an error if its type is not in
     /// `kinds`.
     pub(super) fn typed(&self, name: &'static str, kinds: &[Kind], wanted: &str) -> Option<&Param> {
         let param = self.get(name)?;
@@ -343,7 +346,7 @@ impl<'s> Params<'s> {
         Some(param)
     }
 
-    /// Returns the span of a parameter, or of the directive if it has no such parameter.
+    /// Returns the span of a parameter, or the span of the directive if the parameter is missing.
     pub fn span(&self, name: &'static str) -> Span {
         self.get(name).map_or(self.at, |param| param.at)
     }
@@ -353,7 +356,7 @@ impl<'s> Params<'s> {
         self.typed(name, &[Kind::Float, Kind::Integer], "a float").map(Param::number)
     }
 
-    /// Returns a `float` parameter, which must be more than 0.
+    /// Returns a `float` parameter, which must be greater than 0.
     pub fn positive(&self, name: &'static str) -> Option<f32> {
         let value = self.float(name)?;
         if value <= 0.0 {
@@ -392,13 +395,13 @@ impl<'s> Params<'s> {
         self.typed(name, &[Kind::Text], "a string").map(Param::text)
     }
 
-    /// Returns a parameter with rows of two numbers.
+    /// Returns a parameter that consists of pairs of numbers.
     pub fn pairs(&self, name: &'static str) -> Option<Vec<Vec2>> {
         let param = self.typed(name, &[Kind::Vec2, Kind::Float], "rows of two numbers")?;
         Some(param.numbers().chunks_exact(2).map(|p| Vec2::new(p[0] as f32, p[1] as f32)).collect())
     }
 
-    /// Returns a parameter with rows of three numbers.
+    /// Returns a parameter that consists of triples of numbers.
     pub fn triples(&self, name: &'static str) -> Option<Vec<Vec3>> {
         self.typed(name, &[Kind::Vec3], "rows of three numbers").map(Param::triples)
     }
@@ -408,13 +411,14 @@ impl<'s> Params<'s> {
         self.triples(name).map(|all| all[0])
     }
 
-    /// Marks parameters that have no counterpart in Dürer as known, so that they are not reported.
+    /// Marks parameters that have no counterpart in Dürer as known, so that no warning is reported
+    /// for them.
     pub fn mark_known(&self, names: &[&'static str]) {
         names.iter().for_each(|name| _ = self.get(name));
     }
 
-    /// Marks parameters as known, and warns about those that are present; `what` names the
-    /// substitute.
+    /// Marks parameters as known, and warns about those that are present. `what` says what is used
+    /// instead.
     pub fn warn_unsupported(&self, names: &[&'static str], what: &str) {
         for name in names {
             if let Some(param) = self.get(name) {
@@ -423,7 +427,7 @@ impl<'s> Params<'s> {
         }
     }
 
-    /// Warns about unknown parameters. `what` names the directive.
+    /// Warns about unknown parameters. `what` is the name of the directive.
     pub fn warn_unused(&self, what: &str) {
         for param in self.list[..self.own_count].iter().filter(|param| !param.used.get()) {
             let warning = Diagnostic::warning(format!("{what} has no parameter `{}`: it is ignored", param.name));

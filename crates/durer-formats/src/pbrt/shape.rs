@@ -1,4 +1,4 @@
-//! Converts shapes and their area lights.
+//! Converts shapes together with their area lights.
 
 use super::defs::{AreaLight, Opacity};
 use super::language::Language;
@@ -16,31 +16,31 @@ use std::f32::consts::PI;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Maximum number of triangles of all tessellated shapes together, and the number from which curves
-/// have fewer sides. The maximum is low in tests, which build all of them.
+/// Maximum total number of triangles of all tessellated shapes, and the number of triangles above
+/// which curves get fewer sides. Tests use a low maximum so that they can reach it quickly.
 const MAX_TRIANGLES: usize = if cfg!(test) { 1 << 18 } else { 1 << 24 };
 const MANY: usize = 1 << 20;
 
 /// Geometry of a pbrt shape, before it gets a material and is added to the scene.
 struct ShapeDef {
     node: ObjectKind,
-    /// Total area in world space, and the number of area lights that it counts as.
+    /// Total area in world space, and the number of area lights that the shape counts as.
     area: f32,
     lights: usize,
     /// Transform from object space to world space.
     to_world: DAffine3,
-    /// True if normals point inwards in pbrt but outwards in Dürer.
+    /// True if the normals point inwards in pbrt, but outwards in Dürer.
     inside_out: bool,
 }
 
 impl Reader<'_> {
-    /// Executes a `Shape` directive: adds the shape to the scene, with the current material and
-    /// area light.
+    /// Executes a `Shape` directive, which adds the shape to the scene with the current material
+    /// and area light.
     pub fn shape(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
         let params = self.params(list, Some(SHAPE), at);
         let opacity = self.opacity(&params);
         let to_world = self.map(at);
-        // The orientation of a quadric is defined in object space, that of a triangle in world
+        // The orientation of a quadric is defined in object space, and that of a triangle in world
         // space.
         let flipped = self.state.reversed != (to_world.matrix3.determinant() < 0.0);
         let third = self.language == Language::V3;
@@ -109,7 +109,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Adds a shape with its material and light to the scene.
+    /// Adds a shape to the scene, with its material and its light.
     fn add_shape(&mut self, shape: ShapeDef, opacity: &Opacity, at: Span) {
         let light = self.state.area_light.clone();
         let light = light.filter(|light| {
@@ -155,7 +155,7 @@ impl Reader<'_> {
         }
         let world = radius * to_world.transform_vector3(DVec3::X).length() as f32;
         let (center, to_world) = match to_world.matrix3 == DAffine3::IDENTITY.matrix3 {
-            // In pbrt, the poles are on the z axis and u begins at x. In Dürer, the poles are on
+            // In pbrt, the poles are on the z axis, and u is 0 at +x. In Dürer, the poles are on
             // the y axis and u = 1/2 is at -z.
             _ if self.is_pictured() || params.get("alpha").is_some_and(|param| param.kind == Kind::Texture) => {
                 let turned = DMat3::from_cols(DVec3::NEG_Y, DVec3::Z, DVec3::X);
@@ -187,7 +187,8 @@ impl Reader<'_> {
         Some(ShapeDef { node, area, lights: 1, to_world, inside_out: false })
     }
 
-    /// Returns a tessellated shape. Together, they may have at most `MAX_TRIANGLES` triangles.
+    /// Tessellates a shape. All tessellated shapes together can have at most `MAX_TRIANGLES`
+    /// triangles.
     fn tessellated(&mut self, data: MeshData, to_world: DAffine3, at: Span) -> Option<ShapeDef> {
         self.tessellated_triangles = self.tessellated_triangles.saturating_add(data.triangles.len());
         if self.tessellated_triangles > MAX_TRIANGLES {
@@ -199,14 +200,14 @@ impl Reader<'_> {
         self.mesh(None, Arc::new(data), to_world, at)
     }
 
-    /// Returns a mesh with a name shared by several shapes, or with a new name.
+    /// Returns a mesh under a name that several shapes share, or under a new name.
     fn mesh(&mut self, name: Option<String>, data: Arc<MeshData>, to_world: DAffine3, at: Span) -> Option<ShapeDef> {
         if data.triangles.is_empty() {
             return None;
         }
         let corner = |i: u32| to_world.transform_point3(data.positions[i as usize].as_dvec3());
         let twice = |[a, b, c]: &[u32; 3]| (corner(*b) - corner(*a)).cross(corner(*c) - corner(*a)).length();
-        // The area is needed only for a light with a power.
+        // The area is needed only for a light whose power is given.
         let has_power = self.state.area_light.as_ref().is_some_and(|light| light.power.is_some());
         let area = if has_power { 0.5 * data.triangles.iter().map(twice).sum::<f64>() as f32 } else { 1.0 };
         let name = name.unwrap_or_else(|| format!("{}#{}", self.input.name, self.scene.assets.meshes.len()));
@@ -238,8 +239,8 @@ impl Reader<'_> {
     }
 }
 
-/// Returns the radiance of an area light. Its power is divided among the shape's lights; a mesh has
-/// one for each triangle.
+/// Returns the radiance of an area light. The power of an area light is divided equally among the
+/// lights of its shape. A mesh has one light for each triangle.
 fn radiance(light: &AreaLight, shape: &ShapeDef) -> Color {
     let Some(power) = light.power else { return light.radiance };
     let sides = if light.two_sided { 2.0 } else { 1.0 };

@@ -1,4 +1,4 @@
-//! Reads spectra of parameters: RGB, XYZ, blackbody, sampled values, a name or a file.
+//! Reads parameters that are spectra: RGB, XYZ, a blackbody, sampled values, a name or a file.
 
 use super::language::Language;
 use super::named;
@@ -12,20 +12,20 @@ use durer_scene::spectrum::SpectrumSource;
 use durer_scene::spectrum::space::color_of_xyz;
 
 impl Params<'_> {
-    /// Returns the spectrum of a parameter that is not a texture.
+    /// Returns the spectrum of a parameter, which must not be a texture.
     pub fn spectrum(&self, name: &'static str) -> Option<SpectrumSource> {
         let kinds = [Kind::Rgb, Kind::Xyz, Kind::Blackbody, Kind::Spectrum];
         spectrum_of(self.typed(name, &kinds, "rgb, a spectrum or a blackbody")?, self)
     }
 }
 
-/// Returns the spectrum of a parameter; in pbrt-v3, as RGB.
+/// Returns the spectrum of a parameter, which is converted to RGB for pbrt-v3.
 fn spectrum_of(param: &Param, params: &Params) -> Option<SpectrumSource> {
     let found = spectrum_value(param, params)?;
     if params.language == Language::V4 {
         return Some(found);
     }
-    // A blackbody of pbrt-v3 has a scale after the temperature.
+    // In pbrt-v3, the temperature of a blackbody is followed by a scale.
     let factor = match (&found, param.numbers()) {
         (SpectrumSource::Blackbody(_), [_, factor, ..]) => *factor as f32,
         _ => 1.0,
@@ -73,7 +73,8 @@ fn rising(mut curve: Vec<[f32; 2]>, at: Span, params: &Params) -> Option<Spectru
     Some(SpectrumSource::Curve(curve))
 }
 
-/// Returns a spectrum by name: a named spectrum of pbrt-v4, or a file of wavelengths and values.
+/// Returns the spectrum with a name, which is a named spectrum of pbrt-v4 or a file of wavelengths
+/// and values.
 fn named_spectrum(name: &str, at: Span, params: &Params) -> Option<SpectrumSource> {
     if params.language == Language::V4
         && let Some(spectrum) = named::spectrum(name)

@@ -1,4 +1,5 @@
-//! State of the pbrt reader: the graphics state that directives change, and the scene built so far.
+//! State of the pbrt reader: the graphics state that directives change, and the scene that has been
+//! built so far.
 
 use super::defs::{AreaLight, InfiniteLight, MaterialDef, Texture};
 use super::language::{DetectedLanguage, Language};
@@ -18,15 +19,15 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Targets of `Attribute`: indices into [`State::attributes`].
+/// Targets of the `Attribute` directive, as indices into [`State::attributes`].
 pub(super) const SHAPE: usize = 0;
 pub(super) const LIGHT: usize = 1;
 pub(super) const MATERIAL: usize = 2;
 pub(super) const MEDIUM: usize = 3;
 pub(super) const TEXTURE: usize = 4;
 
-/// Graphics state of pbrt, such as the current transformation and material; saved by
-/// `AttributeBegin`.
+/// Graphics state of pbrt, such as the current transformation and material. `AttributeBegin` saves
+/// a copy of this state.
 #[derive(Clone, Default)]
 pub(super) struct State {
     pub transforms: Transforms,
@@ -34,16 +35,16 @@ pub(super) struct State {
     /// Index of the current material.
     pub material: usize,
     pub area_light: Option<Rc<AreaLight>>,
-    /// Names of the media inside and outside of shapes.
+    /// Names of the media inside and outside the shapes that follow.
     pub inside: Option<String>,
     pub outside: Option<String>,
-    /// Parameters set by `Attribute` for shapes, lights, materials, media and textures.
+    /// Parameters that `Attribute` has set for shapes, lights, materials, media and textures.
     pub attributes: [Vec<Rc<Param>>; 5],
     pub space: RgbSpace,
 }
 
-/// Kind of a scope that a directive such as `AttributeBegin` has opened; determines the directive
-/// that closes it.
+/// Kind of a scope that a directive such as `AttributeBegin` has opened. The kind determines which
+/// directive closes the scope.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scope {
     Attribute,
@@ -53,7 +54,7 @@ pub(super) enum Scope {
     Import,
 }
 
-/// Camera, film or other directive that is kept to be evaluated after the whole file has been read.
+/// Camera, film or other directive whose evaluation is deferred until the whole file has been read.
 pub(super) struct DeferredDirective {
     pub kind: String,
     pub list: Vec<Rc<Param>>,
@@ -62,13 +63,13 @@ pub(super) struct DeferredDirective {
     pub space: RgbSpace,
 }
 
-/// File that is being read: the main file, or a file included or imported by a directive.
+/// File that is being read: the main file, or a file that a directive includes or imports.
 pub(super) struct OpenFile {
     pub text: Lexer,
     pub name: String,
-    /// Span of the directive that includes it.
+    /// Span of the directive that includes the file.
     pub at: Span,
-    /// True if the file is imported, so that its end closes every scope that it opened.
+    /// True if the file is imported, so that the end of the file closes every scope that it opened.
     pub imported: bool,
 }
 
@@ -77,7 +78,7 @@ pub(super) struct Reader<'a> {
     pub input: &'a ReadInput<'a>,
     pub report: &'a SharedReport,
     pub language: Language,
-    /// Span of the word that decided the language.
+    /// Span of the keyword that decided the version of pbrt.
     pub decided_by: Option<Span>,
     pub texts: Vec<OpenFile>,
     pub state: State,
@@ -85,28 +86,28 @@ pub(super) struct Reader<'a> {
     pub coordinate_systems: BTreeMap<String, [DAffine3; 2]>,
     pub materials: Vec<MaterialDef>,
     pub named_materials: BTreeMap<String, usize>,
-    /// Material indices in the scene, by material, emission and opacity as used by shapes.
+    /// Indices of materials in the scene, by the material, emission and opacity that a shape uses.
     pub material_indices: BTreeMap<(usize, String), Option<u32>>,
     pub textures: BTreeMap<(bool, String), Texture>,
-    /// Media by name; `None` for a medium without a counterpart.
+    /// Media by name, with `None` for a medium that has no counterpart in Dürer.
     pub media: BTreeMap<String, Option<Medium>>,
-    /// Indices of materials filled with a medium, by material and medium.
+    /// Indices of the materials that are filled with a medium, by material and medium.
     pub materials_with_medium: BTreeMap<(usize, String), usize>,
     pub objects: BTreeMap<String, Rc<Group>>,
-    /// Name and content of the object being defined.
+    /// Name and contents of the object that is being defined.
     pub defining: Option<(String, Group)>,
     pub limits: ResourceLimits,
-    /// Number of triangles so far that were tessellated from compact shapes.
+    /// Number of triangles so far that result from tessellating shapes.
     pub tessellated_triangles: usize,
     /// Number of files included so far.
     pub included: usize,
     pub camera: Option<DeferredDirective>,
     pub film: Option<DeferredDirective>,
-    /// First directive before `WorldBegin` that is allowed only after it.
+    /// First directive that appears before `WorldBegin`, but is allowed only after it.
     pub too_early: Option<Span>,
     pub in_world: bool,
     pub infinite: Vec<InfiniteLight>,
-    /// True if scattered light is not rendered (`maxdepth` 0).
+    /// True if scattered light is not rendered because `maxdepth` is 0.
     pub emitters_only: bool,
     pub meshes: BTreeMap<(String, bool), Arc<MeshData>>,
     pub scene: Scene,
@@ -147,7 +148,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Returns the parameters of a directive, including those set by `Attribute` for its kind.
+    /// Returns the parameters of a directive, including those that `Attribute` has set for
+    /// directives of its kind.
     pub fn params(&self, list: Vec<Rc<Param>>, attributes: Option<usize>, at: Span) -> Params<'a> {
         let attributes = attributes.map_or(&[][..], |kind| &self.state.attributes[kind]);
         Params::new(list, attributes, at, (self.input, self.report), (self.language, self.state.space))
@@ -164,7 +166,8 @@ impl<'a> Reader<'a> {
         )
     }
 
-    /// Returns the map from the current space to world space at shutter open; warns about motion.
+    /// Returns the transform from the current space to world space when the shutter opens. Warns if
+    /// objects move.
     pub fn map(&self, at: Span) -> DAffine3 {
         if self.state.transforms.moves() {
             self.report
@@ -173,7 +176,7 @@ impl<'a> Reader<'a> {
         self.state.transforms.maps[0]
     }
 
-    /// Adds an object to the scene or to the object being defined.
+    /// Adds an object to the scene, or to the object that is being defined.
     pub fn add(&mut self, object: Object) {
         match &mut self.defining {
             Some((_, group)) => group.objects.push(object),

@@ -1,4 +1,4 @@
-//! Reads height fields and NURBS of pbrt-v3.
+//! Reads height fields and NURBS surfaces of pbrt-v3.
 //!
 //! Source: *Input File Format*, pbrt.org/fileformat-v3.
 
@@ -7,11 +7,11 @@ use durer_scene::shape::MeshData;
 use durer_scene::shape::tessellate::net::{self, NurbsSide};
 use glam::DVec4;
 
-/// Maximum number of control points of a surface, and maximum order.
+/// Maximum number of control points of a surface, and maximum order of a surface.
 const MAX_POINTS: i64 = 1 << 24;
 const HIGHEST: i64 = 32;
 
-/// Reads the number of points along u and v, each at least `least`.
+/// Reads the number of points along u and along v, each of which must be at least `least`.
 fn counts(params: &Params, least: i64) -> Option<[u32; 2]> {
     let counts = ["nu", "nv"].map(|name| params.integer(name).unwrap_or(0));
     if counts.iter().any(|count| *count < least) || counts[0].saturating_mul(counts[1]) > MAX_POINTS {
@@ -22,7 +22,7 @@ fn counts(params: &Params, least: i64) -> Option<[u32; 2]> {
     Some(counts.map(|count| count as u32))
 }
 
-/// Reads a height field over the unit square.
+/// Reads a height field that covers the unit square.
 pub(super) fn heights(params: &Params, reversed: bool) -> Option<MeshData> {
     let [columns, rows] = counts(params, 2)?;
     let heights = params.floats("Pz").unwrap_or_default();

@@ -1,5 +1,5 @@
-//! Tests of the pbrt reader: syntax, conventions compared with closed forms, and positions of
-//! errors.
+//! Tests of the pbrt reader: its syntax, its conventions compared with analytic results, and the
+//! positions of errors.
 
 mod conventions;
 mod language;
@@ -14,7 +14,7 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::scene::{Material, Scene};
 use std::path::Path;
 
-/// Reads a scene whose files are in `folder`; see [`testing`].
+/// Reads a scene whose files are in the folder `folder`; see [`testing`].
 fn read_in(folder: &Path, text: &str) -> (Option<Scene>, Vec<String>) {
     testing::read_in(folder, "scene.pbrt", text)
 }
@@ -23,14 +23,14 @@ fn read(text: &str) -> (Option<Scene>, Vec<String>) {
     read_in(&std::env::temp_dir(), text)
 }
 
-/// Reads a scene, which must cause no diagnostics.
+/// Reads a scene, which must not cause any diagnostics.
 fn clean(text: &str) -> Scene {
     let (scene, messages) = read(text);
     assert_eq!(messages, [""; 0], "{text}");
     scene.unwrap()
 }
 
-/// Returns the layers and the diagnostics of a sphere's material.
+/// Returns the layers of a sphere's material, and the diagnostics.
 fn material(text: &str) -> (PrincipledMaterial, Vec<String>) {
     let (scene, messages) = read(&format!("Camera \"perspective\" WorldBegin {text} Shape \"sphere\""));
     let scene = scene.unwrap_or_else(|| panic!("{text}: {messages:?}")); // prose: keep

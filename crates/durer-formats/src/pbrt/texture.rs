@@ -1,4 +1,4 @@
-//! Reads textures, which become a constant or a picture.
+//! Reads textures, each of which becomes a constant or a picture.
 
 use super::defs::Texture;
 use super::language::Language;
@@ -148,7 +148,8 @@ impl Reader<'_> {
         self.textures.insert((is_color, name), value);
     }
 
-    /// Returns the value of a parameter that may be a texture; `default` is used if it is missing.
+    /// Returns the value of a parameter that may be a texture, or `default` if the parameter is
+    /// missing.
     pub fn texture_value(&self, params: &Params, name: &'static str, is_color: bool, default: Color) -> Texture {
         let Some(param) = params.get(name) else { return Texture::Constant(default) };
         if param.kind == Kind::Texture {
@@ -167,7 +168,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Returns a float parameter that may be a texture; for a picture, its mean.
+    /// Returns a float parameter that may be a texture. For a picture, returns its mean.
     pub fn value(&self, params: &Params, name: &'static str, default: f32) -> f32 {
         match self.texture_value(params, name, false, Vec3::splat(default)) {
             Texture::Constant(color) => color.x,
@@ -177,14 +178,14 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns the mean of a picture, for a parameter that can only be a number in Dürer.
+    /// Returns the mean of a picture, for a parameter that must be a single number in Dürer.
     pub fn mean_of(&self, params: &Params, name: &'static str, picture: &TextureImage) -> Option<f32> {
         let at = params.span(name);
         self.report.unsupported_once(at, format!("a picture for `{name}` has no counterpart: its mean is used"));
         self.pictures().mean(picture, at)
     }
 
-    /// Returns the picture of a parameter with `change` applied to its values; `None` if the
+    /// Returns the picture of a parameter after applying `change` to its values, or `None` if the
     /// parameter is not a picture.
     pub fn mapped_picture(
         &mut self,
@@ -202,8 +203,8 @@ impl Reader<'_> {
         Some(self.asset(picture, at))
     }
 
-    /// Returns a float parameter that may be a picture: `change` applied to the value, or 1 and the
-    /// changed picture.
+    /// Returns a float parameter that may be a picture. `change` is applied to the value. For a
+    /// picture, `change` is applied to the picture and the value is 1.
     pub fn number_or_texture(
         &mut self,
         params: &Params,
@@ -217,8 +218,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns a colour parameter that may be a picture: the colour, or a factor and the picture's
-    /// name.
+    /// Returns a colour parameter that may be a picture. For a picture, returns a factor and the
+    /// name of the picture.
     pub fn color_or_texture(&mut self, params: &Params, name: &'static str, default: f32) -> (Color, Option<FileName>) {
         match self.texture_value(params, name, true, Vec3::splat(default)) {
             Texture::Constant(color) => (color, None),
@@ -235,7 +236,8 @@ impl Reader<'_> {
         Pictures { input: self.input, report: self.report }
     }
 
-    /// Returns a file as a picture with 8 bits per channel; other formats are converted.
+    /// Returns a file as a picture with 8 bits per channel, after converting it if it has another
+    /// format.
     pub fn eight_bits(&self, name: &str, at: Span) -> Option<PictureBytes> {
         self.pictures().eight_bits(name, at)
     }
@@ -263,7 +265,7 @@ impl Reader<'_> {
         mapping.nearest = params.text("filter") == Some("point");
         mapping.mipmaps = matches!(params.text("filter"), Some("trilinear" | "ewa" | "EWA"));
         if self.language == Language::V3 {
-            // Ignore pbrt-v3's mipmap settings: sampling needs no mipmaps.
+            // Ignore pbrt-v3's mipmap settings, because sampling does not need mipmaps.
             params.mark_known(&["trilinear", "maxanisotropy"]);
             let scale = Vec3::splat(params.float("scale").unwrap_or(1.0));
             let plain = params.boolean("gamma") == Some(false);
@@ -288,8 +290,8 @@ impl Reader<'_> {
         Some(Texture::Picture(recoded.unwrap_or(picture), scale))
     }
 
-    /// Returns the exponent that decodes the picture's values to linear ones; `None` for the sRGB
-    /// curve.
+    /// Returns the exponent that converts the picture's values to linear values, or `None` for the
+    /// sRGB curve.
     fn encoding(&self, params: &Params) -> Option<f32> {
         let text = params.text("encoding").filter(|encoding| *encoding != "sRGB")?;
         if text == "linear" {
@@ -312,15 +314,17 @@ impl Reader<'_> {
         let number = |name: &'static str, default: f32| params.float(name).unwrap_or(default);
         let (su, sv) = (number("uscale", 1.0), number("vscale", 1.0));
         let (du, dv) = (number("udelta", 0.0), number("vdelta", 0.0));
-        // v grows upwards in pbrt and in Dürer, but a picture's rows go down.
+        // In pbrt and in Dürer, v increases upwards, but the rows of a picture are stored from top
+        // to bottom.
         Mapping { transform: [[su, 0.0, du], [0.0, sv, 1.0 - sv - dv]], ..Mapping::default() }
     }
 
-    /// Returns the bilinear interpolation of the values at (u, v) = (0, 0), (0, 1), (1, 0) and (1,
-    /// 1), as a picture of 2 x 2 texels.
+    /// Interpolates bilinearly between the values at (u, v) = (0, 0), (0, 1), (1, 0) and (1, 1).
+    /// Returns the result as a picture of 2 x 2 texels.
     fn corners(&self, [v00, v01, v10, v11]: [Color; 4], params: &Params) -> Texture {
         let mut mapping = self.mapping(params);
-        // Map [0, 1] to the range between texel centres; rows go down.
+        // Map [0, 1] to the range between the texel centres. The rows are stored from top to
+        // bottom.
         let [[su, _, du], [_, sv, dv]] = mapping.transform;
         mapping.transform = [[0.5 * su, 0.0, 0.25 + 0.5 * du], [0.0, 0.5 * sv, 0.25 + 0.5 * dv]];
         mapping.wrap = [Wrap::Clamp; 2];
@@ -330,7 +334,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Combines two textures texel by texel; `None` if their pictures have different mappings.
+    /// Combines two textures texel by texel. Returns `None` if their pictures have different
+    /// mappings.
     fn combine(&self, textures: [&Texture; 2], at: Span, join: impl Fn(Color, Color) -> Color) -> Option<Texture> {
         let pictures = self.pictures();
         let (picture, most) = match textures {
@@ -347,7 +352,8 @@ impl Reader<'_> {
     /// Returns a checkerboard as a picture of 2 x 2 texels.
     fn checkerboard(&self, even: Color, odd: Color, params: &Params) -> Texture {
         let mut mapping = self.mapping(params);
-        // One texel covers one unit of uv. The origin is the lower left corner of an even texel.
+        // Each texel covers one unit of u and one unit of v. The origin is the lower left corner of
+        // an even texel.
         let [[su, _, du], [_, sv, _]] = mapping.transform;
         let dv = params.float("vdelta").unwrap_or(0.0);
         mapping.transform = [[0.5 * su, 0.0, 0.5 * du], [0.0, 0.5 * sv, 1.0 - 0.5 * sv - 0.5 * dv]];

@@ -1,4 +1,4 @@
-//! Current transformation matrix and the directives that change it.
+//! Current transformation matrix of pbrt, and the directives that change it.
 
 use super::lexer::{Lexer, Token};
 use super::params::number;
@@ -7,12 +7,14 @@ use durer_diag::{Diagnostic, Span};
 use durer_scene::math::fp;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 
-/// Current transformation matrices of pbrt: from the current space to world space, at shutter open
-/// and at shutter close. Before `WorldBegin`: from world space to camera space.
+/// Current transformation matrices of pbrt, which map from the current space to world space when
+/// the shutter opens and when it closes. Before `WorldBegin`, they map from world space to camera
+/// space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Transforms {
     pub maps: [DAffine3; 2],
-    /// Which of the two maps directives change, as set by `ActiveTransform`.
+    /// Flags for the two maps, which are true if directives change the map, as set by
+    /// `ActiveTransform`.
     pub active: [bool; 2],
 }
 
@@ -23,12 +25,13 @@ impl Default for Transforms {
 }
 
 impl Transforms {
-    /// Multiplies by `transform` from the right, so that the last directive in the file is applied first.
+    /// Multiplies by `transform` on the right, so that the last directive in the file is applied
+    /// first.
     pub fn apply(&mut self, transform: DAffine3) {
         self.change(|now| now * transform);
     }
 
-    /// Changes the active maps.
+    /// Changes the maps that are active.
     pub fn change(&mut self, change: impl Fn(DAffine3) -> DAffine3) {
         for (transform, active) in self.maps.iter_mut().zip(self.active) {
             if active {
@@ -37,7 +40,8 @@ impl Transforms {
         }
     }
 
-    /// Returns true if the two maps differ, so that objects move while the shutter is open.
+    /// Returns true if the two maps are different, in which case objects move while the shutter is
+    /// open.
     pub fn moves(&self) -> bool {
         self.maps[0] != self.maps[1]
     }
@@ -69,7 +73,7 @@ pub(super) fn numbers<const N: usize>(text: &mut Lexer, directive: Span, report:
     Some(all)
 }
 
-/// Returns the affine map for a matrix of 16 numbers in column-major order.
+/// Returns the affine map that a matrix of 16 numbers in column-major order represents.
 pub(super) fn matrix(m: [f64; 16], at: Span, report: &SharedReport) -> Option<DAffine3> {
     let matrix = DMat4::from_cols_array(&m);
     let [a, b, c, d] = [m[3], m[7], m[11], m[15]];
@@ -81,7 +85,7 @@ pub(super) fn matrix(m: [f64; 16], at: Span, report: &SharedReport) -> Option<DA
     invertible(transform, at, report)
 }
 
-/// Returns a map if it is invertible; reports an error if it is singular.
+/// Returns a map if it is invertible, and reports an error if it is singular.
 pub(super) fn invertible(transform: DAffine3, at: Span, report: &SharedReport) -> Option<DAffine3> {
     let determinant = transform.matrix3.determinant();
     if determinant == 0.0 || !determinant.is_finite() || !transform.inverse().is_finite() {
@@ -95,7 +99,7 @@ pub(super) fn invertible(transform: DAffine3, at: Span, report: &SharedReport) -
     Some(transform)
 }
 
-/// Returns the rotation by an angle in degrees about an axis of any length.
+/// Returns the rotation by an angle in degrees around an axis of any length.
 pub(super) fn rotation([degrees, x, y, z]: [f64; 4]) -> Option<DAffine3> {
     let axis = DVec3::new(x, y, z).try_normalize()?;
     let (sin, cos) = fp::sin_cos_degrees(degrees);
@@ -104,7 +108,7 @@ pub(super) fn rotation([degrees, x, y, z]: [f64; 4]) -> Option<DAffine3> {
 }
 
 /// Returns the map from world space to the space of a camera at `e` that looks along +z towards
-/// `l`; +x is right (left-handed).
+/// `l`. In that space, +x points to the right, so it is left-handed.
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 3.9.7.
 pub(super) fn look_at([ex, ey, ez, lx, ly, lz, ux, uy, uz]: [f64; 9]) -> Option<DAffine3> {

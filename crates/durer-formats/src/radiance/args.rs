@@ -1,4 +1,5 @@
-//! Primitives of a scene file: modifier, type, name and arguments.
+//! Reads the primitives of a scene file, each of which has a modifier, a type, a name and
+//! arguments.
 
 use super::words::{Word, Words};
 use crate::shared_report::SharedReport;
@@ -6,7 +7,8 @@ use durer_diag::{Diagnostic, Span};
 use durer_scene::math::Vec3;
 use glam::DVec3;
 
-/// Primitive of a Radiance scene as stored in the file: a surface, material, pattern or mixture.
+/// Primitive of a Radiance scene as stored in the file, which is a surface, material, pattern or
+/// mixture.
 #[derive(Debug)]
 pub(super) struct RadPrimitive {
     pub modifier: Word,
@@ -17,8 +19,8 @@ pub(super) struct RadPrimitive {
 }
 
 impl RadPrimitive {
-    /// Reads a primitive after its first word. Returns `None` after an error, because the start of
-    /// the next primitive is then unknown.
+    /// Reads the rest of a primitive after its first word. Returns `None` after an error, because
+    /// it is then unknown where the next primitive starts.
     pub fn read(modifier: Word, words: &mut Words, report: &SharedReport) -> Option<RadPrimitive> {
         let start = modifier.at;
         let mut next = || {
@@ -47,12 +49,13 @@ impl RadPrimitive {
         Some(RadPrimitive { modifier, kind, name, texts, numbers })
     }
 
-    /// Returns the span of the type and the name.
+    /// Returns the span that covers the type and the name.
     pub fn at(&self) -> Span {
         self.kind.at.join(self.name.at)
     }
 
-    /// Returns true if the number of real arguments is one of `counts`; reports an error if not.
+    /// Returns true if the number of real arguments is one of `counts`, and otherwise reports an
+    /// error.
     pub fn has(&self, counts: &[usize], report: &SharedReport) -> bool {
         let right = counts.contains(&self.numbers.len());
         if !right {
@@ -64,18 +67,19 @@ impl RadPrimitive {
         right
     }
 
-    /// Returns three real arguments, starting at `first`, as a point.
+    /// Returns the three real arguments that start at index `first` as a point.
     pub fn point(&self, first: usize) -> DVec3 {
         let number = |i: usize| self.numbers.get(first + i).copied().unwrap_or(0.0);
         DVec3::new(number(0), number(1), number(2))
     }
 
-    /// Returns three real arguments, starting at `first`, as a colour. Negative values become 0.
+    /// Returns the three real arguments that start at index `first` as a colour. Negative values
+    /// are replaced with 0.
     pub fn color(&self, first: usize) -> Vec3 {
         self.point(first).as_vec3().max(Vec3::ZERO)
     }
 
-    /// Returns the `i`-th real argument.
+    /// Returns the real argument with the index `i`.
     pub fn number(&self, i: usize) -> Option<f32> {
         self.numbers.get(i).map(|x| *x as f32)
     }

@@ -1,6 +1,6 @@
-//! Merges all surfaces with the same material into one mesh. Dürer tracks the objects that a ray is
-//! inside, so the surface of a glass body must be a single object. Moreover, many small objects
-//! take more memory and time than their triangles.
+//! Merges all surfaces that have the same material into one mesh. Dürer keeps track of the objects
+//! that contain the current point of a ray, so the surface of a glass body must be a single object.
+//! In addition, many small objects need more memory and time than their triangles do.
 
 use durer_diag::Span;
 use durer_scene::math::{Vec3, fp};
@@ -8,14 +8,13 @@ use durer_scene::shape::MeshData;
 use durer_scene::shape::mesh::NO_INDEX;
 use glam::{DAffine3, DVec3};
 
-/// Faces, each given by its corners.
+/// Faces, each of which is given by its corners.
 pub(super) type Facets = Vec<Vec<DVec3>>;
 
 /// Number of sides of a tessellated round surface.
 const SIDES: u32 = 128;
 
-/// Mesh of all surfaces that share a material, to which the reader adds one surface after the
-/// other.
+/// Mesh of all surfaces that share a material. The reader adds the surfaces to the mesh one by one.
 pub(super) struct MaterialMesh {
     data: MeshData,
     pub at: Span,
@@ -26,7 +25,7 @@ impl MaterialMesh {
         MaterialMesh { data: MeshData { flat: true, ..MeshData::default() }, at }
     }
 
-    /// Adds a flat face that is already triangulated.
+    /// Adds a flat face that has already been triangulated.
     pub fn add_face(&mut self, corners: &[Vec3], triangles: &[[usize; 3]]) {
         let first = self.data.positions.len() as u32;
         self.data.positions.extend(corners);
@@ -36,8 +35,8 @@ impl MaterialMesh {
         }
     }
 
-    /// Adds the lateral surface of a cone or cylinder without caps, between two points with a
-    /// radius at each. Normals point outwards, or inwards if `inverted`.
+    /// Adds the lateral surface of a cone or cylinder between two points, with a radius at each
+    /// point. There are no caps. The normals point outwards, or inwards if `inverted` is true.
     pub fn add_side(&mut self, [base, top]: [DVec3; 2], radii: [f64; 2], map: DAffine3, inverted: bool) {
         let along = top - base;
         let axis = along.normalize_or(DVec3::Z);
@@ -92,7 +91,7 @@ impl MaterialMesh {
         }
     }
 
-    /// Returns the bounding box as its lowest and highest corner.
+    /// Returns the bounding box, as its minimum and maximum corners.
     pub fn bounds(&self) -> [Vec3; 2] {
         let all = || self.data.positions.iter().copied();
         [all().fold(Vec3::INFINITY, Vec3::min), all().fold(Vec3::NEG_INFINITY, Vec3::max)]

@@ -1,20 +1,21 @@
-//! Converts chains of modifiers: a surface names a pattern, the pattern names a material, the
-//! material names a pattern, and so on.
+//! Converts chains of modifiers. For example, a surface names a pattern, the pattern names a
+//! material, and the material names another pattern.
 
 use super::converted::{ConvertedModifier, PatternEffect};
 use super::state::{MIXTURES, Modifier, PATTERNS, Reader};
 use std::rc::Rc;
 
 impl Reader<'_> {
-    /// Converts the modifier with an index.
+    /// Converts the modifier that has the given index.
     pub fn convert(&mut self, number: usize) -> Rc<ConvertedModifier> {
         self.convert_below(number, &PatternEffect::default())
     }
 
-    /// Converts a modifier that is modified by `patterns`, which a surface or another pattern
-    /// applies first.
+    /// Converts a modifier to which `patterns` apply. The patterns come from a surface or from a
+    /// pattern earlier in the chain.
     pub fn convert_below(&mut self, number: usize, patterns: &PatternEffect) -> Rc<ConvertedModifier> {
-        // Modifiers under skies and directional distributions are rare, so they are not cached.
+        // Modifiers to which skies or directional distributions apply are rare, so they are not
+        // cached.
         let plain = patterns.sky.is_none() && patterns.spread.is_none();
         let key = plain.then(|| (number, patterns.tint.to_array().map(f32::to_bits)));
         if let Some(converted) = key.as_ref().and_then(|key| self.converted.get(key)) {

@@ -1,5 +1,5 @@
-//! Executes the commands `!xform`, `!cat`, `!genbox`, `!genprism` and `!gensky`, optionally piped
-//! into `xform`. No program is run; the reader generates the output itself.
+//! Executes the commands `!xform`, `!cat`, `!genbox`, `!genprism` and `!gensky`, whose output can
+//! be piped into `xform`. The reader does not run any program, but generates the output itself.
 
 use super::body::Facets;
 use super::context::PrimitiveContext;
@@ -12,7 +12,7 @@ use durer_diag::Diagnostic;
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
-/// Transforms and settings; one for each copy of a command's output.
+/// Transforms and settings, with one entry for each copy of a command's output.
 type Places = Vec<PrimitiveContext>;
 
 impl Reader<'_> {
@@ -31,8 +31,8 @@ impl Reader<'_> {
             let at = stages.iter().skip(empty).flatten().next().map_or(words.end(), |word| word.at);
             return self.report.error(at, what);
         }
-        // The output passes through the last stage last, so the transform of that stage is the
-        // outermost.
+        // The output passes through the last stage of the pipe at the end, so the transform of that
+        // stage is the outermost one.
         let mut places = vec![place.clone()];
         for stage in stages[1..].iter().rev() {
             if stage[0].text != "xform" {
@@ -73,7 +73,7 @@ impl Reader<'_> {
     }
 }
 
-/// Reports an unsupported command, and suggests a workaround.
+/// Reports an unsupported command and suggests a workaround.
 fn refuse(reader: &Reader, name: &Word) {
     let help = format!(
         "supported commands are `xform`, `cat`, `genbox`, `genprism` and `gensky`. Run Radiance's own `{}`, save its output in a \
@@ -84,8 +84,9 @@ fn refuse(reader: &Reader, name: &Word) {
     reader.report.push(Diagnostic { help: Some(help), ..error.at(name.at) });
 }
 
-/// Applies an `xform` to the contexts that contain it. Returns the new contexts, the files that it
-/// names, and whether commands in these files run in the files' own folders.
+/// Applies an `xform` command to each of the contexts in which it is used. Returns the new
+/// contexts, the files that the command names, and whether commands in these files run in the
+/// files' own folders.
 fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[PrimitiveContext]) -> Option<(Places, &'w [Word], bool)> {
     let (mut transform, mut modifier, mut inverted) = (TransformSequence::default(), None, false);
     let mut beside = true;
@@ -97,7 +98,7 @@ fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[PrimitiveContext]) -> 
         let takes = match option.text.as_str() {
             "-m" | "-n" => 1,
             "-c" | "-e" => {
-                // `-c` copies commands unchanged; `-e` expands them.
+                // The option `-c` copies commands unchanged, and `-e` expands them.
                 beside = option.text == "-e";
                 0
             }
@@ -133,7 +134,7 @@ fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[PrimitiveContext]) -> 
     Some((outer.iter().flat_map(|outer| maps.iter().map(move |map| place(outer, map))).collect(), rest, beside))
 }
 
-/// Adds polygons with the material named by a generator's first argument.
+/// Adds polygons whose material is the first argument of a generator.
 fn build(reader: &mut Reader, facets: Option<Facets>, args: &[Word], places: &[PrimitiveContext]) {
     let Some(facets) = facets else { return };
     for place in places {
@@ -144,7 +145,7 @@ fn build(reader: &mut Reader, facets: Option<Facets>, args: &[Word], places: &[P
     }
 }
 
-/// Reads the first `count` arguments of a generator as numbers.
+/// Reads the first `count` arguments of a generator, which must be numbers.
 fn numbers(reader: &Reader, args: &[Word], count: usize) -> Option<Vec<f64>> {
     args[..count].iter().map(|word| word.number(reader.report)).collect()
 }
@@ -188,7 +189,7 @@ fn genbox(reader: &Reader, name: &Word, args: &[Word]) -> Option<Facets> {
     Some(SIDES.iter().map(|side| reversed_if(side.map(corner).to_vec(), inward != negative)).collect())
 }
 
-/// Returns the corners, in reverse order if `other`.
+/// Returns the corners, in reverse order if `other` is true.
 fn reversed_if(mut corners: Vec<DVec3>, other: bool) -> Vec<DVec3> {
     if other {
         corners.reverse();
@@ -252,8 +253,8 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &PrimitiveCo
     let base: Vec<DVec3> = corners.chunks_exact(2).map(|c| DVec3::new(c[0], c[1], 0.0)).collect();
     let next = |i: usize| base[(i + 1) % base.len()];
     let area: f64 = (0..base.len()).map(|i| base[i].x * next(i).y - next(i).x * base[i].y).sum();
-    // If the base winds counter-clockwise around the extrusion direction, faces with its winding
-    // would point inwards.
+    // If the base winds counter-clockwise around the extrusion direction, faces with the same
+    // winding would point inwards.
     let inward = (area > 0.0) == (along.z > 0.0);
     let mut facets = Facets::new();
     if ends {

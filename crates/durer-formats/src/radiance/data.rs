@@ -1,16 +1,16 @@
-//! Reader of data files, which contain tables of numbers over one or more coordinates.
+//! Reads data files, which contain tables of numbers over one or more coordinates.
 
 use super::words::{PrimitiveStart, Words};
 use crate::shared_report::SharedReport;
 
-/// Maximum number of coordinates of a table.
+/// Maximum number of coordinates that a table can have.
 const MAX_DIMENSIONS: usize = 8;
 
 /// Table of numbers over one or more coordinates, read from a Radiance data file. The last
-/// coordinate varies fastest.
+/// coordinate varies fastest in the list of values.
 #[derive(Debug, PartialEq)]
 pub(super) struct Table {
-    /// Sample positions along each coordinate.
+    /// Positions of the samples along each coordinate.
     axes: Vec<Vec<f64>>,
     values: Vec<f64>,
 }
@@ -68,11 +68,12 @@ impl Table {
         self.axes.len()
     }
 
-    /// Interpolates linearly in all coordinates. Returns 0 outside the table.
+    /// Interpolates linearly between samples in all coordinates. Returns 0 for positions outside
+    /// the table.
     pub fn at(&self, coordinates: &[f64]) -> f64 {
         const SLACK: f64 = 1e-4;
-        // For each coordinate: the index of the sample below the position, and the fraction of the
-        // way to the next sample.
+        // Index of the sample before the position, and relative distance to the next sample, for
+        // each coordinate.
         let mut cells = [(0, 0.0); MAX_DIMENSIONS];
         for ((axis, &x), cell) in self.axes.iter().zip(coordinates).zip(&mut cells) {
             let (first, last) = (axis[0].min(axis[axis.len() - 1]), axis[0].max(axis[axis.len() - 1]));

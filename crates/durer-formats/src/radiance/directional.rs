@@ -1,4 +1,4 @@
-//! Converts surfaces with a directional distribution to point lights.
+//! Converts surfaces that have a directional distribution to point lights.
 
 use super::converted::{ConvertedModifier, MaterialKind};
 use super::distribution::DirectionalDistribution;
@@ -10,15 +10,15 @@ use durer_scene::light::photometric::PhotometricLight;
 use glam::DVec3;
 use std::rc::Rc;
 
-/// Number of point lights for each surface.
+/// Number of point lights that replace each surface.
 const POINTS: u32 = 16;
 
 /// Maximum number of different light profiles.
 const MAX_PROFILES: usize = 256;
 
 impl Reader<'_> {
-    /// Replaces a surface with point lights spread over it, since area lights in Dürer have no
-    /// directional distribution.
+    /// Replaces a surface with point lights that are spread over it, because area lights in Dürer
+    /// have no directional distribution.
     pub fn point_lights(&mut self, converted: &ConvertedModifier, outline: &EmitterShape, span: Span) {
         let MaterialKind::DirectionalEmitter { radiance, spread, at } = &converted.kind else { return };
         let [down, front] = spread.axes();
@@ -41,8 +41,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns the name of the light profile for a distribution on a surface. Surfaces with the
-    /// same orientation share a profile.
+    /// Returns the name of the light profile for a surface and a distribution. Surfaces that have
+    /// the same orientation share a profile.
     fn profile(
         &mut self,
         spread: &Rc<DirectionalDistribution>,

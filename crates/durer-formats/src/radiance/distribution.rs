@@ -1,7 +1,8 @@
-//! Directional distributions of emitters: tables over angles, as written by `ies2rad`, and
-//! spotlights.
+//! Directional distributions of emitters, which are spotlights or tables over angles in the form
+//! that `ies2rad` writes.
 //!
-//! Source: Radiance's `source.cal` for the functions and the angles; the manual for spotlights.
+//! Source: Radiance's `source.cal` for the functions and angles, and the reference manual for
+//! spotlights.
 
 use super::args::RadPrimitive;
 use super::data::Table;
@@ -11,58 +12,62 @@ use durer_scene::math::fp;
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
-/// Directional distribution of an emitter: a factor on its radiance for each direction of emission.
+/// Directional distribution of an emitter, which gives a factor for its radiance in each direction
+/// of emission.
 #[derive(Debug, PartialEq)]
 pub(super) enum DirectionalDistribution {
     Table(IntensityTable),
-    /// Constant within a cone about a unit direction, and 0 outside; `degrees` is the half angle.
+    /// Cone around a unit direction. The factor is constant inside and 0 outside, and `degrees` is
+    /// the half angle.
     Cone {
         aim: DVec3,
         degrees: f64,
-        /// Distance of the light's apparent origin behind the surface.
+        /// Distance by which the apparent origin of the light is behind the surface.
         focus: f64,
     },
 }
 
-/// Directional distribution given by a table over the angles of a light, as in photometric data.
+/// Directional distribution that is given by a table over the angles of a light, as in photometric
+/// data.
 #[derive(Debug, PartialEq)]
 pub(super) struct IntensityTable {
     table: Table,
     correction: Correction,
     factor: f64,
-    /// Angle that each coordinate of the table stands for, and an offset in degrees.
+    /// Angle that each coordinate of the table represents, and an offset in degrees.
     angles: Vec<(Angle, f64)>,
-    /// Rotation from world space to the light's axes.
+    /// Rotation from world space to the axes of the light.
     turn: DMat3,
 }
 
-/// Correction that converts a light's intensity from a table to radiance.
+/// Correction that converts the light intensity in a table to radiance.
 #[derive(Debug, PartialEq)]
 enum Correction {
     Nothing,
-    /// Divides by the cosine to the surface normal.
+    /// Divides by the cosine of the angle to the surface normal.
     Flat,
-    /// Divides by the projected area of a box with sides of these lengths.
+    /// Divides by the projected area of a box with these side lengths.
     Box(DVec3),
-    /// Divides by the projected area of an upright cylinder with this diameter and height.
+    /// Divides by the projected area of an upright cylinder with this diameter and this height.
     Cylinder(f64, f64),
 }
 
-/// Angle of an emission direction that a coordinate of the table stands for.
+/// Angle of an emission direction that a coordinate of the table represents.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Angle {
-    /// Angle from the downward direction.
+    /// Angle between the emission direction and the downward direction.
     Theta,
-    /// Angle around the vertical axis, from x towards y, mirrored at multiples of this number of
-    /// degrees.
+    /// Angle around the vertical axis, measured from x towards y. The angle is mirrored at
+    /// multiples of this number of degrees.
     Phi(f64),
-    /// Vertical and horizontal angle of a type B photometer; `true` drops the sign.
+    /// Vertical or horizontal angle of a type B photometer. If the flag is true, the sign of the
+    /// angle is dropped.
     Vertical(bool),
     Horizontal(bool),
 }
 
 impl Angle {
-    /// Parses the name of an angle; returns the angle and its offset.
+    /// Parses the name of an angle, and returns the angle and its offset.
     fn of(name: &str) -> Option<(Angle, f64)> {
         let at = name.find(['+', '-']).unwrap_or(name.len());
         let (name, more) = name.split_at(at);
@@ -81,7 +86,7 @@ impl Angle {
         Some((angle, more))
     }
 
-    /// Returns the angle, in degrees, of a unit direction of emission.
+    /// Returns this angle in degrees for a unit direction of emission.
     fn at(self, e: DVec3) -> f64 {
         let degrees = |y: f64, x: f64| f64::from(fp::atan2(y as f32, x as f32)) * 180.0 / PI;
         match self {
@@ -101,16 +106,17 @@ impl Angle {
     }
 }
 
-/// Returns the number of coordinates among a pattern's arguments, which follow its function and
-/// files; 0 if one of them is not an angle of a light.
+/// Returns the number of coordinates in the arguments of a pattern, where they follow the function
+/// and the files. The number is 0 if one of the coordinates is not an angle of a light.
 pub(super) fn coordinates(primitive: &RadPrimitive) -> usize {
     let names = || primitive.texts.iter().skip(3).take_while(|word| !word.text.starts_with('-'));
     if names().all(|word| Angle::of(&word.text).is_some()) { names().count() } else { 0 }
 }
 
 impl IntensityTable {
-    /// Creates the distribution from a pattern's function and coordinates; `None` if the function
-    /// is not one of `source.cal`. `turn` rotates from world space to the light's axes.
+    /// Creates the distribution from the function and the coordinates of a pattern. Returns `None`
+    /// if the function is not from `source.cal`. The matrix `turn` rotates from world space to the
+    /// axes of the light.
     pub fn new(primitive: &RadPrimitive, table: Table, turn: DMat3) -> Option<IntensityTable> {
         let number = |i: usize| primitive.numbers.get(i).copied();
         let factor = number(0).unwrap_or(1.0).max(0.0);
@@ -118,7 +124,7 @@ impl IntensityTable {
         let correction = match primitive.texts.first()?.text.as_str() {
             "corr" => Correction::Nothing,
             "flatcorr" => Correction::Flat,
-            // Both are equal at a distance.
+            // At a distance, both corrections are equal.
             "boxcorr" | "lboxcorr" => Correction::Box(DVec3::new(side(1), side(2), side(3))),
             "cylcorr" => Correction::Cylinder(side(1), side(2)),
             _ => return None,
@@ -128,8 +134,8 @@ impl IntensityTable {
         (angles.len() == table.dimensions()).then_some(IntensityTable { table, correction, factor, angles, turn })
     }
 
-    /// Returns the factor in a unit direction in world space; `cosine` is the cosine to the surface
-    /// normal.
+    /// Returns the factor for a unit direction in world space. `cosine` is the cosine of the angle
+    /// to the surface normal.
     fn at(&self, dir: DVec3, cosine: f64) -> f64 {
         let e = (self.turn * dir).normalize_or_zero();
         let angles: Vec<f64> = self.angles.iter().map(|(angle, more)| angle.at(e) + more).collect();
@@ -146,8 +152,8 @@ impl IntensityTable {
 }
 
 impl DirectionalDistribution {
-    /// Returns the factor on the radiance in a unit direction in world space; `cosine` is the
-    /// cosine to the surface normal.
+    /// Returns the factor that multiplies the radiance in a unit direction in world space. `cosine`
+    /// is the cosine of the angle to the surface normal.
     pub fn at(&self, dir: DVec3, cosine: f64) -> f64 {
         match self {
             DirectionalDistribution::Table(light) => light.at(dir, cosine),
@@ -157,7 +163,7 @@ impl DirectionalDistribution {
         }
     }
 
-    /// Returns the distance of the light's apparent origin behind the surface.
+    /// Returns the distance by which the apparent origin of the light is behind the surface.
     pub fn focal_length(&self) -> f64 {
         match self {
             DirectionalDistribution::Table(_) => 0.0,
@@ -165,7 +171,8 @@ impl DirectionalDistribution {
         }
     }
 
-    /// Returns the axis from which the angles are measured, and a direction perpendicular to it.
+    /// Returns the axis from which the angles are measured, and a direction that is perpendicular
+    /// to it.
     pub fn axes(&self) -> [DVec3; 2] {
         match self {
             DirectionalDistribution::Table(light) => {
@@ -176,15 +183,16 @@ impl DirectionalDistribution {
         }
     }
 
-    /// Returns the light profile of a surface, per unit of area and radiance. `shows` returns the
-    /// projected area in a direction, as a fraction of the area, and the cosine to the normal.
+    /// Returns the light profile of a surface for a unit area and a unit radiance. For a direction,
+    /// `shows` returns the projected area as a fraction of the area, and the cosine of the angle to
+    /// the normal.
     pub fn profile(&self, shows: impl Fn(DVec3) -> (f64, f64)) -> PhotometricProfile {
         let [down, front] = self.axes();
         let side = front.cross(down);
         let whole = |steps: u32, most: f64| (0..=steps).map(move |i| most * f64::from(i) / f64::from(steps));
         let vertical: Vec<f64> = match self {
             DirectionalDistribution::Table(_) => whole(180, 180.0).collect(),
-            // The edge of the cone is sharp.
+            // The cone has a sharp edge.
             DirectionalDistribution::Cone { degrees, .. } if *degrees < 179.9 => {
                 whole(36, *degrees).chain([degrees + 0.01, 180.0]).collect()
             }
@@ -196,12 +204,13 @@ impl DirectionalDistribution {
             let dir = cosine * down + sine * (c * front + s * side);
             let (share, facing) = shows(dir);
             // Compare angles at the edge of the cone, which is more precise than comparing the
-            // cosine of a direction.
+            // cosines of directions.
             let strength = match self {
                 DirectionalDistribution::Table(light) => light.at(dir, facing),
                 DirectionalDistribution::Cone { degrees, .. } => f64::from(from <= *degrees),
             };
-            // Avoid NaN where the surface is not visible and the factor is infinite.
+            // Avoid NaN in directions from which the surface is not visible and in which the factor
+            // is infinite.
             if share > 0.0 { (share * strength) as f32 } else { 0.0 }
         };
         let column = |&around: &f64| vertical.iter().map(move |&from| (around, from));
@@ -210,7 +219,7 @@ impl DirectionalDistribution {
         let rows = vertical.len();
         let most = candela.iter().copied().fold(0.0, f32::max);
         if (rows..candela.len()).all(|i| (candela[i] - candela[i % rows]).abs() <= 1e-4 * most) {
-            // The distribution is rotationally symmetric.
+            // The distribution has rotational symmetry.
             (horizontal, candela) = (vec![0.0], candela[..rows].to_vec());
         }
         let single = |angles: Vec<f64>| angles.into_iter().map(|angle| angle as f32).collect();

@@ -1,11 +1,11 @@
-//! Generates the output of `gensky`: the sun and a CIE sky, from location, date and time, or from
-//! angles.
+//! Generates the output of `gensky`: the sun and a CIE sky. The sun and the sky follow from the
+//! location, date and time, or from the angles of the sun.
 //!
 //! Sources: the manual page of gensky; Cooper, *The absorption of radiation in solar stills*, Solar
 //! Energy 12, 1969, for the declination; IES, *Recommended Practice for the Calculation of Daylight
 //! Availability*, 1984, for the equation of time and the sun's brightness; Krochmann and Seidl,
 //! *Quantitative data on daylight for illuminating engineering*, 1974, for the zenith brightness.
-//! The tests compare with the output of Radiance 6.0's own program.
+//! The tests compare the output with that of the program in Radiance 6.0.
 
 use super::words::Word;
 use crate::shared_report::SharedReport;
@@ -13,10 +13,10 @@ use durer_scene::math::fp;
 use durer_scene::texture::almanac::{self, Moment};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-/// Luminous efficacy of the sky and of the sun, in lumens per watt.
+/// Luminous efficacy of light from the sky and from the sun, in lumens per watt.
 const SKY_EFFICACY: f64 = 203.0;
 const SUN_EFFICACY: f64 = 208.0;
-/// Solid angle of the sun in steradians. Its diameter is half a degree.
+/// Solid angle of the sun in steradians. The angular diameter of the sun is half a degree.
 const SUN_SOLID_ANGLE: f64 = 5.98e-5;
 
 /// Type of sky that `gensky` generates.
@@ -28,12 +28,14 @@ enum Kind {
     Uniform,
 }
 
-/// Parsed arguments of a `gensky` command. Angles are in degrees, radiances in W/(sr m²).
+/// Arguments of a `gensky` command after parsing. Angles are in degrees, and radiances are in W/(sr
+/// m²).
 struct SkyArgs {
     kind: Kind,
     sunny: bool,
     latitude: f64,
-    /// Degrees west of Greenwich, as `meridian`, the standard meridian of the clock time.
+    /// Longitude in degrees west of Greenwich. The standard meridian of the clock time, `meridian`,
+    /// has the same unit.
     longitude: f64,
     meridian: f64,
     year: Option<i32>,
@@ -45,7 +47,7 @@ struct SkyArgs {
     sun_horizontal: Option<f64>,
 }
 
-/// Standard meridians of time zones, in degrees west.
+/// Standard meridians of time zones, in degrees west of Greenwich.
 const ZONES: [(&str, f64); 28] = [
     ("YST", 135.0),
     ("YDT", 120.0),
@@ -77,7 +79,7 @@ const ZONES: [(&str, f64); 28] = [
     ("UTC", 0.0),
 ];
 
-/// Returns the text that `gensky` would print; `None` after reporting an error.
+/// Returns the text that `gensky` would print. Returns `None` after reporting an error.
 pub(super) fn text(report: &SharedReport, name: &Word, args: &[Word]) -> Option<String> {
     let by_angles = args.first().is_some_and(|word| word.text == "-ang");
     let fixed = 3;
@@ -145,8 +147,8 @@ impl SkyArgs {
         Some(())
     }
 
-    /// Returns the altitude and azimuth of the sun in degrees, from month, day and hour. The
-    /// azimuth increases from south to west.
+    /// Returns the altitude and azimuth of the sun in degrees for a month, day and hour. The
+    /// azimuth is measured from south and increases towards west.
     fn sun_by_clock(&mut self, report: &SharedReport, args: &[Word]) -> Option<[f64; 2]> {
         let whole = |word: &Word, most: f64, what: &str| {
             let number = word.number(report)?;
@@ -159,7 +161,7 @@ impl SkyArgs {
         let month = whole(&args[0], 12.0, "month")?;
         let day = whole(&args[1], 31.0, "day")?;
         let (hours, is_solar) = self.hour(report, &args[2])?;
-        // If no year is given, the formulas use an average year.
+        // If no year is given, the formulas are for an average year.
         const BEFORE: [i32; 12] = [0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334];
         let date = f64::from(BEFORE[month as usize - 1] + day);
         if let (Some(year), false) = (self.year, is_solar) {
@@ -178,7 +180,8 @@ impl SkyArgs {
         Some([fp::asin_f64(up.clamp(-1.0, 1.0)).to_degrees(), fp::atan2_f64(west, south).to_degrees()])
     }
 
-    /// Parses an hour such as 14.5, 14:30 or 14:30EST; the flag is true for solar time (+14.5).
+    /// Parses an hour, such as 14.5, 14:30 or 14:30EST. The flag is true for solar time, which is
+    /// written with a plus sign (+14.5).
     fn hour(&mut self, report: &SharedReport, word: &Word) -> Option<(f64, bool)> {
         let wrong = || {
             let what = "the hour must be of the form 14.5, 14:30, 14:30EST or, in solar time, +14.5";
@@ -212,7 +215,7 @@ impl SkyArgs {
 
     fn print(&self, altitude: f64, azimuth: f64) -> String {
         let covered = matches!(self.kind, Kind::Overcast | Kind::Uniform);
-        // The zenith formula is valid only up to this altitude.
+        // The formula for the zenith is valid only up to this altitude of the sun.
         let altitude = if covered { altitude } else { altitude.min(87.0) };
         let ((s, c), (sin, cos)) = (fp::sin_cos_degrees(azimuth), fp::sin_cos_degrees(altitude));
         let sun = [-s * cos, -c * cos, sin];
@@ -233,7 +236,7 @@ impl SkyArgs {
             (None, Some(flux)) => flux / (SUN_SOLID_ANGLE * sin.max(1e-6)),
             (None, None) => {
                 let whole = 1.5e9 / SUN_EFFICACY * (1.147 - 0.147 / sin.max(0.16));
-                // In an intermediate sky, half of the sky is cloudy.
+                // An intermediate sky is half covered with clouds.
                 if self.kind == Kind::Intermediate { 0.15 * whole } else { whole }
             }
         };
@@ -259,9 +262,9 @@ impl SkyArgs {
         text
     }
 
-    /// Returns the value of the sky formula at the zenith, and the radiance of the uniform sky
-    /// whose horizontal irradiance equals that of this sky with a zenith radiance of 1. `a` is the
-    /// sun's altitude in radians, and `sin` its sine.
+    /// Returns the value of the sky formula at the zenith. Also returns the radiance of a uniform
+    /// sky that has the same horizontal irradiance as this sky, for a zenith radiance of 1. `a` is
+    /// the altitude of the sun in radians, and `sin` is the sine of that angle.
     fn normalization(&self, a: f64, sin: f64) -> (f64, f64) {
         let from_zenith = (FRAC_PI_2 - a) as f32;
         let (given, row) = match self.kind {

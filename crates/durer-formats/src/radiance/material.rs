@@ -1,8 +1,8 @@
 //! Converts materials to OpenPBR parameters.
 //!
-//! Ward's roughness is the mean slope of the surface, as GGX's alpha is; alpha is the square of
-//! OpenPBR's roughness. Sources: the reference manual; Ward, *Measuring and Modeling Anisotropic
-//! Reflection*, SIGGRAPH 1992.
+//! Ward's roughness is the mean slope of the surface. GGX's alpha is also the mean slope, and it is
+//! the square of OpenPBR's roughness. Sources: the reference manual of Radiance; Ward,
+//! *Measuring and Modeling Anisotropic Reflection*, SIGGRAPH 1992.
 
 use super::args::RadPrimitive;
 use super::converted::{ConvertedModifier, MaterialKind, PatternEffect};
@@ -19,13 +19,13 @@ use durer_scene::scene::{Material, Spanned};
 
 const OWN_TANGENTS: &str = "anisotropic highlights follow the surface's own tangents, not the given direction";
 
-/// Returns a matte material without a specular layer.
+/// Returns a matte material that has no specular layer.
 fn matte(base_color: Color) -> PrincipledMaterial {
     let base_color = base_color.min(Vec3::ONE);
     PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
 }
 
-/// Sets roughness and anisotropy from Ward's roughness along u and v.
+/// Sets roughness and anisotropy from Ward's roughness along u and along v.
 fn rough(m: &mut PrincipledMaterial, [u, v]: [f32; 2]) {
     let [u, v] = [u, v].map(|alpha| alpha.clamp(0.0, 1.0));
     m.specular_roughness = (0.5 * (u * u + v * v)).sqrt().sqrt();
@@ -33,8 +33,8 @@ fn rough(m: &mut PrincipledMaterial, [u, v]: [f32; 2]) {
     m.specular_rotation = if v > u { 0.25 } else { 0.0 };
 }
 
-/// Returns plastic: a matte base below a dielectric layer that reflects `specular` at normal
-/// incidence.
+/// Returns plastic, which is a matte base below a dielectric layer that reflects the fraction
+/// `specular` of light at normal incidence.
 fn plastic(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMaterial {
     let mut m = matte(color);
     if specular > 0.0 {
@@ -48,7 +48,7 @@ fn plastic(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMateri
 /// Returns a metal whose reflectance is the same at all angles.
 fn metal(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMaterial {
     let color = color.min(Vec3::ONE);
-    // Schlick's reflectance at 82 degrees, to which the specular colour is relative.
+    // Schlick's approximation at 82 degrees, relative to which the specular colour is defined.
     let specular_color = color / schlick_82(color).max(Vec3::splat(1e-6));
     let mut m = PrincipledMaterial { base_metalness: specular.min(1.0), specular_color, ..matte(color) };
     if specular > 0.0 {
@@ -58,20 +58,21 @@ fn metal(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMaterial
     m
 }
 
-/// Returns a translucent sheet with diffuse and specular transmission.
+/// Returns a translucent sheet that has diffuse and specular transmission.
 fn trans(color: Color, [specular, transmitted, straight]: [f32; 3], roughness: [f32; 2]) -> PrincipledMaterial {
     let [transmitted, straight] = [transmitted, straight].map(|share| share.clamp(0.0, 1.0));
     let through = transmitted * straight;
     let (back, forth) = (1.0 - transmitted, transmitted * (1.0 - straight));
-    // Specularly transmitted light is reflected at both sides of the sheet, 2 F / (1 + F), all
-    // other light once, F. These values of F and of the sheet's weight give the specified fractions
-    // at normal incidence.
+    // Both sides of the sheet reflect light that is transmitted specularly, with a total
+    // reflectance of 2 F / (1 + F). All other light is reflected only once, with a reflectance of
+    // F. These values of F and of the weight of the sheet give the specified fractions at normal
+    // incidence.
     let specular = specular.min(0.9);
     let once = specular / (1.0 + (1.0 - specular) * through);
     let sheet = (1.0 - specular) * through * (1.0 + once) / (1.0 - once);
     let mut m = plastic(color, once, roughness);
     if specular == 0.0 && through > 0.0 {
-        // Even without reflection, the transmitted light is scattered by the roughness.
+        // The roughness scatters the transmitted light even if there is no reflection.
         m.specular_ior = 1.0;
         rough(&mut m, roughness);
     }
@@ -86,8 +87,8 @@ fn trans(color: Color, [specular, transmitted, straight]: [f32; 3], roughness: [
     }
 }
 
-/// Returns a dielectric body with an index of refraction; `left` is its transmittance at distance
-/// 1.
+/// Returns a dielectric body with the given index of refraction. `left` is the transmittance of the
+/// body over a distance of 1.
 fn body(left: Color, index: f32) -> PrincipledMaterial {
     let m = PrincipledMaterial {
         transmission_weight: 1.0,
@@ -105,7 +106,7 @@ fn body(left: Color, index: f32) -> PrincipledMaterial {
     }
 }
 
-/// Returns a black emitter.
+/// Returns an emitter that does not reflect any light.
 fn emissive(radiance: Color) -> PrincipledMaterial {
     let most = radiance.max_element();
     let emission_color = if most > 0.0 { radiance / most } else { Vec3::ONE };
@@ -119,7 +120,7 @@ impl Reader<'_> {
         (self.scene.materials.len() - 1) as u32
     }
 
-    /// Converts a material, including the effect of the patterns that modify it.
+    /// Converts a material, including the effect of the patterns that apply to it.
     pub fn material(&mut self, number: usize, primitive: &RadPrimitive, above: &PatternEffect) -> ConvertedModifier {
         let (kind, at, report) = (primitive.kind.text.as_str(), primitive.at(), self.report);
         let counts: &[usize] = match kind {
@@ -158,8 +159,8 @@ impl Reader<'_> {
             "metal2" => metal(color, value(3), [value(4), value(5)]),
             "trans2" => trans(color, [value(3), value(6), value(7)], [value(4), value(5)]),
             "ashik2" => {
-                // A cosine power of the half vector corresponds to a slope of sqrt(2 / (power +
-                // 2)).
+                // An exponent on the cosine of the half vector corresponds to a slope of sqrt(2 /
+                // (exponent + 2)).
                 let slope = |power: f32| (2.0 / (power + 2.0)).sqrt();
                 let specular = primitive.color(3);
                 plastic(color, specular.element_sum() / 3.0, [slope(value(6)), slope(value(7))])
@@ -273,8 +274,9 @@ impl Reader<'_> {
         ConvertedModifier { number: Some(self.add_material(m, at)), ..ConvertedModifier::void() }
     }
 
-    /// Converts rough plastic to a mix: a white highlight that has the same reflectance at all
-    /// angles, and a matte remainder. Only smooth plastic reflects more at grazing angles.
+    /// Converts rough plastic to a mix of two parts. The first part is a white highlight with the
+    /// same reflectance at all angles, and the second part is matte. Only smooth plastic reflects
+    /// more light at grazing angles.
     fn rough_plastic(&mut self, color: Color, share: f32, roughness: [f32; 2], at: Span) -> ConvertedModifier {
         let material1 = self.add_material(metal(Vec3::ONE, 1.0, roughness), at);
         let material2 = self.add_material(matte(color), at);
@@ -283,7 +285,7 @@ impl Reader<'_> {
         ConvertedModifier { number: Some((self.scene.materials.len() - 1) as u32), ..ConvertedModifier::void() }
     }
 
-    /// Converts `mist`, which fills a body without refraction.
+    /// Converts `mist`, which fills a body that does not refract light.
     fn mist(&mut self, primitive: &RadPrimitive) -> ConvertedModifier {
         let extinction = primitive.color(0);
         let most = extinction.max_element();
@@ -301,7 +303,7 @@ impl Reader<'_> {
             ..body(Vec3::ONE, 1.0)
         };
         let number = self.add_material(m, primitive.at());
-        // Fog attenuates all colours equally, so use the luminance.
+        // Fog attenuates all colours equally, so use the luminance of the coefficients.
         let mean = extinction.dot(LUMINANCE);
         let color = (albedo * extinction / mean).min(Vec3::ONE);
         self.mist_fog.insert(number, Fog { extinction: mean, color, anisotropy, ..Fog::default() });
@@ -310,8 +312,8 @@ impl Reader<'_> {
     }
 }
 
-/// Returns a pane of glass, which reflects light, or transmits it without scattering. `left` is the
-/// transmittance of the inside.
+/// Returns a pane of glass, which reflects light or transmits it without scattering. `left` is the
+/// transmittance of the glass inside the pane.
 fn sheet(left: Color, index: f32) -> PrincipledMaterial {
     PrincipledMaterial {
         transmission_color: left.min(Vec3::ONE),

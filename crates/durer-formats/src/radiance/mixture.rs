@@ -10,7 +10,7 @@ use durer_scene::scene::{Material, Spanned};
 use std::collections::BTreeMap;
 
 impl Reader<'_> {
-    /// Converts a mixture. Its proportion becomes constant.
+    /// Converts a mixture of two materials. The proportion of the two materials becomes a constant.
     pub fn mixture(&mut self, number: usize, primitive: &RadPrimitive, patterns: &PatternEffect) -> ConvertedModifier {
         let (at, kind) = (primitive.at(), primitive.kind.text.as_str());
         if primitive.texts.len() < 4 {
@@ -20,7 +20,7 @@ impl Reader<'_> {
         let constant = parse_f32(primitive.texts[2].text.as_bytes()).ok().filter(|_| kind == "mixfunc");
         let share = match (kind, constant) {
             (_, Some(share)) => share.clamp(0.0, 1.0),
-            // Letters cover only a small part of the surface.
+            // Letters cover only a small part of a surface.
             ("mixtext", _) => {
                 self.report.unsupported_once(at, "text has no counterpart: the modifier around it is used");
                 0.0
@@ -54,7 +54,7 @@ impl Reader<'_> {
                 self.report.unsupported_once(at, "glass bodies cannot be partly transparent: they are shown in full");
                 first.or(second)
             }
-            // If one part is missing, the material is partly transparent.
+            // If one of the two materials is missing, the result is partly transparent.
             [first, second] => {
                 let share = if first.is_some() { share } else { 1.0 - share };
                 first.or(second).map(|number| self.with_scaled_opacity(number, share, &mut BTreeMap::new()))
@@ -64,7 +64,7 @@ impl Reader<'_> {
         ConvertedModifier { number, kind, ..ConvertedModifier::void() }
     }
 
-    /// Returns a copy of a material, with its opacity multiplied by `share`.
+    /// Returns a copy of a material after multiplying its opacity by `share`.
     fn with_scaled_opacity(&mut self, number: u32, share: f32, scaled: &mut BTreeMap<u32, u32>) -> u32 {
         if let Some(scaled) = scaled.get(&number) {
             return *scaled;

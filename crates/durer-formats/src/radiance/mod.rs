@@ -1,9 +1,9 @@
-//! Reader of Radiance scenes: `.rad` (geometry and materials), `.rif` (files and views), `.vf`
-//! (views).
+//! Reader of Radiance scenes, in `.rad` files (geometry and materials), `.rif` files (lists of
+//! files and views) and `.vf` files (views).
 //!
 //! Sources: *The RADIANCE 5.4 Synthetic Imaging System*, reference manual; the manual pages of
-//! xform, genbox, genprism, gensky, rad and rpict. A pixel value of 1 is a radiance of 1 W/(sr m²),
-//! as in Radiance's own pictures. Multiplied by 179, it is the luminance in cd/m².
+//! xform, genbox, genprism, gensky, rad and rpict. As in Radiance's own pictures, a pixel value of
+//! 1 is a radiance of 1 W/(sr m²). Multiplying the pixel value by 179 gives the luminance in cd/m².
 
 mod args;
 mod body;
@@ -42,11 +42,12 @@ use durer_scene::math::Vec3;
 use durer_scene::scene::{Axis, Scene};
 use state::Reader;
 
-/// Scene format entry for Radiance.
+/// Entry for Radiance in the list of scene formats.
 pub(super) const FORMAT: SceneFormat = SceneFormat {
     name: "Radiance",
     extensions: &["rad", "rif"],
-    // The first word is not distinctive, so only the extension identifies the format.
+    // The first word of a file is not distinctive, so the format is recognized only by the file
+    // extension.
     recognise: |_| false,
     read,
     write: None,
@@ -68,14 +69,14 @@ fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
         false => reader.text(input.bytes, input.file, &PrimitiveContext::default()),
     }
     let mut scene = reader.finish();
-    // The manual of rtrace specifies 179 lm/W, and these weights of the colours.
+    // The value of 179 lm/W and the weights of the three colours are from the manual of rtrace.
     scene.lumens_per_watt = Some(179.0 * Vec3::new(0.265, 0.670, 0.065));
     let sound = !report.has_errors() && !diagnostics.has_errors();
     diagnostics.extend(report.finish());
     sound.then_some(scene)
 }
 
-/// Sets a scene's camera to the last view in a file.
+/// Sets the camera of a scene to the last view in a file.
 pub(super) fn set_view(
     scene: &mut Scene,
     input: &ReadInput,

@@ -1,5 +1,5 @@
-//! Evaluates patterns and textures. Each is replaced by a constant colour: its mean, if that can be
-//! computed.
+//! Evaluates patterns and textures. Each of them is replaced with a constant colour, which is its
+//! mean if the mean can be computed.
 
 use super::args::RadPrimitive;
 use super::converted::PatternEffect;
@@ -17,8 +17,8 @@ use glam::{DAffine3, DMat3};
 use std::rc::Rc;
 
 impl Reader<'_> {
-    /// Evaluates the pattern with index `number` as a factor on the emission or reflectance.
-    /// `transform` is that of the text that contains it.
+    /// Evaluates the pattern with the index `number` as a factor on the emission or reflectance.
+    /// `transform` is the transform of the text that contains the pattern.
     pub fn pattern(&mut self, number: usize, primitive: &RadPrimitive, transform: &DAffine3) -> PatternEffect {
         let (at, kind, report) = (primitive.at(), primitive.kind.text.as_str(), self.report);
         let text = |i: usize| primitive.texts.get(i).map_or("", |word| word.text.as_str());
@@ -73,8 +73,8 @@ impl Reader<'_> {
         PatternEffect { tint, ..PatternEffect::default() }
     }
 
-    /// Returns the rotation that `xform` appended after the first `names` words of a function's
-    /// arguments.
+    /// Returns the rotation that `xform` has appended to the arguments of a function, after the
+    /// first `names` words.
     fn trailing_rotation(&self, primitive: &RadPrimitive, names: usize) -> DMat3 {
         let (mut rest, mut transform) =
             (primitive.texts.get(names..).unwrap_or_default(), TransformSequence::default());
@@ -82,7 +82,7 @@ impl Reader<'_> {
         transform.copies().and_then(|places| places.first().map(|map| map.matrix3)).unwrap_or(DMat3::IDENTITY)
     }
 
-    /// Returns the table of a light's directional distribution, which is read only once.
+    /// Returns the table for the directional distribution of a light. Each table is read only once.
     fn distribution_table(
         &mut self,
         number: usize,
@@ -109,7 +109,7 @@ impl Reader<'_> {
         Table::read(&bytes, file, self.report)
     }
 
-    /// Returns the mean of a data file.
+    /// Returns the mean of the values in a data file.
     fn mean_of_data(&self, primitive: &RadPrimitive, name: Option<&Word>) -> f32 {
         let Some(table) = self.table(primitive, name) else { return 1.0 };
         self.report.unsupported_once(primitive.at(), "data patterns have no counterpart: the mean is used");
@@ -119,7 +119,8 @@ impl Reader<'_> {
     /// Returns the mean colour of a picture.
     fn mean_of_picture(&self, name: &Word) -> Option<Color> {
         let (bytes, _) = self.open(name)?;
-        // Names of Radiance pictures follow no convention, so recognise the format by content.
+        // The names of Radiance pictures follow no convention, so their format is recognized by the
+        // content.
         let hint = if bytes.starts_with(b"#?") { "picture.hdr" } else { name.text.as_str() };
         let memory = self.input.memory;
         let read = Encoded::open(&bytes, hint).and_then(|encoded| encoded.read(memory, image::decode_srgb));
@@ -136,8 +137,8 @@ impl Reader<'_> {
     }
 }
 
-/// Returns the colour around letters. The arguments are nine coordinates for the position of the
-/// letters, the foreground and background colours, and distances.
+/// Returns the colour of the area around letters. The arguments are nine coordinates for the
+/// position of the letters, the foreground and background colours, and distances.
 fn background(primitive: &RadPrimitive) -> Color {
     match primitive.kind.text.as_str() {
         "brighttext" => Vec3::splat(primitive.number(10).unwrap_or(1.0).max(0.0)),

@@ -1,4 +1,4 @@
-//! Reader of `rad` input files, which list the files and views of a scene.
+//! Reads `rad` input files, which list the files and views of a scene.
 
 use super::context::PrimitiveContext;
 use super::standard::{ViewBox, standard};
@@ -9,7 +9,8 @@ use crate::shared_report::suggest;
 use durer_diag::Diagnostic;
 use durer_scene::math::fp;
 
-/// Variables of `rad`. Their first three letters suffice to name them.
+/// Names of the variables of `rad`. The first three letters of a name are enough to identify the
+/// variable.
 const VARIABLES: [&str; 26] = [
     "objects",
     "scene",
@@ -38,17 +39,17 @@ const VARIABLES: [&str; 26] = [
     "REPORT",
     "rpict",
 ];
-/// Variables that do not affect lighting.
+/// Variables that have no effect on lighting.
 const IGNORED_VARIABLES: [&str; 8] = ["PGMAP", "PCMAP", "mkpmap", "rvu", "rtrace", "rpiece", "EYESEP", "MATERIAL"];
 
-/// Line of a `rad` input file: the full name of a variable, and its values.
+/// Line of a `rad` input file, with the full name of a variable and its values.
 struct Setting {
     name: &'static str,
     values: Vec<Word>,
 }
 
 impl Reader<'_> {
-    /// Reads a `rad` input file, the main file of the scene.
+    /// Reads a `rad` input file that is the main file of the scene.
     pub fn rif(&mut self) {
         let (bytes, file) = (self.input.bytes.clone(), self.input.file);
         let settings = self.settings(&bytes, file);
@@ -84,7 +85,7 @@ impl Reader<'_> {
         self.exposure(exposure);
     }
 
-    /// Selects a view by name or number; the default is the first view.
+    /// Selects a view by its name or number. The default is the first view.
     fn view(&mut self, views: &[&Setting], zone: &ViewBox, larger: u32) {
         let name = |i: usize| views[i].values.first().filter(|word| !word.text.starts_with('-'));
         let wanted = match &self.input.scene_defaults.camera {
@@ -134,7 +135,8 @@ impl Reader<'_> {
         view.apply(&mut self.scene, larger, self.report);
     }
 
-    /// Adds a note about the exposure: a number of stops if it has a sign, otherwise a factor.
+    /// Adds a note about the exposure, which is a number of stops if it has a sign, and a factor
+    /// otherwise.
     fn exposure(&self, word: Option<Word>) {
         let Some((word, value)) = word.and_then(|word| word.number(self.report).map(|value| (word, value as f32)))
         else {
@@ -155,7 +157,7 @@ impl Reader<'_> {
         let mut start = 0;
         while start < bytes.len() {
             let mut end = start;
-            // A backslash continues the line.
+            // A backslash at the end of a line continues the line.
             loop {
                 end += bytes[end..].iter().take_while(|byte| **byte != b'\n').count();
                 let line = &bytes[start..end];

@@ -1,10 +1,10 @@
-//! Skies in the form written by `gensky` and `gendaylit`.
+//! Skies in the form that `gensky` and `gendaylit` write.
 //!
 //! Source: *Standardization of Luminance Distribution on Clear Skies*, CIE publication 22, 1973;
 //! Nakamura, Oki and Hayashi, *Luminance distribution of intermediate sky*, 1985; Perez, Seals and
 //! Michalsky, *All-weather model for sky luminance distribution*, Solar Energy 50, 1993. The order
-//! of the arguments, which are meant for Radiance's `skybright.cal` and `perezlum.cal`, is that of
-//! the manual pages of gensky and gendaylit.
+//! of the arguments, which Radiance passes to its `skybright.cal` and `perezlum.cal`, is documented
+//! in the manual pages of gensky and gendaylit.
 
 use super::args::RadPrimitive;
 use crate::shared_report::SharedReport;
@@ -12,7 +12,7 @@ use durer_scene::math::fp;
 use glam::{DMat3, DVec3};
 use std::f32::consts::FRAC_PI_2;
 
-/// Sky with a ground below it, whose radiance in each direction follows from a CIE or Perez
+/// Sky above a ground. The radiance of the sky in each direction is given by a CIE or Perez
 /// formula.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sky {
@@ -21,24 +21,25 @@ pub(super) struct Sky {
     ground: f32,
     factor: f32,
     sun: DVec3,
-    /// Rotation from world space to the sky's axes.
+    /// Rotation from world space to the axes of the sky.
     to_sky: DMat3,
 }
 
-/// Type of sky, which determines its radiance formula.
+/// Type of a sky, which determines the formula for its radiance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum SkyKind {
     Clear,
     Overcast,
     Uniform,
     Intermediate,
-    /// Perez's sky with its five coefficients.
+    /// Perez sky with its five coefficients.
     Perez([f32; 5]),
 }
 
 impl Sky {
-    /// Creates a CIE sky from its arguments: type, zenith, ground, factor, and direction to the
-    /// sun. `transform` is a similarity transform from the sky's axes to world space.
+    /// Creates a CIE sky from its arguments, which are the type, the zenith, the ground, a factor,
+    /// and the direction to the sun. `transform` is a similarity transform from the axes of the sky
+    /// to world space.
     pub fn of(primitive: &RadPrimitive, transform: DMat3, report: &SharedReport) -> Option<Sky> {
         let number = |i: usize| primitive.number(i).unwrap_or(0.0);
         let kind = match number(0).round() as i32 {
@@ -67,8 +68,9 @@ impl Sky {
         Some(Sky { kind, zenith: number(1).max(0.0), ground: number(2).max(0.0), factor, sun, to_sky })
     }
 
-    /// Creates a Perez sky from its arguments: brightness, ground, five coefficients, and direction
-    /// to the sun. `transform` is a similarity transform from the sky's axes to world space.
+    /// Creates a Perez sky from its arguments, which are the brightness, the ground, five
+    /// coefficients, and the direction to the sun. `transform` is a similarity transform from the
+    /// axes of the sky to world space.
     pub fn perez(primitive: &RadPrimitive, transform: DMat3, report: &SharedReport) -> Option<Sky> {
         if !primitive.has(&[10], report) {
             return None;
@@ -90,7 +92,8 @@ impl Sky {
         ((self.without_ground(dir, height) * above + self.ground * below) / (above + below)).max(0.0)
     }
 
-    /// Returns the radiance of the sky without the ground. Its formulas extend below the horizon.
+    /// Returns the radiance of the sky without the ground. The formulas are also defined below the
+    /// horizon.
     fn without_ground(&self, dir: DVec3, height: f32) -> f32 {
         let cosine = (dir.dot(self.sun) as f32).clamp(-1.0, 1.0);
         let angle = fp::atan2((1.0 - cosine * cosine).sqrt(), cosine);
@@ -106,7 +109,7 @@ impl Sky {
                 self.zenith * by_height * (1.0 + c * fp::exp(d * angle) + e * cosine * cosine)
             }
             SkyKind::Intermediate => {
-                // Angle from the zenith.
+                // Angle between the direction and the zenith.
                 let eta = FRAC_PI_2 - fp::asin(height);
                 let sun = (self.sun.z as f32).clamp(-1.0, 1.0);
                 let zenith_angle = fp::atan2((1.0 - sun * sun).sqrt(), sun);

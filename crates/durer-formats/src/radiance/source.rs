@@ -1,4 +1,4 @@
-//! Sources: light from infinitely far away.
+//! Converts sources, which emit light from infinitely far away.
 
 use super::args::RadPrimitive;
 use super::context::PrimitiveContext;
@@ -12,14 +12,14 @@ use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::Spanned;
 use glam::DVec3;
 
-/// Maximum angular diameter in degrees of a source that becomes a directional light, as the sun
+/// Maximum angular diameter in degrees at which a source becomes a directional light, as the sun
 /// does.
 const MAX_SUN_ANGLE: f32 = 5.0;
 /// Height in pixels of the environment map.
 const ROWS: u32 = 256;
 
 impl Reader<'_> {
-    /// Converts a `source`: light from infinitely far away.
+    /// Converts a `source`, which emits light from infinitely far away.
     pub fn source(&mut self, primitive: &RadPrimitive, modifier: Option<usize>, place: &PrimitiveContext) {
         let at = primitive.at();
         if !primitive.has(&[4], self.report) {
@@ -35,7 +35,7 @@ impl Reader<'_> {
         let Some(converted) = modifier.map(|modifier| self.convert(modifier)) else { return };
         let (radiance, sky) = match &converted.kind {
             MaterialKind::Emitter { radiance } => (*radiance, converted.patterns.sky.clone()),
-            // All of its light comes from one direction.
+            // Treat all light of the source as coming from one direction.
             MaterialKind::DirectionalEmitter { radiance, spread, .. } => {
                 (*radiance * spread.at(-direction, 1.0) as f32, None)
             }
@@ -43,7 +43,8 @@ impl Reader<'_> {
         };
         let cosine = fp::sin_cos_degrees(0.5 * f64::from(degrees)).1;
         if degrees <= MAX_SUN_ANGLE && sky.is_none() {
-            // Radiance reflected by a white matte surface that faces the source.
+            // The colour is the radiance that is reflected by a white matte surface facing the
+            // source.
             let color = radiance * (2.0 * (1.0 - cosine)) as f32;
             let spread = Some(0.5 * degrees);
             let light =
@@ -59,7 +60,7 @@ impl Reader<'_> {
         self.scene.lights.get_or_insert_default().push(Spanned { value, span });
     }
 
-    /// Combines all sources that did not become directional lights into an environment map.
+    /// Combines all sources that have not become directional lights into an environment map.
     pub fn surround(&mut self) {
         (self.scene.background.color, self.scene.background.ambient_light) = (Vec3::ZERO, Vec3::ZERO);
         let Some(at) = self.distant.first().map(|distant| distant.at) else { return };

@@ -1,5 +1,5 @@
-//! Standard views of `rad` by name, such as `XYZ` and `yl`: views of a box from its sides and
-//! corners.
+//! Standard views of `rad`, which have names such as `XYZ` and `yl` and show a box from its sides
+//! and corners.
 //!
 //! Source: the manual page of rad, and the output of `rad -n`.
 
@@ -11,8 +11,8 @@ use durer_scene::scene::ObjectKind;
 use durer_scene::shape::Shape;
 use glam::DVec3;
 
-/// `ZONE` and `UP` settings of a `rad` input file: the box that standard views show, and the up
-/// axis.
+/// `ZONE` and `UP` settings of a `rad` input file, which are the box that standard views show and
+/// the up axis.
 pub(super) struct ViewBox {
     min: DVec3,
     size: DVec3,
@@ -25,7 +25,8 @@ pub(super) struct ViewBox {
 /// Names of the axes.
 const AXES: [char; 3] = ['X', 'Y', 'Z'];
 
-/// Returns the direction from the centre to the camera, and the view type, of a standard view.
+/// Returns the direction from the centre of the box to the camera, and the view type, for the name
+/// of a standard view.
 pub(super) fn standard(name: &str) -> Option<(DVec3, char)> {
     let (mut rest, mut direction) = (name, DVec3::ZERO);
     for (axis, letter) in AXES.into_iter().enumerate() {
@@ -44,8 +45,8 @@ pub(super) fn standard(name: &str) -> Option<(DVec3, char)> {
 }
 
 impl ViewBox {
-    /// Reads the values of `ZONE` and `UP`. The defaults are the bounding cube of all surfaces,
-    /// seen from outside, and the z axis.
+    /// Reads the values of `ZONE` and `UP`. By default, the box is the bounding cube of all
+    /// surfaces, the cameras are outside it, and the up axis is z.
     pub fn of(zone: Option<&[Word]>, up: Option<&[Word]>, reader: &Reader) -> ViewBox {
         let up = up.and_then(|words| words.first()).map_or("", |word| word.text.as_str());
         let letter = up.trim_start_matches(['+', '-']).chars().next().map(|letter| letter.to_ascii_uppercase());
@@ -61,12 +62,12 @@ impl ViewBox {
         ViewBox { min, size: max - min, interior, up }
     }
 
-    /// Returns a standard view of the box, given by a result of [`standard`].
+    /// Returns a standard view of the box for a result of [`standard`].
     pub fn view(&self, (direction, kind): (DVec3, char), at: Span) -> View {
         let middle = self.min + 0.5 * self.size;
         let point = middle + if self.interior { 0.45 } else { 2.0 } * direction * self.size;
         let (axis, side) = self.up;
-        // Use the preceding axis if the view direction is parallel to the up axis.
+        // Use the previous axis if the view direction is parallel to the up axis.
         let up = match (0..3).map(|i| (axis + 3 - i) % 3).find(|up| (0..3).any(|i| i != *up && direction[i] != 0.0)) {
             Some(up) if up == axis => side * DVec3::AXES[up],
             Some(up) => DVec3::AXES[up],
@@ -86,7 +87,7 @@ impl ViewBox {
 }
 
 impl Reader<'_> {
-    /// Returns the bounding cube of all surfaces read so far.
+    /// Returns the bounding cube of all surfaces that have been read so far.
     fn cube(&self) -> [DVec3; 2] {
         let objects = self.scene.root.iter().flat_map(|root| &root.objects);
         let shapes = objects.filter_map(|object| match &object.node {

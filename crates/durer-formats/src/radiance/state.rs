@@ -19,28 +19,28 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Maximum depth of nested files, and maximum number of files.
+/// Maximum depth of nested files, and maximum number of included files.
 const MAX_DEPTH: u32 = 32;
 const MAX_FILES: usize = 4096;
-/// Maximum number of materials that can result from patterns and mixtures.
+/// Maximum number of materials that patterns and mixtures can create.
 const MAX_MATERIALS: usize = 1 << 16;
 /// Maximum number of corners and shapes in a scene.
 const MAX_SHAPES: usize = 1 << 26;
 
-/// Radiance modifier, such as a material or pattern, as stored in the file, with the indices of the
-/// modifiers that it refers to.
+/// Radiance modifier, such as a material or a pattern, as stored in the file. The modifier contains
+/// the indices of the modifiers that it refers to.
 pub(super) struct Modifier {
     pub primitive: Rc<RadPrimitive>,
-    /// Index of the modifier that is applied to this one.
+    /// Index of the modifier that applies to this one.
     pub parent: Option<usize>,
-    /// Indices of further modifiers that this one names.
+    /// Indices of other modifiers that this one names.
     pub others: [Option<usize>; 2],
     pub map: DAffine3,
-    /// Length of the longest chain of modifiers that are applied to this one.
+    /// Length of the longest chain of modifiers that apply to this one.
     pub depth: u32,
 }
 
-/// Types of materials.
+/// Types of materials that the reader supports.
 pub(super) const MATERIALS: [&str; 27] = [
     "plastic",
     "metal",
@@ -70,7 +70,7 @@ pub(super) const MATERIALS: [&str; 27] = [
     "BSDF",
     "ashik2",
 ];
-/// Types of materials that are newer than the manual or have no counterpart.
+/// Types of materials that are newer than the reference manual or have no counterpart in Dürer.
 pub(super) const UNSUPPORTED_MATERIALS: [&str; 2] = ["aBSDF", "WGMDfunc"];
 pub(super) const PATTERNS: [&str; 10] = [
     "colorfunc",
@@ -94,18 +94,19 @@ pub(super) struct Reader<'a> {
     pub report: &'a SharedReport,
     pub modifiers: Vec<Modifier>,
     pub names: BTreeMap<String, usize>,
-    /// Converted modifiers, by index and by the bits of the colour with which preceding patterns
-    /// multiply them.
+    /// Converted modifiers. The key is the index of the modifier and the bits of the colour by
+    /// which earlier patterns multiply it.
     pub converted: BTreeMap<(usize, [u32; 3]), Rc<ConvertedModifier>>,
-    /// True after the limit of materials was reached.
+    /// True after the limit on the number of materials was reached.
     material_limit_reached: bool,
-    /// Merged surfaces, by material.
+    /// Meshes of merged surfaces, by material.
     pub bodies: BTreeMap<u32, MaterialMesh>,
-    /// Fog that corresponds to each mist material.
+    /// Fog that corresponds to each material of type `mist`.
     pub mist_fog: BTreeMap<u32, Fog>,
     pub distant: Vec<DistantSource>,
-    /// Directional distributions, by the index of their modifier. After them, the light profiles
-    /// made from them, by distribution and orientation of the surface.
+    /// Directional distributions by the index of their modifier, followed by the light profiles
+    /// that are made from them. The key of a light profile is its distribution and the orientation
+    /// of the surface.
     pub distributions: BTreeMap<usize, Rc<DirectionalDistribution>>,
     pub profiles: Vec<(Rc<DirectionalDistribution>, Orientation)>,
     pub triangulator: Triangulator,
@@ -135,7 +136,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads all primitives and commands in a text.
+    /// Reads all primitives and commands of a text.
     pub fn text(&mut self, bytes: &[u8], file: u32, place: &PrimitiveContext) {
         let mut words = Words::new(bytes, file, 0..bytes.len());
         while let Some(start) = words.start() {
@@ -152,8 +153,9 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Returns true if the limit of materials is reached. If many patterns apply to mixtures with
-    /// `void`, the number of materials can be the product of their counts.
+    /// Returns true if the limit on the number of materials has been reached. If many patterns
+    /// apply to many mixtures with `void`, the number of materials can be the number of patterns
+    /// times the number of mixtures.
     pub fn is_full(&mut self, at: Span) -> bool {
         if !self.material_limit_reached && self.scene.materials.len() > 3 * self.modifiers.len() + MAX_MATERIALS {
             self.material_limit_reached = true;
@@ -165,8 +167,8 @@ impl<'a> Reader<'a> {
         self.material_limit_reached
     }
 
-    /// Reads a file named by a command. If `beside`, commands in the file run in its folder;
-    /// otherwise they run in the current folder, as they do for piped output.
+    /// Reads a file that a command names. If `beside` is true, commands in the file run in the
+    /// folder of that file. Otherwise they run in the current folder, as they do for piped output.
     pub fn file(&mut self, name: &Word, place: &PrimitiveContext, beside: bool) {
         self.files += 1;
         if place.depth >= MAX_DEPTH || self.files > MAX_FILES {
@@ -181,7 +183,7 @@ impl<'a> Reader<'a> {
         self.text(&bytes, file, &PrimitiveContext { depth: place.depth + 1, ..place });
     }
 
-    /// Returns the bytes and the index of a file named by another file.
+    /// Returns the bytes and the index of a file that another file names.
     pub fn open(&self, name: &Word) -> Option<(Arc<[u8]>, u32)> {
         match self.input.source.read(&name.text) {
             Ok(bytes) => {
@@ -240,8 +242,8 @@ impl<'a> Reader<'a> {
         self.names.insert(name.text, self.modifiers.len() - 1);
     }
 
-    /// Defines an alias: another name for a modifier, possibly with a different modifier applied to
-    /// it.
+    /// Defines an alias, which is another name for a modifier. A different modifier can apply to
+    /// the alias.
     fn alias(&mut self, alias: RadPrimitive) {
         let Some(Some(real)) = self.find(&alias.texts[0]) else { return };
         let parent = match alias.modifier.text.as_str() {
@@ -256,8 +258,8 @@ impl<'a> Reader<'a> {
         self.define(alias.name, modifier);
     }
 
-    /// Finds a modifier by name and returns its index; `Some(None)` for `void`. Reports an unknown
-    /// name and returns `None`.
+    /// Finds a modifier by its name and returns its index, or `Some(None)` for `void`. If the name
+    /// is unknown, reports an error and returns `None`.
     pub fn find(&self, name: &Word) -> Option<Option<usize>> {
         if name.text == "void" {
             return Some(None);
@@ -271,7 +273,7 @@ impl<'a> Reader<'a> {
         number.map(Some)
     }
 
-    /// Counts `more` corners or shapes; returns false if the limit is exceeded.
+    /// Counts `more` additional corners or shapes. Returns false if the limit is exceeded.
     pub fn count_shapes(&mut self, more: usize, at: Span) -> bool {
         let before = self.count;
         self.count = self.count.saturating_add(more);
@@ -287,8 +289,8 @@ impl<'a> Reader<'a> {
         self.scene.root.get_or_insert_default().objects.push(object);
     }
 
-    /// Converts the mist around the camera to fog, because camera rays do not know that they start
-    /// inside a body.
+    /// Converts the mist around the camera to fog, because rays from the camera do not know that
+    /// they start inside a body.
     fn mist_to_fog(&mut self) {
         let Some(eye) = self.scene.camera.as_ref().map(|camera| camera.pose().center) else { return };
         for (number, fog) in std::mem::take(&mut self.mist_fog) {

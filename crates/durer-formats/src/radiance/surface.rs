@@ -21,7 +21,8 @@ impl Reader<'_> {
             return;
         }
         let map = place.map;
-        // Transforms in Radiance are similarities, so they scale all lengths by the same factor.
+        // Transforms in Radiance are similarity transforms, so they scale all lengths by the same
+        // factor.
         let scale = map.matrix3.x_axis.length();
         match primitive.kind.text.as_str() {
             "instance" | "mesh" => {
@@ -126,8 +127,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Adds a face from a generator. An unknown material is reported only for the first face of its
-    /// output.
+    /// Adds a face that a generator has created. An unknown material is reported only for the first
+    /// face of the generator's output.
     pub fn facet(&mut self, modifier: &Word, corners: &[DVec3], name: &Word, place: &PrimitiveContext, first: bool) {
         let known = modifier.text == "void" || self.names.contains_key(&modifier.text);
         if !known && !first {
@@ -155,20 +156,21 @@ impl Reader<'_> {
         self.body(number, at).add_face(&corners, &triangles);
     }
 
-    /// Returns the mesh for all surfaces with a material.
+    /// Returns the mesh that contains all surfaces with a material.
     fn body(&mut self, number: u32, at: Span) -> &mut MaterialMesh {
         self.bodies.entry(number).or_insert_with(|| MaterialMesh::new(at))
     }
 
-    /// Returns the converted material of a surface and its number; `None` if the surface is not
-    /// shown. If the material has a directional distribution, adds point lights instead.
+    /// Returns the converted material of a surface and the number of that material, or `None` if
+    /// the surface is not shown. If the material has a directional distribution, adds point lights
+    /// instead of the surface.
     fn surface_material(
         &mut self,
         modifier: Option<usize>,
         outline: &EmitterShape,
         at: Span,
     ) -> Option<(std::rc::Rc<ConvertedModifier>, u32)> {
-        // Surfaces whose modifier is `void` are meant for other programs.
+        // Surfaces with the modifier `void` are intended for other programs.
         let converted = self.convert(modifier?);
         match converted.kind {
             MaterialKind::DirectionalEmitter { .. } => {

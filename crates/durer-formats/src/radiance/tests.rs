@@ -1,5 +1,5 @@
-//! Tests of the Radiance reader: parsing, conventions in closed form, and errors with their
-//! positions.
+//! Tests of the Radiance reader: its parser, its conventions compared with analytic results, and
+//! errors with their positions.
 
 mod conventions;
 mod gensky;
@@ -17,20 +17,20 @@ fn read(text: &str) -> (Option<Scene>, Vec<String>) {
     read_in(&std::env::temp_dir(), "scene.rad", text)
 }
 
-/// Reads a text, which must cause no diagnostics.
+/// Reads a text, which must not cause any diagnostics.
 fn clean(text: &str) -> Scene {
     let (scene, messages) = read(text);
     assert_eq!(messages, [""; 0], "{text}");
     scene.unwrap()
 }
 
-/// Returns the layers of a material by its index.
+/// Returns the layers of the material with the given index.
 fn layers(scene: &Scene, number: u32) -> &PrincipledMaterial {
     let Material::Principled(layers) = &scene.materials[number as usize].value else { panic!("no layers") };
     layers
 }
 
-/// Returns the vertices of a scene's meshes.
+/// Returns the vertices of all meshes in a scene.
 fn corners(scene: &Scene) -> Vec<Vec3> {
     scene.assets.meshes.values().flat_map(|mesh| mesh.positions.iter().copied()).collect()
 }
@@ -56,8 +56,8 @@ fn names_comments_quotes_and_aliases() {
     };
     assert_eq!((sphere.center, sphere.radius), (Vec3::new(1.0, 2.0, 3.0), 0.5));
     assert_eq!(layers(&scene, object.material.unwrap()).base_color, Vec3::new(0.1, 0.2, 0.3));
-    // A second definition of a name takes effect from its position on. An alias with `inherit`
-    // keeps the pattern.
+    // If a name is defined twice, the second definition applies to everything after it. An alias
+    // with the modifier `inherit` keeps the pattern.
     let text = "void brightfunc half 1 .5 0 0 half plastic m 0 0 5 .8 .8 .8 0 0\n";
     for (modifier, expected) in [("inherit", 0.4), ("void", 0.8), ("half", 0.4)] {
         let scene = clean(&format!("{text}{modifier} alias n m n sphere s 0 0 4 0 0 0 1"));
@@ -73,7 +73,7 @@ fn commands_are_emulated() {
     assert_eq!(all.len(), 3 * 24);
     assert_eq!(all.iter().copied().reduce(Vec3::min), Some(Vec3::new(10.0, 0.0, 0.0)));
     assert_eq!(all.iter().copied().reduce(Vec3::max), Some(Vec3::new(11.0, 22.0, 3.0)));
-    // All faces point outwards, including those of a prism with a hole and of mirror images.
+    // All faces point outwards, including those of mirror images and of a prism with a hole.
     let prism = "!genprism white p 10 0 0 0 4 4 4 4 0 0 0 1 1 3 1 3 3 1 3 1 1 -l 0 0 2 -c";
     for (command, volume) in [
         ("!genbox white box 1 2 3 | xform -rx 20 -t 5 6 7", 6.0),
@@ -90,8 +90,8 @@ fn commands_are_emulated() {
         let six: f64 = mesh.triangles.iter().map(|t| corner(t[0]).dot(corner(t[1]).cross(corner(t[2])))).sum();
         assert!((six / 6.0 - volume).abs() < 1e-4, "{command}: {}", six / 6.0);
     }
-    // `-i` repeats a part, and `-m` sets a material; file names in included files are relative to
-    // the scene.
+    // The option `-i` repeats a part, and `-m` sets a material. File names in included files are
+    // relative to the scene.
     let files = folder(&[
         ("part.rad", b"white sphere s 0 0 4 1 0 0 .25\n"),
         ("red.rad", b"void plastic red 0 0 5 1 0 0 0 0\n!xform -m red part.rad"),
@@ -110,10 +110,10 @@ fn commands_are_emulated() {
 fn materials_become_layers() {
     let (m, messages) = sphere("void plastic m 0 0 5 .8 .4 .2 .04 0");
     assert_eq!((m.base_color, messages.len()), (Vec3::new(0.8, 0.4, 0.2), 0));
-    // An index of 1.5 reflects 4 %.
+    // An index of refraction of 1.5 gives a reflectance of 4 %.
     assert!((m.specular_ior - 1.5).abs() < 1e-5 && m.specular_roughness == 0.0);
-    // In rough plastic the specular part is white at all angles. Its roughness is the square root
-    // of the slope.
+    // The specular part of rough plastic is white at all angles. The roughness of OpenPBR is the
+    // square root of the slope.
     let scene = clean("void plastic m 0 0 5 .8 .4 .2 .04 .09 m sphere s 0 0 4 1 2 3 .5");
     let Material::Solid(durer_scene::material::PatternMaterial::Mix(mix), _) = &scene.materials[2].value else {
         panic!("no mixture")
@@ -127,18 +127,18 @@ fn materials_become_layers() {
     assert!(m.base_metalness == 0.95 && (m.specular_roughness - 0.2).abs() < 1e-6);
     let (m, _) = sphere("void glass m 0 0 3 .9 .8 .7");
     assert_eq!((m.walls, m.specular_ior, m.transmission_color), (Walls::Thin, 1.52, Vec3::new(0.9, 0.8, 0.7)));
-    // The inside absorbs light, including light that is reflected internally.
+    // The inside absorbs light, including light that is reflected inside.
     assert_eq!(m.transmission_depth, 1.0);
     let (m, _) = sphere("void dielectric m 0 0 5 .5 .25 1 1.33 0");
     assert_eq!((m.walls, m.specular_ior, m.transmission_depth), (Walls::Solid, 1.33, 1.0));
     assert_eq!(m.transmission_color, Vec3::new(0.5, 0.25, 1.0));
     let (m, _) = sphere("void trans m 0 0 7 .9 .9 .5 0 0 .5 .7");
     assert!((m.transmission_weight - 0.35).abs() < 1e-6);
-    // 0.5 is scattered back, 0.15 forward.
+    // A fraction of 0.5 is scattered backwards, and 0.15 forwards.
     assert!((m.subsurface_scatter_anisotropy + 0.35 / 0.65).abs() < 1e-6);
     let (m, _) = sphere("void light m 0 0 3 4 2 1");
     assert_eq!((m.emission_luminance, m.emission_color, m.base_color), (4.0, Vec3::new(1.0, 0.5, 0.25), Vec3::ZERO));
-    // In glass, the inside of a bubble is what the material calls outside.
+    // For a bubble in glass, the interior is the side that the material calls the outside.
     let text = "void interface m 0 0 8 1 1 1 1.5 1 1 1 1.33\n";
     for (kind, index) in [("sphere", 1.5), ("bubble", 1.33)] {
         let scene = clean(&format!("{text}m {kind} s 0 0 4 0 0 0 1"));
@@ -167,7 +167,7 @@ fn missing_counterpart_gives_one_warning_with_position() {
         assert!(scene.is_some());
         assert_eq!(found, [format!("scene.rad:{expected}")], "{text}");
     }
-    // Unused materials are not reported.
+    // Materials that are not used are not reported.
     clean("void BSDF m 1 a.xml 0 0");
 }
 
@@ -219,8 +219,8 @@ fn errors_have_positions() {
     assert!(read(&many).1.len() <= 21);
 }
 
-/// Returns a tree of mixtures that is used repeatedly, in partly transparent mixtures or below
-/// patterns.
+/// Builds a tree of mixtures that is used many times, in partly transparent mixtures or with
+/// patterns applied to it.
 #[test]
 fn number_of_materials_is_limited() {
     let depth = 9;

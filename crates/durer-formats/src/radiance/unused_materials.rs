@@ -1,11 +1,11 @@
-//! Removes unused materials, and warns about missing files that are not read.
+//! Removes materials that are not used, and warns about missing files of types that are not read.
 
 use super::args::RadPrimitive;
 use super::state::Reader;
 use durer_scene::material::{Pattern, PatternMaterial};
 use durer_scene::scene::{Material, Scene};
 
-/// Function files that are installed with Radiance.
+/// Function files that are part of a Radiance installation.
 const LIBRARY: &str = "Ashikhmin LaFortune LaFortune1 WGMDaniso WGMDiso WalterBSDF WalterBTDF ambpos bezier2 \
     blackbody blinds bsdf2rad cct cielab cieluv cieresp cieskyscan circle clamp clouds conv1 \
     conv2 cri cubic denom disk2square equivlum ferwerda filt fisheye_corr fitSH fog fovsample \
@@ -18,8 +18,8 @@ const LIBRARY: &str = "Ashikhmin LaFortune LaFortune1 WGMDaniso WGMDiso WalterBS
     tumblin uniq_rgb veil view360stereo vl vonKries vwparab vwplanis window xyz_rgb xyz_srgb";
 
 impl Reader<'_> {
-    /// Warns about files that a primitive names and that do not exist, if they are of types that
-    /// are not read.
+    /// Warns about files that a primitive names but that do not exist. Only files of types that are
+    /// not read are checked.
     pub fn warn_missing_files(&self, primitive: &RadPrimitive) {
         for word in &primitive.texts {
             let Some((name, kind)) = word.text.rsplit_once('.') else { continue };
@@ -32,13 +32,13 @@ impl Reader<'_> {
     }
 }
 
-/// Removes unused materials. These are, for example, materials used only by suns, the outer side of
-/// glass, and parts of a mixture that was reduced to one of them.
+/// Removes materials that are not used. Examples are materials of suns, materials of the outer side
+/// of glass, and parts of a mixture that was reduced to one of its parts.
 pub(super) fn remove_unused(scene: &mut Scene) {
     let mut used = vec![false; scene.materials.len()];
     let objects = || scene.root.iter().flat_map(|root| &root.objects);
     objects().filter_map(|object| object.material).for_each(|number| used[number as usize] = true);
-    // A mixture comes after its parts, so go backwards.
+    // A mixture always comes after its parts, so go through the list backwards.
     for i in (0..used.len()).rev() {
         if let (true, Material::Solid(solid, _)) = (used[i], &scene.materials[i].value) {
             solid.materials().into_iter().for_each(|part| used[part as usize] = true);

@@ -10,23 +10,23 @@ use durer_scene::math::fp;
 use durer_scene::scene::Scene;
 use glam::DVec3;
 
-/// Default length in pixels of the picture's larger side.
+/// Default length of the larger side of the picture in pixels.
 pub(super) const DEFAULT_SIZE: u32 = 512;
-/// Program names that can begin a view in a file.
+/// Names of programs with which a view in a file can begin.
 const PROGRAMS: [&str; 7] = ["VIEW=", "rpict", "rview", "rvu", "rpiece", "pinterp", "rad"];
 
-/// Radiance view: type, position, direction and size of a camera.
+/// Radiance view, which defines the type, position, direction and size of a camera.
 #[derive(Clone, Debug)]
 pub(super) struct View {
     pub kind: char,
     pub point: DVec3,
     pub direction: DVec3,
     pub up: DVec3,
-    /// Horizontal and vertical size: in degrees, or a length in parallel views.
+    /// Horizontal and vertical size of the view, in degrees or as lengths for parallel views.
     pub size: [f64; 2],
-    /// Shift of the picture, as a fraction of its width and of its height.
+    /// Shift of the picture as a fraction of its width and height.
     shift: [f64; 2],
-    /// Distance of the near clipping plane from the view point.
+    /// Distance from the view point to the near clipping plane.
     near: f64,
     at: Span,
 }
@@ -46,8 +46,9 @@ impl Default for View {
     }
 }
 
-/// Returns the last view in a file. A view is a line that begins with `VIEW=` or the name of a
-/// program. In a picture, only the header is searched; lines there can contain other options too.
+/// Returns the last view in a file. A view is on a line that begins with `VIEW=` or with the name
+/// of a program. If the file is a picture, only its header is searched. The lines of a header can
+/// also contain other options.
 pub(super) fn last_view(bytes: &[u8], file: u32, report: &SharedReport) -> Option<View> {
     let (mut view, mut start) = (None, 0);
     let picture = bytes.starts_with(b"#?");
@@ -82,8 +83,8 @@ impl View {
         View { at, ..View::default() }
     }
 
-    /// Applies view options. All other options are skipped together with their arguments; if
-    /// `others`, unknown options that begin with `-v` are skipped too.
+    /// Applies the options of a view. All other options are skipped together with their arguments.
+    /// If `others` is true, unknown options that begin with `-v` are also skipped.
     pub fn options(&mut self, words: &[Word], others: bool, report: &SharedReport) {
         let mut rest = words;
         while let Some((option, more)) = rest.split_first() {
@@ -131,7 +132,7 @@ impl View {
         }
     }
 
-    /// Sets the camera and the picture size of a scene.
+    /// Sets the camera of a scene and the size of its picture.
     pub fn apply(&self, scene: &mut Scene, larger: u32, report: &SharedReport) {
         if self.kind != 'l' && self.near != 0.0 {
             report
@@ -164,7 +165,7 @@ impl View {
         let wide = sides[0] >= sides[1];
         let angle = (if wide { across } else { upwards }) as f32;
         let longest = sides[0].max(sides[1]);
-        // The shift is in units of half the larger side.
+        // The shift is measured in units of half the larger side.
         let [right, above] = [2.0 * self.shift[0] * sides[0] / longest, 2.0 * self.shift[1] * sides[1] / longest];
         let shifted = self.shift != [0.0; 2];
         let camera: Camera = match self.kind {

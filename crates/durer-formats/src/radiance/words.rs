@@ -1,11 +1,11 @@
-//! Tokenizer for words and commands.
+//! Splits text into words and commands.
 
 use crate::number::parse_f32;
 use crate::report::quoted;
 use crate::shared_report::SharedReport;
 use durer_diag::Span;
 
-/// Word of a Radiance file, without its quotes, with its span.
+/// Word of a Radiance file without its quotes, and its span.
 #[derive(Clone, Debug)]
 pub(super) struct Word {
     pub text: String,
@@ -13,12 +13,12 @@ pub(super) struct Word {
 }
 
 impl Word {
-    /// Returns the word, quoted for messages.
+    /// Returns the word in quotes, for use in messages.
     pub fn quoted(&self) -> String {
         quoted(self.text.as_bytes())
     }
 
-    /// Parses the word as a number; reports an error if it is not one.
+    /// Parses the word as a number, and reports an error if it is not a number.
     pub fn number(&self, report: &SharedReport) -> Option<f64> {
         let number = parse_f32(self.text.as_bytes()).ok().and_then(|_| self.text.parse::<f64>().ok());
         if number.is_none() {
@@ -27,7 +27,7 @@ impl Word {
         number
     }
 
-    /// Parses the word as a non-negative integer; reports an error if it is not one.
+    /// Parses the word as a non-negative integer, and reports an error if it is not one.
     pub fn count(&self, report: &SharedReport) -> Option<usize> {
         let count = self.text.parse().ok();
         if count.is_none() {
@@ -37,14 +37,14 @@ impl Word {
     }
 }
 
-/// Start of a Radiance primitive: its first word, or a `!` command instead.
+/// First word of a Radiance primitive, or a command that begins with `!`.
 pub(super) enum PrimitiveStart {
     Word(Word),
-    /// Byte range of a command, without the `!`.
+    /// Range of bytes of a command without its `!`.
     Command(std::ops::Range<usize>),
 }
 
-/// Cursor over the words of a Radiance text.
+/// Cursor that moves over the words of a Radiance text.
 pub(super) struct Words<'a> {
     bytes: &'a [u8],
     file: u32,
@@ -52,23 +52,23 @@ pub(super) struct Words<'a> {
     end: usize,
 }
 
-/// Returns true if a byte separates words.
+/// Returns true if a byte separates two words.
 fn is_space(byte: u8) -> bool {
     byte.is_ascii_whitespace() || byte == 0x0b
 }
 
 impl<'a> Words<'a> {
-    /// Starts at the beginning of a range of a file. The file must be smaller than 4 GiB.
+    /// Creates a cursor at the beginning of a range of a file. The file must be smaller than 4 GiB.
     pub fn new(bytes: &'a [u8], file: u32, range: std::ops::Range<usize>) -> Self {
         Words { bytes, file, at: range.start, end: range.end }
     }
 
-    /// Returns the span of a byte range.
+    /// Returns the span of a range of bytes.
     pub fn span(&self, start: usize, end: usize) -> Span {
         Span { file: self.file, start: start as u32, end: end as u32 }
     }
 
-    /// Returns the span of the end of the text.
+    /// Returns the span of the position at the end of the text.
     pub fn end(&self) -> Span {
         self.span(self.end, self.end)
     }
@@ -102,7 +102,7 @@ impl<'a> Words<'a> {
         Some(Word { text: String::from_utf8_lossy(word).into_owned(), at })
     }
 
-    /// Returns the next word or command; skips comments.
+    /// Returns the next word or command, and skips comments before it.
     pub fn start(&mut self) -> Option<PrimitiveStart> {
         loop {
             while self.peek().is_some_and(is_space) {
@@ -124,7 +124,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Moves to the end of the line.
+    /// Moves the cursor to the end of the line.
     fn line(&mut self) {
         while self.peek().is_some_and(|byte| byte != b'\n') {
             self.at += 1;
@@ -132,7 +132,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Returns true if a line continues on the next line.
+/// Returns true if a line is continued on the next line.
 fn continued(line: &[u8]) -> bool {
     line.ends_with(b"\\") || line.ends_with(b"\\\r")
 }

@@ -1,25 +1,27 @@
-//! Transforms of `xform` and of instances: sequences, repetitions and arrays.
+//! Transforms of `xform` commands and of instances, which can contain sequences, repetitions and
+//! arrays.
 
 use super::words::Word;
 use crate::shared_report::SharedReport;
 use durer_scene::math::fp;
 use glam::{DAffine3, DMat3, DVec3};
 
-/// Maximum number of copies that nested arrays may create.
+/// Maximum number of copies that nested arrays can create.
 const MAX_PLACES: usize = 1 << 20;
 
-/// How often a part of an `xform` transform is applied: a fixed number of times, or as an array of
-/// copies.
+/// Number of times that a part of an `xform` transform is applied. It is the same for all copies,
+/// or it increases from copy to copy in an array.
 #[derive(Clone, Copy, PartialEq)]
 enum Repetition {
-    /// Applied a fixed number of times (`-i`).
+    /// The part is applied a fixed number of times (`-i`).
     Fixed(i32),
-    /// Array of copies (`-a`): applied zero times in the first copy, once in the second, twice in
-    /// the third, and so on.
+    /// The part creates an array of copies (`-a`). The part is applied zero times to the first
+    /// copy, once to the second, twice to the third, and so on.
     Array(usize),
 }
 
-/// Transform of an `xform` command, as a sequence of parts, which can create several copies.
+/// Transform of an `xform` command. The transform is a sequence of parts, and it can create several
+/// copies.
 #[derive(Clone)]
 pub(super) struct TransformSequence {
     parts: Vec<(Repetition, DAffine3)>,
@@ -31,7 +33,8 @@ impl Default for TransformSequence {
     }
 }
 
-/// Returns the rotation about an axis by degrees; exact for multiples of a right angle.
+/// Returns the rotation around an axis by an angle in degrees. The result is exact for multiples of
+/// a right angle.
 fn rotation(axis: usize, degrees: f64) -> DAffine3 {
     let (sin, cos) = fp::sin_cos_degrees(degrees);
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -42,8 +45,8 @@ fn rotation(axis: usize, degrees: f64) -> DAffine3 {
 }
 
 impl TransformSequence {
-    /// Parses an option with its arguments at the front of `words`; returns false if the option is
-    /// not a transform.
+    /// Parses an option and its arguments at the beginning of `words`. Returns false if the option
+    /// is not a transform.
     pub fn option(&mut self, words: &mut &[Word], report: &SharedReport) -> bool {
         let Some((option, rest)) = words.split_first() else { return false };
         let numbers = |count: usize| -> Option<Vec<f64>> {
@@ -88,7 +91,7 @@ impl TransformSequence {
         true
     }
 
-    /// Returns the transforms of all copies in order; `None` if there are too many.
+    /// Returns the transforms of all copies in order, or `None` if there are too many copies.
     pub fn copies(&self) -> Option<Vec<DAffine3>> {
         let mut places = vec![DAffine3::IDENTITY];
         for (times, map) in &self.parts {
@@ -113,7 +116,7 @@ impl TransformSequence {
     }
 }
 
-/// Returns a transform applied `count` times.
+/// Returns the result of applying a transform `count` times.
 fn power(map: DAffine3, count: i32) -> DAffine3 {
     let (mut result, mut square, mut left) = (DAffine3::IDENTITY, map, count);
     while left > 0 {

@@ -1,4 +1,4 @@
-//! Tests that the reference contains every word, and that its examples are valid scenes.
+//! Tests that the reference contains all words and that its examples are valid scenes.
 
 use super::*;
 use crate::course::tests::clean;
@@ -24,7 +24,7 @@ fn every_example_is_a_visible_scene() {
     }
 }
 
-/// Returns a scene of four sections around an example, which is a part of a scene.
+/// Returns a scene of four sections that contains an example, which is only a part of a scene.
 fn around(example: &str) -> (Dialect, String) {
     let first = example.split(' ').next().unwrap_or_default();
     if let "Scene" | "Node" | "Component<Object>" | "Component<Light>" | "Component<Material>" = first {
@@ -59,7 +59,8 @@ fn around(example: &str) -> (Dialect, String) {
 fn every_word_has_a_readable_example() {
     for entry in entries() {
         assert!(!entry.example.is_empty(), "{} has no example", entry.name());
-        // The included files do not exist here; the tests of `include` have one.
+        // The included files do not exist in these tests. The tests of `include` cover an example
+        // with an existing file.
         if entry.chapter == Chapter::Structure && entry.name() != "include" {
             let (dialect, text) = around(&entry.example);
             assert!(dialect.is_in(entry.dialects()), "{}", entry.name());

@@ -1,10 +1,11 @@
-//! Tests with the course's scenes in the folder `DURER_CORPUS`, if it exists.
+//! Tests with the scenes of the course in the folder `DURER_CORPUS`, if this folder exists.
 
 use super::*;
 use durer_scene::dialect::set;
 use std::path::{Path, PathBuf};
 
-/// Returns every scene of the course with its dialect; empty if the folder does not exist.
+/// Returns all scenes of the course with their dialects. The list is empty if the folder does not
+/// exist.
 pub(super) fn scenes() -> Vec<(PathBuf, Dialect)> {
     let default = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared"));
     let root = std::env::var_os("DURER_CORPUS").map_or_else(default, PathBuf::from).join("course/scenes");
@@ -22,7 +23,7 @@ pub(super) fn scenes() -> Vec<(PathBuf, Dialect)> {
 fn collect(folder: &Path, dialect: Dialect, found: &mut Vec<(PathBuf, u8)>) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let (path, name) = (entry.path(), entry.file_name().into_string().unwrap());
-        // Splines are curves that belong to another program.
+        // Splines are curves for another program.
         let other = name.starts_with("spline8_") || name == "readme.txt";
         if path.is_dir() {
             collect(&path, dialect, found);
@@ -71,10 +72,10 @@ fn guess_of_every_scene_includes_its_year() {
         let folder = path.parent().unwrap();
         let guess = guess(&text, 0, &[], &|name| folder.join(name).exists());
         println!("{} {}", path.display(), guess.note().message);
-        // The two years with `falloff` have identical files, so one year is guessed and the other
-        // remains possible.
+        // The files of the two years with `falloff` are identical, so one of the years is guessed
+        // and the other one remains possible.
         assert!(guess.dialect == dialect || guess.others.contains(&dialect), "{}: {guess:?}", path.display());
-        // The guessed dialect reads the file without diagnostics.
+        // The file can be read without diagnostics in the dialect that was guessed.
         let (_, findings) = read_as(&text, guess.dialect, false);
         assert_eq!(findings, [""; 0], "{}", path.display());
     }
@@ -100,7 +101,7 @@ fn distinctive_words_decide_the_guess() {
     ] {
         assert_eq!(of(text), dialect, "{text}");
     }
-    // The note contains only the reasons that are needed for the guess.
+    // The note lists only the reasons that are needed for the guess.
     let note = guess(
         b"PerspectiveCamera { } PointLight { falloff 1 } Materials { Material { refractionIndex 2 } }",
         0,
@@ -124,13 +125,13 @@ fn weak_hints_choose_among_the_years_that_fit_and_rule_none_out() {
     let found = guess(scene, 0, std::slice::from_ref(&png), &|_| false);
     assert_eq!((found.dialect, found.by_keywords), (Dialect::F16, Dialect::F12a4));
     assert_eq!(found.fitting, [Dialect::F12a4, Dialect::F12a5, Dialect::F16]);
-    // The order of the hints does not matter.
+    // The order of the hints has no effect on the result.
     for hints in [[png.clone(), shadows.clone()], [shadows, png.clone()]] {
         let found = guess(scene, 0, &hints, &|_| false);
         assert_eq!(found.dialect, Dialect::F16);
         assert_eq!(found.fitting, [Dialect::F12a5, Dialect::F16]);
     }
-    // Without a word that distinguishes the years, a weak hint has no effect.
+    // If no word distinguishes the years, a weak hint has no effect.
     let found = guess(b"", 0, &[png], &|_| false);
     assert_eq!(found.dialect, Dialect::F12a4);
 }

@@ -1,4 +1,4 @@
-//! Tests of each kind of error and warning, with its span and message.
+//! Tests of every kind of error and warning, including their spans and messages.
 
 use super::*;
 use durer_scene::math::Vec3;
@@ -272,7 +272,7 @@ fn transforms() {
         "Scene { Node { Transform { scale 1 0 1 } } }",
         "1:28 error: a scale by 0 flattens space and has no inverse [scale 1 0 1] (use a scale of 1 along axes that keep their size)",
     );
-    // A small scale is not a scale by 0.
+    // A scale by a small factor is not a scale by 0.
     assert_eq!(findings(&format!("Group {{ Transform {{ Scale 1e-30 1e-30 1 {ball} }} }}"), Dialect::F04), [""; 0]);
 }
 
@@ -330,7 +330,7 @@ fn web_colour_is_reported_at_its_value() {
     let messages = findings(text, Dialect::Durer).join("\n");
     assert!(messages.contains("`diffuseColor` needs number 1 of 3, but `#b38033` begins a comment"), "{messages}");
     assert!(messages.contains("0.702 0.502 0.2"), "{messages}");
-    // Other comments are not taken for the value.
+    // Other comments are not mistaken for the value.
     let messages = findings(&text.replace("#b38033", "# brown"), Dialect::Durer).join("\n");
     assert!(messages.contains("but found `specularColor`"), "{messages}");
 }

@@ -1,4 +1,4 @@
-//! Tests of every form of every statement.
+//! Tests of every form that each statement can have.
 
 use super::*;
 use durer_scene::camera::Camera;
@@ -10,7 +10,8 @@ use durer_scene::medium::Fog;
 use durer_scene::scene::{Background, Material, MatrixOp, Object, ObjectKind};
 use durer_scene::shape::{HeightField, Primitive, TriangleMesh};
 
-/// Returns a value of a type that differs from the default, as text and as it is read.
+/// Returns a value of a type that is different from the default, both as text and in the form in
+/// which it is read.
 fn sample(kind: FieldKind, rule: Constraint) -> (String, Value) {
     let (text, value) = match kind {
         FieldKind::Word(words) => (words[words.len() - 1], Value::Word(words[words.len() - 1].into())),
@@ -24,7 +25,7 @@ fn sample(kind: FieldKind, rule: Constraint) -> (String, Value) {
             ("0.125", Value::Float(0.125))
         }
         FieldKind::Float => ("12.5", Value::Float(12.5)),
-        // Index of one of the two materials before the solid texture.
+        // Index of one of the two materials that come before the solid texture.
         FieldKind::Int if rule == Constraint::Any => ("1", Value::Int(1)),
         FieldKind::Int => ("7", Value::Int(7)),
         FieldKind::Vec3 if matches!(rule, Constraint::Counts(_)) => ("3 1. 2", Value::Vec3(Vec3::new(3.0, 1.0, 2.0))),
@@ -36,8 +37,8 @@ fn sample(kind: FieldKind, rule: Constraint) -> (String, Value) {
     (text.into(), value)
 }
 
-/// Writes every statement of a list with all fields of a dialect, reads it inside the text of
-/// `wrap`, and compares the result.
+/// Writes every statement of a list with all fields that it has in a dialect, reads it inside the
+/// text that `wrap` returns, and compares the result.
 fn every_word<T: DescribedKind + PartialEq + std::fmt::Debug>(
     wrap: impl Fn(&str, &str) -> String,
     find: impl Fn(Scene) -> T,
@@ -212,7 +213,7 @@ fn material_index_applies_to_all_following_objects() {
     assert_eq!(inner.material, Some(2));
 }
 
-/// Collects the shapes of a scene with nodes and their materials, in order.
+/// Collects the shapes of a scene with nodes, and their materials, in order.
 fn flat(objects: &[Object], out: &mut Vec<(String, Option<u32>)>) {
     for object in objects {
         match &object.node {
@@ -258,10 +259,10 @@ fn point_light_is_positioned_by_its_nodes() {
     let lights: Vec<Light> = scene.lights.unwrap().into_iter().map(|light| light.value).collect();
     let [Light::Point(near), Light::Point(far), Light::Directional(sun)] = &lights[..] else { panic!("{lights:?}") };
     assert_eq!(near.position, Vec3::X);
-    // Moved by 2 along z, scaled by 3, rotated from z to x, then moved by 1.
+    // The object is moved by 2 along z, scaled by 3, rotated from z to x, and then moved by 1.
     assert_eq!((far.position, far.falloff, near.falloff), (Vec3::new(7.0, 0.0, 0.0), Some(7.0), None));
     assert_eq!(sun.direction, Vec3::X);
-    // A node with lights only is not an object.
+    // A node that has only lights is not an object.
     assert_eq!(scene.root.unwrap().objects, []);
 }
 

@@ -1,4 +1,4 @@
-//! Tests of strict reading and of limits.
+//! Tests of strict mode and of limits.
 
 use super::*;
 
@@ -67,7 +67,7 @@ fn strict_reading_allows_only_the_course_language() {
     ] {
         assert_eq!(strict(&text, dialect), [expected]);
     }
-    // A brace may directly follow a number, as in one of the course's scenes.
+    // A brace can follow a number without a space, as it does in one of the course's scenes.
     assert_eq!(strict("Materials { numMaterials 1 Material { exponent 20} }", Dialect::F04), [""; 0]);
 }
 

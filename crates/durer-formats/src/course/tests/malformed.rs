@@ -1,5 +1,5 @@
-//! Tests with thousands of broken files: the reader does not panic, takes bounded time, and each
-//! error has a span in the file.
+//! Tests with thousands of broken files. The reader must not panic, must take a bounded amount of
+//! time, and must report errors with spans that are inside the file.
 
 use super::*;
 use crate::Decoder;
@@ -7,7 +7,8 @@ use crate::course::random::SceneGenerator;
 use crate::folder::FolderSource;
 use durer_render::compile::{AccelKind, Resources, compile};
 
-/// Reads a file in a dialect. If this succeeds, also compiles the scene and writes it.
+/// Reads a file in the given dialect. If there are no errors, also compiles the scene and writes
+/// it.
 fn try_it(text: &[u8], dialect: Dialect, strict: bool, source: &FolderSource) {
     let (scene, _) = read_as(text, dialect, strict);
     guess(text, 0, &[], &|_| false);
@@ -32,7 +33,7 @@ fn every_prefix_of_a_scene() {
     for (dialect, text) in SMALL {
         for end in 0..text.len() {
             try_it(&text.as_bytes()[..end], dialect, end % 2 == 0, &source);
-            // A truncated file causes one error, or two if a word was cut.
+            // A truncated file causes one error, or two errors if a word was cut.
             let errors = read_as(&text.as_bytes()[..end], dialect, false).1;
             let errors = errors.iter().filter(|f| f.contains(" error: ")).count();
             assert!(errors <= 2, "{end}: {:?}", read_as(&text.as_bytes()[..end], dialect, false).1);
@@ -53,7 +54,7 @@ fn changed_bytes() {
                 0 => bytes[at] ^= 1 << random.below(8),
                 1 => bytes[at] = random.below(256) as u8,
                 2 => bytes[at] = b" {}0-.#\n"[random.below(8)],
-                // Bytes from elsewhere in the file cause realistic errors.
+                // Bytes that are copied from elsewhere in the file cause realistic errors.
                 _ => bytes[at] = bytes[random.below(bytes.len())],
             }
         }
@@ -81,7 +82,7 @@ fn words_removed_doubled_and_moved() {
                 break;
             }
         }
-        // Read some of the files in another dialect than their own.
+        // Read some of the files in a dialect other than their own.
         let dialect = if random.below(4) == 0 { Dialect::ALL[random.below(7)] } else { dialect };
         try_it(words.join(" ").as_bytes(), dialect, random.below(4) == 0, &source);
     }

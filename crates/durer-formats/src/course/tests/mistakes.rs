@@ -1,4 +1,5 @@
-//! Tests of typical mistakes made by students. Each causes one error, at its position.
+//! Tests of typical mistakes made by students. Each mistake causes one error at the position of the
+//! mistake.
 
 use super::*;
 
@@ -121,7 +122,7 @@ fn one_mistake_gives_one_error() {
         ("radius 1\n    }", "radius 1\n    } }", "39:7"),
         ("angle 30\n}", "angle 30\n} }", "6:3"),
         ("vertex2 0 1 0\n    }", "vertex2 0 1 0\n    } }", "60:1"),
-        // Words in the wrong place.
+        // Words that are in the wrong place.
         ("Transform {", "Transform {\n MaterialIndex 0", "42:2"),
         ("radius 1", "radius 1 MaterialIndex 0", "38:18"),
         ("    Triangle {", "}\n    Triangle {", "55:1"),
@@ -156,7 +157,8 @@ fn two_mistakes_give_two_errors() {
 #[test]
 fn lost_brace_gives_an_error_at_its_effect_and_at_the_end() {
     for (from, to, places) in [
-        // The `}` of the transform closes the mesh, so the next group is inside the transform.
+        // The `}` of the transform closes the mesh instead, so the next group is inside the
+        // transform.
         ("cube.obj\n        }\n", "cube.obj\n", ["47:5", "60:1"]),
         ("diffuseColor 1 0 0", "diffuseColor 1 0 0 }", ["26:9", "28:5"]),
     ] {

@@ -1,4 +1,4 @@
-//! Tests of the scene language reader, with shared helpers.
+//! Tests of the scene language reader, and helpers that they share.
 
 mod corpus;
 mod errors;
@@ -12,7 +12,8 @@ mod round_trip;
 use super::*;
 use durer_diag::{Files, Severity};
 
-/// Reads a text. Returns diagnostics as `line:column severity: message [underlined text] (help)`.
+/// Reads a text. Returns the diagnostics in the form `line:column severity: message [underlined
+/// text] (help)`.
 pub(super) fn read_as(text: &[u8], dialect: Dialect, strict: bool) -> (Option<Scene>, Vec<String>) {
     let mut files = Files::default();
     let file = files.add("scene.txt", text.into());
@@ -35,14 +36,14 @@ pub(super) fn read_as(text: &[u8], dialect: Dialect, strict: bool) -> (Option<Sc
     (scene, findings)
 }
 
-/// Reads a text that must cause no diagnostics.
+/// Reads a text, which must not cause any diagnostics.
 pub(super) fn clean(text: &str, dialect: Dialect) -> Scene {
     let (scene, findings) = read_as(text.as_bytes(), dialect, false);
     assert_eq!(findings, [""; 0], "{}: {text}", dialect.name());
     scene.unwrap()
 }
 
-/// Small scenes in each grammar that cover much of it.
+/// Small scenes in each grammar that use a large part of it.
 pub(super) const SMALL: [(Dialect, &str); 4] = [
     (
         Dialect::F04,

@@ -18,7 +18,7 @@ fn refused(text: &str) -> Vec<String> {
     found
 }
 
-/// Collects the materials of all shapes, in order.
+/// Collects the materials of all shapes in order.
 fn materials(object: &Object, found: &mut Vec<Option<u32>>) {
     match &object.node {
         ObjectKind::Group(group) => group.objects.iter().for_each(|object| materials(object, found)),
@@ -50,9 +50,9 @@ fn each_use_copies_the_defined_object() {
     ));
     let mut found = Vec::new();
     scene.root.iter().flat_map(|root| &root.objects).for_each(|object| materials(object, &mut found));
-    // A use is equivalent to writing the object out.
+    // A use has the same effect as writing the object out.
     assert_eq!(found, [Some(0), Some(1), Some(2), Some(1), Some(2), Some(2)]);
-    // A use is equal to writing the object out.
+    // A use gives the same scene as writing the object out.
     let used =
         ours(&format!("define ball {ball} Group {{ MaterialIndex 0 Transform {{ Translate 1 0 0 use ball }} }}"));
     let plain = ours(&format!("Group {{ MaterialIndex 0 Transform {{ Translate 1 0 0 Group {{ {ball} }} }} }}"));
@@ -76,7 +76,7 @@ fn wrong_names_are_errors() {
             "3:8 error: `Sphere` cannot be a name: it is a word of the language [Sphere]",
         ),
         ("define 3 Sphere { center 0 0 0 radius 1 }", "3:8 error: `3` cannot be a name: it is a number [3]"),
-        // Cycles are impossible: an object is not available inside its own definition.
+        // Cycles are impossible because an object cannot be used inside its own definition.
         (
             "define a Group { use a }",
             "3:22 error: nothing is defined as `a` before this [a] (write `define NAME` and an object first, outside the object that uses it)",
@@ -86,13 +86,14 @@ fn wrong_names_are_errors() {
     ] {
         assert_eq!(refused(text)[0], expected, "{text}");
     }
-    // Each definition doubles the size. The reader must reject this before it takes memory.
+    // Each definition doubles the number of objects. The reader must reject this scene before it
+    // allocates memory for it.
     let mut text = "define a0 Sphere { center 0 0 0 radius 1 }\n".to_string();
     for i in 1..64 {
         text += &format!("define a{i} Group {{ use a{} use a{} }}\n", i - 1, i - 1);
     }
     assert!(refused(&text)[0].contains("more than 1048576 objects"), "{:?}", refused(&text));
-    // Other years do not have these words.
+    // The dialects of other years do not have these words.
     let (_, found) = read_as(b"Group { numObjects 1 use ball }", Dialect::F04, true);
     assert!(!found.is_empty());
 }

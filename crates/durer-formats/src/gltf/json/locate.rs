@@ -1,9 +1,9 @@
-//! Finds the byte range of the value at a JSON pointer. Only diagnostics need this.
+//! Finds the byte range of the value at a JSON pointer. This module is needed only for diagnostics.
 
 use std::ops::Range;
 
-/// Returns the byte range of the value at a JSON pointer. If it does not exist, returns the range
-/// of the innermost existing value around it.
+/// Returns the byte range of the value at a JSON pointer. If the value does not exist, returns the
+/// range of the innermost enclosing value that exists.
 pub(super) fn locate(text: &[u8], pointer: &str) -> Range<usize> {
     let mut walk = Cursor { text, at: 0 };
     walk.skip_whitespace();
@@ -66,7 +66,7 @@ pub(super) fn items(text: &[u8], key: &str) -> Vec<usize> {
     }
 }
 
-/// Cursor that walks through JSON text and skips values without parsing them.
+/// Cursor that moves through JSON text and skips values without parsing them.
 struct Cursor<'a> {
     text: &'a [u8],
     at: usize,
@@ -83,7 +83,7 @@ impl Cursor<'_> {
         }
     }
 
-    /// Returns the range of the value at the cursor; for an object or array, only that of its first
+    /// Returns the range of the value at the cursor. For an object or array, this is only its first
     /// byte.
     fn here(&self) -> Range<usize> {
         let mut walk = Cursor { ..*self };
@@ -113,7 +113,7 @@ impl Cursor<'_> {
         }
     }
 
-    /// Skips a value with everything nested in it.
+    /// Skips a value and everything that is nested in it.
     fn skip(&mut self) {
         let mut depth = 0usize;
         loop {
@@ -160,7 +160,7 @@ mod tests {
         assert_eq!(at("/a/1/d"), "[");
         assert_eq!(items(text, "a").iter().map(|&i| text[i]).collect::<Vec<_>>(), b"1{-");
         assert!(items(text, "e").is_empty() && items(text, "x").is_empty());
-        // A missing value is located at the value around it.
+        // For a missing value, the result is the enclosing value.
         assert_eq!((at("/a/7"), at("/a/1/none"), at("/e/x")), ("[".into(), "{".into(), "true".into()));
         for end in 0..text.len() {
             for pointer in ["", "/a/2", "/a/1/d/0", "/e", "/e/f/g"] {

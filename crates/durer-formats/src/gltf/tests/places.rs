@@ -1,24 +1,24 @@
-//! Tests of the positions of diagnostics, and of the names in messages.
+//! Tests of the positions that diagnostics have, and of the names that appear in messages.
 
 use super::{BOUNDS, document, mesh};
 use crate::testing::read_in;
 use durer_scene::math::Vec3;
 use durer_scene::scene::ObjectKind;
 
-/// Returns the diagnostics for a file.
+/// Returns the diagnostics that reading a file causes.
 fn messages(name: &str, bytes: &[u8]) -> Vec<String> {
     read_in(std::path::Path::new("."), name, bytes).1
 }
 
-/// Returns a GLB file that contains only JSON, of such a length that its header contains a line
-/// feed byte.
+/// Returns a GLB file that contains only JSON. The length of the file is chosen so that the header
+/// contains a line feed byte.
 fn glb(json: &str) -> Vec<u8> {
     let json = format!("{json:<2560}");
     let length = |bytes: usize| (bytes as u32).to_le_bytes();
     [b"glTF", &length(2)[..], &length(json.len() + 20), &length(json.len()), b"JSON", json.as_bytes()].concat()
 }
 
-/// Returns a document with four vertices, without spaces at line ends.
+/// Returns a document that has four vertices and no spaces at the ends of lines.
 fn corners(primitive: &str, nodes: &str) -> String {
     let corners = [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let faces = [0u8, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3];
@@ -81,7 +81,7 @@ fn warnings_name_the_part_of_the_file() {
     let at = "/materials/0/pbrMetallicRoughness/baseColorTexture";
     let found = messages("a.gltf", text.as_bytes());
     assert_eq!(found, [format!("{} warning {at}: {expected}", line(&text, r#"{"index":0,"texCoord""#))]);
-    // Errors in a picture are reported where the file names the picture.
+    // Errors in a picture are reported at the place where the file names the picture.
     let (scene, _) = read_in(std::path::Path::new("."), "a.gltf", text.as_bytes());
     let durer_scene::scene::Material::Principled(layers) = &scene.unwrap().materials[0].value else { panic!() };
     let span = layers.base_color_texture.as_ref().unwrap().span;
@@ -105,17 +105,17 @@ fn animations_not_shown_are_noted() {
 #[test]
 fn mesh_scaled_to_zero_along_one_axis_is_a_sheet() {
     let sheet = |node: &str| mesh(&corners(r#"},"indices":1"#, &format!(r#""nodes":[{{"mesh":0,{node}}}]"#)));
-    // Two of the four faces of the tetrahedron are perpendicular to the sheet and vanish.
+    // Two of the four faces of the tetrahedron are perpendicular to the sheet, so they disappear.
     let flat = sheet(r#""scale":[2,1,0],"translation":[0,0,5]"#);
     let at = |x: f32, y: f32| Vec3::new(x, y, 5.0);
     assert_eq!(flat.positions, [at(0.0, 0.0), at(2.0, 0.0), at(0.0, 1.0), at(0.0, 0.0)]);
     assert_eq!(flat.triangles, [[0, 2, 1], [1, 2, 3]]);
     assert!(flat.flat && flat.normals.is_empty() && flat.triangle_normals.is_empty());
-    // After a rotation, the coordinates are not exact.
+    // After a rotation, the coordinates are no longer exact.
     let turn = r#""rotation":[0.1825742,0.3651484,0.5477226,0.7302967],"translation":[1000,2000,3000]"#;
     let turned = sheet(&format!(r#""scale":[1,1,0],{turn}"#));
     assert_eq!(turned.triangles, [[0, 2, 1], [1, 2, 3]]);
-    // A shear: the map is singular, although no axis is scaled to 0.
+    // For a shear, the transform is singular although no axis is scaled to 0.
     let leaning = sheet(r#""matrix":[1,0,0,0,0,1,0,0,1,1,0,0,0,0,0,1]"#);
     assert_eq!(leaning.positions[3], Vec3::new(1.0, 1.0, 0.0));
     assert_eq!(leaning.triangles.len(), 4);
@@ -133,6 +133,6 @@ fn each_instance_of_a_flat_mesh_has_its_own_sheet() {
         ObjectKind::Mesh(mesh) => Some(scene.assets.meshes[&mesh.obj_file.path].triangles.len()),
         _ => None,
     });
-    // Skip the ground plane at the end.
+    // Skip the ground plane at the end of the list.
     assert_eq!(counts.take(3).collect::<Vec<_>>(), [2, 2, 4]);
 }

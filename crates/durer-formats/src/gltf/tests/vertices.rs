@@ -5,7 +5,7 @@ use durer_scene::material::principled::Switch;
 use durer_scene::scene::{Material, SceneDefaults};
 use std::path::Path;
 
-/// Returns the material of a triangle with vertex colours.
+/// Returns the material of a triangle that has vertex colours.
 fn colored(words: &str) -> durer_scene::material::PrincipledMaterial {
     let text = format!(
         r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
@@ -26,7 +26,7 @@ fn colored(words: &str) -> durer_scene::material::PrincipledMaterial {
 fn vertex_colours_multiply_unlit_emission() {
     let unlit = r#""extensions":{"KHR_materials_unlit":{}}"#;
     assert_eq!(colored(unlit).emission_vertex_colors, Switch::On);
-    // Without colours, the emission is uniform, so the mesh can be sampled as a light.
+    // Without colours the emission is uniform, so the mesh can be sampled as a light.
     assert_eq!(material(unlit).emission_vertex_colors, Switch::Off);
     assert_eq!(colored(r#""emissiveFactor":[1,1,1]"#).emission_vertex_colors, Switch::Off);
 }

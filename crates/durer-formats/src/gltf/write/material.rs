@@ -1,5 +1,5 @@
-//! Converts OpenPBR parameters to metallic-roughness materials and KHR extensions. This is the
-//! inverse of the reader.
+//! Converts OpenPBR parameters to metallic-roughness materials and KHR extensions. The conversion
+//! is the inverse of that in the reader.
 
 use super::Writer;
 use durer_scene::bsdf::lobe::hair::Fibre;
@@ -15,8 +15,8 @@ use serde_json::{Map, Value, json};
 use std::f32::consts::TAU;
 
 impl Writer<'_> {
-    /// Returns the index of the glTF material for a scene material; writes it on first use. `has_alpha`
-    /// is true if any vertex colour is not opaque.
+    /// Returns the index of the glTF material for a scene material, which is written when it is
+    /// used for the first time. `has_alpha` is true if any of the vertex colours is not opaque.
     pub(super) fn material(&mut self, number: u32, has_alpha: bool) -> Option<usize> {
         if let Some(cached) = self.materials.get(&number) {
             return *cached;
@@ -39,7 +39,7 @@ impl Writer<'_> {
             Material::Solid(solid, _) => {
                 self.warn_lost("glTF has no patterns of two materials: the first is written");
                 let first = solid.materials()[0];
-                // A pattern refers only to earlier materials, so the recursion ends.
+                // A pattern can refer only to earlier materials, so the recursion ends.
                 if first < number { self.material(first, has_alpha) } else { None }
                     .and_then(|at| self.lists.get("materials")?.get(at).cloned())
             }
@@ -52,19 +52,19 @@ impl Writer<'_> {
     fn layers(&mut self, m: &PrincipledMaterial, has_alpha: bool) -> Value {
         let solid = m.walls == Walls::Solid;
         let clear = m.transmission_weight > 0.0;
-        // In glTF both sides emit, unless the back side is culled.
+        // In glTF, both sides of a surface emit light unless the back side is culled.
         let dark_backs = solid && !clear && m.emission_luminance > 0.0;
         let mut material = json!({ "doubleSided": m.backs == Backs::Shown && !dark_backs });
         let mut extensions = Map::new();
         let unlit = m.emission_luminance == 1.0 && m.base_weight == 0.0 && m.specular_weight == 0.0;
-        // In glTF, transmitted light is tinted by the base colour.
+        // In glTF, the base colour tints transmitted light.
         let tinted = clear && m.transmission_depth == 0.0;
         let base = match (unlit, tinted) {
             (true, _) => m.emission_color,
             (false, true) if m.transmission_weight >= 0.5 => m.transmission_color,
             _ => m.base_weight * m.base_color,
         };
-        // glTF's metals have neither specular weight nor tint.
+        // The metals of glTF have neither a specular weight nor a tint.
         let textured = m.metallic_roughness_texture.is_some() || m.base_metalness_texture.is_some();
         let is_metal = m.base_metalness == 1.0 && !textured;
         let base = if is_metal { m.specular_weight.min(1.0) * base } else { base };
@@ -130,7 +130,8 @@ impl Writer<'_> {
             }
         }
         if m.disperses() {
-            // Source: KHR_materials_dispersion: 20 / Abbe number.
+            // Source: KHR_materials_dispersion, which defines dispersion as 20 divided by the Abbe
+            // number.
             let dispersion = 20.0 * m.transmission_dispersion_scale / m.transmission_dispersion_abbe_number;
             extend("KHR_materials_dispersion", json!({ "dispersion": dispersion }));
         }
@@ -196,8 +197,8 @@ impl Writer<'_> {
         material
     }
 
-    /// Adds the texture of a parameter to its extension; returns false if no extension has an
-    /// equivalent.
+    /// Adds the texture of a parameter to its extension. Returns false if no extension has an
+    /// equivalent texture.
     fn add_picture(
         &mut self,
         m: &PrincipledMaterial,
@@ -206,9 +207,9 @@ impl Writer<'_> {
         extensions: &mut Map<String, Value>,
     ) -> bool {
         match field {
-            // In glTF this is the base colour texture, which is already written.
+            // In glTF, the base colour texture has this role, and it has already been written.
             "transmission_color_texture" => return m.base_color_texture.as_ref() == Some(name),
-            // In glTF this is in the texture of the anisotropy strength.
+            // In glTF, the texture of the anisotropy strength also contains the rotation.
             "specular_rotation_texture" if m.specular_anisotropy_texture.is_some() => return true,
             _ => {}
         }
@@ -216,7 +217,7 @@ impl Writer<'_> {
         let Some(value) = extensions.get_mut(extension) else { return false };
         let TextureImage { bytes, mapping } = self.picture(name);
         let fits = match field {
-            // The rotation must be in the texture of the anisotropy strength.
+            // The rotation must be in the same texture as the anisotropy strength.
             "specular_anisotropy_texture" => {
                 let turned = TextureImage { bytes, mapping: Mapping { channel: Some(Channel::Angle), ..mapping } };
                 m.specular_rotation_texture.as_ref().is_some_and(|turns| self.picture(turns) == turned)
@@ -244,8 +245,8 @@ fn gltf_roughness(m: &PrincipledMaterial) -> (f32, f32) {
     if m.specular_anisotropy == 0.0 || pictured {
         return (m.specular_roughness, m.specular_anisotropy);
     }
-    // In glTF, alpha across the highlight follows from the roughness, and alpha along it increases
-    // towards 1 with the strength.
+    // In glTF, the roughness determines alpha across the highlight. Alpha along the highlight
+    // increases towards 1 with the anisotropy strength.
     let Vec2 { x: along, y: across } = Ggx::new(m.specular_roughness, m.specular_anisotropy).alpha;
     if across >= 1.0 {
         return (1.0, 0.0);
@@ -253,7 +254,8 @@ fn gltf_roughness(m: &PrincipledMaterial) -> (f32, f32) {
     (across.sqrt(), ((along - across) / (1.0 - across)).max(0.0).sqrt())
 }
 
-/// Textures of parameters: field, extension, key in the extension, and channel.
+/// Textures of parameters. Each entry has the field, the extension, the key in the extension, and
+/// the channel.
 const PICTURES: [(&str, &str, &str, Option<Channel>); 11] = [
     ("specular_weight_texture", "KHR_materials_specular", "specularTexture", Some(Channel::Alpha)),
     ("specular_color_texture", "KHR_materials_specular", "specularColorTexture", None),
@@ -285,13 +287,13 @@ const EXTENSIONS: [&str; 13] = [
     "KHR_lights_punctual",
 ];
 
-/// Approximates a Phong material with OpenPBR: a sharp highlight becomes a low roughness, a strong
+/// Approximates a Phong material with OpenPBR. A sharp highlight becomes a low roughness, a strong
 /// mirror becomes a metal, and a transparent material becomes glass.
 fn principled_of_phong(phong: &PhongMaterial) -> PrincipledMaterial {
     let diffuse = phong.diffuse_color.unwrap_or(Vec3::ONE);
     let sharp = phong.exponent.or(phong.shininess).filter(|_| phong.specular_color != Vec3::ZERO);
-    // Source: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, 2007:
-    // alpha² = 2 / (n + 2).
+    // Source: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, 2007,
+    // with alpha² = 2 / (n + 2).
     let roughness = sharp.map_or(1.0, |sharp| fp::pow(2.0 / (sharp + 2.0), 0.25));
     let mut m = PrincipledMaterial {
         base_color: diffuse,

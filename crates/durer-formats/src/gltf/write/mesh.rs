@@ -1,4 +1,5 @@
-//! Writes meshes, with one list of vertices for positions, normals and texture coordinates.
+//! Writes meshes. Each mesh has one list of vertices for positions, normals and texture
+//! coordinates.
 
 use super::Writer;
 use durer_scene::math::{Vec2, Vec3};
@@ -13,7 +14,8 @@ const VERTICES: u32 = 34962;
 const INDICES: u32 = 34963;
 
 impl Writer<'_> {
-    /// Returns the index of the glTF mesh for a mesh with a material; writes it on first use.
+    /// Returns the index of the glTF mesh for a mesh with a material, which is written when it is
+    /// used for the first time.
     pub(super) fn mesh(&mut self, name: String, data: &MeshData, material: Option<u32>) -> Option<usize> {
         let key = (name, material);
         if let Some(cached) = self.meshes.get(&key) {
@@ -36,7 +38,7 @@ impl Writer<'_> {
         Some(number)
     }
 
-    /// Writes the attributes and indices of a mesh; `None` if it has no triangles.
+    /// Writes the attributes and indices of a mesh. Returns `None` if the mesh has no triangles.
     fn geometry(&mut self, data: &MeshData) -> Option<Value> {
         if data.triangles.is_empty() || data.positions.len() >= NO_INDEX as usize {
             return None;
@@ -50,14 +52,14 @@ impl Writer<'_> {
         attributes["POSITION"] = self.floats(&positions, 3, true).into();
         if !triangle_normals.is_empty() {
             let normal = |v: &[u32; 3]| normals.get(v[2] as usize).copied().unwrap_or(Vec3::Z);
-            // Keep normals that are nearly of unit length, so that reading them back gives the same
+            // Keep normals whose length is nearly 1, so that reading them back gives the same
             // values.
             let unit = |n: Vec3| if (n.length() - 1.0).abs() < 1e-3 { n } else { n.normalize_or(Vec3::Z) };
             let normals = list(&|v| unit(normal(v)).to_array().into());
             attributes["NORMAL"] = self.floats(&normals, 3, false).into();
         }
         if !data.triangle_uvs.is_empty() {
-            // glTF's v axis points down.
+            // In glTF, v increases downwards.
             let uv = |v: &[u32; 3]| data.uvs.get(v[1] as usize).copied().unwrap_or(Vec2::Y);
             let uvs = list(&|v| vec![uv(v).x, 1.0 - uv(v).y]);
             attributes["TEXCOORD_0"] = self.floats(&uvs, 2, false).into();
@@ -82,7 +84,7 @@ impl Writer<'_> {
         Some(json!({ "attributes": attributes, "indices": indices }))
     }
 
-    /// Writes rows of `width` numbers; returns the index of their accessor.
+    /// Writes rows of `width` numbers, and returns the index of their accessor.
     fn floats(&mut self, values: &[f32], width: usize, bounds: bool) -> usize {
         let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
         let view = self.view(&bytes, Some(VERTICES));
@@ -100,13 +102,14 @@ impl Writer<'_> {
     }
 }
 
-/// Returns true if any vertex colour is not opaque.
+/// Returns true if any of the vertex colours is not opaque.
 fn has_vertex_alpha(data: &MeshData) -> bool {
     data.colors.iter().any(|color| color[3] < 1.0)
 }
 
-/// Builds an indexed vertex list. Returns a vertex index for each triangle corner, and for each
-/// vertex the indices of its position, texture coordinates and normal.
+/// Builds a list of vertices and the indices that refer to it. Returns a vertex index for each
+/// corner of a triangle. For each vertex, also returns the indices of its position, its texture
+/// coordinates and its normal.
 fn welded(data: &MeshData, triangle_normals: &[[u32; 3]]) -> (Vec<u32>, Vec<[u32; 3]>) {
     let (mut cached, mut vertices) = (HashMap::new(), Vec::new());
     let own = |list: &[[u32; 3]], i: usize, k: usize| list.get(i).map_or(NO_INDEX, |corners| corners[k]);

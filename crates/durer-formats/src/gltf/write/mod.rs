@@ -1,8 +1,8 @@
-//! Writer of scenes as glTF 2.0, in a self-contained JSON file or in a binary file.
+//! Writer of scenes as glTF 2.0, either as a self-contained JSON file or as a binary file.
 //!
 //! Source: *glTF 2.0 Specification*, Khronos Group, 2021, and the extensions named in the
-//! submodules. Content that glTF cannot represent is reported once for each message, without a
-//! span.
+//! submodules. Content that glTF cannot represent is reported once for each message, and the report
+//! has no span.
 
 mod material;
 mod mesh;
@@ -28,7 +28,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-/// Writer that converts one scene to glTF and collects its JSON arrays and its binary buffer.
+/// Writer that converts one scene to glTF, and collects its JSON arrays and its binary buffer.
 struct Writer<'a> {
     scene: &'a Scene,
     output: &'a WriteContext<'a>,
@@ -38,7 +38,7 @@ struct Writer<'a> {
     /// Top-level arrays of the glTF file, by name.
     lists: BTreeMap<&'static str, Vec<Value>>,
     extensions: BTreeSet<&'static str>,
-    /// Items that were already written, by their source: geometry, meshes with materials,
+    /// Items that have already been written, by their source: geometries, meshes with materials,
     /// materials, textures and images.
     geometries: BTreeMap<String, Option<Value>>,
     meshes: BTreeMap<(String, Option<u32>), usize>,
@@ -48,7 +48,7 @@ struct Writer<'a> {
     lights: Vec<Value>,
 }
 
-/// Encodes a scene as binary glTF if the file name ends in `.glb`, otherwise as JSON.
+/// Encodes a scene as binary glTF if the file name ends in `.glb`, and otherwise as JSON.
 pub(crate) fn write(scene: &Scene, output: &WriteContext, diagnostics: &mut Diagnostics) -> Vec<u8> {
     let mut writer = Writer {
         scene,
@@ -78,7 +78,7 @@ pub(crate) fn write(scene: &Scene, output: &WriteContext, diagnostics: &mut Diag
 }
 
 impl Writer<'_> {
-    /// Warns about content that is lost or changed, once per message.
+    /// Warns about content that is lost or changed, once for each message.
     fn warn_lost(&mut self, message: impl Into<String>) {
         let message = message.into();
         if self.reported.insert(message.clone()) {
@@ -86,14 +86,14 @@ impl Writer<'_> {
         }
     }
 
-    /// Appends a value to a top-level array; returns its index.
+    /// Appends a value to a top-level array and returns its index.
     fn add(&mut self, list: &'static str, value: Value) -> usize {
         let list = self.lists.entry(list).or_default();
         list.push(value);
         list.len() - 1
     }
 
-    /// Appends bytes to the buffer; returns the index of a buffer view for them.
+    /// Appends bytes to the buffer and returns the index of a buffer view for them.
     fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
         self.buffer.resize(self.buffer.len().next_multiple_of(4), 0);
         let mut view = json!({ "buffer": 0, "byteOffset": self.buffer.len(), "byteLength": bytes.len() });
@@ -104,7 +104,7 @@ impl Writer<'_> {
         self.add("bufferViews", view)
     }
 
-    /// Writes the node of an object; `None` if the object has no visible content.
+    /// Writes the node of an object. Returns `None` if the object has no visible content.
     fn object(&mut self, object: &Object) -> Option<usize> {
         match &object.node {
             ObjectKind::Group(group) => {
@@ -116,7 +116,7 @@ impl Writer<'_> {
                 let map = MatrixOp::product(ops, MatrixRules::default());
                 let own = self.lists.get("nodes").is_some_and(|nodes| nodes[child].get("matrix").is_none());
                 if own {
-                    // The node has no matrix yet, so the transform can be stored in it.
+                    // The node does not have a matrix yet, so the transform can be stored in it.
                     if let Some(node) = self.lists.get_mut("nodes").and_then(|nodes| nodes.get_mut(child)) {
                         node["matrix"] = columns(map);
                     }
@@ -149,7 +149,7 @@ impl Writer<'_> {
         Some(self.add("nodes", json!({ "mesh": mesh })))
     }
 
-    /// Returns the mesh of an asset or of a file.
+    /// Returns the mesh that an asset or a file contains.
     fn mesh_data(&mut self, name: &str) -> Option<Arc<MeshData>> {
         if let Some(data) = self.scene.assets.meshes.get(name) {
             return Some(data.clone());
@@ -163,12 +163,12 @@ impl Writer<'_> {
         data.map(Arc::new)
     }
 
-    /// Writes the node of the camera; returns its index.
+    /// Writes the node of the camera and returns its index.
     fn camera(&mut self) -> Option<usize> {
         let camera = self.scene.camera.as_ref()?;
         let pose = camera.pose();
-        // The scene's angles and sizes refer to the picture's larger side, those of glTF to its
-        // height.
+        // Angles and sizes in a Dürer scene are measured across the larger side of the picture, but
+        // in glTF they are measured across its height.
         let aspect = self.scene.render_defaults.size.map_or(1.0, |(width, height)| width as f32 / height as f32);
         let narrow = aspect.max(1.0);
         let upright = |angle: f32| {
@@ -206,7 +206,7 @@ impl Writer<'_> {
         Some(self.add("nodes", json!({ "camera": camera, "matrix": columns(place) })))
     }
 
-    /// Writes the node of a light, using KHR_lights_punctual; returns its index.
+    /// Writes the node of a light with KHR_lights_punctual, and returns the index of the node.
     fn light(&mut self, light: &Light) -> Option<usize> {
         let light = &light.with_unit_color();
         let (mut written, center, direction) = match light {
@@ -228,7 +228,8 @@ impl Writer<'_> {
                 return None;
             }
         };
-        // glTF's intensities are photometric: a matte white surface reflects 1 / pi of them.
+        // The intensities of glTF are photometric, and a white matte surface reflects 1 / pi of the
+        // incident light in each direction.
         let color = light.color();
         let most = color.max_element();
         if most <= 0.0 {
@@ -256,7 +257,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Assembles the glTF file.
+    /// Puts the parts of the glTF file together.
     fn file(mut self, roots: &[usize]) -> Vec<u8> {
         let mut root = Map::new();
         root.insert(
@@ -296,7 +297,7 @@ impl Writer<'_> {
     }
 }
 
-/// Builds a GLB file of two chunks. Source: *glTF 2.0 Specification*, chapter 4.4.
+/// Builds a GLB file that has two chunks. Source: *glTF 2.0 Specification*, chapter 4.4.
 fn container(text: &[u8], buffer: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(28 + text.len() + buffer.len());
     let word = |bytes: &mut Vec<u8>, word: u32| bytes.extend(word.to_le_bytes());
@@ -320,7 +321,7 @@ fn columns(map: DAffine3) -> Value {
     json!(DMat4::from(map).to_cols_array().map(|x| x as f32))
 }
 
-/// Returns the transform of a camera or light that looks along its -z axis, with y up.
+/// Returns the transform of a camera or light that looks along its own -z axis, with y up.
 fn look_transform(center: Vec3, direction: Vec3, up: Vec3) -> DAffine3 {
     let back = -direction.as_dvec3().normalize_or(DVec3::NEG_Z);
     let right = up.as_dvec3().cross(back).normalize_or(back.any_orthonormal_vector());

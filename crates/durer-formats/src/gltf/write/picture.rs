@@ -10,8 +10,8 @@ use serde_json::{Value, json};
 use std::sync::Arc;
 
 impl Writer<'_> {
-    /// Writes a `textureInfo` for a picture named by a material; also returns the picture's
-    /// mapping.
+    /// Writes a `textureInfo` for a picture that a material names, and also returns the mapping of
+    /// the picture.
     pub(super) fn texture(&mut self, name: Option<&FileName>) -> Option<(Value, Mapping)> {
         let name = name?;
         let picture = self.picture(name);
@@ -26,7 +26,8 @@ impl Writer<'_> {
         Some((info?, picture.mapping))
     }
 
-    /// Returns the picture named by a material: an asset, or a file with the default mapping.
+    /// Returns the picture that a material names, which is an asset or a file with the default
+    /// mapping.
     pub(super) fn picture(&self, name: &FileName) -> TextureImage {
         let file = || TextureImage { bytes: PictureBytes::File(name.path.clone()), mapping: Mapping::default() };
         self.scene.assets.pictures.get(&name.path).cloned().unwrap_or_else(file)
@@ -41,7 +42,7 @@ impl Writer<'_> {
             Wrap::Clamp => 33071,
         };
         let filter = if mapping.nearest { 9728 } else { 9729 };
-        // 9987 is trilinear filtering.
+        // The value 9987 selects trilinear filtering.
         let smaller = if mapping.mipmaps { 9987 } else { filter };
         let [s, t] = mapping.wrap.map(wrap);
         let sampler = json!({ "wrapS": s, "wrapT": t, "magFilter": filter, "minFilter": smaller });
@@ -72,7 +73,7 @@ impl Writer<'_> {
         json!({ "offset": [x, y], "rotation": turn, "scale": [sx, sy] })
     }
 
-    /// Returns the index of an image; writes it on first use.
+    /// Returns the index of an image, which is written when it is used for the first time.
     fn image(&mut self, bytes: &PictureBytes) -> Option<usize> {
         let (PictureBytes::File(name) | PictureBytes::Memory(name, _)) = bytes;
         if let Some(cached) = self.images.get(name) {
@@ -95,7 +96,7 @@ impl Writer<'_> {
     }
 }
 
-/// Returns PNG and JPEG files unchanged, and other formats converted to 8-bit PNG.
+/// Returns PNG and JPEG files unchanged, and converts other formats to PNG with 8 bits per channel.
 fn known_to_gltf(bytes: Arc<[u8]>, name: &str, memory: u64) -> Option<(Arc<[u8]>, &'static str)> {
     if bytes.starts_with(b"\x89PNG") {
         return Some((bytes, "image/png"));

@@ -1,4 +1,4 @@
-//! Tests that written files read back as the same scene.
+//! Tests that reading a written file gives the same scene.
 
 use crate::folder::FolderSource;
 use crate::scene::{SCENE_FORMATS, WriteContext};
@@ -18,7 +18,7 @@ fn scene(text: &str) -> Scene {
     scene.unwrap_or_else(|| panic!("{messages:?}"))
 }
 
-/// Writes a scene and reads it back; returns the result and the writer's diagnostics.
+/// Writes a scene and reads it back. Returns the resulting scene and the diagnostics of the writer.
 fn again(scene: &Scene, name: &str) -> (Scene, Vec<String>) {
     let folder = folder(&[]);
     let source = FolderSource::new(folder.path());
@@ -55,7 +55,8 @@ fn materials_round_trip() {
                 (**layers).clone()
             };
             let (old, mut new) = (layers(&old.value), layers(&new.value));
-            // Roughness and anisotropy are converted to glTF's parameters and back, which rounds.
+            // Roughness and anisotropy are converted to glTF's parameters and back, which causes
+            // rounding errors.
             for (old, new) in [
                 (old.specular_roughness, &mut new.specular_roughness),
                 (old.specular_anisotropy, &mut new.specular_anisotropy),

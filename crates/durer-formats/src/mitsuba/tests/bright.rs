@@ -1,4 +1,4 @@
-//! Brightness compared with Mitsuba 3.9.1: projected pictures, daylight, materials in uniform
+//! Compares brightness with Mitsuba 3.9.1 for projected pictures, daylight, materials in uniform
 //! light, and smoke.
 
 use super::conventions::{clean_in, picture};
@@ -15,8 +15,8 @@ use durer_scene::scene::{Material, PictureBytes};
 
 #[test]
 fn projectors_and_spots_project_pictures() {
-    // A projector shows red on the left, towards Mitsuba's +x; a spotlight shows it on the opposite
-    // side.
+    // A projector shows red on the left side, towards Mitsuba's +x. A spotlight shows red on the
+    // opposite side.
     let files: &[(&str, &[u8])] = &[("a.pfm", &picture([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]))];
     let texture =
         |name: &str| format!("<texture type='bitmap' name='{name}'><string name='filename' value='a.pfm'/></texture>");
@@ -41,13 +41,14 @@ fn projectors_and_spots_project_pictures() {
         let emitter = red.unwrap();
         let profile = &scene.assets.profiles[&emitter.file.path];
         let rows = profile.vertical.len();
-        // The middle of a pixel of the projector, at horizontal angle 0 and at half a turn.
+        // Centre of one of the projector's pixels, at a horizontal angle of 0 and of half a turn.
         let vertical = profile.vertical.iter().position(|angle| *angle >= 16.102).unwrap();
         let at = |horizontal: usize| profile.candela[horizontal * rows + vertical];
         let half = profile.horizontal.len() / 2;
         assert_eq!((at(at_front) > 0.5, at(half) > 0.5), (expected, !expected), "{text}");
         if text.contains("projector") {
-            // Pi times the picture's value, divided by the cosine cubed.
+            // The expected value is pi times the value of the picture, divided by the cube of the
+            // cosine.
             let cosine = fp::sin_cos_degrees(16.102).1 as f32;
             let found = at(0) * emitter.color.x / std::f32::consts::PI * cosine * cosine * cosine;
             assert!((found - 1.0).abs() < 0.01, "{found}");
@@ -64,8 +65,8 @@ fn daylight_illuminance_on_level_ground_matches_mitsuba() {
     let scene = scene.unwrap();
     let Light::Directional(sun) = &scene.lights.as_ref().unwrap()[0].value else { panic!() };
     assert!((sun.direction + Vec3::new(0.0, 0.866_025_4, 0.5)).length() < 1e-5, "{}", sun.direction);
-    // Mitsuba's sun at an elevation of 60 degrees has a green irradiance of 1.276 at normal
-    // incidence; Preetham's is slightly dimmer.
+    // When the sun is at an elevation of 60 degrees, Mitsuba's sun has a green irradiance of 1.276
+    // at normal incidence. Preetham's sun is slightly dimmer.
     let illuminance = std::f32::consts::PI * sun.color.y;
     assert!((1.1..1.4).contains(&illuminance), "{illuminance}");
     let name = &scene.background.environment.as_ref().unwrap().path;
@@ -73,7 +74,7 @@ fn daylight_illuminance_on_level_ground_matches_mitsuba() {
     let texels = &bytes[bytes.len() - 1024 * 512 * 12..];
     let mut level = 0.0;
     for (i, texel) in texels.chunks_exact(12).enumerate() {
-        // Rows of a PFM file go from the bottom up.
+        // The rows of a PFM file are stored from bottom to top.
         let angle = 180.0 * (511 - i / 1024) as f64 / 512.0 + 90.0 / 512.0;
         let (sin, cos) = fp::sin_cos_degrees(angle);
         let number =
@@ -84,7 +85,8 @@ fn daylight_illuminance_on_level_ground_matches_mitsuba() {
     }
     let lux = level * 683.0 * 106.856_9;
     assert!((lux / 17_668.0 - 1.0).abs() < 0.02, "{lux}");
-    // Sun set by time, compared with Mitsuba's direction to the sun: x south, y west, z up.
+    // Direction of a sun that is set by time, compared with Mitsuba, where x is south, y is west
+    // and z is up.
     let text = "<emitter type='sun'><float name='latitude' value='48.8'/><float name='longitude' value='2.3'/>\
                 <float name='timezone' value='2'/><integer name='year' value='2024'/><integer name='month' value='6'/>\
                 <integer name='day' value='21'/><float name='hour' value='15'/><float name='minute' value='30'/></emitter>\
@@ -95,7 +97,7 @@ fn daylight_illuminance_on_level_ground_matches_mitsuba() {
     assert!((sun.direction + Vec3::new(0.367_118, 0.377_866, 0.849_966)).length() < 5e-3, "{}", sun.direction);
 }
 
-/// Returns the mean radiance of a ball with a material in uniform light.
+/// Returns the mean radiance of a ball that has the given material and is lit by uniform light.
 fn ball(bsdf: &str) -> Vec3 {
     let text = format!(
         "<scene version='3.0.0'><sensor type='perspective'/><emitter type='constant'/><shape type='sphere'>{bsdf}</shape></scene>"
@@ -117,7 +119,7 @@ fn ball(bsdf: &str) -> Vec3 {
 
 #[test]
 fn ball_albedo_matches_mitsuba() {
-    // Means computed by Mitsuba 3.9.1 over 200,000 cosine-weighted pairs of directions.
+    // Mean values that Mitsuba 3.9.1 computed over 200,000 cosine-weighted pairs of directions.
     for (bsdf, expected) in [
         ("<float name='specular' value='0'/><float name='roughness' value='1'/>", [0.7456, 0.4260, 0.2130]),
         ("<float name='specular' value='.5'/><float name='roughness' value='.5'/>", [0.7638, 0.4614, 0.2597]),
@@ -137,7 +139,7 @@ fn ball_albedo_matches_mitsuba() {
 
 #[test]
 fn volumes_become_density_grids_with_their_transform() {
-    // Two cells along x with densities 0.5 and 4, in a box from 0 to (2, 1, 1).
+    // Volume of two cells along x with densities 0.5 and 4, in a box from 0 to (2, 1, 1).
     let mut volume = b"VOL\x03".to_vec();
     [1_i32, 2, 1, 1, 1].iter().for_each(|n| volume.extend(n.to_le_bytes()));
     [0.0_f32, 0.0, 0.0, 2.0, 1.0, 1.0, 0.5, 4.0].iter().for_each(|x| volume.extend(x.to_le_bytes()));
@@ -158,13 +160,14 @@ fn volumes_become_density_grids_with_their_transform() {
         assert_eq!(m.transmission_density_box, [[5.0, 0.0, 0.0], edge, [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]]);
         let scattered = m.transmission_scatter / m.transmission_depth;
         assert!((scattered - Vec3::new(2.7, 1.8, 0.9)).abs().max_element() < 1e-5, "{scattered}");
-        // When exported, the file is unchanged.
+        // Exporting the scene does not change the file.
         let (made, beside) = export_assets(&scene, "kept", &FolderSource::new(&std::env::temp_dir()));
         let Material::Principled(m) = material(&made) else { panic!() };
         assert_eq!(m.transmission_density.as_ref().unwrap().path, "kept/smoke.vol");
         assert!(beside.contains(&("kept/smoke.vol".to_string(), volume.clone())));
     }
-    // An albedo given by a volume becomes its mean; an invalid volume is an error.
+    // If an albedo is given by a volume, the mean of the volume is used. An invalid volume is an
+    // error.
     let reported = |files: &[(&str, &[u8])], albedo: &str| {
         let folder = folder(files);
         read_in(folder.path(), "scene.xml", &format!("<scene version='3.0.0'>{}</scene>", medium("", albedo)))

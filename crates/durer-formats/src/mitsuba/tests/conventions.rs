@@ -1,5 +1,5 @@
-//! Conventions of Mitsuba, compared with closed forms. Where its documentation does not specify
-//! them, values are from Mitsuba 3.9.1.
+//! Tests of Mitsuba's conventions, compared with analytic results. Where Mitsuba's documentation
+//! does not specify the values, they were computed with Mitsuba 3.9.1.
 
 use super::{clean, folder, material, objects, read, read_in};
 use durer_scene::camera::{Camera, Handedness};
@@ -16,7 +16,7 @@ pub(super) fn layers(bsdf: &str) -> PrincipledMaterial {
     (**layers).clone()
 }
 
-/// Camera whose film has 200 x 100 pixels.
+/// Camera with a film of 200 x 100 pixels.
 fn camera(more: &str) -> Camera {
     let film = "<film type='hdrfilm'><integer name='width' value='200'/><integer name='height' value='100'/></film>";
     clean(&format!("<sensor {more}{film}</sensor><shape type='sphere'/>")).camera.unwrap()
@@ -30,7 +30,8 @@ const LOOK: &str = "<transform name='to_world'><lookat origin='0,0,5' target='0,
 
 #[test]
 fn field_of_view_is_across_given_axis() {
-    // 90 degrees across x is a half width of 1, and the film is twice as wide as high.
+    // A view of 90 degrees across x has a half width of 1, and the film is twice as wide as it is
+    // high.
     for (axis, fov, half) in [
         ("x", 90.0, 1.0),
         ("larger", 90.0, 1.0),
@@ -45,8 +46,8 @@ fn field_of_view_is_across_given_axis() {
         assert!((tan(0.5 * camera.angle) - half).abs() < 1e-5, "{axis}: {}", camera.angle);
         assert_eq!((camera.center, camera.direction, camera.up), (Vec3::new(0.0, 0.0, 5.0), Vec3::NEG_Z, Vec3::Y));
     }
-    // The default is 50 mm on a film of 36 x 24 mm, across its diagonal; half of the view is
-    // 0.43267.
+    // By default, the focal length is 50 mm and the view extends across the diagonal of a 36 x 24
+    // mm film, so half of the view is 0.43267.
     let Camera::Perspective(usual) = camera(&format!("type='perspective'>{LOOK}")) else { panic!() };
     let half = (36f32 * 36.0 + 24.0 * 24.0).sqrt() / 100.0 * 2.0 / 5f32.sqrt();
     assert!((tan(0.5 * usual.angle) - half).abs() < 1e-5);
@@ -62,7 +63,7 @@ fn field_of_view_is_across_given_axis() {
 
 #[test]
 fn default_up_is_that_of_mitsuba() {
-    // Mitsuba 3.9.1 uses an axis perpendicular to the direction.
+    // Mitsuba 3.9.1 uses an axis that is perpendicular to the view direction.
     for (origin, target, up) in [
         ("0,2,6", "0,.6,0", [1.0, 0.0, 0.0]),
         ("1,0,0", "0,3,-2", [0.953452, 0.139643, -0.267261]),
@@ -114,7 +115,7 @@ fn lights_have_mitsuba_units() {
         "<emitter type='spot'><float name='cutoff_angle' value='40'/><float name='beam_width' value='40'/></emitter>";
     let Light::Spot(spot) = of(spot) else { panic!() };
     assert_eq!((spot.angle, spot.inner_angle, spot.direction), (40.0, 40.0, Vec3::Z));
-    // A spotlight with a falloff that is linear in the angle becomes a measured light with its
+    // A spotlight whose falloff is linear in the angle becomes a measured light of the same
     // intensity.
     let text = "<emitter type='spot'><float name='intensity' value='3'/></emitter><shape type='sphere'/>";
     let scene = clean(text);
@@ -123,7 +124,7 @@ fn lights_have_mitsuba_units() {
     assert_eq!((light.direction, light.color), (Vec3::Z, Vec3::splat(3.0)));
     assert_eq!(profile.vertical, [0.0, 15.0, 20.0]);
     assert!(profile.candela.iter().zip([1.0, 1.0, 0.0]).all(|(found, wanted)| (found - wanted).abs() < 1e-6));
-    // A constant emission spectrum is not white; a constant reflectance spectrum is.
+    // A constant emission spectrum is not white, but a constant reflectance spectrum is.
     let lit = |radiance: &str| {
         let emitter = format!("<emitter type='area'>{radiance}</emitter>");
         let m = layers(&emitter);
@@ -148,7 +149,7 @@ fn materials_have_their_indices_and_alphas() {
     );
     assert_eq!((rough.specular_roughness, rough.base_metalness, rough.base_color), (0.5, 1.0, Vec3::ONE));
     let gold = layers("<bsdf type='conductor'><string name='material' value='Au'/></bsdf>");
-    // Fresnel reflectance at normal incidence, for red.
+    // Fresnel reflectance at normal incidence for red light.
     let (n, k) = (0.143f32, 3.983f32);
     let expected = ((n - 1.0) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k);
     assert!((gold.base_color.x - expected).abs() < 1e-5);
@@ -157,7 +158,7 @@ fn materials_have_their_indices_and_alphas() {
     let disney = layers(
         "<bsdf type='principled'><float name='specular' value='.5'/><float name='roughness' value='.3'/></bsdf>",
     );
-    // A reflectance of 0.04 at normal incidence.
+    // The reflectance at normal incidence is 0.04.
     let root = (disney.specular_ior - 1.0) / (disney.specular_ior + 1.0);
     assert!((root * root - 0.04).abs() < 1e-6 && (disney.specular_roughness - 0.3).abs() < 1e-6);
     let scene = clean(
@@ -175,8 +176,8 @@ fn textures_of_numbers_become_linear_pictures() {
              <rgb name='color1' value='{other}'/></texture>"
         )
     };
-    // Values of the picture in a material, which are linear. Mitsuba swaps the colours of a
-    // checkerboard when it is used as a number.
+    // Expected values, which are linear, of the picture that a material uses. Mitsuba swaps the
+    // colours of a checkerboard when it is used as a number.
     let check = |bsdf: &str, get: &dyn Fn(&PrincipledMaterial) -> Option<&FileName>, [other, one]: [f32; 2]| {
         let wanted = [one, other];
         let scene = clean(&format!("<shape type='sphere'>{bsdf}</shape>"));
@@ -185,7 +186,7 @@ fn textures_of_numbers_become_linear_pictures() {
         let PictureBytes::Memory(path, bytes) = &scene.assets.pictures[&name.path].bytes else { panic!() };
         let image = durer_image::read(bytes, path).unwrap();
         for (pixel, wanted) in image.pixels.iter().zip(wanted) {
-            // The colours have 8 bits, before and after the change.
+            // The colours have 8 bits, both before and after the change.
             assert!((pixel.x - wanted).abs() < 1.5 / 255.0, "{bsdf}: {} and not {wanted}", pixel.x);
         }
         (**layers).clone()
@@ -215,7 +216,7 @@ fn textures_of_numbers_become_linear_pictures() {
     let bump =
         format!("<bsdf type='bumpmap'>{}<float name='scale' value='.3'/>{inner}</bsdf>", fields("arbitrary", 0.5, 0.9));
     assert_eq!(check(&bump, &|m| m.bump_texture.as_ref(), [0.5, 0.9]).bump_height, 0.3);
-    // A colour is converted to a number by its luminance.
+    // The luminance of a colour is used where a number is expected.
     let colors = "<texture name='opacity' type='checkerboard'><rgb name='color0' value='0,1,0'/>\
         <rgb name='color1' value='1,0,0'/></texture>";
     check(&format!("<bsdf type='mask'>{colors}{inner}</bsdf>"), &|m| m.opacity_texture.as_ref(), [0.7152, 0.2126]);
@@ -233,8 +234,8 @@ pub(super) fn mesh(scene: &Scene) -> &durer_scene::shape::MeshData {
 
 #[test]
 fn texture_v_is_flipped() {
-    // In Mitsuba v = 0 is the upper edge of a picture, and the lower left corner of a rectangle is
-    // (0, 0).
+    // In Mitsuba, v = 0 is the upper edge of a picture, but the lower left corner of a rectangle
+    // has the coordinates (0, 0).
     let scene = clean("<shape type='rectangle'/>");
     let lower_left = mesh(&scene).positions.iter().position(|p| p.x < 0.0 && p.y < 0.0).unwrap();
     assert_eq!(mesh(&scene).uvs[lower_left], Vec2::new(0.0, 1.0));
@@ -269,7 +270,7 @@ fn rotation_axis_not_of_length_1_is_reported() {
     assert!(messages("0.6.0", "x='1' y='2' z='.5'").is_empty() && messages("3.0.0", "x='.6' y='.8'").is_empty());
 }
 
-/// Reads a scene with files in a folder; it must cause no diagnostics.
+/// Reads a scene whose files are in a folder. The scene must not cause any diagnostics.
 pub(super) fn clean_in(files: &[(&str, &[u8])], inner: &str) -> Scene {
     let folder = folder(files);
     let (scene, messages) = read_in(folder.path(), "scene.xml", &format!("<scene version='3.0.0'>{inner}</scene>"));
@@ -291,7 +292,7 @@ fn emitters_without_material_do_not_scatter() {
     assert_eq!((alone.base_color, alone.emission_luminance), (Vec3::ZERO, 2.0));
     assert_eq!(layers(&format!("{light}<bsdf type='diffuse'/>")).base_color, Vec3::splat(0.5)); // prose: keep
     assert_eq!(layers("").base_color, Vec3::splat(0.5));
-    // An inverted sphere is a dome that lights its inside.
+    // An inverted sphere is a dome that emits light into its interior.
     let dome = format!("<boolean name='flip_normals' value='true'/>{light}"); // prose: keep
     let (scene, messages) = read(&format!("<scene><shape type='sphere'>{dome}</shape></scene>"));
     assert!(messages[0].contains("it emits on both sides"), "{messages:?}");
@@ -332,7 +333,7 @@ fn picture_colours_are_srgb_unless_raw() {
         let scene = clean_in(&[("grey.ppm", grey)], &inner);
         let Material::Principled(layers) = material(&scene) else { panic!() };
         let picture = &scene.assets.pictures[&layers.base_color_texture.as_ref().unwrap().path];
-        // A picture's alpha does not cut holes.
+        // The alpha channel of a picture does not make the surface transparent.
         assert_eq!(picture.mapping.cutoff, Some(0.0));
         match &picture.bytes {
             PictureBytes::File(_) => srgb(128.0 / 255.0),
@@ -344,7 +345,8 @@ fn picture_colours_are_srgb_unless_raw() {
 
 #[test]
 fn nested_glass_has_its_own_index() {
-    // The index is the ratio across the surface, whatever the surrounding medium is.
+    // The given index is the ratio of the indices on the two sides of the surface, regardless of
+    // the surrounding medium.
     let body = |radius: f32, inside: &str, outside: &str| {
         let index = |name: &str, value: &str| match value.parse::<f32>() {
             Ok(value) => format!("<float name='{name}' value='{value}'/>"),
@@ -430,7 +432,8 @@ fn conductor_tint_applies_at_all_angles() {
         |more: &str| layers(&format!("<bsdf type='conductor'><string name='material' value='Au'/>{more}</bsdf>"));
     let (plain, tinted) = (metal(""), metal("<rgb name='specular_reflectance' value='.5,.25,.5'/>"));
     let tint = Vec3::new(0.5, 0.25, 0.5);
-    // At 82 degrees a metal reflects Schlick's value times its specular colour.
+    // At 82 degrees, the reflectance of a metal is Schlick's approximation times its specular
+    // colour.
     let at_82 = |m: &PrincipledMaterial| {
         let schlick = m.base_color + (Vec3::ONE - m.base_color) * fp::pow(6.0 / 7.0, 5.0);
         schlick * m.specular_color
@@ -439,7 +442,7 @@ fn conductor_tint_applies_at_all_angles() {
     assert!((at_82(&tinted) - tint * at_82(&plain)).abs().max_element() < 1e-6);
 }
 
-/// Two faces with a fold between them; only one vertex has a colour.
+/// Mesh of two faces with a fold between them, in which only one vertex has a colour.
 const FOLDED: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
     property float u\nproperty float v\nproperty float r\nproperty float g\nproperty float b\n\
     element face 2\nproperty list uchar int vertex_indices\nend_header\n\
@@ -453,7 +456,8 @@ fn mesh_files_are_smooth_and_uncoloured_by_default() {
     };
     let plain = of("");
     assert!(plain.colors.is_empty() && !plain.flat && plain.tangents.is_empty());
-    // At the fold, the normals of both faces are weighted by their angles, 45 and 60 degrees.
+    // At the fold, the normal is the mean of the normals of both faces, weighted by their angles of
+    // 45 and 60 degrees.
     let a = plain.triangles[0].iter().position(|&i| plain.positions[i as usize] == Vec3::ZERO).unwrap();
     let [face, other] = [Vec3::Z, Vec3::new(1.0, -1.0, 1.0) / 3f32.sqrt()];
     let angles = [45f32.to_radians(), 60f32.to_radians()];
@@ -502,7 +506,7 @@ fn normal_map_tangents_follow_u() {
 
 #[test]
 fn cylinder_axes_match_mitsuba() {
-    // Start of u on cylinders of radius 1 in Mitsuba 3.9.1, as an offset from the axis.
+    // Point at which u is 0 on cylinders of radius 1 in Mitsuba 3.9.1, as an offset from the axis.
     for (to, start) in [
         ([0.0, 0.0, 2.0], [1.0, 0.0, 0.0]),
         ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]),
@@ -543,7 +547,7 @@ fn curve_files_with_hair_become_tubes() {
              <float name='int_ior' value='1.6'/><float name='ext_ior' value='1'/></bsdf></shape></scene>"
         )
     };
-    // Splines have flat ends; linear curves end in half balls.
+    // Splines have flat ends, and linear curves end in hemispheres.
     for (kind, from, to, ball) in [("bsplinecurve", 1.0, 2.0, 0.0), ("linearcurve", 0.0, 3.0, 0.2)] {
         let (scene, messages) = read_in(folder.path(), "scene.xml", text(kind, "hair.txt"));
         assert_eq!(messages, [""; 0]);
@@ -555,7 +559,7 @@ fn curve_files_with_hair_become_tubes() {
         let data = scene.assets.meshes.values().next().unwrap();
         let ends = data.positions.iter().fold((9.0_f32, -9.0_f32), |(a, b), p| (a.min(p.x), b.max(p.x)));
         assert!((ends.0 - from + ball).abs() < 1e-5 && (ends.1 - to - ball).abs() < 1e-5, "{kind}: {ends:?}");
-        // Two tubes, each as wide as its radius; u grows along them.
+        // Each of the two tubes has the width that its radius gives, and u increases along them.
         let wide = |y: f32| data.positions.iter().map(|p| (p.y - y).abs()).filter(|d| *d < 0.4).fold(0.0, f32::max);
         assert!((wide(0.0) - 0.1).abs() < 0.004 && (wide(1.0) - 0.2).abs() < 0.008, "{} {}", wide(0.0), wide(1.0));
         let u = |p: &Vec3| ((p.x - from) / (to - from)).clamp(0.0, 1.0);

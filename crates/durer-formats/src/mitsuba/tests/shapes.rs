@@ -1,4 +1,4 @@
-//! Conventions of shapes and of their materials, compared with Mitsuba 3.9.1.
+//! Tests of conventions of shapes and of their materials, compared with Mitsuba 3.9.1.
 
 use super::conventions::{clean_in, mesh};
 use super::{clean, objects};
@@ -8,8 +8,8 @@ use durer_scene::scene::{Material, Scene};
 
 #[test]
 fn serialized_mesh_equals_ply_mesh() {
-    // All files have equal lists. In both formats, v grows downwards, and the flags for colours and
-    // for flat faces have no effect.
+    // All files contain the same lists. In both formats, v = 0 is the upper edge of a picture, and
+    // the flags for colours and for flat faces have no effect.
     let ply = b"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
         property float nx\nproperty float ny\nproperty float nz\nproperty float u\nproperty float v\n\
         element face 2\nproperty list uchar int vertex_indices\nend_header\n\
@@ -35,13 +35,13 @@ fn serialized_mesh_equals_ply_mesh() {
             );
         }
     }
-    // A mesh without normals becomes smooth; the first has no texture coordinates.
+    // A mesh without normals becomes smooth. The first mesh of the file has no texture coordinates.
     let bytes = file(4, &[stream(4, 0x1000), stream(4, 0x1003)]);
     let first = of("serialized", "a.serialized", &bytes, "");
     assert!(first.uvs.is_empty() && first.triangle_normals.len() == 2);
 }
 
-/// Returns the index of refraction of each object.
+/// Returns the index of refraction of the material of each object.
 fn indices(scene: &Scene) -> Vec<f32> {
     let index = |object: &&durer_scene::scene::Object| match &scene.materials[object.material.unwrap() as usize].value {
         Material::Principled(layers) => layers.specular_ior,
@@ -62,7 +62,8 @@ fn inverted_spheres_swap_their_indices() {
         assert!(found.len() == wanted.len(), "{text}");
         assert!(found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-5), "{text}: {found:?} and not {wanted:?}");
     };
-    // A bubble in glass that fills all space; when inverted twice, an ordinary sphere.
+    // The inverted sphere is a bubble in glass that fills all space. A sphere that is inverted
+    // twice is an ordinary sphere.
     for kind in ["dielectric", "roughdielectric"] {
         let ggx = if kind == "dielectric" { "" } else { "<string name='distribution' value='ggx'/>" };
         let glass = format!("<bsdf type='{kind}' id='glass'>{ggx}</bsdf>");
@@ -70,9 +71,9 @@ fn inverted_spheres_swap_their_indices() {
         check(glass.clone() + &sphere(mirror), &[1.0 / GLASS]);
         check(glass + &sphere(&(flip.to_string() + mirror)), &[GLASS]);
     }
-    // Both sides of a thin dielectric are alike.
+    // A thin dielectric is the same on both sides.
     check(glass("thindielectric") + &sphere(flip), &[GLASS]);
-    // A hollow ball of one material, with air inside its glass.
+    // Hollow glass ball of one material, with air inside.
     let radius = "<float name='radius' value='.9'/>";
     check(glass("dielectric") + &sphere("") + &sphere(&(flip.to_string() + radius)), &[GLASS, 1.0 / GLASS]);
 }
@@ -81,7 +82,7 @@ fn inverted_spheres_swap_their_indices() {
 fn disk_uv_goes_outwards_and_around() {
     let picture = "<bsdf type='diffuse'><texture name='reflectance' type='checkerboard'/></bsdf>";
     let data = mesh(&clean(&format!("<shape type='disk'>{picture}</shape>"))).clone();
-    // Positions and texture coordinates in Mitsuba 3.9.1; v is flipped in Dürer.
+    // Positions and texture coordinates in Mitsuba 3.9.1. The coordinate v is flipped in Dürer.
     for (x, y, wanted) in [(0.5, 0.0, [0.5, 0.0]), (0.0, 0.5, [0.5, 0.25]), (0.3, -0.4, [0.5, 0.852416])] {
         let place = Vec2::new(x, y);
         let found = data.triangles.iter().zip(&data.triangle_uvs).find_map(|(corners, uvs)| {
@@ -97,10 +98,10 @@ fn disk_uv_goes_outwards_and_around() {
         let near = (found.x - wanted[0]).abs() < 1e-3 && (1.0 - found.y - wanted[1]).abs() < 3e-3;
         assert!(near, "{place}: {found} and not {wanted:?}");
     }
-    // The tangent points in the direction of increasing u, outwards.
+    // The tangent points outwards, which is the direction of increasing u.
     let outwards = |(p, t): (&Vec3, &[f32; 4])| p.length() == 0.0 || p.dot(Vec3::new(t[0], t[1], t[2])) > 0.9;
     assert!(data.positions.iter().zip(&data.tangents).all(outwards));
-    // A disk without a picture becomes a `Disc`.
+    // A disk that has no picture becomes a `Disc`.
     assert!(clean("<shape type='disk'/>").assets.meshes.is_empty());
 }
 
@@ -109,8 +110,8 @@ fn linear_curve_joints_and_ends_are_round() {
     let bent = b"0 0 0 .5\n2 0 0 .5\n2 2 0 .25\n";
     let shape = "<shape type='linearcurve'><string name='filename' value='bent.txt'/></shape>";
     let data = mesh(&clean_in(&[("bent.txt", bent)], shape)).clone();
-    // Signed distance to the balls swept along the curve, whose radius is linear along each
-    // segment.
+    // Signed distance to the union of all balls along the curve, whose radius changes linearly
+    // along each segment.
     let ends = [(Vec3::ZERO, 0.5), (2.0 * Vec3::X, 0.5), (Vec3::new(2.0, 2.0, 0.0), 0.25)];
     let outside = |p: &Vec3| {
         let from = |pair: &[(Vec3, f32)]| {
@@ -122,7 +123,7 @@ fn linear_curve_joints_and_ends_are_round() {
     };
     let most = data.positions.iter().map(outside).fold(f32::MIN, f32::max);
     assert!(most < 0.02, "{most}");
-    // The outer corner of the joint, the left end and the top end.
+    // Points at the outer corner of the joint, at the left end and at the top end.
     for there in [
         Vec3::new(2.0 + 0.125f32.sqrt(), -(0.125f32.sqrt()), 0.0),
         Vec3::new(-0.5, 0.0, 0.0),
@@ -131,7 +132,7 @@ fn linear_curve_joints_and_ends_are_round() {
         let nearest = data.positions.iter().map(|p| p.distance(there)).fold(f32::MAX, f32::min);
         assert!(nearest < 0.12, "{there} {nearest}");
     }
-    // u grows along the curve and normals point outwards.
+    // The coordinate u increases along the curve, and the normals point outwards.
     let middle = data.positions.iter().zip(&data.uvs).filter(|(_, uv)| uv.x == 0.5);
     assert!(middle.clone().count() > 12 && middle.into_iter().all(|(p, _)| p.distance(2.0 * Vec3::X) < 0.53));
     for (corners, normals) in data.triangles.iter().zip(&data.triangle_normals) {

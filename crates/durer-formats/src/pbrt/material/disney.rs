@@ -1,4 +1,4 @@
-//! Converts the Disney material of pbrt-v3.
+//! Converts the `disney` material of pbrt-v3.
 //!
 //! Source: Burley, *Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering*,
 //! SIGGRAPH courses, 2015, and *Physically Based Rendering*, 3rd edition.
@@ -14,12 +14,12 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Walls;
 use durer_scene::math::{Color, LUMINANCE, Vec3};
 
-/// Mean albedo of sheen of strength 1, divided by that of the fuzz lobe, both averaged over all
-/// directions.
+/// Mean albedo of Disney's sheen lobe with strength 1, divided by the mean albedo of the fuzz lobe.
+/// The two mean albedos are averages over all directions.
 const SHEEN: f32 = 0.1;
 
 impl Reader<'_> {
-    /// Converts `disney` to a mix of a base and a metal, or to one of them.
+    /// Converts `disney` to a base material, a metal, or a mix of both.
     pub(super) fn disney(&mut self, params: &Params, at: Span) -> MaterialDef {
         let (color, picture) = self.color_or_texture(params, "color", 0.5);
         let share = |reader: &Self, name, default| reader.value(params, name, default).clamp(0.0, 1.0);
@@ -33,7 +33,7 @@ impl Reader<'_> {
         let mut m = PrincipledMaterial {
             base_color: color,
             base_color_texture: picture.clone(),
-            // Multiply each specular reflection by the colour once more.
+            // Multiply each specular reflection by the colour a second time.
             specular_color: color,
             specular_color_texture: picture,
             specular_ior: self.index_parameter(params, 1.5),
@@ -51,8 +51,8 @@ impl Reader<'_> {
         let clearcoat = share(self, "clearcoat", 0.0);
         if clearcoat > 0.0 {
             let gloss = share(self, "clearcoatgloss", 1.0);
-            // The clearcoat is a quarter as strong as a dielectric boundary, and does not attenuate
-            // the base.
+            // The clearcoat reflects a quarter as much as a dielectric boundary, and it does not
+            // attenuate the base.
             (m.coat_weight, m.coat_ior, m.coat_darkening) = (0.25 * clearcoat, 1.5, 0.0);
             m.coat_roughness = (0.1 + gloss * (0.001 - 0.1)).sqrt();
         }
@@ -81,7 +81,8 @@ impl Reader<'_> {
         if metallic == 0.0 {
             return MaterialDef::Principled(Box::new(m), at);
         }
-        // The other part is a metal: the colour times Schlick's reflectance for that colour.
+        // The other part is a metal. The reflectance of the metal is the colour times Schlick's
+        // approximation for that colour.
         let mut metal = m.clone();
         let tinted = if metal.base_color_texture.is_some() { Vec3::ONE } else { color };
         metal.base_metalness = 1.0;

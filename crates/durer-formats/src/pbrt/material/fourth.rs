@@ -1,8 +1,8 @@
 //! Converts the materials of pbrt-v4.
 //!
 //! Source: *Physically Based Rendering*, 4th edition, chapters 9, 10 and 14. A coat over a matte
-//! base becomes a coat with darkening. A metal is converted by its reflectance at 0 and at 82
-//! degrees. GGX's alpha is the square of Dürer's roughness.
+//! base becomes an OpenPBR coat with darkening. A metal is represented by its reflectance at normal
+//! incidence and at 82 degrees. GGX's alpha is the square of Dürer's roughness.
 
 use super::super::defs::{MaterialDef, Texture};
 use super::super::medium::medium_of;
@@ -35,7 +35,7 @@ const MATERIALS: [&str; 12] = [
     "hair",
 ];
 
-/// Materials of pbrt-v3, and the nearest materials of pbrt-v4.
+/// Materials that exist only in pbrt-v3, each with the most similar material of pbrt-v4.
 const V3_MATERIALS: [(&str, &str); 8] = [
     ("matte", "diffuse"),
     ("plastic", "coateddiffuse"),
@@ -47,34 +47,35 @@ const V3_MATERIALS: [(&str, &str); 8] = [
     ("translucent", "diffusetransmission"),
 ];
 
-/// Returns the transmittance of a coat for light that crosses it down and up. Each crossing
-/// multiplies light by exp(-thickness / cosine); this includes light reflected between the boundary
-/// and a matte base.
+/// Returns the transmittance of a coat for light that crosses it on the way down and on the way up.
+/// Each crossing multiplies the light by exp(-thickness / cosine). The result includes light that
+/// is reflected between the boundary and a matte base.
 ///
 /// Source: `LayeredBxDF` in *Physically Based Rendering*, 4th edition, section 14.3.2.
 fn coat_transmittance(thickness: f32, ior: f32, base: f32) -> f32 {
     const STEPS: u16 = 64;
     let at = |i: u16| (f32::from(i) + 0.5) / f32::from(STEPS);
-    // Cosine-weighted mean for diffuse light.
+    // Cosine-weighted mean of the transmittance for diffuse light.
     let even = (0..STEPS).map(|i| 2.0 * at(i) * fp::exp(-thickness / at(i))).sum::<f32>() / f32::from(STEPS);
     let back = base.clamp(0.0, 1.0) * fresnel::diffuse(1.0 / ior);
     fp::exp(-2.0 * thickness) * (1.0 - back) / (1.0 - back * even * even)
 }
 
 impl Reader<'_> {
-    /// Returns GGX's alpha along u and v. The parameter names are for both directions, for u and
-    /// for v.
+    /// Returns the GGX alpha along u and along v. The three parameter names are those for both
+    /// directions, for u and for v.
     fn alphas(&self, params: &Params, [both, u, v]: [&'static str; 3], remapped: bool) -> [f32; 2] {
         let default = self.value(params, both, 0.0);
-        // Source: pbrt-v4 takes the square root if `remaproughness` is set.
+        // Source: pbrt-v4 uses the square root of the roughness if `remaproughness` is set.
         [u, v].map(|name| {
             let roughness = self.value(params, name, default).max(0.0);
             if remapped { roughness.sqrt() } else { roughness }
         })
     }
 
-    /// Returns a roughness picture computed from a picture of GGX's alpha, and the alpha that it
-    /// multiplies: 1. Without a picture, returns only the alphas given by the parameters.
+    /// Returns a roughness picture that is computed from a picture of GGX's alpha, and alpha values
+    /// of 1 for that picture to multiply. Without a picture, returns only the alpha values that the
+    /// parameters give.
     fn roughness(&mut self, params: &Params, names: [&'static str; 3], remapped: bool) -> (Option<FileName>, [f32; 2]) {
         let each = names[1..].iter().any(|name| params.get(name).is_some());
         let fourth = |x: f32| x.max(0.0).sqrt().sqrt();
@@ -145,7 +146,7 @@ impl Reader<'_> {
                     }
                     scale * color
                 });
-                // A thin sheet has one scattering ratio for all colours.
+                // A thin sheet has the same scattering ratio for all colours.
                 let sum = |color: Color| color.element_sum().max(1e-6);
                 m = PrincipledMaterial {
                     subsurface_weight: 1.0,
@@ -166,7 +167,7 @@ impl Reader<'_> {
                     let path = params.spectrum("mfp").map_or(Vec3::ONE, |spectrum| spectrum.coefficient());
                     set_subsurface(&mut m, params, color, path);
                 } else {
-                    // The boundary refracts, and the medium inside scatters.
+                    // The boundary refracts light, and the medium inside scatters it.
                     m.transmission_weight = 1.0;
                     medium_of(params, "name").fill(&mut m);
                 }
@@ -190,7 +191,8 @@ impl Reader<'_> {
             }
         }
         m.energy_compensation = Switch::Off;
-        // `eta` is the ratio across the surface, whatever the surrounding medium is.
+        // `eta` is the ratio of the indices on the two sides of the surface, regardless of the
+        // surrounding medium.
         m.surroundings = Surroundings::Ignored;
         self.surface(&mut m, params, "displacement");
         MaterialDef::Principled(Box::new(m), at)
@@ -221,7 +223,8 @@ impl Reader<'_> {
                 "a medium inside a coat has no counterpart: the coat is clear",
             );
         }
-        // The coat's thickness attenuates light that crosses it even if it contains no medium.
+        // The thickness of the coat attenuates the light that crosses it, even if the coat contains
+        // no medium.
         let thickness = self.value(params, "thickness", 0.01).max(0.0);
         m.coat_color = m.base_color.map(|base| coat_transmittance(thickness, m.coat_ior, base));
         params.mark_known(&["g", "maxdepth", "nsamples", "twosided"]);
@@ -245,15 +248,15 @@ impl Reader<'_> {
                 let share = match self.texture_value(params, reflectance, true, Vec3::splat(0.5)) {
                     Texture::Constant(color) => color,
                     Texture::Picture(picture, scale) => {
-                        // The picture is the reflectance at normal incidence. Grazing reflection is
-                        // not tinted.
+                        // The picture gives the reflectance at normal incidence. Reflection at
+                        // grazing angles is not tinted.
                         m.base_color_texture = Some(self.asset(picture, param.at));
                         (m.base_metalness, m.base_color) = (1.0, scale);
                         [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
                         return;
                     }
                 };
-                // With an index of 1, this k gives the desired reflectance at normal incidence.
+                // With eta = 1, this k gives the desired reflectance at normal incidence.
                 let k = share.map(|r| 2.0 * (r.min(0.9999) / (1.0 - r.min(0.9999))).sqrt());
                 conductor_colors(&SpectrumSource::Rgb(Vec3::ONE), &SpectrumSource::Rgb(k), 1.0)
             }

@@ -1,4 +1,4 @@
-//! Hair material of pbrt-v3 and pbrt-v4.
+//! Converts the hair material of pbrt-v3 and pbrt-v4.
 //!
 //! Source: *Physically Based Rendering*, 4th edition, section 9.9.
 
@@ -10,7 +10,8 @@ use durer_scene::material::HairMaterial;
 use durer_scene::math::Vec3;
 
 impl Reader<'_> {
-    /// Reads hair that is defined by absorption, by colour (a parameter in `names`) or by melanin.
+    /// Reads a hair material, which is defined by its absorption, by its colour (one of the
+    /// parameters in `names`) or by its melanin.
     pub(super) fn hair(&self, params: &Params, names: &[&'static str], at: Span) -> MaterialDef {
         let given = names.iter().copied().find(|name| params.get(name).is_some());
         let absorption = params.spectrum("sigma_a").map(|spectrum| spectrum.coefficient().max(Vec3::ZERO));

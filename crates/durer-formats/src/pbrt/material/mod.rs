@@ -30,12 +30,12 @@ use std::rc::Rc;
 const MAX_DEPTH: u32 = 32;
 
 impl MaterialDef {
-    /// Returns the material of shapes without a `Material` directive.
+    /// Returns the material of shapes that are not preceded by a `Material` directive.
     pub fn default_material() -> MaterialDef {
         MaterialDef::Principled(Box::new(matte(Vec3::splat(0.5))), Span::default())
     }
 
-    /// Returns the depth of nested mixes.
+    /// Returns the depth of nested mixes in a material.
     fn depth(&self) -> u32 {
         if let MaterialDef::Mix { depth, .. } = self { *depth } else { 0 }
     }
@@ -49,12 +49,12 @@ impl MaterialDef {
     }
 }
 
-/// Returns a diffuse material without a specular boundary.
+/// Returns a diffuse material that has no specular boundary.
 fn matte(base_color: Color) -> PrincipledMaterial {
     PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
 }
 
-/// Adds subsurface scattering with mean free path `path` and albedo `color`, which may be
+/// Adds subsurface scattering with the mean free path `path` and the albedo `color`, which can be
 /// multiplied by a picture.
 fn set_subsurface(
     m: &mut PrincipledMaterial,
@@ -95,7 +95,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Executes `NamedMaterial`, which sets the current material.
+    /// Executes `NamedMaterial`, which selects the current material.
     pub fn named_material(&mut self, name: &str, at: Span) {
         match self.named_materials.get(name) {
             Some(number) => self.state.material = *number,
@@ -106,8 +106,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Reports an unknown material. If it exists in the other language, the message points at the
-    /// word that decided the language.
+    /// Reports that a material does not exist. If the other version of pbrt has this material, the
+    /// message points at the keyword that decided the version.
     fn no_material(&self, name: &str, at: Span, help: Option<String>, other: bool) {
         let language = if self.language == Language::V3 { "pbrt-v3" } else { "pbrt-v4" };
         let error = Diagnostic::error(format!("unknown material `{name}` in {language}")).code("bad-value").at(at);
@@ -118,8 +118,8 @@ impl Reader<'_> {
         self.report.push(Diagnostic { help, ..error });
     }
 
-    /// Returns a mix of two materials by index; `MaterialDef::Interface` if mixes are nested too
-    /// deep.
+    /// Returns a mix of two materials that are given by index, or `MaterialDef::Interface` if mixes
+    /// are nested too deeply.
     fn mix(&self, parts: [usize; 2], share: f32, at: Span) -> MaterialDef {
         self.mix_by(parts, (share, None), at)
     }
@@ -136,7 +136,7 @@ impl Reader<'_> {
         MaterialDef::Mix { parts, share, picture, depth, has_picture, at }
     }
 
-    /// Returns the index of a material that a mix names.
+    /// Returns the index of one of the materials that a mix names.
     fn known_material(&self, name: &str, at: Span) -> Option<usize> {
         let index = self.named_materials.get(name).copied();
         if index.is_none() {
@@ -165,8 +165,8 @@ impl Reader<'_> {
         light || self.materials[self.state.material].is_pictured()
     }
 
-    /// Returns the scene index of a material with emission and opacity; `None` for a material that
-    /// is not rendered.
+    /// Returns the scene index of a material with its emission and opacity, or `None` for a
+    /// material that is not rendered.
     pub fn material_index(
         &mut self,
         material: usize,

@@ -1,6 +1,6 @@
-//! Lobes of pbrt-v3's materials as OpenPBR parameters, and sums of lobes.
+//! Represents the lobes of pbrt-v3's materials as OpenPBR parameters, and adds lobes.
 //!
-//! A sum becomes a mix, in which each part is scaled by the inverse of its share.
+//! A sum becomes a mix in which each part is multiplied by the inverse of its share.
 
 use super::super::defs::MaterialDef;
 use super::super::state::Reader;
@@ -13,10 +13,10 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Surroundings;
 use durer_scene::math::{Color, Vec3};
 
-/// Summand of a pbrt-v3 material: one or more lobes as an OpenPBR material.
+/// One summand of a pbrt-v3 material: one or more lobes as an OpenPBR material.
 pub(super) struct Lobe {
     pub layers: PrincipledMaterial,
-    /// Maximum reflectance of the part; determines its share of the mix.
+    /// Maximum reflectance of the part, which determines its share of the mix.
     pub max_reflectance: f32,
 }
 
@@ -29,18 +29,19 @@ pub(super) fn glossy((color, picture): (Color, Option<FileName>), ior: f32, roug
     m
 }
 
-/// Returns the colour and roughness of an energy-preserving rough diffuse lobe with the mean albedo
-/// of Oren–Nayar.
+/// Returns the colour and roughness of an energy-preserving rough diffuse lobe that has the same
+/// mean albedo as the Oren–Nayar model.
 ///
 /// Source: Oren and Nayar, *Generalization of Lambert's Reflectance Model*, SIGGRAPH 1994.
 pub(super) fn oren_nayar(color: Color, degrees: f32) -> (Color, f32) {
-    // Cosine-weighted mean of max(0, cos) sin tan over both directions: 2/3 - 64 / (45 pi).
+    // Cosine-weighted mean of max(0, cos) sin tan over both directions, which is 2/3 - 64 / (45
+    // pi).
     const LEANING: f32 = 0.213_954;
     let sigma = degrees.to_radians();
     let variance = sigma * sigma;
     let (a, b) = (1.0 - 0.5 * variance / (variance + 0.33), 0.45 * variance / (variance + 0.09));
     let roughness = (b / a).clamp(0.0, 1.0);
-    // Mean albedo of single and of multiple scattering, as in `bsdf::lobe::diffuse`.
+    // Mean albedo of single scattering and of multiple scattering, as in `bsdf::lobe::diffuse`.
     let mean = (1.0 + 0.072_488 * roughness) / (1.0 + 0.287_793 * roughness);
     let whole = |c: f32| c * mean + c * c * mean * (1.0 - mean) / (1.0 - c * (1.0 - mean));
     let solved = color.map(|wanted| {
@@ -55,7 +56,7 @@ pub(super) fn oren_nayar(color: Color, degrees: f32) -> (Color, f32) {
     (solved, roughness)
 }
 
-/// Returns a metal with a given reflectance at normal incidence and at 82 degrees.
+/// Returns a metal with the given reflectances at normal incidence and at 82 degrees.
 pub(super) fn metallic(f0: Color, f82: Color, rough: &Roughness) -> PrincipledMaterial {
     let mut m = PrincipledMaterial {
         base_metalness: 1.0,
@@ -67,7 +68,7 @@ pub(super) fn metallic(f0: Color, f82: Color, rough: &Roughness) -> PrincipledMa
     m
 }
 
-/// Returns solid glass; smooth if `rough` is `None`.
+/// Returns solid glass, which is smooth if `rough` is `None`.
 pub(super) fn glass(
     (reflected, reflected_picture): (Color, Option<FileName>),
     (through, through_picture): (Color, Option<FileName>),
@@ -90,9 +91,9 @@ pub(super) fn glass(
 }
 
 impl Reader<'_> {
-    /// Returns a material that scatters like the sum of the parts.
+    /// Returns a material that scatters light like the sum of the given parts.
     pub(super) fn sum(&mut self, parts: Vec<Lobe>, at: Span) -> MaterialDef {
-        // Keep the opacity: a black material can still be partly transparent.
+        // Keep the opacity, because even a black material can be partly transparent.
         let opacity =
             parts.first().map_or((1.0, None), |part| (part.layers.opacity, part.layers.opacity_texture.clone()));
         let black = PrincipledMaterial { opacity: opacity.0, opacity_texture: opacity.1, ..matte(Vec3::ZERO) };

@@ -1,4 +1,4 @@
-//! Reads the roughness of pbrt-v3's materials.
+//! Reads the roughness parameters of pbrt-v3's materials.
 
 use super::super::params::{Kind, Params};
 use super::super::state::Reader;
@@ -8,10 +8,10 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Switch;
 use durer_scene::math::fp;
 
-/// Roughness of a pbrt-v3 material: GGX's alpha, which a picture may multiply.
+/// Roughness of a pbrt-v3 material: GGX's alpha, and optionally a picture that multiplies it.
 pub(super) struct Roughness {
     picture: Option<FileName>,
-    /// GGX's alpha along u and v.
+    /// GGX alpha along u and along v.
     pub alphas: [f32; 2],
 }
 
@@ -28,7 +28,7 @@ impl Roughness {
     }
 }
 
-/// Converts a pbrt-v3 roughness in [0, 1] to GGX's alpha.
+/// Converts a roughness of pbrt-v3, which is in [0, 1], to GGX's alpha.
 ///
 /// Source: *Physically Based Rendering*, 3rd edition, section 8.4.2.
 pub(in crate::pbrt) fn alpha_of_roughness(roughness: f32) -> f32 {
@@ -37,8 +37,8 @@ pub(in crate::pbrt) fn alpha_of_roughness(roughness: f32) -> f32 {
 }
 
 impl Reader<'_> {
-    /// Reads the roughness from the parameter `both` for both directions, if it has one, or from
-    /// one parameter for each direction.
+    /// Reads the roughness from the parameter named `both`, which applies to both directions. If
+    /// `each` is true, `uroughness` and `vroughness` take precedence in their own direction.
     pub(super) fn rough(&mut self, params: &Params, both: Option<&'static str>, each: bool, default: f32) -> Roughness {
         const EACH: [&str; 2] = ["uroughness", "vroughness"];
         let remapped = params.boolean("remaproughness").unwrap_or(true);
@@ -62,7 +62,7 @@ impl Reader<'_> {
         Roughness::new(alphas)
     }
 
-    /// Reads the roughness as the geometric mean of both directions, because a coat over a matte
+    /// Reads the roughness and averages both directions geometrically, because a coat over a matte
     /// base is isotropic in Dürer. See [`Reader::rough`].
     pub(super) fn isotropic_roughness(
         &mut self,

@@ -1,4 +1,4 @@
-//! Converts the substrate of pbrt-v3: a matte base below a glossy coat.
+//! Converts the `substrate` material of pbrt-v3, which is a matte base below a glossy coat.
 //!
 //! Source: Ashikhmin and Shirley, *An Anisotropic Phong BRDF Model*, Journal of Graphics Tools
 //! 5(2), 2000, with the microfacets of *Physically Based Rendering*, 3rd edition, section 8.5.
@@ -12,17 +12,19 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::{Vec3, fp};
 use std::f32::consts::TAU;
 
-/// Index and roughness of the boundary over the base. With both crossings of the boundary, the base
-/// reflects (1 - (1 - cos / 2)^5) of its value at normal incidence, within 2 %.
+/// Index of refraction and roughness of the boundary above the base. The light crosses the boundary
+/// twice. Within 2 %, the base then reflects (1 - (1 - cos / 2)^5) times its value at normal
+/// incidence.
 const INDEX: f32 = 0.8;
 const ROUGHNESS: f32 = 0.894_427;
 
-/// Mean reflectance of that boundary, and mean factor on the base's colour.
+/// Mean reflectance of that boundary, and mean factor by which it multiplies the colour of the
+/// base.
 const REFLECTED: f32 = 0.1514;
 const MEAN: f32 = 23.0 / 28.0;
 
 impl Reader<'_> {
-    /// Converts `substrate` to a base and a coat, which are to be summed.
+    /// Converts `substrate` to a base and a coat, whose reflections are added.
     pub(super) fn substrate(&mut self, params: &Params) -> Vec<Lobe> {
         let rough = self.isotropic_roughness(params, None, true, 0.1);
         let (color, picture) = self.color_or_texture(params, "Kd", 0.5);
@@ -44,13 +46,14 @@ impl Reader<'_> {
         let (f0, hue) = (most.min(0.98), specular / most);
         let strength = coat_scale(rough.alphas[0], f0);
         let layers = glossy((strength * hue, specular_picture), fresnel::ior_of_reflectance(f0), &rough);
-        // Use the mean reflectance over all directions, not that at normal incidence.
+        // Use the mean reflectance over all directions instead of the reflectance at normal
+        // incidence.
         vec![base, Lobe { max_reflectance: f0 + (1.0 - f0) / 21.0, layers }]
     }
 }
 
-/// Returns the mean albedo of the coat, divided by that of microfacets of a dielectric with
-/// reflectance `f0` at normal incidence.
+/// Returns the mean albedo of the coat, divided by the mean albedo of a dielectric microfacet
+/// surface with reflectance `f0` at normal incidence.
 pub(super) fn coat_scale(alpha: f32, f0: f32) -> f32 {
     const POINTS: u16 = 4096;
     // Source: Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018.
@@ -60,7 +63,8 @@ pub(super) fn coat_scale(alpha: f32, f0: f32) -> f32 {
         let u = (Vec3::splat(0.5) + f32::from(i) * STEPS).fract();
         let mu = u.x.max(1e-4).sqrt();
         let wo = Vec3::new((1.0 - mu * mu).max(0.0).sqrt(), 0.0, mu);
-        // Sample a microfacet normal in proportion to its density times the cosine.
+        // Sample a microfacet normal with a probability proportional to its density times its
+        // cosine.
         let tangent2 = alpha * alpha * u.y / (1.0 - u.y);
         let up = 1.0 / (1.0 + tangent2).sqrt();
         let (sin, cos) = (fp::sin(TAU * u.z), fp::cos(TAU * u.z));
@@ -75,6 +79,6 @@ pub(super) fn coat_scale(alpha: f32, f0: f32) -> f32 {
     }
     let eta = fresnel::ior_of_reflectance(f0);
     let reflected = albedo::single_means(eta, alpha.clamp(0.0, 1.0).sqrt())[0];
-    // Both numbers exclude light that is blocked by other facets.
+    // Both albedos exclude light that is blocked by other microfacets.
     if reflected > 0.0 { blend / f32::from(POINTS) / reflected } else { 1.0 }
 }

@@ -1,6 +1,6 @@
-//! Converts the materials of pbrt-v3. Most are sums of a Lambertian and a rough specular lobe,
-//! where pbrt-v4 has layers. Sums become mixes, in which each part is scaled by the inverse of its
-//! share.
+//! Converts the materials of pbrt-v3. Most of these materials are sums of a Lambertian lobe and a
+//! rough specular lobe, whereas pbrt-v4 uses layers. Such a sum becomes a mix, in which each part
+//! is multiplied by the inverse of its share.
 //!
 //! Source: *Physically Based Rendering*, 3rd edition, chapters 8 and 9, and *Input File Format*,
 //! pbrt.org/fileformat-v3.
@@ -39,15 +39,15 @@ const MATERIALS: [&str; 15] = [
     "uber",
 ];
 
-/// Index of refraction of copper (eta, k) for red, green and blue: pbrt-v3's spectra converted to
-/// RGB.
+/// Complex index of refraction of copper (eta and k) for red, green and blue, from pbrt-v3's
+/// spectra converted to RGB.
 ///
 /// Source of the spectra: Palik, *Handbook of Optical Constants of Solids*, 1985, as distributed
 /// with pbrt-v3.
 const COPPER: [Vec3; 2] = [Vec3::new(0.200438, 0.924033, 1.102212), Vec3::new(3.912949, 2.452848, 2.142188)];
 
 impl Reader<'_> {
-    /// Reads the index of refraction, `eta` or `index`.
+    /// Reads the index of refraction from the parameter `eta` or `index`.
     pub(super) fn index_parameter(&self, params: &Params, default: f32) -> f32 {
         let name = if params.get("eta").is_some() { "eta" } else { "index" };
         let index = match params.get(name).map(|param| param.kind) {
@@ -79,8 +79,8 @@ impl Reader<'_> {
             }
             "plastic" => {
                 let rough = self.isotropic_roughness(params, Some("roughness"), false, 0.1);
-                // pbrt uses an index of 1.5 outside and 1 inside, so the surface reflects as if
-                // seen from inside.
+                // pbrt uses an index of 1.5 outside and 1 inside, so the surface reflects light as
+                // it would from inside.
                 vec![self.lambert(params, "Kd", 0.25), self.gloss(params, "Ks", (0.25, 1.0 / 1.5), &rough)]
             }
             "uber" => self.uber(params),
@@ -96,7 +96,7 @@ impl Reader<'_> {
             "mirror" => {
                 let (color, picture) = self.color_or_texture(params, "Kr", 0.9);
                 let max_reflectance = color.max_element().clamp(1e-6, 1.0);
-                // The reflectance is the same at all angles.
+                // The reflectance is the same at every angle.
                 let m = PrincipledMaterial {
                     base_metalness: 1.0,
                     base_color: color / max_reflectance,
@@ -142,14 +142,15 @@ impl Reader<'_> {
         self.sum(bent, at)
     }
 
-    /// Returns the Lambertian lobe with the colour parameter `name`.
+    /// Returns the Lambertian lobe whose colour is the parameter `name`.
     fn lambert(&mut self, params: &Params, name: &'static str, default: f32) -> Lobe {
         let (color, picture) = self.color_or_texture(params, name, default);
         let layers = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
         Lobe { layers, max_reflectance: color.max_element() }
     }
 
-    /// Returns the microfacet lobe with the colour parameter `name` and an index of refraction.
+    /// Returns the microfacet lobe whose colour is the parameter `name`, with the given index of
+    /// refraction.
     fn gloss(&mut self, params: &Params, name: &'static str, (default, ior): (f32, f32), rough: &Roughness) -> Lobe {
         let color = self.color_or_texture(params, name, default);
         Lobe { max_reflectance: color.0.max_element(), layers: glossy(color, ior, rough) }
@@ -178,7 +179,7 @@ impl Reader<'_> {
         parts
     }
 
-    /// Returns diffuse reflection and transmission, with glossy microfacets on both sides.
+    /// Returns diffuse reflection and diffuse transmission, with glossy microfacets on both sides.
     fn translucent(&mut self, params: &Params) -> Vec<Lobe> {
         let rough = self.rough(params, Some("roughness"), false, 0.1);
         let even = |reader: &mut Self, name, default| {
@@ -191,7 +192,7 @@ impl Reader<'_> {
             subsurface_weight: 1.0,
             subsurface_color: color * (up + down),
             subsurface_color_texture: picture,
-            // A thin sheet has one scattering ratio for all colours.
+            // A thin sheet has the same scattering ratio for all colours.
             subsurface_scatter_anisotropy: ((sum(down) - sum(up)) / (sum(down) + sum(up))).clamp(-0.999, 0.999),
             walls: Walls::Thin,
             ..matte(Vec3::ZERO)
@@ -200,7 +201,8 @@ impl Reader<'_> {
         let (specular, picture) = self.color_or_texture(params, "Ks", 0.25);
         let gloss = glossy((up * specular, picture.clone()), 1.5, &rough);
         let mut parts = vec![matte, Lobe { max_reflectance: (up * specular).max_element(), layers: gloss }];
-        // The microfacets transmit light too; in Dürer, those of a thin sheet do not refract it.
+        // The microfacets also transmit light. In Dürer, the microfacets of a thin sheet do not
+        // refract it.
         if (down * specular).max_element() > 0.0 {
             let what = "glossy transmission of `translucent` is not refracted here";
             self.report.unsupported_once(params.at, what);
@@ -232,7 +234,8 @@ impl Reader<'_> {
         Lobe { layers: m, max_reflectance: 1.0 }
     }
 
-    /// Returns the mean of a colour, for a parameter that can only be a number in Dürer.
+    /// Returns the mean of a colour's components, for a parameter that must be a single number in
+    /// Dürer.
     fn grey(&self, params: &Params, name: &'static str, color: Color) -> f32 {
         if color.max_element() - color.min_element() > 1e-3 {
             let what = format!("a coloured `{name}` has no counterpart: its mean is used");
@@ -241,7 +244,7 @@ impl Reader<'_> {
         color.element_sum() / 3.0
     }
 
-    /// Returns a mix of two named materials; `amount` is the share of the first.
+    /// Returns a mix of two named materials, in which `amount` is the share of the first.
     fn mix_of_two(&mut self, params: &Params, at: Span) -> MaterialDef {
         let share = |amount: f32| amount.clamp(0.0, 1.0);
         let amount = match self.texture_value(params, "amount", true, Vec3::splat(0.5)) {

@@ -16,7 +16,7 @@ use durer_scene::sampler::SampleId;
 use durer_scene::spectrum::Lanes;
 use durer_scene::spectrum::SpectrumSource;
 
-/// Returns the camera ray through a point of the picture. Coordinates are from -1 to 1 across the
+/// Returns the camera ray through a point of the picture. Coordinates range from -1 to 1 across the
 /// larger side.
 fn ray(scene: &Scene, x: f32, y: f32) -> (Vec3, Vec3) {
     let camera = scene.camera.as_ref().unwrap();
@@ -42,22 +42,23 @@ fn camera(text: &str, size: [u32; 2]) -> Scene {
 
 #[test]
 fn cameras_match_pbrt_coordinates() {
-    // Without a transform, pbrt looks along +z with +x to the right, which is left-handed.
+    // Without a transform, a pbrt camera looks along +z with +x to the right, which is a
+    // left-handed system.
     let scene = camera("Camera \"perspective\" \"float fov\" 90", [200, 100]);
     close(ray(&scene, 0.0, 0.0).1, Vec3::Z);
-    // The field of view is across the shorter side, so half a unit of the larger side is 45 degrees
-    // up.
+    // The field of view is measured across the shorter side, so half a unit of the larger side is
+    // 45 degrees upwards.
     close(ray(&scene, 0.0, 0.5).1, Vec3::new(0.0, 1.0, 1.0).normalize());
     close(ray(&scene, 1.0, 0.0).1, Vec3::new(2.0, 0.0, 1.0).normalize());
     let tall = camera("Camera \"perspective\" \"float fov\" 90", [100, 200]);
     close(ray(&tall, 0.5, 1.0).1, Vec3::new(1.0, 2.0, 1.0).normalize());
-    // A mirrored view corresponds to a viewer in right-handed coordinates.
+    // Mirroring the view makes its coordinate system right-handed.
     let flipped = camera("Scale -1 1 1 LookAt 0 0 5 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 90", [100, 100]);
     close(ray(&flipped, 1.0, 0.0).1, Vec3::new(1.0, 0.0, -1.0).normalize());
     let plain = camera("LookAt 0 0 5 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 90", [100, 100]);
     close(ray(&plain, 1.0, 0.0).1, Vec3::new(-1.0, 0.0, -1.0).normalize());
     close(ray(&plain, 0.3, 0.0).0, Vec3::new(0.0, 0.0, 5.0));
-    // Screen window: a quarter of the picture, whose middle is off the axis.
+    // Screen window that covers a quarter of the picture and whose centre is off the axis.
     let part = camera("Camera \"perspective\" \"float fov\" 90 \"float screenwindow\" [ 0 1 0 1 ]", [100, 100]);
     close(ray(&part, -1.0, -1.0).1, Vec3::Z);
     close(ray(&part, 1.0, 0.0).1, Vec3::new(1.0, 0.5, 1.0).normalize());
@@ -70,12 +71,12 @@ fn orthographic_spherical_and_lens_cameras_match_closed_forms() {
     let (origin, dir) = ray(&flat, 1.0, 0.25);
     close(origin, Vec3::new(-2.0, 0.5, 5.0));
     close(dir, Vec3::NEG_Z);
-    // u = 0 is +x, u = 1/4 is +z, the upper edge is +y; the middle is -x.
+    // u = 0 is +x, u = 1/4 is +z, the upper edge is +y, and the centre is -x.
     let around = camera("Camera \"spherical\" \"string mapping\" \"equirectangular\"", [200, 100]);
     close(ray(&around, 0.0, 0.0).1, Vec3::NEG_X);
     close(ray(&around, -0.5, 0.0).1, Vec3::Z);
     close(ray(&around, 0.5, 0.0).1, Vec3::NEG_Z);
-    // Rays through one point of the picture meet at the distance of focus.
+    // All rays through one point of the picture meet at the focus distance.
     let text = "Camera \"perspective\" \"float fov\" 90 \"float lensradius\" 0.5 \"float focaldistance\" 4";
     let scene = camera(text, [100, 100]);
     let lens = scene.camera.unwrap();
@@ -88,7 +89,7 @@ fn orthographic_spherical_and_lens_cameras_match_closed_forms() {
     }
 }
 
-/// Returns the irradiance at a point on a surface facing up, from one sample.
+/// Returns the irradiance at a point on a surface that faces up, estimated with one sample.
 fn irradiance(world: &World, point: Vec3) -> Vec3 {
     let settings = RenderSettings { bounces: 0, ..Job::default().settings };
     let paths = Paths::new(world, settings, PathOptions::default());
@@ -118,7 +119,7 @@ fn area_light_equals_course_format_bit_for_bit() {
     let twin = ours("", "MaterialIndex 0 Sphere { center 1 3 0.5 radius 0.75 }");
     let (a, b) = (irradiance(&pbrt(sphere), point), irradiance(&twin, point));
     assert!(a == b && a.x > 0.1, "{a} {b}");
-    // Twice the shutter time, and four times the ISO.
+    // Twice the shutter time, and four times the ISO value.
     let text = "Film \"rgb\" \"float iso\" 400 Camera \"perspective\" \"float shutterclose\" 2 WorldBegin ";
     let longer = irradiance(&world("a.pbrt", &format!("{text}{sphere}")), point);
     assert!((longer - 8.0 * a).length() < 1e-5 * longer.length(), "{longer} {a}");
@@ -135,10 +136,10 @@ fn lights_have_pbrt_units() {
     else {
         panic!()
     };
-    // Radiance of a white diffuse surface at distance 1: intensity over pi.
+    // Radiance of a white diffuse surface at distance 1, which is the intensity divided by pi.
     close(point.color, Vec3::new(1.0, 2.0, 3.0) / pi);
     assert_eq!((point.position, point.attenuation), (Vec3::new(1.0, 2.0, 3.0), Some(Vec3::Z)));
-    // A flux of 4 pi is an intensity of 1.
+    // A flux of 4 pi corresponds to an intensity of 1.
     let Light::Point(point) = light("\"point\" \"float power\" 12.566371") else { panic!() };
     close(point.color, Vec3::splat(1.0 / pi));
     let Light::Directional(distant) =
@@ -150,7 +151,8 @@ fn lights_have_pbrt_units() {
     close(distant.direction.normalize(), Vec3::NEG_Y);
     let Light::Spot(spot) = light("\"spot\" \"float coneangle\" 40 \"float conedeltaangle\" 15") else { panic!() };
     assert_eq!((spot.angle, spot.inner_angle, spot.direction), (40.0, 25.0, Vec3::Z));
-    // The power is for each triangle: two triangles of area 1/2, with 3 lumens each.
+    // The power applies to each triangle. There are two triangles of area 1/2, and each emits 3
+    // lumens.
     let (scene, _) = read(
         "Camera \"perspective\" WorldBegin AreaLightSource \"diffuse\" \"float power\" 3 Shape \"trianglemesh\"\n\
          \"integer indices\" [ 0 1 2 0 2 3 ] \"point3 P\" [ 0 0 0 1 0 0 1 1 0 0 1 0 ]",
@@ -168,17 +170,18 @@ fn area_lights_emit_on_pbrt_side() {
         irradiance(&world("a.pbrt", &format!("{head} {text}")), point) != Vec3::ZERO
     };
     let below = Vec3::new(0.2, -1.0, 0.3);
-    // Counter-clockwise seen from below: (1, 0, 0) x (0, 0, 1) = -y.
+    // The corners are counter-clockwise when seen from below, because (1, 0, 0) x (0, 0, 1) = -y.
     let down = "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 0 1 ]";
     assert!(lit(down, below));
     assert!(!lit(&format!("ReverseOrientation {down}"), below));
     assert!(lit(&format!("Scale 1 -1 1 ReverseOrientation {down}"), below));
     assert!(!lit(&format!("Scale 1 -1 1 {down}"), below));
-    // Vertex normals determine the front, whatever the order of the corners.
+    // Vertex normals determine the front side, regardless of the order of the corners.
     let normals = |y: i32| format!("{down} \"normal N\" [ 0 {y} 0 0 {y} 0 0 {y} 0 ]");
     assert!(lit(&normals(-1), below) && !lit(&normals(1), below));
     assert!(lit(&format!("ReverseOrientation {}", normals(1)), below));
-    // A disk emits along its own z; a mirrored disk emits in the opposite direction, as in pbrt.
+    // A disk emits light along its own z axis. A mirrored disk emits in the opposite direction, as
+    // in pbrt.
     let disk = |text: &str| lit(&format!("Rotate 90 1 0 0 {text} Shape \"disk\""), below);
     assert!(disk("") && !disk("ReverseOrientation") && !disk("Scale -1 1 1"));
     let patch = "Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0 1 0 0 0 0 1 1 0 1 ]";
@@ -193,7 +196,7 @@ fn materials_become_openpbr_parameters() {
         "Material \"coateddiffuse\" \"rgb reflectance\" [ 0.2 0.4 0.6 ] \"float roughness\" 0.16 \"float eta\" 1.4",
     );
     assert_eq!((m.base_color, m.coat_weight, m.coat_ior), (Vec3::new(0.2, 0.4, 0.6), 1.0, 1.4));
-    // alpha = sqrt(0.16); its square root is Dürer's roughness.
+    // Alpha is sqrt(0.16), and its square root is Dürer's roughness.
     assert!((m.coat_roughness - 0.4_f32.sqrt()).abs() < 1e-6 && m.coat_darkening == 1.0, "{}", m.coat_roughness);
     let (m, _) = material(
         "Material \"dielectric\" \"float roughness\" 0.04 \"bool remaproughness\" false \"spectrum eta\" \"glass-BK7\"",
@@ -209,7 +212,7 @@ fn materials_become_openpbr_parameters() {
     );
     assert!(matches!(&scene.materials[2].value, Material::Solid(durer_scene::material::PatternMaterial::Mix(mix), _)
         if (mix.material1, mix.material2, mix.share) == (0, 1, 0.75)));
-    // An `interface` surface is not rendered.
+    // A surface with the `interface` material is not rendered.
     let scene = read("Camera \"perspective\" WorldBegin Material \"interface\" Shape \"sphere\"").0.unwrap();
     assert!(scene.root.is_none());
 }
@@ -232,7 +235,7 @@ fn named_spectra_have_tabulated_colours() {
     let warm = SpectrumSource::Blackbody(2856.0).light();
     assert!((warm - named::spectrum("stdillum-A").unwrap().light()).abs().max_element() < 0.02, "{warm}");
     assert!((named::spectrum("stdillum-D65").unwrap().light() - Vec3::ONE).abs().max_element() < 0.002);
-    // Colours of silver, copper and aluminium under D65, from tabulated spectra.
+    // Colours of silver, copper and aluminium under D65, computed from tabulated spectra.
     for (name, wanted) in [("Ag", [0.972, 0.96, 0.915]), ("Cu", [0.955, 0.638, 0.538]), ("Al", [0.913, 0.922, 0.924])] {
         let of = |which: &str| named::spectrum(&format!("metal-{name}-{which}")).unwrap();
         let f0 = conductor_colors(&of("eta"), &of("k"), 1.0)[0];
@@ -250,8 +253,8 @@ fn equal_area_mapping_inverts_and_preserves_area() {
         assert!((dir.length() - 1.0).abs() < 1e-5);
         assert!((equal_area(dir) - place).length() < 1e-3, "{place} {dir} {}", equal_area(dir));
     }
-    // The middle is +z, and the corners are -z. Areas are equal, so a quarter of all positions have
-    // z > 1/2.
+    // The centre of the picture is +z, and its corners are -z. The mapping preserves areas, so a
+    // quarter of all positions have z > 1/2.
     close(equal_area_direction(Vec2::splat(0.5)), Vec3::Z);
     close(equal_area_direction(Vec2::ZERO), Vec3::NEG_Z);
     close(equal_area_direction(Vec2::new(1.0, 0.5)), Vec3::X);
@@ -266,7 +269,7 @@ fn equal_area_mapping_inverts_and_preserves_area() {
 
 #[test]
 fn environment_picture_has_pbrt_orientation() {
-    // A square picture that is bright around +x in the light's own coordinates.
+    // Square picture that is bright around +x in the coordinates of the light.
     let n = 32;
     let pixels: Vec<Vec3> = (0..n * n)
         .map(|i| {
@@ -320,14 +323,15 @@ fn textures_have_pbrt_orientation() {
         world.shading(&at, 1.0, &Lanes::Rgb).eval(Vec3::NEG_Z).0.truncate() * std::f32::consts::PI
     };
     let map = "\"imagemap\" \"string filename\" \"t.ppm\" \"string filter\" \"point\"";
-    // v grows upwards, so the upper left texel is red.
+    // The texture coordinate v increases upwards, so the upper left texel is red.
     close(seen(map, Vec2::new(0.2, 0.8)), Vec3::X);
     close(seen(map, Vec2::new(0.8, 0.7)), Vec3::Y);
     close(seen(map, Vec2::new(0.2, 0.3)), Vec3::Z);
     close(seen(&format!("{map} \"float scale\" 0.5"), Vec2::new(0.8, 0.3)), Vec3::splat(0.5));
     close(seen(&format!("{map} \"float uscale\" 2 \"float vdelta\" 0.5"), Vec2::new(0.3, 0.3)), Vec3::Y);
     let check = "\"checkerboard\" \"rgb tex1\" [ 1 0 0 ] \"rgb tex2\" [ 0 0 1 ] \"float uscale\" 4 \"float vscale\" 2";
-    // Squares are a quarter wide and half high; `tex1` is where both indices are even.
+    // Each square has a width of 1/4 and a height of 1/2 in texture coordinates. `tex1` fills the
+    // squares in which both indices are even.
     close(seen(check, Vec2::new(0.1, 0.2)), Vec3::X);
     close(seen(check, Vec2::new(0.3, 0.2)), Vec3::Z);
     close(seen(check, Vec2::new(0.3, 0.8)), Vec3::X);
@@ -336,8 +340,8 @@ fn textures_have_pbrt_orientation() {
 
 #[test]
 fn pictures_on_spheres_have_pbrt_orientation() {
-    // Four columns, one for each quarter of u, which begins at +x and grows towards +y; v grows
-    // from -z to +z.
+    // The picture has four columns, one for each quarter of u, which is 0 at +x and increases
+    // towards +y. The coordinate v increases from -z to +z.
     let picture: &[u8] =
         b"P6 4 2 255\n\x00\x00\x00\x00\x00\x33\x00\x00\x66\x00\x00\x99\xff\x00\x00\xff\x00\x33\xff\x00\x66\xff\x00\x99";
     let folder = folder(&[("t.ppm", picture)]);
@@ -368,8 +372,8 @@ fn roughness_and_heights_come_from_pictures() {
     let at = world.intersect(&ray, &mut ()).unwrap();
     let durer_render::world::Material::Phong(phong) = &world.materials()[at.material as usize] else { panic!() };
     let own = phong.principled.as_ref().unwrap();
-    // pbrt's alpha is the square root of the value, and Dürer's roughness is the square root of
-    // alpha.
+    // The alpha of pbrt is the square root of the value, and Dürer's roughness is the square root
+    // of alpha.
     let expected = (0.5 * durer_image::decode_srgb(128)).sqrt().sqrt();
     let found = world.parameters_at(own, &at).specular_roughness;
     assert!((found - expected).abs() < 2.0 / 255.0, "{found} {expected}");
@@ -378,7 +382,7 @@ fn roughness_and_heights_come_from_pictures() {
 
 #[test]
 fn touching_meshes_become_one_glass_body() {
-    // A cube about the origin, whose lid is a separate, mirrored mesh.
+    // Cube around the origin, whose lid is a separate, mirrored mesh.
     let side = |turn: &str| {
         format!(
             "AttributeBegin {turn} Translate 0 0 1 Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 0 2 3 ]\n\
@@ -403,7 +407,8 @@ fn touching_meshes_become_one_glass_body() {
 
 #[test]
 fn density_grids_follow_transform_and_end_in_zero() {
-    // Two cells along y in a box from (0, 0, 0) to (2, 4, 2), whose y is z in world space.
+    // Grid with two cells along y in a box from (0, 0, 0) to (2, 4, 2). The y axis of the grid is z
+    // in world space.
     let text = |third: bool| {
         let kind = if third { "heterogeneous" } else { "uniformgrid" };
         format!(
@@ -419,7 +424,7 @@ fn density_grids_follow_transform_and_end_in_zero() {
         let medium = world.medium(Some(0)).unwrap();
         let at = |x, y, z| medium.scattering(glam::DVec3::new(x, y, z), &durer_scene::spectrum::Lanes::Rgb).truncate();
         let sigma = Vec3::new(0.5, 0.25, 1.0);
-        // At cell centres, halfway between them, at the border, and beyond it.
+        // Densities at cell centres, halfway between them, at the border, and outside the grid.
         for (y, density) in [(1.0, 1.0), (3.0, 3.0), (2.0, 2.0), (4.0, 1.5), (0.0, 0.5), (5.0, 0.0), (7.0, 0.0)] {
             close(at(1.0, -1.0, y), density * sigma);
         }
@@ -442,7 +447,8 @@ fn density_grids_follow_transform_and_end_in_zero() {
 fn media_fill_shapes_and_surround_the_camera() {
     let smoke = "MakeNamedMedium \"smoke\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.5 0.25 1 ] \
                  \"rgb sigma_s\" [ 0 0 0 ] \"float scale\" 0.5";
-    // A fraction exp(-2 sigma) passes through the middle of a ball of radius 1 without a boundary.
+    // A fraction exp(-2 sigma) of the light passes through the centre of a ball of radius 1 that
+    // has no boundary.
     let text = format!(
         "Camera \"perspective\" WorldBegin {smoke} LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n\
          AttributeBegin MediumInterface \"smoke\" \"\" Material \"interface\" Translate 0 0 5 Shape \"sphere\" AttributeEnd\n\
@@ -457,12 +463,12 @@ fn media_fill_shapes_and_surround_the_camera() {
         paths.radiance(&ray, SampleId::new(0, (3, 5), 7), &mut ())
     };
     close(through(&inside), Vec3::new(-0.5, -0.25, -1.0).map(fp::exp));
-    // Around the camera, it is fog with the largest of its coefficients.
+    // A medium around the camera becomes fog that uses the largest of the medium's coefficients.
     let text = format!("{smoke} MediumInterface \"\" \"smoke\" Camera \"perspective\" WorldBegin Shape \"sphere\"");
     let fog = world("fog.pbrt", &text).fog().cloned().unwrap();
     close(fog.extinction, Vec3::splat(0.5));
     assert!(fog.region.is_none() && !fog.scatters());
-    // The defaults of `subsurface`, and a sheet that scatters to both sides.
+    // Default coefficients of `subsurface`, and a sheet that scatters light to both sides.
     let text = "Camera \"perspective\" WorldBegin Material \"subsurface\" Shape \"sphere\"\n\
                 Material \"diffusetransmission\" \"rgb reflectance\" [ 0.3 0.3 0.3 ] \"rgb transmittance\" [ 0.1 0.1 0.1 ] \
                 Shape \"sphere\"";

@@ -162,7 +162,7 @@ fn included_files_are_read_and_errors_name_their_file() {
     assert_eq!(messages, [""; 0]);
     let objects = scene.unwrap().root.unwrap().objects;
     assert_eq!(objects.len(), 4);
-    // `Import` restores the state.
+    // `Import` restores the state that was current before it.
     assert!(objects[0].material == objects[3].material && matches!(objects[3].node, ObjectKind::Primitive(_)));
     for (name, wanted) in [
         ("bad.pbrt", "bad.pbrt:2:10 error unknown shape `sfere`"),
@@ -206,7 +206,7 @@ fn hostile_files_never_panic() {
             "{end}: {messages:#?}"
         ); // prose: keep
     }
-    // Every prefix of a file, and the file with every byte changed.
+    // Every prefix of a file is read, and then the file with each of its bytes changed.
     let text = "Film \"rgb\" \"integer xresolution\" [8] Camera \"perspective\" \"float fov\" 40 WorldBegin\n\
                 Texture \"t\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [1 0 0] \"rgb tex2\" [0 0 1]\n\
                 AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [1 2 3] Material \"diffuse\" \"texture reflectance\" \"t\"\n\
@@ -263,7 +263,8 @@ fn settings_come_from_film_sampler_and_integrator() {
         (render_defaults.size, render_defaults.samples, render_defaults.bounces),
         (Some((30, 20)), Some(12), Some(6))
     );
-    // Pixels as from, to, from, to; fractions are rounded up.
+    // The bounds in pixels are listed as first and last x, then first and last y. Fractions are
+    // rounded up.
     let film = |more: &str| {
         format!(
             "Film \"rgb\" \"integer xresolution\" 30 \"integer yresolution\" 20 {more}\n\

@@ -1,4 +1,4 @@
-//! Tessellated shapes compared with closed forms.
+//! Tests that compare tessellated shapes with analytic results.
 
 use super::*;
 use crate::testing::read_with_low_limits;
@@ -32,7 +32,7 @@ fn faced(data: &MeshData) -> bool {
 fn partial_quadrics_have_closed_form_areas() {
     let turn = |degrees: f64| degrees.to_radians();
     for (text, wanted) in [
-        // 2 pi r h, times the fraction of the turn.
+        // A zone of a sphere has the area 2 pi r h, times the fraction of a full turn.
         ("\"sphere\" \"float radius\" 2 \"float zmin\" -0.5 \"float zmax\" 1.5", 2.0 * PI * 2.0 * 2.0),
         ("\"sphere\" \"float zmin\" 0.6 \"float phimax\" 90", turn(90.0) * 0.4),
         ("\"sphere\" \"float phimax\" 250", turn(250.0) * 2.0),
@@ -42,13 +42,14 @@ fn partial_quadrics_have_closed_form_areas() {
         ),
         ("\"disk\" \"float radius\" 2 \"float innerradius\" 1 \"float phimax\" 300", turn(300.0) / 2.0 * 3.0),
         ("\"cone\" \"float radius\" 3 \"float height\" 4", PI * 3.0 * 5.0),
-        // Paraboloid z = r^2: pi / 6 ((1 + 4 z)^(3/2) - 1).
+        // The area of the paraboloid z = r^2 is pi / 6 ((1 + 4 z)^(3/2) - 1).
         ("\"paraboloid\" \"float radius\" 2 \"float zmax\" 4", PI / 6.0 * (17.0 * 17_f64.sqrt() - 1.0)),
         (
             "\"paraboloid\" \"float radius\" 2 \"float zmin\" 1 \"float zmax\" 4",
             PI / 6.0 * (17.0 * 17_f64.sqrt() - 5.0 * 5_f64.sqrt()),
         ),
-        // A line perpendicular to the axis sweeps a ring; a line parallel to it sweeps a cylinder.
+        // A line that is perpendicular to the axis sweeps a ring. A line that is parallel to the
+        // axis sweeps a cylinder.
         ("\"hyperboloid\" \"point p1\" [ 1 0 0 ] \"point p2\" [ 2 0 0 ]", 3.0 * PI),
         ("\"hyperboloid\" \"point p1\" [ 1 0 0 ] \"point p2\" [ 1 0 3 ]", 6.0 * PI),
     ] {
@@ -75,10 +76,11 @@ fn quadrics_face_outwards_and_have_pbrt_uv() {
             assert!(faced(&data), "{head} {text}");
         }
     }
-    // u is the fraction of the turn, and v grows upwards; on a disc, v grows inwards.
+    // The coordinate u is the fraction of the turn. The coordinate v increases upwards, but on a
+    // disc it increases towards the centre.
     let sphere = mesh("Shape \"sphere\" \"float zmin\" -0.5 \"float zmax\" 0.5 \"float phimax\" 180");
     for (place, uv) in sphere.positions.iter().zip(&sphere.uvs) {
-        // Half a turn, and from -30 to 30 degrees of latitude.
+        // The shape covers half a turn, and latitudes from -30 to 30 degrees.
         let (sin, cos) = fp::sin_cos_degrees(180.0 * f64::from(uv.x));
         let (up, across) = fp::sin_cos_degrees(60.0 * f64::from(uv.y) - 30.0);
         let wanted = glam::DVec3::new(across * cos, across * sin, up);
@@ -95,8 +97,9 @@ const CUBE: &str = "\"integer indices\" [ 0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 2 
 
 #[test]
 fn loop_vertices_lie_on_the_limit_surface() {
-    // Octahedron: each vertex has four neighbours whose mean is the centre, so its limit position
-    // is the vertex scaled by 1 - 4 / (4 + 3 / (8 beta)), with beta = 3 / 32.
+    // In an octahedron, each vertex has four neighbours whose mean is the centre. The limit
+    // position of a vertex is therefore the vertex scaled by 1 - 4 / (4 + 3 / (8 beta)), with beta
+    // = 3 / 32.
     let text = "Shape \"loopsubdiv\" \"point P\" [ 1 0 0 -1 0 0 0 1 0 0 -1 0 0 0 1 0 0 -1 ]\n\
                 \"integer indices\" [ 0 2 4 2 1 4 1 3 4 3 0 4 2 0 5 1 2 5 3 1 5 0 3 5 ]";
     for levels in 0..4 {
@@ -105,7 +108,8 @@ fn loop_vertices_lie_on_the_limit_surface() {
         assert!((data.positions[4] - Vec3::new(0.0, 0.0, 0.5)).length() < 1e-6, "{levels}: {}", data.positions[4]);
         assert!((data.normals[4] - Vec3::Z).length() < 1e-6 && faced(&data), "{levels}");
     }
-    // The default is three levels, with normals of the limit surface.
+    // By default, there are three levels of subdivision, and the normals are those of the limit
+    // surface.
     let data = mesh(text);
     assert_eq!(data.triangles.len(), 512);
     for triangle in &data.triangles {
@@ -114,20 +118,20 @@ fn loop_vertices_lie_on_the_limit_surface() {
         let cosine = (b - a).cross(c - a).normalize().dot(normal.normalize());
         assert!(cosine > 0.95, "{cosine} {triangle:?}");
     }
-    // A flat mesh stays flat.
+    // A flat mesh remains flat.
     let flat = mesh(
         "Shape \"loopsubdiv\" \"integer levels\" 2 \"point P\" [ 0 0 0 1 0 0 2 0 0 0 1 0 1 1 0 2 1 0 0 2 0 1 2 0 2 2 0 ]\n\
          \"integer indices\" [ 0 1 4 0 4 3 1 2 5 1 5 4 3 4 7 3 7 6 4 5 8 4 8 7 ]",
     );
     assert!(flat.positions.iter().all(|p| p.z == 0.0) && flat.normals.iter().all(|n| (*n - Vec3::Z).length() < 1e-6));
-    // The middle of a side stays in place, but the corners of the border are rounded off.
+    // The middle of each side stays in place, but the corners of the border are rounded off.
     assert!(
         flat.positions[1] == Vec3::X && area(&flat) < 4.0 && area(&flat) > 3.6,
         "{} {}",
         flat.positions[1],
         area(&flat)
     );
-    // Three triangles at an edge have no one-ring, so they stay in place.
+    // Three triangles that share an edge have no one-ring, so their vertices stay in place.
     let fan = "Shape \"loopsubdiv\" \"integer levels\" 1 \"point P\" [ 0 0 0 0 0 1 1 0 0 0 1 0 -1 0 0 ] \"integer indices\" [ 0 1 2 0 1 3 0 1 4 ]";
     assert_eq!(mesh(fan).positions[0], Vec3::ZERO);
     let cube = mesh(&format!(
@@ -139,7 +143,8 @@ fn loop_vertices_lie_on_the_limit_surface() {
 #[test]
 fn curves_have_given_width() {
     let line = "\"point P\" [ 0 0 0 1 0 0 2 0 0 3 0 0 ]";
-    // Mean of the circumscribed and inscribed circles of a tube's polygon.
+    // The radius of a tube is the mean radius of the circumscribed and inscribed circles of its
+    // polygon.
     let tube = mesh(&format!("Shape \"curve\" \"string type\" \"cylinder\" \"float width\" 0.5 {line}"));
     assert!((area(&tube) / (PI * 0.5 * 3.0) - 1.0).abs() < 0.01, "{}", area(&tube));
     for (place, normal) in tube.positions.iter().zip(&tube.normals) {
@@ -156,19 +161,20 @@ fn curves_have_given_width() {
         (area(&ribbon) - 1.5).abs() < 1e-5 && ribbon.positions.iter().all(|p| p.z.abs() < 1e-6 && p.y.abs() < 0.2501)
     );
     assert!(ribbon.normals.iter().all(|n| (*n - Vec3::Z).length() < 1e-5));
-    // If the ribbon makes a quarter turn, its middle is turned by half of that.
+    // If a ribbon makes a quarter turn, its middle is turned by half of that angle.
     let turned = mesh(&format!(
         "Shape \"curve\" \"string type\" \"ribbon\" \"float width\" 0.5 \"normal N\" [ 0 0 1 0 1 0 ] {line}"
     ));
     let middle = turned.positions.iter().zip(&turned.normals).find(|(p, _)| (p.x - 1.5).abs() < 1e-4).unwrap().1;
     assert!((*middle - Vec3::new(0.0, 1.0, 1.0).normalize()).length() < 1e-3, "{middle}");
-    // A B-spline with equal steps is a straight line from the second to the second to last point.
+    // A B-spline with equally spaced control points is a straight line from the second control
+    // point to the second to last one.
     let spline = mesh(&format!(
         "Shape \"curve\" \"string type\" \"cylinder\" \"string basis\" \"bspline\" \"float width\" 0.1 {line}"
     ));
     let ends = spline.positions.iter().fold((9.0_f32, -9.0_f32), |(a, b), p| (a.min(p.x), b.max(p.x)));
     assert!((ends.0 - 1.0).abs() < 1e-5 && (ends.1 - 2.0).abs() < 1e-5, "{ends:?}");
-    // The same parabola as a curve of degree 2 and of degree 3.
+    // One parabola is given as a curve of degree 2 and as a curve of degree 3.
     let text = |points: &str, degree: u32| {
         mesh(&format!(
             "Shape \"curve\" \"string type\" \"cylinder\" \"integer degree\" {degree} \"float width\" 0.1 \"point P\" [ {points} ]"
@@ -186,7 +192,7 @@ fn height_fields_and_nurbs_become_meshes() {
     let heights = mesh("Shape \"heightfield\" \"integer nu\" 3 \"integer nv\" 2 \"float Pz\" [ 0 1 2 3 4 5 ]");
     assert_eq!((heights.positions[1], heights.positions[5]), (Vec3::new(0.5, 0.0, 1.0), Vec3::new(1.0, 1.0, 5.0)));
     assert_eq!(heights.triangles.len(), 4);
-    // Exact quarter of a cylinder: weights 1, 1 / sqrt 2 and 1.
+    // An exact quarter of a cylinder has the weights 1, 1 / sqrt 2 and 1.
     let w = std::f32::consts::FRAC_1_SQRT_2;
     let cylinder = mesh(&format!(
         "Shape \"nurbs\" \"integer nu\" 3 \"integer nv\" 2 \"integer uorder\" 3 \"integer vorder\" 2\n\
@@ -203,8 +209,8 @@ fn height_fields_and_nurbs_become_meshes() {
 
 #[test]
 fn tessellation_is_limited() {
-    // A partial ball has at most 128 x 64 x 2 triangles. The limit in tests leaves out some of 20
-    // balls.
+    // A partial ball has at most 128 x 64 x 2 triangles. With the limit that tests use, some of the
+    // 20 balls are left out.
     let text = "Shape \"sphere\" \"float phimax\" 359 ".repeat(20);
     let (scene, messages) =
         read_with_low_limits("a.pbrt", &format!("Film \"image\" Camera \"perspective\" WorldBegin {text}"));

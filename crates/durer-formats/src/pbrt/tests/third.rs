@@ -1,4 +1,4 @@
-//! Scenes of pbrt-v3: detection of the language, and conventions.
+//! Tests of pbrt-v3 scenes, which cover the detection of the language and its conventions.
 
 use super::*;
 use durer_image::{Image, Layer, WriteOptions, format_for};
@@ -21,7 +21,8 @@ fn lights(text: &str) -> Vec<Light> {
     third(&format!("{text} Shape \"sphere\"")).lights.unwrap().into_iter().map(|light| light.value).collect()
 }
 
-/// Returns the layers of a sphere's material with their shares, one for each part of a mix.
+/// Returns the layers of a sphere's material and their shares, with one entry for each part of a
+/// mix.
 pub(super) fn parts(text: &str) -> Vec<(f32, PrincipledMaterial)> {
     let (scene, messages) = read(&format!("{HEAD}{text} Shape \"sphere\""));
     let scene = scene.unwrap_or_else(|| panic!("{text}: {messages:?}")); // prose: keep
@@ -52,7 +53,7 @@ fn pfm(width: u32, height: u32, pixel: impl Fn(u32, u32) -> Color) -> Vec<u8> {
 
 #[test]
 fn first_unambiguous_word_decides_language() {
-    // In pbrt-v3 values are absolute; in pbrt-v4 a spectrum is scaled to luminance 1.
+    // In pbrt-v3, values are absolute. In pbrt-v4, a spectrum is scaled to a luminance of 1.
     let light = "LightSource \"point\" \"spectrum I\" [ 300 5 900 5 ] Shape \"sphere\"";
     let is_third = |text: &str| {
         let (scene, messages) = read(&format!("{text} {light}"));
@@ -74,7 +75,7 @@ fn first_unambiguous_word_decides_language() {
         &format!("{camera} LightSource \"distant\" \"rgb scale\" [ 1 1 1 ]"),
         &format!("{camera} AreaLightSource \"diffuse\" \"integer nsamples\" 4"),
         &format!("{camera} MakeNamedMedium \"a\" \"string type\" \"heterogeneous\" \"float density\" 1"),
-        // The first such word decides the language.
+        // The first keyword that exists in only one version decides the language.
         &format!("{camera} Material \"matte\" ColorSpace \"srgb\""),
     ] {
         assert!(is_third(text), "{text}");
@@ -112,11 +113,11 @@ fn light_values_are_absolute() {
     let (place, color) = point("\"color I\" [ 2 4 6 ] \"rgb scale\" [ 0.5 1 2 ] \"point from\" [ 1 2 3 ]");
     close(color, Vec3::new(1.0, 4.0, 12.0) / pi);
     assert_eq!(place, Vec3::new(1.0, 2.0, 3.0));
-    // RGB of a constant spectrum of 1, which is that of X = Y = Z = 1.
+    // A constant spectrum of 1 has the RGB colour of X = Y = Z = 1.
     let white = Vec3::new(1.2048, 0.9483, 0.9087);
     assert!((point("\"spectrum I\" [ 500 3 600 3 ]").1 * pi / 3.0 - white).abs().max_element() < 0.01);
     assert!((point("\"xyz I\" [ 3 3 3 ]").1 * pi / 3.0 - white).abs().max_element() < 0.001);
-    // A blackbody is scaled to 1 at its peak, here at 500 nm.
+    // A blackbody is scaled so that its peak, which is at 500 nm here, is 1.
     let body = |text: &str| point(&format!("\"blackbody I\" [ {text} ]")).1;
     let warm = body("5795.5 1");
     assert!(warm.y * pi > 0.9 && warm.y * pi < 1.0, "{warm}");
@@ -134,7 +135,7 @@ fn light_values_are_absolute() {
 
 #[test]
 fn environment_has_z_up_and_x_at_left_edge() {
-    // Rows go down from +z; columns go from +x through +y.
+    // Rows go down from +z, and columns go from +x through +y.
     let bytes = pfm(8, 4, |x, y| Vec3::new(x as f32, y as f32, 1.0));
     let folder = folder(&[("sky.pfm", &bytes)]);
     let text =
@@ -145,7 +146,8 @@ fn environment_has_z_up_and_x_at_left_edge() {
     let encoded = durer_image::Encoded::open(bytes, name).unwrap();
     let sky = encoded.read(u64::MAX, durer_image::decode_linear).unwrap();
     let at = |dir: [f64; 3]| crate::panorama::nearest(&sky, dir.into());
-    // +y is between the texels at 67.5 and at 112.5 degrees, both in longitude and from the pole.
+    // The direction +y is between the texels at 67.5 and 112.5 degrees, both in longitude and in
+    // the angle from the pole.
     let y = at([0.0, 1.0, 0.001]);
     assert!((y.x / 2.0 - 1.5).abs() < 0.6 && (y.y - 1.5).abs() < 0.6, "{y}");
     let west = at([-1.0, 0.0, 0.001]);
@@ -173,20 +175,21 @@ fn pictured_lights_follow_their_pictures() {
     };
     let gonio = "LightSource \"goniometric\" \"rgb I\" [ 1 2 3 ] \"string mapname\" \"gonio.pfm\"";
     let emissive = lights(gonio);
-    // The pole is +y, where the first row meets the last, as in pbrt-v3. Columns go from +x through
-    // +z.
+    // As in pbrt-v3, the pole is +y, where the first row meets the last one. Columns go from +x
+    // through +z.
     close(emissive([0.0, 1.0, 0.0]), 0.5 * (5.0 + 4.5) * Vec3::new(1.0, 2.0, 3.0));
     close(emissive([0.0, 0.0, 1.0]), 2.5 * Vec3::new(1.0, 2.0, 3.0));
     close(emissive([-1.0, 0.0, 0.0]), 4.5 * Vec3::new(1.0, 2.0, 3.0));
     close(emissive([0.0, 0.0, -1.0]), 6.5 * Vec3::new(1.0, 2.0, 3.0));
-    // Rotated, so that the pole is +x and z is unchanged.
+    // The light is rotated so that its pole is +x and z is unchanged.
     let turned = lights(&format!("Rotate -90 0 0 1 {gonio}"));
     close(turned([1.0, 0.0, 0.0]), 4.75 * Vec3::new(1.0, 2.0, 3.0));
     close(turned([0.0, 0.0, 1.0]), 2.5 * Vec3::new(1.0, 2.0, 3.0));
-    // Mirrored.
+    // The light is mirrored.
     let mirrored = lights(&format!("Scale 1 1 -1 {gonio}"));
     close(mirrored([0.0, 0.0, -1.0]), 2.5 * Vec3::new(1.0, 2.0, 3.0));
-    // 90 degrees across the shorter side, so the picture covers -2 to 2 by -1 to 1.
+    // The field of view is 90 degrees across the shorter side, so the picture covers -2 to 2 by -1
+    // to 1.
     let slide = lights("LightSource \"projection\" \"float fov\" 90 \"string mapname\" \"slide.pfm\"");
     let at = |x: f32, y: f32| slide([x, y, 1.0]);
     for (place, wanted) in [((0.5, 0.5), [2.0, 1.0, 0.0]), ((-1.5, -0.5), [0.0; 3]), ((1.5, 0.0), [3.0, 0.5, 0.0])] {

@@ -1,4 +1,4 @@
-//! Materials and textures of pbrt-v3.
+//! Tests of the materials and textures of pbrt-v3.
 
 use super::super::material::alpha_of_roughness;
 use super::third::{close, parts};
@@ -8,7 +8,7 @@ use durer_scene::math::Vec3;
 
 #[test]
 fn roughness_follows_pbrt_v3_polynomial() {
-    // At 1 the logarithm is 0; below 0.001 the roughness is clamped.
+    // For a roughness of 1, the logarithm is 0. A roughness below 0.001 is clamped.
     assert_eq!(alpha_of_roughness(1.0), 1.62142);
     let x = durer_scene::math::fp::ln(0.001);
     let least = 1.62142 + 0.819955 * x + 0.1734 * x * x + 0.0171201 * x * x * x + 0.000640711 * x * x * x * x;
@@ -33,7 +33,7 @@ fn mixes_reflect_the_sum_of_their_parts() {
         |layers: &PrincipledMaterial| if layers.specular_weight > 0.0 { layers.specular_color } else { Vec3::ZERO };
     assert!((whole(&plastic, specular) - Vec3::new(0.1, 0.2, 0.3)).abs().max_element() < 2e-3);
     assert!(plastic.iter().any(|(_, layers)| (layers.specular_ior - 1.0 / 1.5).abs() < 1e-6));
-    // Black parts are dropped.
+    // Parts that are black are dropped.
     assert_eq!(parts("Material \"plastic\" \"rgb Ks\" [ 0 0 0 ]").len(), 1);
     let uber = parts(
         "Material \"uber\" \"rgb Kd\" [ 0.3 0.3 0.3 ] \"rgb Ks\" [ 0 0 0 ] \"rgb Kr\" [ 0.2 0.4 0.6 ] \"rgb Kt\" [ 0.5 0.5 0.5 ]\n\
@@ -62,7 +62,7 @@ fn other_materials_read_their_parameters() {
     let mirror = only("Material \"mirror\" \"rgb Kr\" [ 0.4 0.8 0.2 ]");
     close(mirror.specular_weight * mirror.base_color, Vec3::new(0.4, 0.8, 0.2));
     assert_eq!((mirror.base_metalness, mirror.specular_roughness), (1.0, 0.0));
-    // Copper at normal incidence: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
+    // The reflectance of copper at normal incidence is ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
     let smooth = "\"float roughness\" 0.0001 \"bool remaproughness\" \"false\"";
     let copper = only(&format!("Material \"metal\" {smooth}")).base_color;
     close(copper, Vec3::new(0.95214, 0.61968, 0.51058));
@@ -90,14 +90,14 @@ fn other_materials_read_their_parameters() {
 #[test]
 fn substrate_mean_albedo_follows_its_formula() {
     use durer_scene::bsdf::albedo::DielectricAlbedo;
-    // The mean is 23/28 of (1 - Ks) Kd.
+    // The mean reflectance is 23/28 of (1 - Ks) Kd.
     let parts = parts("Material \"substrate\" \"rgb Kd\" [ 0.2 0.4 0.8 ] \"rgb Ks\" [ 0.04 0.04 0.04 ]");
     let (share, base) = parts.iter().find(|(_, layers)| layers.base_color != Vec3::ZERO).unwrap();
     let boundary = DielectricAlbedo::new(base.specular_ior);
     let passing = 1.0 - boundary.mean(base.specular_roughness);
     let mean = *share * passing * base.base_color;
     assert!((mean / (Vec3::new(0.2, 0.4, 0.8) * 0.96 * 23.0 / 28.0) - Vec3::ONE).abs().max_element() < 5e-3, "{mean}");
-    // As a function of direction: 1 - (1 - cos / 2)^5.
+    // The dependence on direction is 1 - (1 - cos / 2)^5.
     for cosine in [0.1, 0.3, 0.5, 0.7, 1.0] {
         let (half, wanted): (f32, f32) = (1.0 - 0.5 * cosine, 28.0 / 23.0);
         let formula = wanted * (1.0 - half * half * half * half * half);
@@ -107,7 +107,7 @@ fn substrate_mean_albedo_follows_its_formula() {
             "{cosine}: {ours} {formula}"
         );
     }
-    // The mean of smooth microfacets is Ks + (1 - Ks) / 21.
+    // The mean reflectance of smooth microfacets is Ks + (1 - Ks) / 21.
     let (share, specular) = parts.iter().find(|(_, layers)| layers.base_color == Vec3::ZERO).unwrap();
     let ratio = (specular.specular_ior - 1.0) / (specular.specular_ior + 1.0);
     assert!((ratio * ratio - 0.04).abs() < 1e-5 && *share > 0.0);
@@ -157,7 +157,7 @@ fn hair_is_read_in_both_languages() {
         let made = hair(&format!("Material \"hair\" \"rgb {word}\" [ 0.5 0.25 0.125 ]"));
         close(made.color.unwrap(), Vec3::new(0.5, 0.25, 0.125));
     }
-    // Absorption takes precedence, here in pbrt-v3.
+    // Absorption takes precedence over other parameters, in this case in pbrt-v3.
     let made = hair("Material \"matte\" Material \"hair\" \"rgb sigma_a\" [ 1 2 3 ] \"rgb color\" [ 0.5 0.5 0.5 ]");
     assert_eq!((made.absorption, made.color), (Some(Vec3::new(1.0, 2.0, 3.0)), None));
 }

@@ -14,7 +14,7 @@ fn words(text: &str) -> Vec<Word> {
     std::iter::from_fn(|| words.next()).collect()
 }
 
-/// Returns the radiance of the sun, and the arguments of the sky.
+/// Returns the radiance of the sun and the arguments of the sky.
 fn printed(args: &str) -> (f64, Vec<f64>) {
     let (report, words) = (SharedReport::default(), words(&format!("gensky {args}")));
     let text = gensky::text(&report, &words[0], &words[1..]).unwrap_or_else(|| panic!("{args}"));
@@ -38,7 +38,7 @@ fn output_matches_radiance_6_0() {
         // If a year is given, both programs use a more accurate formula.
         ("2 28 12 -y 2011 +s", 6.747e6, &[1.0, 9.316, 20.86, 0.5563, 0.089294, -0.712975, 0.695481]),
         ("9 1 8.25 -i -t 4 -b 20", 0.0, &[4.0, 20.0, 6.981, 1.042, 0.843806, -0.21235, 0.492848]),
-        // Too close to the zenith for the formula.
+        // The sun is too close to the zenith for the formula.
         ("6 21 12 +s -a 23 -o 0 -m 0", 7.210e6, &[1.0, 148.6, 37.99, 2.714, 0.030374, 0.04262, 0.99863]),
         (
             "12 24 14.5 +s -R 100 -a -33.9 -o -151.2 -m -150",
@@ -69,7 +69,7 @@ fn command_gives_the_sky_of_its_output() {
     };
     let still = sun(&format!("!gensky 6 21 12 +s -a 42.3 -o 71 -m 75\n{glow}"));
     assert!((still - Vec3::new(0.058393, 0.321824, -0.944997)).length() < 1e-4, "{still}");
-    // Rotated by the `xform` that it is piped into.
+    // The output is rotated by the `xform` into which it is piped.
     let turned = sun(&format!("!gensky 6 21 12 +s -a 42.3 -o 71 -m 75 | xform -rz 90\n{glow}"));
     assert!((turned - Vec3::new(-0.321824, 0.058393, -0.944997)).length() < 1e-4, "{turned}");
 }
@@ -111,7 +111,7 @@ fn perez_sky_matches_rtrace() {
         let found = sky.at(DVec3::from_array(way).normalize());
         assert!((found / expected - 1.0).abs() < 1e-3, "{way:?}: {found}, not {expected}");
     }
-    // Used as a pattern in a scene.
+    // The output is used as a pattern in a scene.
     let scene = clean(&format!("{text}\nf glow g 0 0 4 1 1 1 0 g source s 0 0 4 0 0 1 180"));
     assert!(scene.background.environment.is_some());
 }

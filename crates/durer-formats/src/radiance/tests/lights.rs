@@ -1,4 +1,4 @@
-//! Tests of lights with a directional distribution.
+//! Tests of lights that have a directional distribution.
 
 use super::*;
 use crate::asset_export::export_assets;
@@ -9,7 +9,8 @@ use durer_scene::math::fp;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Returns the sum of the intensities of all lights of a scene in a direction: radiance times area.
+/// Returns the sum of the intensities (radiance times area) of all lights in a scene for a given
+/// direction.
 fn intensity(scene: &Scene, dir: DVec3) -> f64 {
     let lights = scene.lights.as_ref().unwrap().iter();
     let strong = lights.map(|light| {
@@ -20,7 +21,8 @@ fn intensity(scene: &Scene, dir: DVec3) -> f64 {
     strong.sum()
 }
 
-/// Returns the direction for an angle from straight down and an angle around the vertical axis.
+/// Returns the direction for an angle from the downward direction and an angle around the vertical
+/// axis.
 fn direction(theta: f64, phi: f64) -> DVec3 {
     let [(sin, cos), (s, c)] = [theta, phi].map(fp::sin_cos_degrees);
     DVec3::new(sin * c, sin * s, -cos)
@@ -34,8 +36,8 @@ fn sin(degrees: f64) -> f64 {
     fp::sin_cos_degrees(degrees).0
 }
 
-/// Data file with a table over two angles: 0 to 180 degrees around the axis, and 0 to 180 degrees
-/// from below.
+/// Data file that contains a table over two angles. One angle ranges from 0 to 180 degrees around
+/// the axis, and the other one from 0 to 180 degrees measured from the downward direction.
 fn by_two() -> String {
     let values =
         (0..=18).flat_map(|i| (0..=36).map(move |j| (1.0 + 0.1 * f64::from(i) + 0.2 * f64::from(j)).to_string()));
@@ -61,7 +63,8 @@ fn intensity_follows_the_table() {
     ]);
     let down = |theta: f64| if theta < 90.0 { cos(theta) } else { 0.0 };
     let cases: [(&str, Expected); 11] = [
-        // Radiance 3, times 2, times the table's value, over the cosine, times an area of pi or 4.
+        // The expected intensity is a radiance of 3, times 2, times the value of the table, divided
+        // by the cosine, times an area of pi or 4.
         (
             "void brightdata d 4 flatcorr a.dat source.cal src_theta 0 1 2 d light l 0 0 3 3 3 3 l ring r 0 0 8 0 0 1 0 0 -1 0 1",
             Box::new(move |theta, _| 6.0 * PI * down(theta)),
@@ -75,7 +78,8 @@ fn intensity_follows_the_table() {
              l polygon r 0 0 12 -1 -1 0 -1 1 0 1 1 0 1 -1 0",
             Box::new(|theta, phi| if theta < 90.0 { 4.0 * of_two(theta, phi) } else { 0.0 }),
         ),
-        // The projected area of a sphere is a disc in all directions; that of a tube is its side.
+        // The projected area of a sphere is that of a disc in every direction. The projected area
+        // of a tube is that of its side.
         (
             "void brightdata d 5 corr b.dat source.cal src_phi2 src_theta 0 0 d light l 0 0 3 1 1 1 l sphere r 0 0 4 1 2 3 2",
             Box::new(|theta, phi| 4.0 * PI * of_two(theta, phi)),
@@ -84,7 +88,7 @@ fn intensity_follows_the_table() {
             "void brightdata d 5 corr b.dat source.cal src_phi2 src_theta 0 0 d light l 0 0 3 1 1 1 l cylinder r 0 0 7 0 0 1 0 0 4 .5",
             Box::new(|theta, phi| 3.0 * sin(theta) * of_two(theta, phi)),
         ),
-        // The intensity of a box or cylinder as a whole is the table's value.
+        // The value in the table is the intensity of the whole box or cylinder.
         (
             "void brightdata d 5 boxcorr b.dat source.cal src_phi2 src_theta 0 4 1 2 4 1 d light l 0 0 3 1 1 1 !genbox l r 2 4 1",
             Box::new(of_two),
@@ -94,8 +98,8 @@ fn intensity_follows_the_table() {
              l cylinder r 0 0 7 0 0 0 0 0 3 1 l ring t 0 0 8 0 0 3 0 0 1 0 1 l ring u 0 0 8 0 0 0 0 0 -1 0 1",
             Box::new(of_two),
         ),
-        // Rotated by a right angle about z, and turned upside down, both by a command and by
-        // explicit options.
+        // The light is rotated by a right angle around z, and turned upside down. The rotation is
+        // given by a command and by explicit options.
         (
             "!xform -rz 90 lamp.rad", // prose: keep
             Box::new(
@@ -104,15 +108,18 @@ fn intensity_follows_the_table() {
         ),
         (
             "void brightdata d 6 corr back.dat source.cal src_theta -rx 180 0 0 d light l 0 0 3 1 1 1 l sphere r 0 0 4 1 2 3 1",
-            // 4 from below, 1 at the side, 0 from above; turned upside down.
+            // The values are 4 from below, 1 at the side and 0 from above, and the light is upside
+            // down.
             Box::new(|theta, _| PI * if theta > 90.0 { 4.0 - 3.0 * (180.0 - theta) / 90.0 } else { theta / 90.0 }),
         ),
-        // An eighth of the ring's radiance: two angles of a type B photometer.
+        // The table contains only ones. The coordinate of the table is one of the angles of a type
+        // B photometer.
         (
             "void brightdata d 4 corr one.dat source.cal srcB_vert2 0 0 d light l 0 0 3 1 1 1 l sphere r 0 0 4 1 2 3 1",
             Box::new(|_, _| PI),
         ),
-        // A spotlight of 60 degrees in total; the expected value follows from its cosine.
+        // The cone of the spotlight has a total angle of 60 degrees, and the expected value follows
+        // from its cosine.
         (
             "void spotlight s 0 0 7 2 2 2 60 0 0 -1 s ring r 0 0 8 0 0 1 0 0 -1 0 1",
             Box::new(|theta, _| if theta <= 30.0 { 2.0 * PI * cos(theta) } else { 0.0 }),
@@ -144,7 +151,7 @@ fn equal_distributions_share_a_profile_and_are_exported() {
     let text = format!("{light} l polygon q 0 0 12 -1 -1 2 -1 1 2 1 1 2 1 -1 2 !xform -t 5 0 0 lamp.rad"); // prose: keep
     let (scene, _) = read_in(files.path(), "scene.rad", &text);
     let scene = scene.unwrap();
-    // The last text differs from the others.
+    // The last text is different from the others.
     assert_eq!((scene.assets.profiles.len(), scene.lights.as_ref().unwrap().len()), (2, 48));
     let (made, beside) = export_assets(&scene, "kept", &FolderSource::new(files.path()));
     let names: Vec<&str> = beside.iter().map(|(name, _)| name.as_str()).collect();
@@ -179,14 +186,15 @@ fn points_of_an_emitter_are_centred() {
 
 #[test]
 fn angles_may_have_an_offset() {
-    // As in files written by `ies2rad`, from 90 to 270 degrees.
+    // The angles range from 90 to 270 degrees, as in files that `ies2rad` writes.
     let files = folder(&[("b.dat", by_two().as_bytes())]);
     let text = "void brightdata d 7 flatcorr b.dat source.cal src_phi2+20 src_theta -rz -90 0 0 d light l 0 0 3 1 1 1
         l polygon r 0 0 12 -1 -1 0 -1 1 0 1 1 0 1 -1 0";
     let (scene, _) = read_in(files.path(), "scene.rad", text);
     let scene = scene.unwrap();
     for (theta, phi) in [(30.0, 0.0), (30.0, 200.0)] {
-        // The light is rotated back by a right angle, so its angle is larger by a right angle.
+        // The rotation turns the light back by a right angle, so the angle in its table is larger
+        // by a right angle.
         let around: f64 = (phi + 90.0_f64).rem_euclid(360.0);
         let folded = if around > 180.0 { 360.0 - around } else { around };
         let expected = 4.0 * (1.0 + 0.01 * (folded + 20.0) + 0.04 * theta);

@@ -1,6 +1,6 @@
 //! Tests of behaviour that the manual does not specify and that was measured with Radiance's own
-//! programs: chains of patterns, skies, folders, standard views, and the reflectance and
-//! transmittance of a sheet.
+//! programs. The tests cover chains of patterns, skies, folders, standard views, and the
+//! reflectance and transmittance of a sheet.
 
 use super::*;
 use crate::radiance::args::RadPrimitive;
@@ -17,7 +17,7 @@ use durer_scene::math::Ray;
 use durer_scene::sampler::SampleId;
 use glam::{DMat3, DVec3};
 
-/// A sun, appended to texts so that they get no default lighting.
+/// Sun that is appended to texts so that they do not get default lighting.
 const SUN: &str = "\nvoid light sun 0 0 3 1 1 1 sun source s 0 0 4 0 0 1 .5";
 
 /// Material of the first object.
@@ -43,10 +43,10 @@ fn surface_with_a_pattern_has_the_material_below_it() {
             assert!(scene.root.unwrap().objects.len() == 1);
         }
     }
-    // A texture without effect does not add a second material.
+    // A texture that has no effect does not add a second material.
     let text = format!("{base}m texfunc t 4 0 0 0 . 0 0 t sphere p 0 0 4 0 0 0 1 m sphere q 0 0 4 3 0 0 1{SUN}");
     assert_eq!(read(&text).0.unwrap().materials.len(), 1);
-    // Patterns over `void` have no effect.
+    // Patterns that are applied to `void` have no effect.
     assert!(
         clean(&format!("void brightfunc t 2 1 . 0 0 t sphere p 0 0 4 0 0 0 1{SUN}")).root.unwrap().objects.is_empty()
     );
@@ -91,8 +91,8 @@ fn skies_match_rtrace() {
 
 #[test]
 fn skies_are_rotated_by_xform_and_by_their_arguments() {
-    // The bright side of a clear sky, at y, rotated to x: in the text, through a pipe and in a
-    // file.
+    // The bright side of a clear sky is at y and is rotated to x. The rotation is given in the
+    // text, in a pipe or in a file.
     let numbers = "0 7 1 30 7 1.1 0 .7 .714143";
     let rest = "f glow g 0 0 4 1 1 1 0 g source s 0 0 4 0 0 1 180";
     let sky = format!("void brightfunc f 2 skybr skybright.cal {numbers} {rest}");
@@ -170,7 +170,7 @@ fn standard_views_match_rad() {
         ("view= x -vh 20\nZONE= E -4 4 -4 4 0 6\nUP= X", [-16.0, 0.0, 3.0], [8.0, 0.0, 0.0], Vec3::Z),
         ("view= yl\nZONE= E -4 4 -4 4 0 6\nUP= Y", [0.0, -16.0, 3.0], [0.0, 8.0, 0.0], Vec3::X),
         ("view= z\nZONE= I -4 4 -4 4 0 6", [0.0, 0.0, 0.3], [0.0, 0.0, 6.0], Vec3::Y),
-        // Without a zone, the box is the bounding cube of all surfaces.
+        // If there is no zone, the box is the bounding cube of all surfaces.
         ("view= XYZ", [16.0, 16.0, 18.0], [-8.0, -8.0, -8.0], Vec3::Z),
     ] {
         let (scene, messages) = read_in(files.path(), "x.rif", format!("scene = s.rad\n{lines}\n"));
@@ -186,8 +186,8 @@ fn standard_views_match_rad() {
 
 #[test]
 fn sheet_has_the_given_reflectance_and_transmittance() {
-    // Formulas for thin sheets at normal incidence: 2 F / (1 + F) for the specularly transmitted
-    // part, and F for the remainder.
+    // Formulas for thin sheets at normal incidence, which are 2 F / (1 + F) for the part that is
+    // transmitted specularly and F for the remainder.
     for (numbers, [reflected, straight, matte]) in [
         (".05 0 .9 1", [0.05, 0.95 * 0.9, 0.95 * 0.1]),
         (".2 0 .5 .4", [0.2, 0.8 * 0.2, 0.8 * 0.8]),
@@ -207,7 +207,7 @@ fn sheet_has_the_given_reflectance_and_transmittance() {
         let near = found.into_iter().zip([reflected, straight, matte]).all(|(a, b): (f32, f32)| (a - b).abs() < 1e-5);
         assert!(near, "{numbers}: {found:?}");
     }
-    // Transmitted light is rough even without a reflecting layer.
+    // Roughness scatters transmitted light even without a reflecting layer.
     assert_eq!(sphere("void trans m 0 0 7 1 1 1 0 0 1 1").0.specular_roughness, 0.0);
     assert!((sphere("void trans m 0 0 7 1 1 1 0 .09 1 1").0.specular_roughness - 0.3).abs() < 1e-6);
 }
@@ -253,7 +253,7 @@ fn mirror_uses_its_substitute_and_void_is_transparent() {
         let scene = clean(&format!("{text} m sphere s 0 0 4 0 0 0 1{SUN}"));
         assert_eq!((first(&scene).opacity, scene.materials.len()), (opacity, 1), "{mixed}");
     }
-    // A mixture with an opacity of one half.
+    // Mixture with an opacity of one half.
     let text = format!("{other}{MATTE}void mixfunc two 4 blue white .5 . 0 0 void mixfunc m 4 two void .5 . 0 0");
     let scene = clean(&format!("{text} m sphere s 0 0 4 0 0 0 1{SUN}"));
     assert_eq!(scene.materials.len(), 3);
@@ -283,7 +283,7 @@ fn degenerate_surfaces_are_left_out() {
 
 #[test]
 fn unused_materials_are_removed() {
-    // The materials of a sun and of the outer side of glass are removed.
+    // The reader removes the materials of a sun and of the outer side of glass.
     let scene = clean(
         "void light l 0 0 3 9 9 9 l source s 0 0 4 0 0 1 .5 void interface g 0 0 8 1 1 1 1.5 1 1 1 1.33 g bubble b 0 0 4 0 0 0 1",
     );
