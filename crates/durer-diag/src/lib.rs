@@ -1,6 +1,6 @@
 //! Diagnostics: errors, warnings, and notes about input files, with their positions.
 //!
-//! The library creates diagnostics, and the command line and Python print them.
+//! The library creates diagnostics; the command-line program and the Python module print them.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -11,13 +11,13 @@ pub const ERROR_LIMIT: usize = 20;
 
 /// Range of bytes in an input file, to which a diagnostic or an item of a scene refers.
 ///
-/// Any two spans compare as equal, so that comparing two scenes ignores where their items stand in
+/// Any two spans compare as equal, so comparing two scenes ignores the positions of their items in
 /// the files.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Span {
     /// Number of the file in its [`Files`].
     pub file: u32,
-    /// First byte.
+    /// Offset of the first byte.
     pub start: u32,
     /// Offset of the byte after the last one.
     pub end: u32,
@@ -36,8 +36,8 @@ impl Span {
         self.end > 0
     }
 
-    /// Joins this span with a later one: from the start of this span to the end of `end`. Returns
-    /// this span unchanged if `end` is in another file.
+    /// Joins this span with a later one; the result reaches from the start of this span to the end
+    /// of `end`. Returns this span unchanged if `end` is in another file.
     pub fn join(self, end: Span) -> Span {
         if end.file != self.file {
             return self;
@@ -62,7 +62,7 @@ pub enum Severity {
 pub struct Edit {
     /// Range of bytes to replace; it is empty if the edit only inserts text.
     pub span: Span,
-    /// Replacement text.
+    /// Text that replaces the range.
     pub text: String,
 }
 
@@ -70,7 +70,7 @@ pub struct Edit {
 /// it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
-    /// Severity.
+    /// Severity of the problem.
     pub severity: Severity,
     /// Identifier of the kind of problem, which stays the same across versions; empty if the
     /// problem has none.
@@ -171,7 +171,8 @@ impl Diagnostic {
 }
 
 /// The diagnostics of one input file: up to [`ERROR_LIMIT`] errors, and up to the same number of
-/// warnings and notes together. Any further diagnostics are counted but not stored.
+/// warnings and notes together. The collection counts any further diagnostics but does not store
+/// them.
 #[derive(Clone, Debug, Default)]
 pub struct Diagnostics {
     list: Vec<Diagnostic>,
@@ -351,7 +352,7 @@ pub fn format_bytes_up(bytes: u64) -> String {
     rounded(bytes, u64::div_ceil)
 }
 
-/// Formats a number of bytes in a readable unit, rounded down. This ensures that a limit never
+/// Formats a number of bytes in a readable unit, rounded down. With this rounding, a limit never
 /// looks larger than a size that exceeds it and is formatted by [`format_bytes_up`].
 pub fn format_bytes_down(bytes: u64) -> String {
     rounded(bytes, |bytes, unit| bytes / unit)

@@ -12,7 +12,8 @@ use durer_scene::bsdf::albedo::{self, single_means};
 use durer_scene::math::{Color, fp};
 use std::f32::consts::PI;
 
-/// Roughness at which Dürer's fuzz is brightest at grazing angles, as Disney's sheen is.
+/// Roughness at which Dürer's fuzz is brightest at grazing angles, where Disney's sheen is
+/// brightest too.
 pub(super) const FUZZ_ROUGHNESS: f32 = 0.2;
 
 /// Number of integration steps for each cosine, and for the azimuth between the two directions.
@@ -82,7 +83,7 @@ pub(super) fn boundary_transmittance([reflected, all]: [f32; 2]) -> f32 {
     (1.0 - boundary_reflectance([reflected, all])).max(1e-3)
 }
 
-/// Returns the reflectance of Dürer's boundary, computed from [`single_means`]. It is the
+/// Returns the reflectance of Dürer's boundary, computed from [`single_means`]. The result is the
 /// single-scattering reflectance divided by the sum of the single-scattering reflectance and
 /// transmittance, which is less than 1 for rough boundaries.
 pub(super) fn boundary_reflectance([reflected, all]: [f32; 2]) -> f32 {

@@ -1,7 +1,7 @@
 //! Asset source that reads files from folders. Only this module opens the files of a scene for
 //! reading.
 //!
-//! It reads only files below a few allowed folders, and only up to a total number of bytes.
+//! The source reads only files below a few allowed folders, and only up to a total number of bytes.
 
 use crate::files::percent_decoded;
 use durer_diag::did_you_mean;
@@ -23,7 +23,8 @@ pub struct FolderSource {
     allowed: Vec<PathBuf>,
     /// Folders that are also searched for the bare file name, without its path.
     assets: Vec<PathBuf>,
-    /// Files that are held in memory, by name. They take precedence over files in folders.
+    /// Files that are held in memory, by name. Files in memory take precedence over files in
+    /// folders.
     in_memory: BTreeMap<String, Arc<[u8]>>,
     record: ReadRecord,
     progress: Mutex<Progress>,
@@ -70,7 +71,7 @@ impl FolderSource {
     }
 
     /// Adds a folder to the search path; if `first` is true, the folder is searched before all
-    /// others. This does not give permission to read files in that folder.
+    /// others. Adding a folder does not give permission to read the files in it.
     pub fn search_in(mut self, folder: impl Into<PathBuf>, first: bool) -> Self {
         let at = if first { 0 } else { self.search.len() };
         self.search.insert(at, folder.into());

@@ -15,7 +15,7 @@ const TIMES: u64 = 64;
 /// Counters for the objects and the memory that a reader creates from one file, with their limits.
 pub(crate) struct ResourceLimits {
     objects: Cell<usize>,
-    /// Remaining bytes.
+    /// Number of bytes that may still be used.
     left: Cell<u64>,
     /// Current limit in bytes, and the maximum to which this limit can be raised.
     limit: Cell<u64>,

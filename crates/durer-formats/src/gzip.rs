@@ -37,7 +37,7 @@ pub fn is_gzip(bytes: &[u8]) -> bool {
 /// Returns an error message if the data is damaged or its output would be too large.
 pub fn decompress(bytes: &[u8], budget: u64) -> Result<Arc<[u8]>, String> {
     // Deflate compresses at most 1032 bytes into one byte. The last four bytes contain the
-    // uncompressed size of the last member.
+    // uncompressed size of the last member of the file.
     let most = budget.min(1032 * bytes.len() as u64);
     let declared = bytes.last_chunk().map_or(0, |size| u64::from(u32::from_le_bytes(*size)));
     if declared > most {

@@ -1,9 +1,9 @@
 //! Readers and writers of file formats. Each format has its own file or folder and one entry in
 //! [`MESH_FORMATS`] or [`SCENE_FORMATS`].
 //!
-//! Input files may be malicious. Therefore, readers allocate memory in proportion to the number of
-//! bytes in the file, never according to a count that the file states. They also reject non-finite
-//! numbers and indices that are out of range, and they report errors with spans.
+//! Files that are read may be malicious. Therefore, readers allocate memory in proportion to the
+//! number of bytes in the file, never according to a count that the file states. Readers also
+//! reject non-finite numbers and indices that are out of range, and they report errors with spans.
 
 // If a format is disabled at compile time, code shared by several formats may be unused.
 #![cfg_attr(not(feature = "all"), allow(dead_code))]
@@ -66,14 +66,14 @@ use std::borrow::Cow;
 
 /// File format for a single mesh, with its name, extensions, reader, and writer.
 pub struct MeshFormat {
-    /// Display name.
+    /// Name of the format for display.
     pub name: &'static str,
     /// File name extensions in lower case, without the leading dot.
     pub extensions: &'static [&'static str],
     /// Returns true if a file that begins with these bytes appears to be in this format.
     pub recognise: fn(&[u8]) -> bool,
-    /// Reads a file; the number is the index of the file, for spans. Returns `None` after pushing
-    /// errors to the diagnostics.
+    /// Reads a file; the number is the index of the file, for spans. If there are errors, adds them
+    /// to the diagnostics and returns `None`.
     pub read: fn(&[u8], u32, &mut Diagnostics) -> Option<MeshData>,
     /// Returns the file as legacy programs with these quirks read it: the parts that they ignore
     /// are cut off or overwritten so that byte offsets stay valid.

@@ -11,14 +11,14 @@ use std::sync::Arc;
 /// File format of scenes, or of models that are converted to scenes, with its name, extensions,
 /// reader, and writer.
 pub struct SceneFormat {
-    /// Display name.
+    /// Name of the format for display.
     pub name: &'static str,
     /// File name extensions in lower case, without the leading dot.
     pub extensions: &'static [&'static str],
     /// Returns true if a file that begins with these bytes is in this format, regardless of its
     /// name.
     pub recognise: fn(&[u8]) -> bool,
-    /// Reads a file. Returns `None` after pushing errors to the diagnostics.
+    /// Reads a file. If there are errors, adds them to the diagnostics and returns `None`.
     pub read: fn(&ReadInput, &mut Diagnostics) -> Option<Scene>,
     /// Writes a scene, and warns about content that the format cannot represent. `None` if the
     /// format is read-only.

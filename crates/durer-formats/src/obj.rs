@@ -2,8 +2,9 @@
 //! surfaces. `scene.rs` adds the materials from `.mtl` files.
 //!
 //! The file is read in two passes: the first reads positions, texture coordinates, and normals, and
-//! the second reads faces, which can refer to vertices that appear later in the file. This way,
-//! only the mesh itself is kept in memory. Both passes process parts of the file in parallel.
+//! the second reads faces, which can refer to vertices that appear later in the file. With two
+//! passes, only the mesh itself needs to be kept in memory. Both passes process parts of the file
+//! in parallel.
 
 mod faces;
 mod materials;

@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// itself: for the new picture and its 8-bit data, both raw and encoded.
 pub(super) const CONVERSION_BYTES_PER_PIXEL: usize = 2 * size_of::<Color>();
 
-/// Reader for the pictures that a scene names. It also converts pictures and reports errors.
+/// Reader for the pictures that a scene names, which also converts pictures and reports errors.
 #[derive(Clone, Copy)]
 pub(super) struct Pictures<'a> {
     pub input: &'a ReadInput<'a>,

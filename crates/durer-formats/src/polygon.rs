@@ -13,8 +13,8 @@ use std::collections::VecDeque;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct TooComplex;
 
-/// Triangulator for the polygons of one file, which limits the total amount of work. It reuses its
-/// buffers for all polygons.
+/// Triangulator for the polygons of one file, which limits the total amount of work. The
+/// triangulator reuses its buffers for all polygons.
 #[derive(Default)]
 pub(super) struct Triangulator {
     /// Number of point-in-triangle tests that may still be made.
@@ -106,8 +106,8 @@ impl Triangulator {
             let Some(tip) = self.next_ear(left)? else { continue };
             let (before, after) = (self.previous[tip as usize], self.next[tip as usize]);
             emit([before, tip, after].map(|i| i as usize));
-            // Remove the tip of the ear from the ring of corners. This affects only its two
-            // neighbours.
+            // Remove the tip of the ear from the ring of corners. Removing the tip affects only its
+            // two neighbours.
             self.next[before as usize] = after;
             self.previous[after as usize] = before;
             self.next[tip as usize] = u32::MAX;
@@ -221,7 +221,7 @@ impl Triangulator {
 }
 
 /// Returns true if a quadrilateral should be split along the diagonal that starts at its first
-/// corner. It should, unless only the other diagonal lies inside the quadrilateral.
+/// corner. This diagonal is used unless only the other one lies inside the quadrilateral.
 fn splits_at_first(corners: [Vec3; 4]) -> bool {
     let [a, b, c, d] = corners.map(|p| p.as_dvec3());
     let normal = (c - a).cross(d - b);

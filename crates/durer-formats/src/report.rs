@@ -15,14 +15,14 @@ pub(super) struct Report {
 }
 
 impl Report {
-    /// Creates an empty report for a file. It collects as many errors as `diagnostics` can still
-    /// take.
+    /// Creates an empty report for a file. The report collects as many errors as `diagnostics` can
+    /// still take.
     pub fn new(file: u32, diagnostics: &Diagnostics) -> Self {
         let max_errors = ERROR_LIMIT.saturating_sub(diagnostics.error_count());
         Report { file, diagnostics: Vec::new(), errors: 0, max_errors }
     }
 
-    /// Creates an empty report for a part of the file. It is joined to this report later.
+    /// Creates an empty report for a part of the file, which is joined to this report later.
     pub fn part(&self) -> Report {
         Report {
             file: self.file,

@@ -1,5 +1,5 @@
-//! Visible geometry for lines and points, which have no surface. It consists of thin sticks and
-//! small balls.
+//! Visible geometry for lines and points, which have no surface: thin sticks and small balls take
+//! their place.
 
 use super::report::count_text;
 use durer_scene::math::{Vec3, fp};

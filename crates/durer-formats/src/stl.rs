@@ -105,8 +105,8 @@ fn read_binary(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
     }
 }
 
-/// Builder that creates a mesh from STL facets. It merges corners at equal positions, because
-/// facets in STL do not share vertices.
+/// Builder that creates a mesh from STL facets. The builder merges corners at equal positions,
+/// because facets in STL do not share vertices.
 #[derive(Default)]
 struct Builder {
     data: MeshData,

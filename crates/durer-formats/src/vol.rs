@@ -136,7 +136,7 @@ mod tests {
         assert_eq!(changed(24, f32::NAN.to_le_bytes()), 24);
         assert_eq!(changed(52, (-1.0_f32).to_le_bytes()), 52);
         assert_eq!(parse(&file(), 7).unwrap_err().0, 8);
-        // These counts are larger than any file can hold.
+        // The file declares counts that are larger than any file can hold.
         assert_eq!(changed(8, i32::MAX.to_le_bytes()), file().len());
     }
 }

@@ -1,8 +1,8 @@
 //! Pull parser for XML, which records the spans of elements and attributes.
 //!
-//! It rejects two features that scenes do not need. One is document type declarations, with which a
-//! few bytes can expand to gigabytes or include another file, and the other is entities other than
-//! the five predefined ones.
+//! The parser rejects two features that scenes do not need. One is document type declarations, with
+//! which a few bytes can expand to gigabytes or include another file. The other is entities other
+//! than the five predefined ones.
 
 use durer_diag::{Diagnostic, Span};
 use quick_xml::events::attributes::{AttrError, Attributes};

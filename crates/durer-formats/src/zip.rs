@@ -1,5 +1,5 @@
-//! Reader of ZIP archives. It checks the uncompressed size of a part before it allocates memory for
-//! the part.
+//! Reader of ZIP archives. The reader checks the uncompressed size of a part before it allocates
+//! memory for the part.
 
 use flate2::read::DeflateDecoder;
 use rawzip::{CompressionMethod, ZipArchive, ZipArchiveEntryWayfinder};

@@ -1,9 +1,9 @@
-//! The working colour space of all pictures and light.
+//! Defines the working colour space.
 
 use durer_bvh::math::Vec3;
 
-/// A colour in the working colour space, linear Rec. 709, with red, green, and blue components.
-/// Unbounded above.
+/// A colour in the working colour space, linear Rec. 709, with red, green, and blue components. The
+/// components have no upper limit.
 pub type Color = Vec3;
 
 /// Weights of red, green, and blue in the luminance of a [`Color`] (Rec. 709).

@@ -76,7 +76,7 @@ fn alpha_is_written_where_a_format_has_it_and_black_elsewhere() {
         let expected = if straight { 128.0 / 255.0 } else { 0.25 };
         assert!((back.pixels[0].x - expected).abs() < 0.002, "{}: {}", format.name, back.pixels[0]);
         assert_eq!(back.pixels[1], Vec3::ZERO, "{}", format.name);
-        // The number of values must match the number of pixels.
+        // The number of coverage values must match the number of pixels.
         let odd = Layer { coverage: Some(vec![0.5]), ..layer.clone() };
         assert!(format.write(&[odd], &WriteOptions::default(), &mut Vec::new()).is_err());
     }
@@ -133,7 +133,7 @@ proptest! {
         let format = &FORMATS[which];
         let mut bytes = written(format, LayerKind::Color, Transfer::Linear, &sample());
         for (index, value) in flips {
-            // Most errors are found in the first bytes.
+            // Most of the checks in decoders concern the first bytes.
             let range = if at_head { bytes.len().min(48) } else { bytes.len() };
             bytes[index.index(range)] = value;
         }

@@ -18,11 +18,11 @@ use rayon::prelude::*;
 /// pixel, stored row by row.
 #[derive(Clone, Copy, Debug)]
 pub struct GuideImages<'a> {
-    /// Albedo.
+    /// Albedo of the surface.
     pub albedo: &'a [Color],
     /// Unit normal of the surface, or zero where the camera ray hit nothing.
     pub normal: &'a [Vec3],
-    /// Position.
+    /// Position of the surface point.
     pub position: &'a [Vec3],
     /// Estimated variance of the luminance of the pixel.
     pub variance: &'a [f32],
@@ -99,8 +99,7 @@ fn averaged(pixels: &[Pixel], guides: &GuideImages, width: u32, i: usize, step: 
             let mut weight = row * column;
             if hit {
                 weight *= fp::pow(normal.dot(guides.normal[j]).max(0.0), 64.0);
-                // This is the distance from the tangent plane, relative to the distance between the
-                // points.
+                // Distance from the tangent plane, relative to the distance between the points.
                 let way = guides.position[j] - position;
                 let beside = way.dot(normal).abs() / way.length().max(1e-20);
                 weight *= fp::exp(-8.0 * beside * beside);

@@ -114,7 +114,7 @@ type Encode = fn(&[Layer], &WriteOptions, &mut Vec<u8>) -> Result<(), ImageError
 /// A picture file format, such as PNG or OpenEXR, with the functions that read and write it.
 #[derive(Debug)]
 pub struct Format {
-    /// Display name.
+    /// Name of the format for display.
     pub name: &'static str,
     /// File name extensions in lower case, without the leading dot; the usual one comes first.
     pub extensions: &'static [&'static str],

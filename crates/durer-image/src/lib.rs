@@ -72,14 +72,15 @@ pub struct Image8 {
 /// function are applied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LayerKind {
-    /// Light. In 8-bit formats, tone mapping and the transfer function are applied to it.
+    /// Light, as a render produces it. In 8-bit formats, tone mapping and the transfer function are
+    /// applied to it.
     Color,
-    /// Data such as normals, depths, and masks. It is written without tone mapping and without the
-    /// sRGB curve.
+    /// Data such as normals, depths, and masks. Such data is written without tone mapping and
+    /// without the sRGB curve.
     Data,
 }
 
-/// A named picture to be written to a file. It is one of the outputs of a render, such as its
+/// A named picture to be written to a file, which is one of the outputs of a render, such as its
 /// light, normals, or depth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {

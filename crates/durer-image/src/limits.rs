@@ -28,8 +28,8 @@ pub(super) fn declared_count(width: u64, height: u64, bytes: usize) -> Result<us
     }
 }
 
-/// Creates a list of `count` copies of a value. If there is not enough memory, it returns an error
-/// instead of ending the program.
+/// Creates a list of `count` copies of a value. If there is not enough memory, the function returns
+/// an error instead of ending the program.
 pub(super) fn try_vec<T: Clone>(count: usize, item: T) -> Result<Vec<T>, ImageError> {
     let mut all = Vec::new();
     all.try_reserve_exact(count).map_err(|_| ImageError::out_of_memory(count, size_of::<T>()))?;
@@ -41,7 +41,7 @@ pub(super) fn try_vec<T: Clone>(count: usize, item: T) -> Result<Vec<T>, ImageEr
 /// this lets large jobs fail with an error before they start.
 pub fn can_allocate(bytes: u64) -> bool {
     let length = usize::try_from(bytes).unwrap_or(usize::MAX);
-    // This check uses no memory, because the system provides pages only when they are written to.
+    // The check uses no memory, because the system provides pages only when they are written to.
     Vec::<u8>::new().try_reserve_exact(length).is_ok()
 }
 

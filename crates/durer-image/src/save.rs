@@ -20,31 +20,31 @@ pub enum SaveError {
     /// The path is a folder.
     #[error("cannot write `{}`: it is a folder", path.display())]
     IsFolder {
-        /// Target path.
+        /// Path of the file to be saved.
         path: PathBuf,
     },
     /// The path is neither a file nor a pipe, but something else, such as a disk or a socket.
     #[error("cannot write `{}`: it is neither a file nor a pipe", path.display())]
     NotAFile {
-        /// Target path.
+        /// Path of the file to be saved.
         path: PathBuf,
     },
     /// The path is a dangling symbolic link, whose target is missing or is the link itself.
     #[error("cannot write `{}`: it is a broken symbolic link", path.display())]
     BrokenLink {
-        /// Target path.
+        /// Path of the file to be saved.
         path: PathBuf,
     },
     /// The path is a pipe that nobody reads. Opening it would wait until a reader appears.
     #[error("cannot write `{}`: it is a pipe without a reader; start the reader first", path.display())]
     NoReader {
-        /// Target path.
+        /// Path of the file to be saved.
         path: PathBuf,
     },
     /// The folder of the file does not exist, or it is a file itself.
     #[error("cannot write `{}`: the folder `{}` does not exist", path.display(), folder.display())]
     NoFolder {
-        /// Target path.
+        /// Path of the file to be saved.
         path: PathBuf,
         /// The folder that is missing.
         folder: PathBuf,
@@ -52,7 +52,7 @@ pub enum SaveError {
     /// The system reported an error, such as missing permission, a full disk, or a closed pipe.
     #[error("cannot write `{}`: {error}", path.display())]
     Io {
-        /// Target path.
+        /// Path of the file to be saved.
         path: PathBuf,
         /// Error reported by the operating system.
         #[source]
@@ -60,13 +60,13 @@ pub enum SaveError {
     },
 }
 
-/// Path of a file to be saved. It has been checked to be writable, for example before a long
+/// Path of a file to be saved, which has been checked to be writable, for example before a long
 /// render.
 #[derive(Debug)]
 pub struct Destination {
     path: PathBuf,
-    /// The open device or pipe, to which bytes are written directly. It is kept open, so that the
-    /// reader of a pipe does not see the end of the data too early.
+    /// The open device or pipe, to which bytes are written directly. The stream is kept open, so
+    /// that the reader of a pipe does not see the end of the data too early.
     stream: Option<File>,
 }
 
@@ -75,7 +75,7 @@ impl Destination {
     /// temporary files that killed programs have left in the folder of the path.
     ///
     /// # Errors
-    /// [`SaveError`]. Saving the file later may still fail.
+    /// Returns [`SaveError`] if the path cannot be written. Saving the file later may still fail.
     pub fn new(path: impl Into<PathBuf>) -> Result<Self, SaveError> {
         let path = path.into();
         let stream = match resolve(&path)? {
@@ -103,16 +103,17 @@ impl Destination {
 /// directly.
 ///
 /// # Errors
-/// [`SaveError`]. In that case, the old file stays intact and no temporary file remains.
+/// Returns [`SaveError`] if the file cannot be saved. In that case, the old file stays intact and
+/// no temporary file remains.
 pub fn save(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), SaveError> {
     save_all(&[(&Destination::new(path.as_ref())?, bytes)])
 }
 
-/// Saves several files. All of them are written to temporary files before the first one is renamed.
+/// Saves several files. All files are written to temporary files before the first one is renamed.
 ///
 /// # Errors
-/// [`SaveError`]. In that case, all files are unchanged, unless one of the renames failed because
-/// its folder changed in the meantime.
+/// Returns [`SaveError`] if a file cannot be saved. In that case, all files are unchanged, unless
+/// one of the renames failed because its folder changed in the meantime.
 pub fn save_all<C: Content>(files: &[(&Destination, C)]) -> Result<(), SaveError> {
     let mut staged = Vec::with_capacity(files.len());
     for (destination, content) in files.iter().filter(|file| !file.0.is_stream()) {

@@ -159,7 +159,7 @@ mod tests {
         put(".durer-old.tmp");
         let old = File::options().write(true).open(folder.path().join(".durer-old.tmp")).unwrap();
         old.set_modified(std::time::SystemTime::now() - 2 * MIN_STALE_AGE).unwrap();
-        // This file belongs to a program that is still running.
+        // A file that belongs to a program that is still running.
         let living = builder(READY).tempfile_in(folder.path()).unwrap();
         lock(living.as_file());
         remove_stale(folder.path());

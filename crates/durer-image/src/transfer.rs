@@ -62,8 +62,8 @@ struct SrgbTable {
     guide: [u8; CELLS + 1],
 }
 
-/// Number of intervals in the lookup table. It is larger than the steepest slope of the curve,
-/// which is 255 * 12.92 steps per unit at black.
+/// Number of intervals in the lookup table. The number is larger than the steepest slope of the
+/// curve, which is 255 * 12.92 steps per unit at black.
 const CELLS: usize = 4096;
 
 impl SrgbTable {
@@ -150,7 +150,7 @@ mod tests {
         assert_eq!(row(f32::NAN), [0, 0, 0]);
         assert_eq!(row(f32::INFINITY), [255, 255, 0]);
         assert_eq!(row(f32::NEG_INFINITY), [0, 0, 0]);
-        // These are the largest values that fit into an `int`, and larger ones.
+        // The first value still fits into an `int` after scaling, and the larger ones do not.
         assert_eq!(row(8.0e6), [255, 255, 255]);
         assert_eq!(row(9.0e6), [255, 255, 0]);
         assert_eq!(row(f32::MAX), [255, 255, 0]);

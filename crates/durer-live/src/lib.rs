@@ -39,7 +39,7 @@ pub(crate) struct Shared {
 }
 
 impl Server {
-    /// Listens on a port; 0 selects any free port. Pages that connect begin with the scene in
+    /// Listens on a port; 0 selects any free port. Pages that connect start with the scene in
     /// `start`.
     ///
     /// # Errors

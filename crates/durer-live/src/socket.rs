@@ -10,8 +10,8 @@ use std::time::{Duration, Instant};
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Error, Message, WebSocket};
 
-/// Maximum size of a message from the page in bytes. It is large enough for a model that is dropped
-/// onto the page.
+/// Maximum size of a message from the page in bytes. The limit is large enough for a model that is
+/// dropped onto the page.
 const MAX_MESSAGE: usize = 360 << 20;
 /// Time to wait for a message when there is nothing to do.
 const IDLE_WAIT: Duration = Duration::from_millis(250);

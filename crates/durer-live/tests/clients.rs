@@ -217,7 +217,7 @@ fn clients_that_mean_harm_lose_their_connection_and_nobody_else_does() {
         [vec![0x81, 0xff], u64::MAX.to_be_bytes().to_vec(), vec![0; 4]].concat(),
         vec![0x81, 5, b'h', b'e', b'l', b'l', b'o'],
         vec![0x83, 0x80, 0, 0, 0, 0],
-        // This text is not valid UTF-8.
+        // The bytes are not valid UTF-8.
         vec![0x81, 0x82, 0, 0, 0, 0, 0xff, 0xfe],
     ];
     attacks.extend((0..40).map(|i| garbage(1 + 37 * i)));

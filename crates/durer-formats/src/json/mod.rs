@@ -1,6 +1,6 @@
-//! Scenes in JSON format, for use by programs. They have the same content as scenes in the scene
-//! language. Objects use the keywords of the Dürer dialect, and members have the names of the
-//! fields of their statements.
+//! Scenes in JSON format, which have the same content as scenes in the scene language and are
+//! intended for programs. Objects use the keywords of the Dürer dialect, and members have the names
+//! of the fields of their statements.
 
 mod read;
 pub mod schema;

@@ -179,7 +179,7 @@ fn named<T: DescribedKind>(item: &T, more: &Value) -> Value {
 
 /// Returns a copy of `members` with one more member added.
 ///
-/// This is a function because equivalent closures, which changed a `Value` passed to them and
+/// This code is a function because equivalent closures, which changed a `Value` passed to them and
 /// returned it, used memory after it was freed (rustc 1.95, opt-level 2, detected by valgrind; a
 /// small program of the same form did not show the problem). The code was safe Rust, so this was
 /// probably a miscompilation.

@@ -20,7 +20,7 @@ pub(super) struct Node {
 pub(super) enum Value {
     Null,
     Bool,
-    /// A number. The text of the number is at the byte range of the node.
+    /// A JSON number. The text of the number is at the byte range of the node.
     Number,
     String(String),
     Array(Vec<Node>),

@@ -26,8 +26,8 @@ pub(super) struct Reader<'a> {
     pub object_types: &'a [&'static str],
 }
 
-/// Members of one JSON object that is being read. It records which members have been read, so that
-/// unknown ones can be reported.
+/// Members of one JSON object that is being read. The struct records which members have been read,
+/// so that unknown ones can be reported.
 pub(super) struct Members<'n> {
     /// Name of the object that is used in messages.
     pub name: &'n str,

@@ -94,7 +94,7 @@ impl MtlMaterial {
         m.specular_ior = self.ior.filter(|ior| *ior >= 1.0 && *ior < 10.0).unwrap_or(1.5);
         let level = specular.max_element().min(1.0);
         m.specular_weight = match model {
-            // These illumination models have no highlights.
+            // Illumination models with these numbers have no highlights.
             0 | 1 => 0.0,
             _ if !physical => level,
             // In a physically based material, `Ks` is Disney's `specular` parameter, where 0.5

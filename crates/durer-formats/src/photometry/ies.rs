@@ -1,8 +1,8 @@
 //! Reader and writer of IES files, which contain the light distributions of luminaires, according
 //! to ANSI/IES LM-63, versions 1986 to 2019.
 //!
-//! A file begins with lines of text, the last of which starts with `TILT=`. Then come numbers: the
-//! number of angles of each kind, the angles, and the candela values.
+//! A file begins with lines of text, the last of which starts with `TILT=`. The lines are followed
+//! by numbers: the number of angles of each kind, the angles, and the candela values.
 
 use durer_diag::{Diagnostic, Diagnostics, Severity, Span};
 use durer_scene::light::photometric::{PhotometricProfile, ProfileKind};
@@ -77,7 +77,7 @@ impl Numbers<'_> {
     }
 }
 
-/// Reads an IES file. Returns `None` after pushing errors to the diagnostics.
+/// Reads an IES file. If there are errors, adds them to the diagnostics and returns `None`.
 pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<PhotometricProfile> {
     let (profile, odd) = parse(text, file).map_err(|error| diagnostics.push(*error)).ok()?;
     odd.into_iter().for_each(|warning| diagnostics.push(warning));
@@ -282,7 +282,7 @@ mod tests {
                 "{text}: {line}:{column} {warning:?}"
             );
             if expected.contains("360") {
-                // This angle is halfway between 270 and 360 degrees.
+                // The angle is halfway between 270 and 360 degrees.
                 let (sin, cos) = durer_scene::math::fp::sin_cos_degrees(315.0);
                 let dir = durer_scene::math::Vec3::new(cos as f32, sin as f32, 0.0);
                 assert!((profile.at(dir) - 2.0).abs() < 1e-3, "{}", profile.at(dir));

@@ -6,8 +6,8 @@
 //! 1000 lumens of that flux.
 //!
 //! Source: A. W. Stockmar, *EULUMDAT: ein Leuchtendatenformat für den europäischen
-//! Beleuchtungsplaner*, Licht '90; the order of lines as Paul Bourke and Lighting Sciences publish
-//! it.
+//! Beleuchtungsplaner*, Licht '90; the order of the lines follows the descriptions that Paul Bourke
+//! and Lighting Sciences have published.
 
 use durer_diag::{Diagnostic, Diagnostics, Severity, Span};
 use durer_scene::light::photometric::{PhotometricProfile, ProfileKind};
@@ -112,7 +112,7 @@ pub(super) fn recognise(text: &str) -> bool {
     is_whole() && is_whole()
 }
 
-/// Reads a EULUMDAT file. Returns `None` after pushing errors to the diagnostics.
+/// Reads a EULUMDAT file. If there are errors, adds them to the diagnostics and returns `None`.
 pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<PhotometricProfile> {
     parse(text, file, diagnostics).map_err(|error| diagnostics.push(*error)).ok()
 }

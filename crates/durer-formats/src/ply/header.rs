@@ -99,8 +99,8 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
-    /// True if triangles without normals are shaded flat, whatever the default is. This is a Dürer
-    /// extension of the format.
+    /// True if triangles without normals are shaded flat, whatever the default is. The flag is a
+    /// Dürer extension of the format.
     pub flat: bool,
     /// Byte offset of the first row.
     pub body: usize,

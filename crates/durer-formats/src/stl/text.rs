@@ -1,5 +1,5 @@
-//! Reader of text STL files. They begin with `solid`, and each triangle consists of `facet normal x
-//! y z`, `outer loop`, three lines `vertex x y z`, `endloop`, and `endfacet`.
+//! Reader of text STL files, which begin with `solid`. Each triangle consists of `facet normal x y
+//! z`, `outer loop`, three lines `vertex x y z`, `endloop`, and `endfacet`.
 
 use super::Builder;
 use crate::number::{parse_f32, report_number};

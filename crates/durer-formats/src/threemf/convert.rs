@@ -125,7 +125,7 @@ impl SceneMaker<'_> {
             Object::Mesh(mesh) => self.mesh((part, &model, place.id), mesh, *at),
             Object::Components(places) => self.convert_refs(part, places, depth + 1),
         };
-        // This count is added for each use of the object; see `convert_refs`.
+        // The final count is added for each use of the object; see `convert_refs`.
         let count = (self.count - before).max(objects.len());
         self.count = before;
         let group = (Rc::new(scene::Group { objects }), count);

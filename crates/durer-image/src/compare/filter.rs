@@ -83,7 +83,7 @@ pub(super) fn filter_rows(
     out.par_chunks_mut(width * BAND).enumerate().for_each(|(band, out)| {
         let first = band * BAND;
         let (low, high) = (first.saturating_sub(radius), (first + out.len() / width + radius).min(height));
-        // Rows of each filter's plane, already filtered along the row.
+        // Rows of the plane that each filter uses, already filtered along the row.
         let mut rows = vec![vec![0.0; width * (high - low)]; filters.len()];
         let mut source = vec![vec![0.0; width]; plane_count];
         let mut padded = vec![vec![0.0; width + 2 * radius]; plane_count];

@@ -105,8 +105,8 @@ struct PixelFeatures {
 
 /// Computes the error of each pixel, from 0 to 1, between two pictures of linear light from 0 to 1.
 ///
-/// This is the error map from the paper of 2020, at the usual viewing distance of 67 pixels per
-/// degree.
+/// The result is the error map from the paper of 2020, at the usual viewing distance of 67 pixels
+/// per degree.
 pub(super) fn flip(width: usize, height: usize, a: &[Vec3], b: &[Vec3]) -> Vec<f32> {
     flip_of((width, height), |index| a[index], |index| b[index])
 }

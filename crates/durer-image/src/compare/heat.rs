@@ -3,7 +3,7 @@
 use crate::Image8;
 
 /// Colours for errors at equal steps from 0 to 1. Their lightness increases, so that the map can
-/// also be read when it is printed in greyscale.
+/// also be read in greyscale.
 const RAMP: [[f32; 3]; 6] = [
     [0.0, 0.0, 8.0],
     [64.0, 10.0, 110.0],

@@ -28,7 +28,7 @@ pub struct Finding {
     /// Share of the squared difference, from 0 to 1, that is explained by this finding and the ones
     /// before it.
     ///
-    /// It is measured on all pixels of small pictures, and on 100 000 pixels of larger ones.
+    /// The share is measured on all pixels of small pictures, and on 100 000 pixels of larger ones.
     pub explained: f64,
 }
 

@@ -28,8 +28,8 @@ pub use regions::Region;
 /// Tolerances and conversion settings for comparing two pictures with [`compare()`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Maximum difference in a channel that is ignored, in the unit of the compared values. It must
-    /// be at least 0.
+    /// Maximum difference in a channel that is ignored, in the unit of the compared values. The
+    /// tolerance must be at least 0.
     pub tolerance: f32,
     /// Share of the pixels, from 0 to 1, that may exceed the tolerance.
     pub allowed_share: f64,
@@ -123,8 +123,9 @@ fn exchanged(a: (u32, u32), b: (u32, u32)) -> &'static str {
 /// # Errors
 /// Returns [`CompareError::Sizes`] if the sizes differ, before the pictures are decoded.
 pub fn memory_needed(reference: &Encoded, test: &Encoded) -> Result<u64, CompareError> {
-    // This includes memory for both pictures, for the versions of them that are displayed, and for
-    // the buffers of the measures. Measurements show that this takes 91 bytes per pixel.
+    // The result includes memory for both pictures, for the versions of them that are displayed,
+    // and for the buffers of the measures. According to measurements, comparing takes 91 bytes per
+    // pixel.
     const BYTES_PER_PIXEL: u64 = 100;
     let [a, b] = [reference, test].map(|picture| picture.size());
     if a != b {
@@ -138,7 +139,7 @@ pub fn memory_needed(reference: &Encoded, test: &Encoded) -> Result<u64, Compare
 /// Compares a picture with a reference.
 ///
 /// If only one of the pictures is linear, both are compared as they would be displayed. A pixel
-/// with a value that is not finite is excluded from the measures. Such a pixel exceeds any
+/// with a value that is not finite is excluded from the measures. A pixel of this kind exceeds any
 /// tolerance, unless both pictures have the same values there.
 ///
 /// # Errors

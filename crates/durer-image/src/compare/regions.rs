@@ -8,9 +8,9 @@ use durer_bvh::math::Vec3;
 /// tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
-    /// Leftmost column.
+    /// Leftmost column of the rectangle.
     pub x: u32,
-    /// Top row.
+    /// Top row of the rectangle.
     pub y: u32,
     /// Width of the rectangle in pixels.
     pub width: u32,
@@ -113,7 +113,7 @@ pub(super) fn worst(pair: &Pair, tolerance: f32) -> Vec<Region> {
     regions.into_iter().map(region).collect()
 }
 
-/// Joins cells that touch, even if only at corners, into regions. It also clears the cells.
+/// Joins cells that touch, even if only at corners, into regions. Afterwards, the cells are empty.
 fn joined(cells: &mut [RegionSums], columns: usize, rows: usize) -> Vec<RegionSums> {
     let mut regions = Vec::new();
     for start in 0..cells.len() {

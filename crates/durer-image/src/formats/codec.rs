@@ -6,8 +6,8 @@ use ::image::{ColorType, ExtendedColorType, ImageDecoder, ImageEncoder, ImageFor
 use durer_bvh::math::Vec3;
 use std::io::Cursor;
 
-/// Creates a decoder for a format of the `image` crate. It reads only the header, so no limits are
-/// needed.
+/// Creates a decoder for a format of the `image` crate. The decoder reads only the header, so no
+/// limits are needed.
 pub fn decoder<'a>(
     name: &'static str,
     format: ImageFormat,

@@ -150,9 +150,9 @@ fn sort_attributes(file: &mut [u8]) {
     file[START..at].copy_from_slice(&attributes.concat());
 }
 
-/// Selects the part to be read, and its channels for red, green, and blue. This is the first part
-/// that has R, G, and B; if there is none, the first with Y; and if there is none of these either,
-/// the first with a single channel, which is read as grey.
+/// Selects the part to be read, and its channels for red, green, and blue. The first part that has
+/// R, G, and B is used. If there is none, the first part with Y is used, and otherwise the first
+/// part with a single channel; both are read as grey.
 fn chosen(meta: &MetaData) -> Result<(&Header, [Text; 3]), ImageError> {
     let flat = || meta.headers.iter().filter(|header| !header.deep);
     let has = |header: &Header, name: &str| header.channels.list.iter().any(|channel| channel.name.eq(name));

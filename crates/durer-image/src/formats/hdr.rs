@@ -64,8 +64,8 @@ static ROWS: RowFormat = RowFormat {
 fn rgbe(pixel: Vec3) -> [u8; 4] {
     let channels = pixel.to_array().map(|value| f64::from(value.clamp(0.0, f32::MAX).max(0.0)));
     let greatest = channels.into_iter().fold(0.0, f64::max);
-    // This computes greatest = fraction * 2^exponent, with the fraction in 0.5..1, from the bits of
-    // an `f64`, in which no `f32` value is subnormal.
+    // The code computes greatest = fraction * 2^exponent, with the fraction in 0.5..1, from the
+    // bits of an `f64`, in which no `f32` value is subnormal.
     let mut exponent = (greatest.to_bits() >> 52) as i32 - 1022;
     if greatest == 0.0 || exponent < -126 {
         return [0; 4];

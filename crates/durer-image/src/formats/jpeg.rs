@@ -29,7 +29,7 @@ fn frame(bytes: &[u8]) -> Option<Frame> {
         }
         let length = usize::from(u16::from_be_bytes(*rest.first_chunk()?));
         let segment = rest.get(2..length)?;
-        // This marker starts a frame with any kind of coding. Three markers in this range have
+        // Markers in this range start a frame, whatever its coding is. Three of the markers have
         // other meanings.
         if matches!(marker, 0xc0..=0xcf) && !matches!(marker, 0xc4 | 0xc8 | 0xcc) {
             let &[_, h1, h0, w1, w0, count, ref components @ ..] = segment else { return None };
@@ -41,8 +41,8 @@ fn frame(bytes: &[u8]) -> Option<Frame> {
     }
 }
 
-/// Number of bytes of memory that the decoder needs in addition to the pixels. It needs 16-bit
-/// coefficients of all components until the last scan, and rows of blocks while components are
+/// Number of bytes of memory that the decoder needs in addition to the pixels: for the 16-bit
+/// coefficients of all components until the last scan, and for rows of blocks while components are
 /// upsampled to full size. Components are padded to full blocks at the largest sampling factors.
 fn decoding_bytes(Frame { size, factors }: Frame) -> u64 {
     let [across, down] = [0, 1].map(|axis| factors.iter().map(|factors| factors[axis]).max().unwrap_or(1));
@@ -83,7 +83,7 @@ mod tests {
             factors.iter().for_each(|factor| bytes.extend([1, *factor, 0]));
             frame(&bytes).map(decoding_bytes)
         };
-        // For 4096 x 16 pixels, it needs the coefficients of 1.5 components and some rows.
+        // For 4096 x 16 pixels, the decoder needs the coefficients of 1.5 components and some rows.
         let usual = head(0xc2, [16, 16], &[0x22, 0x11, 0x11]).unwrap();
         assert!((3 * 65536..3 * 65536 + 1_800_000).contains(&usual), "{usual}");
         // A picture with one row of pixels needs one row of blocks with 32 x 32 pixels.

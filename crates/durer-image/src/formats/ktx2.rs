@@ -30,9 +30,9 @@ enum ChannelType {
     Eight,
     /// Unsigned 16-bit integer, from 0 to 65535.
     Sixteen,
-    /// Half-precision float.
+    /// Half-precision floating-point number.
     Half,
-    /// Single-precision float.
+    /// Single-precision floating-point number.
     Single,
 }
 
@@ -303,8 +303,8 @@ mod tests {
     fn every_kind_of_pixel_is_read() {
         let white = 0x3c00u16.to_le_bytes();
         for &(kind, channels, number, blue_first) in &KINDS {
-            // Only red and blue have different values here. All channels after the third are
-            // ignored.
+            // The test pixels have different values for red and blue. All channels after the third
+            // are ignored.
             let one: Vec<u8> = match number {
                 ChannelType::Eight => vec![255],
                 ChannelType::Sixteen => vec![255, 255],

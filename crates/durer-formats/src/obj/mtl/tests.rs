@@ -48,7 +48,7 @@ fn colours_may_be_in_xyz() {
 
 #[test]
 fn tf_is_the_transmission_of_physical_materials() {
-    // This is a material as Blender writes it.
+    // Blender writes materials in this form.
     let glass = of("Kd 0.25 1 1\nKs 0.5 0.5 0.5\nNi 1.5\nd 1\nillum 2\nPr 0\nPm 0\nTf 1 1 1");
     assert_eq!((glass.transmission_weight, glass.transmission_color), (1.0, Vec3::new(0.5, 1.0, 1.0)));
     let tinted = of("Kd 1 1 1\nPr 0\nTf 0.125 0.5 0.5\nd 0.75\nillum 9");

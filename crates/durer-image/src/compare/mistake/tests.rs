@@ -176,7 +176,7 @@ fn two_mistakes_behind_each_other() {
 
 #[test]
 fn what_is_no_usual_mistake_is_none() {
-    // This picture is not related to the reference.
+    // A picture that is not related to the reference.
     let other = |x: usize, y: usize| Vec3::new(((x * x + 3 * y) % 97) as f32, ((y * y + x) % 89) as f32, 40.0) / 100.0;
     let found = findings(&scene, &other);
     assert!(found.iter().all(|finding| finding.explained < 0.9), "{found:?}");
