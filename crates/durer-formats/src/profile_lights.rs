@@ -20,16 +20,16 @@ pub(super) struct Axes {
 }
 
 impl Axes {
-    /// Returns axes in which vertical angles start at z, and horizontal angles turn from x towards
-    /// -y, because horizontal angles of profiles increase from front towards front × down. A
+    /// Returns axes whose vertical angles start at z and whose horizontal angles turn from x
+    /// towards -y. Horizontal angles of profiles increase from front towards front × down. A
     /// transform that mirrors reverses this direction, so the side is flipped.
     pub fn about_z(transform: &DAffine3) -> Axes {
         let side = if transform.matrix3.determinant() < 0.0 { Vec3::Y } else { Vec3::NEG_Y };
         Axes { down: Vec3::Z, front: Vec3::X, side }
     }
 
-    /// Returns axes in which vertical angles start at y, and horizontal angles turn from x towards
-    /// z. See [`Axes::about_z`].
+    /// Returns axes whose vertical angles start at y and whose horizontal angles turn from x
+    /// towards z. See [`Axes::about_z`].
     pub fn about_y(transform: &DAffine3) -> Axes {
         let side = if transform.matrix3.determinant() < 0.0 { Vec3::NEG_Z } else { Vec3::Z };
         Axes { down: Vec3::Y, front: Vec3::X, side }

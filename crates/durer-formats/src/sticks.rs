@@ -31,8 +31,8 @@ const POINT_RADIUS: f32 = 0.015;
 /// every n-th one is shown.
 const MAX: usize = 1 << 21;
 
-/// Returns the n for which at most [`MAX`] items are left if only every n-th of `count` items is
-/// shown.
+/// Returns the smallest n for which at most [`MAX`] of `count` items remain if only every n-th item
+/// is shown.
 fn step(count: usize) -> usize {
     count.div_ceil(MAX).max(1)
 }

@@ -140,7 +140,8 @@ impl Format {
     /// render.
     ///
     /// # Errors
-    /// Returns [`ImageError::Size`] or [`ImageError::Unsupported`] if it cannot.
+    /// Returns [`ImageError::Size`] or [`ImageError::Unsupported`] if the picture cannot be
+    /// written.
     pub fn check_size(&self, width: u32, height: u32) -> Result<(), ImageError> {
         limits::checked_count(width, height)?;
         self.check_sides(width, height)

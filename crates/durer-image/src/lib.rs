@@ -119,7 +119,7 @@ impl Image {
     /// Checks that the number of pixels matches the width and the height.
     ///
     /// # Errors
-    /// Returns [`ImageError::Size`] if it does not match.
+    /// Returns [`ImageError::Size`] if the number does not match.
     pub fn check(&self) -> Result<(), ImageError> {
         match limits::checked_count(self.width, self.height)? == self.pixels.len() {
             true => Ok(()),

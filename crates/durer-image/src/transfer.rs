@@ -57,8 +57,8 @@ static SRGB: LazyLock<SrgbTable> = LazyLock::new(SrgbTable::new);
 struct SrgbTable {
     /// Smallest linear value of each step, followed by infinity.
     least: [f32; 257],
-    /// Step that contains the start of each of [`CELLS`] equal intervals of [0, 1]. Each interval
-    /// contains at most one threshold.
+    /// Steps at the starts of [`CELLS`] equal intervals of [0, 1]. Each interval contains at most
+    /// one threshold.
     guide: [u8; CELLS + 1],
 }
 

@@ -139,8 +139,8 @@ fn parse(text: &str, file: u32) -> Result<(PhotometricProfile, Vec<Diagnostic>),
         numbers.next(what)?;
     }
     let ballast = numbers.factor("ballast factor")?;
-    // The standard of 1986 defines this number as a photometric factor. In later standards it is
-    // reserved, and its value is 1.
+    // The standard of 1986 defines this number as a photometric factor. In later standards, this
+    // number is reserved and always 1.
     let (reserved, _) = numbers.next("reserved number")?;
     numbers.next("watts")?;
     let vertical = numbers.angles(verticals, "vertical angle")?;

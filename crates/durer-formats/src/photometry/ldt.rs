@@ -224,8 +224,8 @@ mod tests {
     use durer_diag::Files;
     use durer_scene::math::{Vec3, fp};
 
-    /// Returns a test file with the given symmetry, number of half-planes around the circle, flux,
-    /// and intensities, which are a function of C and gamma. The file contains only the half-planes
+    /// Returns a test file with the given symmetry, number of half-planes around the circle, and
+    /// flux. Its intensities are a function of C and gamma. The file contains only the half-planes
     /// in `written`.
     fn file(symmetry: u32, count: usize, flux: &str, written: &[f64], value: impl Fn(f64, f64) -> f64) -> String {
         let gammas: Vec<f64> = (0..=36).map(|i| 5.0 * f64::from(i)).collect();

@@ -56,7 +56,7 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
             let Some(column) = COLUMNS.iter().position(|names| names.iter().any(|n| n.as_bytes() == name)) else {
                 continue;
             };
-            // If a list has the name of a colour, it means something else.
+            // A list that has the name of a colour has a different meaning.
             if property.length_type.is_some() && column >= 8 {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! Reader of 3MF files, a format for 3D printing that stores models in a ZIP archive.
+//! Reader of files in the 3MF format for 3D printing, which stores models in a ZIP archive.
 //!
 //! Sources: *3D Manufacturing Format, Core Specification* 1.3; *Materials and Properties Extension*
 //! 1.2; *Production Extension* 1.1; *Beam Lattice Extension* 1.2; 3MF Consortium. All lengths are

@@ -53,7 +53,7 @@ pub enum Verdict {
     Identical,
     /// The share of pixels that exceed the tolerance is within the allowed limit.
     Same,
-    /// More pixels exceed the tolerance than allowed.
+    /// More pixels exceed the tolerance than are allowed to.
     Different,
 }
 

@@ -47,7 +47,7 @@ impl ChannelType {
 }
 
 /// Supported Vulkan formats, each with its number, its number of channels, the type of its
-/// channels, and true if blue comes first.
+/// channels, and a flag that is true if blue comes first.
 const KINDS: [(u32, usize, ChannelType, bool); 22] = [
     (9, 1, ChannelType::Eight, false),
     (15, 1, ChannelType::Eight, false),

@@ -195,7 +195,8 @@ fn has_equal_sides(reference: &View, test: &View, at_edges: &[Sample]) -> bool {
     differing.iter().filter(sides).count() * 8 > differing.len()
 }
 
-/// Returns how many of a pixel's eight neighbours have a difference unlike that of the pixel.
+/// Returns how many of the eight neighbours of a pixel have a difference that is unlike the
+/// difference of the pixel itself.
 fn dissimilar_neighbours(reference: &View, test: &View, s: &Sample) -> usize {
     let own = s.test - s.reference;
     let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (s.x + dx, s.y + dy)));

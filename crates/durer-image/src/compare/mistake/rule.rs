@@ -4,8 +4,8 @@ use super::sample::{Sample, View};
 use crate::compare::picture::{Scale, linear_to_srgb, srgb_to_linear};
 use durer_bvh::math::{Vec3, fp};
 
-/// Rotation or reflection of a picture by a common mistake, which consists of an optional
-/// transposition and an optional mirroring of columns and rows.
+/// Rotation or reflection of a picture that a common mistake causes, composed of an optional
+/// transposition and optional mirroring of columns and rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Orientation {
     pub transpose: bool,
@@ -72,7 +72,7 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// Returns the difference at a pixel that remains after this rule is applied.
+    /// Returns the difference that remains at a pixel after this rule is applied.
     pub fn residual(&self, reference: &View, sample: &Sample) -> Vec3 {
         sample.test - self.pixel(reference, sample.x, sample.y)
     }
