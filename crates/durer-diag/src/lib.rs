@@ -1,25 +1,25 @@
 //! Diagnostics: errors, warnings, and notes about input files, with their positions.
 //!
-//! The library creates diagnostics, and the command line and Python print them.
+//! The library creates diagnostics; the command-line program and the Python module print them.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Maximum number of errors that are collected for one input.
+/// Maximum number of errors that are collected for one input file.
 pub const ERROR_LIMIT: usize = 20;
 
 /// Range of bytes in an input file, to which a diagnostic or an item of a scene refers.
 ///
-/// Any two spans compare as equal, so that the positions of items do not matter when scenes are
-/// compared.
+/// Any two spans compare as equal, so comparing two scenes ignores the positions of their items in
+/// the files.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Span {
     /// Number of the file in its [`Files`].
     pub file: u32,
-    /// First byte.
+    /// Offset of the first byte.
     pub start: u32,
-    /// One past the last byte.
+    /// Offset of the byte after the last one.
     pub end: u32,
 }
 
@@ -30,13 +30,14 @@ impl PartialEq for Span {
 }
 
 impl Span {
-    /// Returns true if the span is in a file. Items from options and defaults have no position.
+    /// Returns true if the span is in a file. Items that come from options or defaults have no
+    /// position.
     pub fn has_position(self) -> bool {
         self.end > 0
     }
 
-    /// Joins this span with a later one: from the start of this span to the end of `end`. Returns
-    /// this span if `end` is in another file.
+    /// Joins this span with a later one; the result reaches from the start of this span to the end
+    /// of `end`. Returns this span unchanged if `end` is in another file.
     pub fn join(self, end: Span) -> Span {
         if end.file != self.file {
             return self;
@@ -48,29 +49,31 @@ impl Span {
 /// Severity of a [`Diagnostic`]: note, warning, or error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// The diagnostic is only for information.
+    /// The diagnostic only gives information and needs no action.
     Note,
     /// The picture may differ from what the author intended.
     Warning,
-    /// No picture can be rendered.
+    /// The error prevents the picture from being rendered.
     Error,
 }
 
-/// A text replacement in an input file, part of the fix of a [`Diagnostic`].
+/// Replacement of some text in an input file, which is part of the fix of a [`Diagnostic`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Edit {
-    /// Range to replace; empty for an insertion.
+    /// Range of bytes to replace; it is empty if the edit only inserts text.
     pub span: Span,
-    /// Replacement text.
+    /// Text that replaces the range.
     pub text: String,
 }
 
-/// An error, warning, or note about an input file, with its position and suggestions to fix it.
+/// An error, warning, or note about an input file, with its position and a suggestion for fixing
+/// it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
-    /// Severity.
+    /// Severity of the problem.
     pub severity: Severity,
-    /// Identifier of the kind of problem, stable across versions; empty if it has none.
+    /// Identifier of the kind of problem, which stays the same across versions; empty if the
+    /// problem has none.
     pub code: &'static str,
     /// Description of the problem, in one sentence without a full stop.
     pub message: String,
@@ -78,11 +81,11 @@ pub struct Diagnostic {
     pub span: Option<Span>,
     /// Text that is printed next to the underlined position.
     pub label: String,
-    /// Suggestion how to fix the problem, such as the likely meaning.
+    /// Suggestion for fixing the problem, such as what the author probably meant.
     pub help: Option<String>,
-    /// A second, related position, with a description.
+    /// Second position that is related to the problem, with a description.
     pub related: Option<(Span, String)>,
-    /// Effect on the picture.
+    /// How the problem affects the picture.
     pub effect: Option<String>,
     /// Edits that fix the problem automatically; empty if there is no such fix.
     pub fix: Vec<Edit>,
@@ -103,12 +106,12 @@ impl Diagnostic {
         }
     }
 
-    /// Creates an error: no picture can be rendered.
+    /// Creates an error, which means that no picture can be rendered.
     pub fn error(message: impl Into<String>) -> Self {
         Diagnostic::new(Severity::Error, message)
     }
 
-    /// Creates a warning: the picture may differ from what the author intended.
+    /// Creates a warning, which means that the picture may differ from what the author intended.
     pub fn warning(message: impl Into<String>) -> Self {
         Diagnostic::new(Severity::Warning, message)
     }
@@ -123,7 +126,7 @@ impl Diagnostic {
         Diagnostic { code, ..self }
     }
 
-    /// Sets the effect on the picture.
+    /// Sets the text that describes how the problem affects the picture.
     pub fn effect(self, effect: impl Into<String>) -> Self {
         Diagnostic { effect: Some(effect.into()), ..self }
     }
@@ -167,8 +170,9 @@ impl Diagnostic {
     }
 }
 
-/// The diagnostics of one input: up to [`ERROR_LIMIT`] errors and as many warnings and notes.
-/// Further ones are only counted.
+/// The diagnostics of one input file: up to [`ERROR_LIMIT`] errors, and up to the same number of
+/// warnings and notes together. The collection counts any further diagnostics but does not store
+/// them.
 #[derive(Clone, Debug, Default)]
 pub struct Diagnostics {
     list: Vec<Diagnostic>,
@@ -177,8 +181,8 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// Adds a diagnostic. If there are already [`ERROR_LIMIT`] errors, or as many warnings and
-    /// notes, it is only counted.
+    /// Adds a diagnostic. If the collection already contains [`ERROR_LIMIT`] errors (or that many
+    /// warnings and notes), any further ones are only counted.
     pub fn push(&mut self, diagnostic: Diagnostic) {
         let count = match diagnostic.severity {
             Severity::Error => &mut self.errors,
@@ -190,9 +194,9 @@ impl Diagnostics {
         }
     }
 
-    /// Adds a diagnostic and returns true, unless there is one with the same code and message
-    /// already. In that case, the label of the existing one says that the problem occurs again, and
-    /// the edits are added to it.
+    /// Adds a diagnostic and returns true, unless the collection already has one with the same code
+    /// and message. In that case, the label of the existing one says that the problem occurs again,
+    /// and the new edits are added to it.
     pub fn push_once(&mut self, diagnostic: Diagnostic) -> bool {
         let is_same = |known: &&mut Diagnostic| known.code == diagnostic.code && known.message == diagnostic.message;
         let Some(known) = self.list.iter_mut().find(is_same) else {
@@ -207,7 +211,7 @@ impl Diagnostics {
     /// Adds the diagnostics of another collection.
     pub fn extend(&mut self, other: Diagnostics) {
         let errors = other.list.iter().filter(|d| d.severity == Severity::Error).count();
-        // Diagnostics that the other collection only counted are counted here, too.
+        // Diagnostics that the other collection counted but did not store are counted here as well.
         let uncollected = (other.errors - errors, other.warnings - (other.list.len() - errors));
         for diagnostic in other.list {
             self.push(diagnostic);
@@ -216,7 +220,7 @@ impl Diagnostics {
         self.warnings += uncollected.1;
     }
 
-    /// Returns true if there is an error.
+    /// Returns true if the collection contains an error.
     pub fn has_errors(&self) -> bool {
         self.errors > 0
     }
@@ -231,7 +235,7 @@ impl Diagnostics {
         self.list.iter()
     }
 
-    /// Byte offset of the end of the last span in a file to which a diagnostic refers.
+    /// Byte offset of the end of the last span in a file that any diagnostic refers to.
     fn end_in(&self, file: u32) -> usize {
         let places = |d: &Diagnostic| {
             let others = d.related.iter().map(|other| other.0).chain(d.fix.iter().map(|edit| edit.span));
@@ -246,17 +250,16 @@ impl Diagnostics {
     }
 }
 
-/// The input files that were read, by number, with which spans are converted to file names, lines,
-/// and columns.
+/// The input files that were read, by number; converts spans to file names, lines, and columns.
 #[derive(Clone, Debug, Default)]
 pub struct Files {
     files: Vec<(String, Arc<[u8]>)>,
-    /// Numbers of the files of which only the beginning is kept.
+    /// Numbers of the files that are only partly kept in memory.
     truncated: BTreeSet<u32>,
 }
 
 impl Files {
-    /// Size in bytes up to which files are kept completely.
+    /// Maximum size in bytes of a file that is kept completely.
     const SMALL: usize = 64 << 20;
 
     /// Adds a file and returns its number.
@@ -265,22 +268,23 @@ impl Files {
         (self.files.len() - 1) as u32
     }
 
-    /// Drops the end of a large file to save memory. Keeps the first `end` bytes, to which later
-    /// spans may refer, and everything to which the diagnostics in `messages` refer.
+    /// Discards the end of a large file to save memory. Keeps the first `end` bytes, which later
+    /// spans may refer to, and everything that the diagnostics in `messages` refer to.
     pub fn truncate(&mut self, file: u32, end: usize, messages: &Diagnostics) {
         let Some((_, bytes)) = self.files.get_mut(file as usize).filter(|(_, bytes)| bytes.len() > Self::SMALL) else {
             return;
         };
         let end = end.max(messages.end_in(file));
         if end < bytes.len() {
-            // Keep the rest of the last line, which is printed with a diagnostic, but at most 256
-            // bytes, since a binary file may have no lines.
+            // Keep the rest of the last line, because it is printed with a diagnostic. Keep at most
+            // 256 bytes of it, since a binary file may have no lines.
             *bytes = bytes[..bytes.len().min(end + 256)].into();
             self.truncated.insert(file);
         }
     }
 
-    /// Returns the number of the file with this name and content. Adds the file if it is new.
+    /// Returns the number of the file that has this name and content. Adds the file if there is
+    /// none yet.
     pub fn add_once(&mut self, name: &str, bytes: &Arc<[u8]>) -> u32 {
         match self.files.iter().position(|(known, content)| known == name && content == bytes) {
             Some(number) => number as u32,
@@ -288,39 +292,39 @@ impl Files {
         }
     }
 
-    /// Name under which a file was read.
+    /// Name under which the file was read.
     pub fn name(&self, file: u32) -> Option<&str> {
         self.files.get(file as usize).map(|(name, _)| name.as_str())
     }
 
-    /// Content of a file, unless only its beginning is kept.
+    /// Content of the file; `None` if only its beginning was kept.
     pub fn complete_bytes(&self, file: u32) -> Option<&[u8]> {
         self.bytes(file).filter(|_| !self.truncated.contains(&file))
     }
 
-    /// Content of a file, or of its beginning.
+    /// Content of the file, or the part of it that was kept.
     pub fn bytes(&self, file: u32) -> Option<&[u8]> {
         self.files.get(file as usize).map(|(_, bytes)| &**bytes)
     }
 
-    /// Line and column of the start of a span, both counted from 1. Columns count characters, as
+    /// Line and column where a span starts, both counted from 1. Columns count characters, as
     /// editors do.
     pub fn position(&self, span: Span) -> Option<(usize, usize)> {
         let before = self.bytes(span.file)?.get(..span.start as usize)?;
         let line = before.iter().filter(|&&b| b == b'\n').count() + 1;
-        // A byte order mark does not take a column.
+        // A byte order mark does not count as a column.
         let shown = if line == 1 { before.strip_prefix(b"\xef\xbb\xbf").unwrap_or(before) } else { before };
-        // Continuation bytes of UTF-8 do not begin a character.
+        // Continuation bytes of UTF-8 do not start a new character.
         let begins = |b: &&u8| **b & 0xc0 != 0x80;
         let column = shown.iter().rev().take_while(|&&b| b != b'\n').filter(begins).count() + 1;
         Some((line, column))
     }
 }
 
-/// Finds the candidate most similar to `word`, if one is similar enough.
+/// Returns the candidate that is most similar to `word`, if one is similar enough.
 pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    // Time and memory are proportional to the length of the word, which may be the content of a
-    // whole file.
+    // Time and memory are proportional to the length of the word, which can be as long as a whole
+    // file.
     if word.len() > 64 {
         return None;
     }
@@ -330,7 +334,7 @@ pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str
         letters.sort_unstable();
         letters
     };
-    // A candidate with the same letters is the most similar: for `RotateY`, it is `YRotate`.
+    // A candidate made of the same letters is the best match: for `RotateY`, it is `YRotate`.
     let distance = |candidate: &str| match letters(candidate) == letters(&lower) {
         true => 0,
         false => strsim::damerau_levenshtein(&lower, candidate),
@@ -343,13 +347,13 @@ pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str
         .map(|(_, candidate)| candidate)
 }
 
-/// Formats a number of bytes for humans, rounded up.
+/// Formats a number of bytes in a readable unit, rounded up.
 pub fn format_bytes_up(bytes: u64) -> String {
     rounded(bytes, u64::div_ceil)
 }
 
-/// Formats a number of bytes for humans, rounded down. A limit formatted like this is never shown
-/// as larger than a size formatted by [`format_bytes_up`] that exceeds it.
+/// Formats a number of bytes in a readable unit, rounded down. With this rounding, a limit never
+/// looks larger than a size that exceeds it and is formatted by [`format_bytes_up`].
 pub fn format_bytes_down(bytes: u64) -> String {
     rounded(bytes, |bytes, unit| bytes / unit)
 }

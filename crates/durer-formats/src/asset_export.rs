@@ -1,5 +1,5 @@
-//! Exports a scene's in-memory assets as separate files: meshes as PLY, light profiles as IES,
-//! density grids as Mitsuba volumes, pictures unchanged.
+//! Exports the assets that a scene holds in memory as separate files: meshes as PLY, light profiles
+//! as IES, density grids as Mitsuba volumes, and pictures unchanged.
 
 use super::ply::write_all_attributes;
 use super::{extension, photometry, vol};
@@ -10,17 +10,18 @@ use durer_scene::source::AssetSource;
 use durer_scene::texture::Mapping;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Path of an exported file relative to the scene, and its bytes.
+/// Path of an exported file relative to the scene file, and the bytes of the exported file.
 pub type AssetFile = (String, Vec<u8>);
 
-/// Makes a name valid in a scene file: keeps letters, digits and `-_.`, and replaces other
-/// characters by `_`.
+/// Makes a name valid in a scene file: keeps letters, digits, and `-_.`, and replaces all other
+/// characters with `_`.
 pub fn sanitize_name(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect()
 }
 
-/// Returns a copy of the scene with all meshes and pictures moved to files in `folder`, and these
-/// files. Files that the scene names are copied too; unreadable ones keep their names.
+/// Returns a copy of the scene in which all meshes and pictures have been moved to files in
+/// `folder`, together with these files. Files that the scene names are copied too; files that
+/// cannot be read keep their names.
 pub fn export_assets(scene: &Scene, folder: &str, source: &dyn AssetSource) -> (Scene, Vec<AssetFile>) {
     let (files, used_names, new_names, textures) = Default::default();
     let mut put = AssetExport { scene, folder, source, files, used_names, new_names, textures };
@@ -52,16 +53,17 @@ struct AssetExport<'a> {
     folder: &'a str,
     source: &'a dyn AssetSource,
     files: Vec<AssetFile>,
-    /// Names of files and textures in use, in lower case because some file systems ignore case.
+    /// Names of files and textures already in use, in lower case because some file systems ignore
+    /// case.
     used_names: BTreeSet<String>,
-    /// New names by kind and old name.
+    /// New name of each asset, by its kind and old name.
     new_names: BTreeMap<(&'static str, String), String>,
-    /// Named textures by their old names.
+    /// Named textures, by their old names.
     textures: BTreeMap<String, (String, TextureImage)>,
 }
 
 impl AssetExport<'_> {
-    /// Returns a valid name similar to `of` that is not in use.
+    /// Returns a valid name that is similar to `of` and not yet in use.
     fn name(&mut self, of: &str, extension: &str) -> String {
         let ending = if extension.is_empty() { String::new() } else { format!(".{extension}") };
         let last = of.rsplit(['/', '\\']).next().unwrap_or_default();
@@ -74,7 +76,7 @@ impl AssetExport<'_> {
         name
     }
 
-    /// Adds a file; returns its path relative to the scene.
+    /// Adds a file and returns its path relative to the scene file.
     fn file(&mut self, of: &str, extension: &str, bytes: Vec<u8>) -> String {
         let (folder, name) = (self.folder, self.name(of, extension));
         let path = format!("{folder}/{name}");
@@ -104,7 +106,7 @@ impl AssetExport<'_> {
         })
     }
 
-    /// Returns the new name of an asset; calls `put` on its first use.
+    /// Returns the new name of an asset, and calls `put` when the asset is used for the first time.
     fn rename(&mut self, kind: &'static str, name: &str, put: impl FnOnce(&mut Self) -> String) -> String {
         let key = (kind, name.to_string());
         if let Some(cached) = self.new_names.get(&key) {
@@ -115,7 +117,7 @@ impl AssetExport<'_> {
         new_name
     }
 
-    /// Copies a file that the scene names.
+    /// Copies a file that the scene refers to.
     fn copy_file(&mut self, name: &str) -> String {
         match self.source.read(name) {
             Ok(bytes) => self.file(name, &extension(name), bytes.to_vec()),
@@ -123,7 +125,7 @@ impl AssetExport<'_> {
         }
     }
 
-    /// Exports the files named by a statement's fields.
+    /// Exports the files that the fields of a statement refer to.
     fn fields<T: DescribedKind>(&mut self, item: &mut T) {
         for i in 0..item.fields().len() {
             let Some(Value::Path(file)) = DescribedKind::get(item, i) else { continue };
@@ -132,8 +134,8 @@ impl AssetExport<'_> {
         }
     }
 
-    /// Returns the new name of a light profile, density grid or picture: the name of its file, or
-    /// of a texture if it has a mapping.
+    /// Returns the new name of a light profile, density grid, or picture: the name of its file, or
+    /// the name of a texture if it has a mapping.
     fn rename_asset(&mut self, name: &str) -> String {
         if let Some((cached, _)) = self.textures.get(name) {
             return cached.clone();
@@ -146,8 +148,8 @@ impl AssetExport<'_> {
             return self.rename("densities", name, |put| put.file(name, "vol", vol::write(bounds, grid)));
         }
         let Some(TextureImage { bytes, mapping }) = scene.assets.pictures.get(name) else {
-            // In `light.csv:red` and `picture.png:g`, the last part is a column or a channel of the
-            // file.
+            // In `light.csv:red` and `picture.png:g`, the part after the colon names a column or a
+            // channel of the file.
             let parted = name.rsplit_once(':').filter(|_| !self.source.contains(name));
             let (path, what) = parted.map_or((name, String::new()), |(path, what)| (path, format!(":{what}")));
             return self.rename("picture", path, |put| put.copy_file(path)) + &what;

@@ -1,16 +1,17 @@
-//! Reader of spectra in text files: rows of a wavelength in nanometres and values, separated by
-//! commas, semicolons or spaces.
+//! Reader of spectra in text files, where each row contains a wavelength in nanometres and one or
+//! more values, separated by commas, semicolons, or spaces.
 //!
-//! `#` starts a comment. A row of words before the numbers contains the column names.
+//! `#` starts a comment. If the first row contains words instead of numbers, they are the column
+//! names.
 
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use std::ops::Range;
 
-/// Maximum number of rows.
+/// Maximum number of rows in a file.
 const MAX_ROWS: usize = 100_000;
 
-/// Reads a spectrum: pairs of a wavelength and a value, in ascending order. `column` selects the
-/// column of values by name; the default is the first.
+/// Reads a spectrum as pairs of a wavelength and a value, sorted by wavelength in ascending order.
+/// `column` selects the column of values by its name; without it, the first column is used.
 pub fn read(bytes: &[u8], column: Option<&str>, file: u32, diagnostics: &mut Diagnostics) -> Option<Vec<[f32; 2]>> {
     std::str::from_utf8(bytes)
         .map_err(|error| {

@@ -1,4 +1,4 @@
-//! Decoder of asset files, used by the renderer.
+//! Decoder of asset files that is used by the renderer.
 
 use crate::{curve, photometry, read_mesh_as, vol};
 use durer_diag::Diagnostics;
@@ -9,8 +9,8 @@ use durer_scene::math::Aabb;
 use durer_scene::medium::DensityGrid;
 use durer_scene::shape::MeshData;
 
-/// Decoder of meshes, pictures and other asset files, which the renderer uses for all formats of
-/// this crate.
+/// Decoder of meshes, pictures, and other asset files. The renderer uses it for all formats of this
+/// crate.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Decoder;
 

@@ -1,9 +1,9 @@
-//! Mean reflectance of Disney's material over all directions, used by formats that have this
+//! Mean reflectance of Disney's material over all directions, for scene formats that use this
 //! material.
 //!
-//! Disney's diffuse base ignores the Fresnel loss at the boundary, and reflects more the rougher it
-//! is; its sheen is faint. Dürer's materials conserve energy, so readers choose colours and weights
-//! that give the same mean reflectance.
+//! Disney's diffuse base ignores the Fresnel loss at the boundary and reflects more light when it
+//! is rougher; its sheen is faint. Dürer's materials conserve energy, so readers choose colours and
+//! weights that give the same mean reflectance.
 //!
 //! Source: Burley, *Physically-Based Shading at Disney*, SIGGRAPH 2012, and *Extending the Disney
 //! BRDF to a BSDF*, 2015.
@@ -12,16 +12,17 @@ use durer_scene::bsdf::albedo::{self, single_means};
 use durer_scene::math::{Color, fp};
 use std::f32::consts::PI;
 
-/// Roughness at which Dürer's fuzz is brightest at grazing angles, as Disney's sheen is.
+/// Roughness at which Dürer's fuzz is brightest at grazing angles, where Disney's sheen is
+/// brightest too.
 pub(super) const FUZZ_ROUGHNESS: f32 = 0.2;
 
-/// Number of steps of each cosine, and of the azimuth between the two directions.
+/// Number of integration steps for each cosine, and for the azimuth between the two directions.
 const STEPS: usize = 16;
 
-/// Incident and outgoing direction above a surface, reduced to the cosines that Disney's lobes
+/// Incident and outgoing directions above a surface, reduced to the cosines that Disney's lobes
 /// need.
 struct DirectionPair {
-    /// Cosines of the angles to the normal.
+    /// Cosines of the angles between the directions and the normal.
     cosines: [f32; 2],
     /// Cosine of half the angle between the two directions.
     half: f32,
@@ -46,7 +47,7 @@ fn schlick(cosine: f32) -> f32 {
     m * m * m * m * m
 }
 
-/// Returns the cosine-weighted mean of `value` over all pairs of directions.
+/// Returns the mean of `value` over all pairs of directions, weighted by their cosines.
 fn means(value: impl Fn(&DirectionPair) -> f32) -> f32 {
     let step = |i: usize| (i as f32 + 0.5) / STEPS as f32;
     let mut sum = 0.0;
@@ -54,7 +55,7 @@ fn means(value: impl Fn(&DirectionPair) -> f32) -> f32 {
         let cosines @ [a, b] = [step(i), step(j)];
         let [s, t] = cosines.map(|cosine| (1.0 - cosine * cosine).sqrt());
         let between = a * b + s * t * fp::sin_cos_turn(0.5 * step(k)).1;
-        // Weight each direction by its cosine, whose mean is 1/2.
+        // Weight each direction by its cosine, which has a mean of 1/2.
         sum += 4.0 * a * b * value(&DirectionPair { cosines, half: (0.5 + 0.5 * between).max(0.0).sqrt() });
     }
     sum / STEPS.pow(3) as f32
@@ -65,7 +66,8 @@ pub(super) fn diffuse_albedo(roughness: f32) -> f32 {
     means(|pair| pair.diffuse(roughness))
 }
 
-/// Returns the weight of Dürer's fuzz that has the same reflectance as sheen of strength 1.
+/// Returns the weight at which Dürer's fuzz has the same reflectance as Disney's sheen of strength
+/// 1.
 pub(super) fn fuzz_weight_of_sheen() -> f32 {
     let at = |i: usize| {
         let cosine = (i as f32 + 0.5) / STEPS as f32;
@@ -74,35 +76,36 @@ pub(super) fn fuzz_weight_of_sheen() -> f32 {
     means(DirectionPair::sheen) / ((0..STEPS).map(at).sum::<f32>() / STEPS as f32)
 }
 
-/// Returns the fraction of light that crosses Dürer's boundary to a diffuse base and back out;
-/// always more than 0. The arguments are those of [`boundary_reflectance`].
+/// Returns the fraction of light that crosses Dürer's boundary to a diffuse base and comes back
+/// out; it is always greater than 0. The arguments are the same as those of
+/// [`boundary_reflectance`].
 pub(super) fn boundary_transmittance([reflected, all]: [f32; 2]) -> f32 {
     (1.0 - boundary_reflectance([reflected, all])).max(1e-3)
 }
 
-/// Returns the reflectance of Dürer's boundary from [`single_means`]: the single-scattering
-/// reflectance, divided by the total single-scattering reflectance and transmittance, which is
-/// below 1 for rough boundaries.
+/// Returns the reflectance of Dürer's boundary, computed from [`single_means`]. The result is the
+/// single-scattering reflectance divided by the sum of the single-scattering reflectance and
+/// transmittance, which is less than 1 for rough boundaries.
 pub(super) fn boundary_reflectance([reflected, all]: [f32; 2]) -> f32 {
-    // Unphysical indices of refraction can make `all` 0.
+    // With unphysical indices of refraction, `all` can be 0.
     reflected / all.max(1e-6)
 }
 
-/// Converts the base colour of Disney's material to Dürer's, for a base below a dielectric
-/// boundary.
+/// Converts the base colour of Disney's material to the base colour that Dürer needs below a
+/// dielectric boundary.
 pub(super) struct DiffuseConverter {
     diffuse_albedo: f32,
     transmittance: f32,
 }
 
 impl DiffuseConverter {
-    /// Creates a converter for a boundary with an index of refraction and a roughness.
+    /// Creates a converter for a boundary with the given index of refraction and roughness.
     pub fn new(ior: f32, roughness: f32) -> DiffuseConverter {
         let means = single_means(ior, roughness);
         DiffuseConverter { diffuse_albedo: diffuse_albedo(roughness), transmittance: boundary_transmittance(means) }
     }
 
-    /// Returns the base colour in Dürer for a base colour in Disney's material.
+    /// Returns the base colour in Dürer that corresponds to a base colour in Disney's material.
     pub fn base(&self, color: Color) -> Color {
         self.diffuse_albedo * color / self.transmittance
     }
@@ -114,13 +117,13 @@ mod tests {
 
     #[test]
     fn matte_base_and_sheen_match_reference_means() {
-        // The cosine-weighted mean of (1 - cos)^5 is 1/21, and the directions are independent.
+        // The cosine-weighted mean of (1 - cos)^5 is 1/21, and the two directions are independent.
         let expected = (1.0_f32 - 0.5 / 21.0) * (1.0 - 0.5 / 21.0);
         assert!((diffuse_albedo(0.0) - expected).abs() < 1e-3, "{}", diffuse_albedo(0.0));
-        // Mitsuba 3.9.1 measures 0.7456 for a base of 0.7 at roughness 1, with 200,000 pairs of
-        // directions.
+        // Mitsuba 3.9.1 yields 0.7456 for a base of 0.7 at roughness 1, measured with 200,000 pairs
+        // of directions.
         assert!((diffuse_albedo(1.0) - 0.7456 / 0.7).abs() < 5e-3, "{}", diffuse_albedo(1.0));
-        // Mitsuba measures 0.01154 for white sheen alone.
+        // Mitsuba yields 0.01154 for white sheen alone.
         assert!((means(DirectionPair::sheen) - 0.01154).abs() < 5e-4, "{}", means(DirectionPair::sheen));
         assert!((0.0..1.0).contains(&fuzz_weight_of_sheen()), "{}", fuzz_weight_of_sheen());
     }

@@ -1,10 +1,12 @@
-//! Scenes in which only emitters are visible, for pbrt and Mitsuba files that allow no scattering.
+//! Scenes in which only the emitters are visible, for pbrt and Mitsuba files that allow no
+//! scattering.
 
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Material, Scene};
 
-/// Makes all materials black. They keep their emission and opacity.
+/// Makes all materials black, so that they scatter no light. The materials keep their emission and
+/// opacity.
 pub(super) fn blacken(scene: &mut Scene) {
     for material in &mut scene.materials {
         let own = match &material.value {

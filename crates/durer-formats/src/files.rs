@@ -1,4 +1,4 @@
-//! Reads the files named by a scene, for all scene formats.
+//! Reads the files that a scene refers to, for all scene formats.
 
 use super::model::ReadInput;
 use super::read_mesh;
@@ -8,8 +8,8 @@ use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::shape::MeshData;
 use std::sync::Arc;
 
-/// Reads a file named by the scene and registers it for spans. `what` says what the file is for,
-/// and is used in the error if reading fails.
+/// Reads a file that the scene refers to and registers it, so that spans can point into it. `what`
+/// describes the purpose of the file in the error message if it cannot be read.
 pub(super) fn read_named(
     input: &ReadInput,
     report: &SharedReport,
@@ -45,7 +45,7 @@ pub(super) fn mesh_file(input: &ReadInput, report: &SharedReport, name: &str, at
     data
 }
 
-/// Decodes percent-encoding; `None` if an escape is malformed or the result is not UTF-8.
+/// Decodes percent-encoding; returns `None` if an escape is malformed or the result is not UTF-8.
 pub(super) fn percent_decoded(uri: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.bytes();

@@ -1,6 +1,7 @@
-//! Asset source that reads from folders. Only this module opens a scene's files for reading.
+//! Asset source that reads files from folders. Only this module opens the files of a scene for
+//! reading.
 //!
-//! Files can be read only below a few allowed folders, and only up to a total number of bytes.
+//! The source reads only files below a few allowed folders, and only up to a total number of bytes.
 
 use crate::files::percent_decoded;
 use durer_diag::did_you_mean;
@@ -12,28 +13,29 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::UNIX_EPOCH;
 
-/// Asset source that reads a scene's files from folders. Files must lie below the allowed folders,
-/// and their total size is limited.
+/// Asset source that reads the files of a scene from folders. The files must lie below the allowed
+/// folders, and their total size is limited.
 #[derive(Debug)]
 pub struct FolderSource {
-    /// Folders in which relative names are looked up, in this order.
+    /// Folders in which relative names are looked up, in order of precedence.
     search: Vec<PathBuf>,
-    /// Folders that must contain the files; empty if files anywhere are allowed.
+    /// Folders that must contain the files; empty if files may lie anywhere.
     allowed: Vec<PathBuf>,
-    /// Folders that are also searched for the file name without its path.
+    /// Folders that are also searched for the bare file name, without its path.
     assets: Vec<PathBuf>,
-    /// Files in memory, by name. They take precedence over files in folders.
+    /// Files that are held in memory, by name. Files in memory take precedence over files in
+    /// folders.
     in_memory: BTreeMap<String, Arc<[u8]>>,
     record: ReadRecord,
     progress: Mutex<Progress>,
 }
 
-/// Remaining byte budget of a [`FolderSource`], and the paths it has read.
+/// Number of bytes that a [`FolderSource`] may still read, and the paths that it has read so far.
 #[derive(Clone, Debug)]
 struct Progress {
-    /// Remaining budget in bytes.
+    /// Number of bytes that may still be read.
     left: u64,
-    /// Paths of all files that were read, or that it tried to read.
+    /// Paths of all files that the source read or tried to read.
     paths: Vec<PathBuf>,
 }
 
@@ -51,10 +53,11 @@ impl Clone for FolderSource {
 }
 
 impl FolderSource {
-    /// Default budget of one scene: 4 GiB. See [`FolderSource::budget`].
+    /// Number of bytes that may be read for one scene by default: 4 GiB. See
+    /// [`FolderSource::budget`].
     pub const DEFAULT_BUDGET: u64 = 4 << 30;
 
-    /// Creates a source of files in and below one folder.
+    /// Creates a source for files in one folder and its subfolders.
     pub fn new(folder: impl Into<PathBuf>) -> Self {
         let folder = folder.into();
         FolderSource {
@@ -67,44 +70,44 @@ impl FolderSource {
         }
     }
 
-    /// Adds a folder to the search path, in first place if `first`. This does not allow reading
-    /// files in it.
+    /// Adds a folder to the search path; if `first` is true, the folder is searched before all
+    /// others. Adding a folder does not give permission to read the files in it.
     pub fn search_in(mut self, folder: impl Into<PathBuf>, first: bool) -> Self {
         let at = if first { 0 } else { self.search.len() };
         self.search.insert(at, folder.into());
         self
     }
 
-    /// Allows files in and below another folder.
+    /// Allows reading files in another folder and its subfolders.
     pub fn allow(mut self, folder: impl Into<PathBuf>) -> Self {
-        // An empty list already allows every folder.
+        // If the list is empty, every folder is already allowed.
         if !self.allowed.is_empty() {
             self.allowed.push(folder.into());
         }
         self
     }
 
-    /// Adds a folder that is searched for the path and then for the file name alone, and allows
-    /// reading there.
+    /// Adds a folder that is searched first for the whole path and then for the file name alone,
+    /// and allows reading there.
     pub fn assets(mut self, folder: impl Into<PathBuf>) -> Self {
         let folder = folder.into();
         self.assets.push(folder.clone());
         self.search_in(folder.clone(), false).allow(folder)
     }
 
-    /// Adds a file in memory, which replaces any file of this name on disk.
+    /// Adds a file in memory, which takes the place of any file with this name on disk.
     pub fn add_in_memory(mut self, name: impl Into<String>, bytes: Arc<[u8]>) -> Self {
         self.in_memory.insert(name.into(), bytes);
         self
     }
 
-    /// Allows reading files anywhere.
+    /// Allows reading files in any folder.
     pub fn allow_outside(mut self) -> Self {
         self.allowed.clear();
         self
     }
 
-    /// Sets the number of bytes that may be read.
+    /// Sets the total number of bytes that may be read.
     pub fn budget(self, bytes: u64) -> Self {
         self.progress().left = bytes;
         self
@@ -114,26 +117,26 @@ impl FolderSource {
         self.progress.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns the paths of all files that were read, or that it tried to read.
+    /// Returns the paths of all files that the source read or tried to read.
     pub fn paths(&self) -> Vec<PathBuf> {
         self.progress().paths.clone()
     }
 
-    /// Returns the path of a file by its name, if it exists and may be read.
+    /// Returns the path of the file with this name, if it exists and may be read.
     pub fn find_path(&self, name: &str) -> Option<PathBuf> {
         self.find(name).ok().filter(|path| path.is_file())
     }
 
-    /// Returns the first path in the search order that exists and is allowed.
+    /// Returns the first path, in search order, that exists and may be read.
     fn find(&self, name: &str) -> Result<PathBuf, SourceError> {
-        // Scenes from Windows may contain backslashes.
+        // Scenes that were written on Windows may contain backslashes.
         let portable = name.replace('\\', "/");
         let path = Path::new(&portable);
         let bare = path.file_name().map(Path::new);
         let mut candidates: Vec<PathBuf> = self.search.iter().map(|folder| folder.join(path)).collect();
         candidates.extend(bare.iter().flat_map(|bare| self.assets.iter().map(move |folder| folder.join(bare))));
         let mut outside = false;
-        // If no candidate exists as written, try close variants of the name.
+        // If no candidate exists exactly as written, try similar names.
         let others = || self.search.iter().filter_map(|folder| similar_path(folder, path));
         let others: Vec<PathBuf> =
             if candidates.iter().any(|path| path.exists()) { Vec::new() } else { others().collect() };
@@ -150,8 +153,8 @@ impl FolderSource {
         })
     }
 
-    /// Returns a file name similar to one of the candidates, in the same folder. Folders that are
-    /// not allowed are not listed.
+    /// Returns the name of a file in the same folder that is similar to one of the candidates.
+    /// Folders that may not be read are not searched for similar names.
     fn similar_name(&self, candidates: &[PathBuf]) -> Option<String> {
         candidates.iter().find_map(|path| {
             let folder = path.parent()?.canonicalize().ok().filter(|folder| self.allows(folder))?;
@@ -164,11 +167,11 @@ impl FolderSource {
         })
     }
 
-    /// Resolves links in the path of an existing file, and checks that it may be read.
+    /// Resolves links in the path of an existing file and checks that the file may be read.
     ///
     /// # Errors
     ///
-    /// [`SourceError`] if the file does not exist or lies outside the allowed folders.
+    /// Returns [`SourceError`] if the file does not exist or lies outside the allowed folders.
     pub fn allowed(&self, path: &Path) -> Result<PathBuf, SourceError> {
         let name = || path.display().to_string();
         let real = path.canonicalize().map_err(|error| SourceError::Io { name: name(), error })?;
@@ -180,11 +183,11 @@ impl FolderSource {
         self.allowed.is_empty() || self.allowed.iter().any(below)
     }
 
-    /// Reads a file at a path without adding it to the record. `name` is used in messages.
+    /// Reads the file at a path without recording the path. `name` is used in messages.
     ///
     /// # Errors
     ///
-    /// [`SourceError`], for example if the budget is used up.
+    /// Returns [`SourceError`], for example if the byte limit has been reached.
     pub fn read_path(&self, path: &Path, name: &str) -> Result<Arc<[u8]>, SourceError> {
         let io = |error| SourceError::Io { name: name.into(), error };
         self.progress().paths.push(path.into());
@@ -197,7 +200,7 @@ impl FolderSource {
         if metadata.len() > left {
             return Err(too_large(metadata.len()));
         }
-        // The limit also holds for a file that grows while it is read.
+        // The limit also applies to a file that grows while it is being read.
         let bytes = read_all(fs::File::open(path).map_err(io)?, metadata.len() as usize, left).map_err(io)?;
         if bytes.len() as u64 > left {
             return Err(too_large(bytes.len() as u64));
@@ -207,15 +210,16 @@ impl FolderSource {
     }
 }
 
-/// Returns the existing file that `path` most likely means if it does not exist as written. Decodes
-/// percent escapes, resolves `folder/..`, and ignores letter case, as other systems do.
+/// Returns the existing file that `path` most likely refers to, for paths that do not exist exactly
+/// as written. Decodes percent escapes, resolves `folder/..`, and ignores letter case, as some
+/// other systems do.
 fn similar_path(folder: &Path, path: &Path) -> Option<PathBuf> {
     let mut names: Vec<&str> = Vec::new();
     for part in path.components() {
         match part {
             Component::CurDir => {}
-            // Resolve `..` lexically, since its folder may not exist; never leave the search
-            // folder.
+            // Resolve `..` by editing the path text, since its folder may not exist, but never
+            // leave the search folder.
             Component::ParentDir => names.pop().map(|_| ())?,
             Component::Normal(name) => names.push(name.to_str()?),
             Component::RootDir | Component::Prefix(_) => return None,
@@ -225,12 +229,12 @@ fn similar_path(folder: &Path, path: &Path) -> Option<PathBuf> {
     candidate.is_file().then_some(candidate)
 }
 
-/// Decodes percent escapes; returns the name unchanged if they are malformed.
+/// Decodes percent escapes; returns the name unchanged if an escape is malformed.
 fn unescaped_or_same(name: &str) -> String {
     percent_decoded(name).unwrap_or_else(|| name.to_string())
 }
 
-/// Finds an entry of `folder` by name: as written, with percent escapes decoded, or with different
+/// Finds an entry of `folder` by its name, as written, with percent escapes decoded, or ignoring
 /// letter case.
 fn same_name(folder: &Path, name: &str) -> Option<PathBuf> {
     let plain = unescaped_or_same(name);
@@ -293,7 +297,7 @@ impl AssetSource for FolderSource {
     }
 }
 
-/// Returns the version stamp of the file at a path; `None` if the file does not exist.
+/// Returns the version stamp of the file at a path, or `None` if the file does not exist.
 pub fn stamp_of(path: &Path) -> Option<Stamp> {
     let metadata = fs::metadata(path).ok()?;
     #[cfg(unix)]
@@ -307,8 +311,8 @@ pub fn stamp_of(path: &Path) -> Option<Stamp> {
     Some(Stamp { path: path.into(), modified, size: metadata.len(), number })
 }
 
-/// Reads a file of about `size` bytes; if it has grown, reads at most `most + 1` bytes. If the size
-/// is exact, the bytes are read directly into the result, without a copy.
+/// Reads a file whose size should be `size` bytes; if it has grown, reads at most `most + 1` bytes.
+/// If the size is exact, the bytes are read directly into the result without being copied.
 fn read_all(mut file: fs::File, size: usize, most: u64) -> std::io::Result<Arc<[u8]>> {
     let mut bytes: Arc<[u8]> = std::iter::repeat_n(0, size).collect();
     let mut room = Arc::get_mut(&mut bytes).unwrap_or_default();

@@ -1,8 +1,8 @@
-//! Joins the meshes of glass bodies whose surface is split into several meshes.
+//! Joins the meshes of glass bodies whose surface is divided into several meshes.
 //!
-//! pbrt and Mitsuba decide by the side of the surface alone whether a ray enters or leaves a body.
-//! Dürer tracks the objects that a ray is inside, so the surface of a body must be a single object.
-//! Therefore open meshes of the same glass are joined.
+//! pbrt and Mitsuba decide whether a ray enters or leaves a body only by the side of the surface
+//! that it hits. Dürer keeps track of the objects that contain the ray, so the surface of each body
+//! must be a single object. For this reason, open meshes with the same glass material are joined.
 
 use durer_scene::dialect::MeshNormals;
 use durer_scene::material::principled::Walls;
@@ -13,7 +13,7 @@ use glam::{DAffine3, DVec3};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// Returns the name of an object's mesh, and its transform.
+/// Returns the name of an object's mesh and the object's transform.
 fn mesh_of(object: &Object) -> Option<(&str, DAffine3)> {
     match &object.node {
         ObjectKind::Mesh(mesh) => Some((&mesh.obj_file.path, DAffine3::IDENTITY)),
@@ -24,7 +24,7 @@ fn mesh_of(object: &Object) -> Option<(&str, DAffine3)> {
     }
 }
 
-/// Collects the names of all meshes in a group.
+/// Collects the names of all meshes in a group of objects.
 fn used(group: &Group, names: &mut BTreeSet<String>) {
     for object in &group.objects {
         match &object.node {
@@ -40,7 +40,7 @@ fn used(group: &Group, names: &mut BTreeSet<String>) {
     }
 }
 
-/// Appends a mesh transformed to world space.
+/// Appends a copy of a mesh, transformed to world space.
 fn append(body: &mut MeshData, data: &MeshData, map: DAffine3) {
     let mirrored = map.matrix3.determinant() < 0.0;
     let normals = map.matrix3.inverse().transpose();
@@ -63,7 +63,8 @@ fn append(body: &mut MeshData, data: &MeshData, map: DAffine3) {
     body.flat = true;
 }
 
-/// Joins the open meshes of each glass material. `name` is the file name of the scene.
+/// Joins the open meshes of each glass material into one mesh. `name` is the name of the scene
+/// file.
 pub(super) fn join_bodies(scene: &mut Scene, name: &str) {
     let Some(root) = &mut scene.root else { return };
     let materials = &scene.materials;

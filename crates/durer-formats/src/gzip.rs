@@ -1,16 +1,16 @@
-//! Files compressed with gzip.
+//! Reads files that are compressed with gzip.
 
 use durer_scene::source::{AssetSource, SourceError};
 use std::io::Read as _;
 use std::sync::Arc;
 
-/// Reads a file by its name in the scene, and decompresses it if it is a gzip file. The result may
-/// not exceed the source's budget.
+/// Reads a file by its name in the scene, and decompresses it if it is in gzip format. The
+/// decompressed data may not exceed the number of bytes that the source may still read.
 ///
 /// # Errors
 ///
-/// Errors of [`AssetSource::read`], and [`SourceError::Io`] if compressed data is damaged or
-/// exceeds the budget.
+/// Returns the errors of [`AssetSource::read`], and [`SourceError::Io`] if compressed data is
+/// damaged or too large for the limit.
 pub fn read_decompressed(source: &dyn AssetSource, name: &str) -> Result<Arc<[u8]>, SourceError> {
     let bytes = source.read(name)?;
     if !is_gzip(&bytes) {
@@ -24,20 +24,20 @@ pub fn read_decompressed(source: &dyn AssetSource, name: &str) -> Result<Arc<[u8
     Ok(all)
 }
 
-/// Returns true if the bytes are a gzip file.
+/// Returns true if the bytes are in gzip format.
 pub fn is_gzip(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\x1f\x8b")
 }
 
-/// Decompresses gzip data to at most `budget` bytes. The output may not exceed the size declared in
-/// the last four bytes.
+/// Decompresses gzip data, up to a size of `budget` bytes. The output may not be larger than the
+/// size that the last four bytes declare.
 ///
 /// # Errors
 ///
-/// Returns a message if the data is damaged or would exceed the budget.
+/// Returns an error message if the data is damaged or its output would be too large.
 pub fn decompress(bytes: &[u8], budget: u64) -> Result<Arc<[u8]>, String> {
-    // Deflate compresses at most 1032 bytes into one. The last four bytes contain the uncompressed
-    // size of the last member.
+    // Deflate compresses at most 1032 bytes into one byte. The last four bytes contain the
+    // uncompressed size of the last member of the file.
     let most = budget.min(1032 * bytes.len() as u64);
     let declared = bytes.last_chunk().map_or(0, |size| u64::from(u32::from_le_bytes(*size)));
     if declared > most {

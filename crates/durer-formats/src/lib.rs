@@ -1,11 +1,11 @@
-//! Readers and writers of file formats. Each format is in one file or folder, and has one entry in
+//! Readers and writers of file formats. Each format has its own file or folder and one entry in
 //! [`MESH_FORMATS`] or [`SCENE_FORMATS`].
 //!
-//! Files may be malicious. Readers allocate memory in proportion to the actual number of bytes,
-//! never to a count that a file promises. They reject non-finite numbers and indices out of range,
-//! and report errors with spans.
+//! Files that are read may be malicious. Therefore, readers allocate memory in proportion to the
+//! number of bytes in the file, never according to a count that the file states. Readers also
+//! reject non-finite numbers and indices that are out of range, and they report errors with spans.
 
-// If a format is disabled, parts shared by several formats may be unused.
+// If a format is disabled at compile time, code shared by several formats may be unused.
 #![cfg_attr(not(feature = "all"), allow(dead_code))]
 
 pub mod asset_export;
@@ -64,27 +64,27 @@ pub use scene::{SCENE_FORMATS, scene_format_for};
 use signature::wrong_format_error;
 use std::borrow::Cow;
 
-/// File format that stores one mesh: its name, extensions, reader and writer.
+/// File format for a single mesh, with its name, extensions, reader, and writer.
 pub struct MeshFormat {
-    /// Display name.
+    /// Name of the format for display.
     pub name: &'static str,
-    /// File name extensions in lower case, without the dot.
+    /// File name extensions in lower case, without the leading dot.
     pub extensions: &'static [&'static str],
-    /// Returns true if a file that begins with these bytes seems to have this format.
+    /// Returns true if a file that begins with these bytes appears to be in this format.
     pub recognise: fn(&[u8]) -> bool,
-    /// Reads a file; the number is the file index for spans. Returns `None` after pushing errors to
-    /// the diagnostics.
+    /// Reads a file; the number is the index of the file, for spans. If there are errors, adds them
+    /// to the diagnostics and returns `None`.
     pub read: fn(&[u8], u32, &mut Diagnostics) -> Option<MeshData>,
-    /// Returns the file as legacy programs with these quirks read it: parts that they ignore are
-    /// cut off or overwritten, and byte offsets stay valid.
+    /// Returns the file as legacy programs with these quirks read it: the parts that they ignore
+    /// are cut off or overwritten so that byte offsets stay valid.
     pub apply_quirks: fn(&[u8], QuirkSet) -> Cow<'_, [u8]>,
     /// Writes a mesh.
     pub write: fn(&MeshData) -> Vec<u8>,
-    /// Up axis of most models of this format.
+    /// Up axis that most models in this format use.
     pub up: Axis,
 }
 
-/// Mesh formats, in the order in which they are tried on a file with an unknown extension.
+/// Mesh formats, in the order in which they are tried for a file with an unknown extension.
 pub const MESH_FORMATS: &[MeshFormat] = &[ply::FORMAT, obj::FORMAT, stl::FORMAT];
 
 /// Returns the bytes unchanged, for formats that no legacy program reads.
@@ -92,26 +92,27 @@ fn without_quirks(bytes: &[u8], _: QuirkSet) -> Cow<'_, [u8]> {
     Cow::Borrowed(bytes)
 }
 
-/// Returns the mesh format for a file name, by its extension.
+/// Returns the mesh format that a file name indicates by its extension.
 pub fn mesh_format_for(name: &str) -> Option<&'static MeshFormat> {
     let extension = extension(name);
     MESH_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
 }
 
-/// Reads a mesh file. The format is chosen by the extension of the file's name, or by the file's
-/// content if the extension is unknown.
+/// Reads a mesh file. The extension of the file name determines the format; if the extension is
+/// unknown, the content of the file does.
 ///
 /// `file` is the index of the file in [`Files`](durer_diag::Files), for spans; `name` is its name
 /// with the extension.
 ///
-/// Adds all errors to `diagnostics`, with the spans of the offending bytes, and returns `None`.
-/// Also returns `None` if `diagnostics` was already full. Warnings and notes are added too, but the
-/// mesh is still usable.
+/// If there are errors, adds them all to `diagnostics`, with the spans of the bytes that caused
+/// them, and returns `None`. Also returns `None` if `diagnostics` was already full. Warnings and
+/// notes are also added, but the mesh can still be used.
 pub fn read_mesh(bytes: &[u8], file: u32, name: &str, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     read_mesh_as(bytes, file, name, 0, diagnostics)
 }
 
-/// Reads a mesh file as [`read_mesh`] does, but as legacy programs with these quirks would.
+/// Reads a mesh file as [`read_mesh`] does, but in the way that legacy programs with these quirks
+/// would.
 pub fn read_mesh_as(
     bytes: &[u8],
     file: u32,
@@ -137,14 +138,15 @@ pub fn read_mesh_as(
     }
 }
 
-/// Returns an error if a file of this size is too large for 32-bit spans.
+/// Returns an error if a file of this size is too large for spans, which have 32-bit offsets.
 fn too_large(size: u64, name: &str) -> Option<Diagnostic> {
     const MAX_SIZE: u64 = u32::MAX as u64 - 1;
     let message = || format!("`{name}` is too large for a mesh file: {size} bytes, at most {MAX_SIZE}");
     (size > MAX_SIZE).then(|| Diagnostic::error(message()).help("cut the mesh into several files"))
 }
 
-/// Returns the extension of a file name in lower case, without the dot; empty if there is none.
+/// Returns the extension of a file name in lower case, without the leading dot, or an empty string
+/// if there is none.
 fn extension(name: &str) -> String {
     let base = name.rsplit(['/', '\\']).next().unwrap_or(name);
     base.rsplit_once('.').map_or(String::new(), |(_, extension)| extension.to_lowercase())

@@ -10,8 +10,8 @@ use durer_scene::medium::Fog;
 use durer_scene::scene::Spanned;
 use glam::DAffine3;
 
-/// Participating medium read from a pbrt or Mitsuba scene, homogeneous or with a density grid.
-/// Coefficients are per unit of length.
+/// Participating medium read from a pbrt or Mitsuba scene, homogeneous or with a density grid. The
+/// coefficients are per unit of length.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Medium {
     /// Absorption coefficient.
@@ -20,16 +20,17 @@ pub(super) struct Medium {
     pub scattering: Color,
     /// Mean cosine of the phase function.
     pub anisotropy: f32,
-    /// Grid of factors on the coefficients; `None` if the medium is homogeneous.
+    /// Grid of factors by which the coefficients are multiplied; `None` if the medium is
+    /// homogeneous.
     pub density: Option<Density>,
 }
 
-/// Density grid of a participating medium, with its placement in the scene.
+/// Density grid of a participating medium, together with its placement in the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Density {
-    /// Name of an asset or a file.
+    /// Name of the asset or file that contains the densities.
     pub name: FileName,
-    /// Transform from the unit cube to world space; `None` if the bounds in the file apply.
+    /// Transform from the unit cube to world space; `None` if the bounds given in the file apply.
     pub to_world: Option<DAffine3>,
 }
 
@@ -38,7 +39,7 @@ impl Medium {
         self.absorption + self.scattering
     }
 
-    /// Sets the medium as the interior of a material.
+    /// Makes the medium the interior of a material.
     pub(super) fn fill(&self, m: &mut PrincipledMaterial) {
         let most = self.extinction().max_element();
         if most <= 0.0 {
@@ -58,8 +59,8 @@ impl Medium {
         }
     }
 
-    /// Returns fog for a medium around the camera; `None` if the medium is clear or cannot be
-    /// represented.
+    /// Returns fog for a medium that surrounds the camera; `None` if the medium is clear or cannot
+    /// be represented as fog.
     pub(super) fn fog(&self, at: Span, report: &SharedReport) -> Option<Spanned<Fog>> {
         let extinction = self.extinction();
         let most = extinction.max_element();

@@ -1,4 +1,5 @@
-//! Description of a scene format: how to recognise, read and write its files.
+//! Description of a scene format, which says how to recognise, read, and write files in this
+//! format.
 
 use durer_diag::{Diagnostics, Files};
 use durer_scene::dialect::MeshNormals;
@@ -7,56 +8,57 @@ use durer_scene::source::AssetSource;
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// File format of scenes, or of models that are converted to scenes: its name, extensions, reader
-/// and writer.
+/// File format of scenes, or of models that are converted to scenes, with its name, extensions,
+/// reader, and writer.
 pub struct SceneFormat {
-    /// Display name.
+    /// Name of the format for display.
     pub name: &'static str,
-    /// File name extensions in lower case, without the dot.
+    /// File name extensions in lower case, without the leading dot.
     pub extensions: &'static [&'static str],
-    /// Returns true if a file that begins with these bytes has this format, whatever its name.
+    /// Returns true if a file that begins with these bytes is in this format, regardless of its
+    /// name.
     pub recognise: fn(&[u8]) -> bool,
-    /// Reads a file. Returns `None` after pushing errors to the diagnostics.
+    /// Reads a file. If there are errors, adds them to the diagnostics and returns `None`.
     pub read: fn(&ReadInput, &mut Diagnostics) -> Option<Scene>,
-    /// Writes a scene; warns about content that the format cannot represent. `None` if the format
-    /// is read-only.
+    /// Writes a scene, and warns about content that the format cannot represent. `None` if the
+    /// format is read-only.
     pub write: Option<WriteScene>,
-    /// Up axis of most models of this format.
+    /// Up axis that most models in this format use.
     pub up: Axis,
-    /// True if a file with a camera is a complete scene, so that no light is added to it.
+    /// True if a file that contains a camera is a complete scene, to which no light is added.
     pub is_complete_scene: bool,
-    /// Help text for a scene without light: what to add to a file of this format. `None` if the
-    /// words of the scene language apply.
+    /// Help text for a scene without light, which says what to add to a file in this format. `None`
+    /// if the help text for the scene language applies.
     pub light_hint: Option<&'static str>,
 }
 
 /// Function that encodes a scene as a file.
 pub type WriteScene = fn(&Scene, &WriteContext, &mut Diagnostics) -> Vec<u8>;
 
-/// Input of a scene writer besides the scene itself: the file's name, the asset source and some
-/// settings.
+/// Input of a scene writer other than the scene itself: the name of the file, the asset source, and
+/// some settings.
 pub struct WriteContext<'a> {
     /// Name of the file with its extension.
     pub name: &'a str,
-    /// Source of the files named by the scene.
+    /// Source of the files that the scene refers to.
     pub source: &'a dyn AssetSource,
-    /// Shading of triangles without normals.
+    /// Shading of triangles that have no normals.
     pub normals: MeshNormals,
     /// Memory limit in bytes for decoding one picture.
     pub memory: u64,
 }
 
-/// Input of a scene reader: the bytes of a file, and the context needed to read it as a scene.
+/// Input of a scene reader: the bytes of a file, and the context needed to read them as a scene.
 pub struct ReadInput<'a> {
     /// Bytes of the file.
     pub bytes: &'a Arc<[u8]>,
-    /// Index of the file in `files`, for spans.
+    /// Index of the file in `files`, which spans refer to.
     pub file: u32,
-    /// Registered texts. A reader adds further files that it reads.
+    /// Registered texts. If the reader opens other files, it adds them here.
     pub files: &'a RefCell<Files>,
-    /// File name with its extension, without its folder.
+    /// Name of the file with its extension but without its folder.
     pub name: &'a str,
-    /// Source of the files named by the scene.
+    /// Source of the files that the scene refers to.
     pub source: &'a dyn AssetSource,
     /// Options for turning a model into a scene, such as its up axis and view.
     pub scene_defaults: &'a SceneDefaults,

@@ -10,11 +10,11 @@ pub(super) enum NumberError {
     Malformed,
     /// The word is not an integer where one is required.
     NotWhole,
-    /// The word is infinite, NaN, or beyond the range of 32-bit floating point.
+    /// The number is infinite, NaN, or beyond the range of 32-bit floating point.
     NotFinite,
 }
 
-/// Parses a finite `f32`, correctly rounded.
+/// Parses a finite `f32` with correct rounding.
 pub(super) fn parse_f32(word: &[u8]) -> Result<f32, NumberError> {
     if let Some(value) = parse_fast(word) {
         return Ok(value);
@@ -28,18 +28,18 @@ pub(super) fn parse_f32(word: &[u8]) -> Result<f32, NumberError> {
     }
 }
 
-/// Powers of ten that an `f64` represents exactly.
+/// Powers of ten that an `f64` can represent exactly.
 const TENS: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
     1e21, 1e22,
 ];
 
-/// Fast path for words of at most 15 digits. Returns `None` for other words, and if the result
-/// might not be correctly rounded.
+/// Parses words of at most 15 digits quickly. Returns `None` for other words, and whenever the
+/// result might not be correctly rounded.
 ///
-/// Source: Clinger, *How to read floating point numbers accurately*, 1990: multiplying or dividing
-/// an integer below 2^53 by an exact power of ten rounds once. Rounding that result to single
-/// precision errs only if it lies halfway between two `f32` values.
+/// Source: Clinger, *How to read floating point numbers accurately*, 1990. Multiplying or dividing
+/// an integer below 2^53 by an exact power of ten rounds only once. Rounding that result to single
+/// precision is wrong only if the result lies halfway between two `f32` values.
 fn parse_fast(word: &[u8]) -> Option<f32> {
     let (negative, mut rest) = match word {
         [b'-', rest @ ..] => (true, rest),
@@ -83,7 +83,7 @@ fn parse_fast(word: &[u8]) -> Option<f32> {
     (is_usual && !is_halfway).then_some(if negative { -value } else { value })
 }
 
-/// Returns true for non-finite numbers as printed by C libraries: `-nan(ind)`, `1.#QNAN`,
+/// Returns true for non-finite numbers in the forms that C libraries print: `-nan(ind)`, `1.#QNAN`,
 /// `-1.#IND00`.
 fn is_c_not_finite(word: &[u8]) -> bool {
     let unsigned = word.strip_prefix(b"-").or(word.strip_prefix(b"+")).unwrap_or(word);
@@ -97,7 +97,7 @@ pub(super) fn is_not_finite_tail(bytes: &[u8]) -> bool {
     [&b"#INF"[..], b"#IND", b"#QNAN", b"#SNAN"].iter().any(|tail| bytes.starts_with(tail))
 }
 
-/// Parses an integer. Values beyond the range of `i64` are clamped.
+/// Parses an integer. Values beyond the range of `i64` are clamped to that range.
 pub(super) fn parse_integer(word: &[u8]) -> Option<i64> {
     let (negative, digits) = match word {
         [b'-', digits @ ..] => (true, digits),
@@ -117,7 +117,7 @@ pub(super) fn parse_integer(word: &[u8]) -> Option<i64> {
     Some(if negative { -value } else { value })
 }
 
-/// Reports a word that is not the expected number.
+/// Reports a word that is not a valid number of the expected kind.
 pub(super) fn report_number(report: &mut Report, error: NumberError, at: Range<usize>, word: &[u8]) {
     match error {
         NumberError::NotFinite => {
@@ -178,8 +178,8 @@ mod tests {
             }
         }
         assert!(quick > 120_000, "{quick}");
-        // The first number is halfway between two `f32` values, the second is above that: only the
-        // first needs the slow path.
+        // The first number is halfway between two `f32` values and the second is slightly above it,
+        // so only the first needs the slow path.
         assert_eq!(parse_fast(b"16777217"), None);
         assert_eq!(parse_fast(b"16777217.5"), Some(16777218.0));
         assert_eq!(parse_fast(b"-0.0").map(f32::to_bits), Some((-0.0f32).to_bits()));

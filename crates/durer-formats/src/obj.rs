@@ -1,9 +1,10 @@
-//! Reader of Wavefront `.obj` files: polygons, lines and points, but not curves and surfaces.
-//! `scene.rs` adds the materials of `.mtl` files.
+//! Reader of Wavefront `.obj` files, which supports polygons, lines, and points but not curves and
+//! surfaces. `scene.rs` adds the materials from `.mtl` files.
 //!
-//! The file is read in two passes: first positions, texture coordinates and normals, then the
-//! faces, which can refer to vertices further down. Therefore only the mesh itself is kept in
-//! memory. Both passes read parts of the file in parallel.
+//! The file is read in two passes: the first reads positions, texture coordinates, and normals, and
+//! the second reads faces, which can refer to vertices that appear later in the file. With two
+//! passes, only the mesh itself needs to be kept in memory. Both passes process parts of the file
+//! in parallel.
 
 mod faces;
 mod materials;
@@ -26,34 +27,35 @@ use std::ops::Range;
 use words::Words;
 use write::write;
 
-/// Kind of a Wavefront statement, determined by its first word.
+/// Kind of a Wavefront statement, which its first word determines.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Statement {
     Position,
     Uv,
     Normal,
     Face,
-    /// Lines and points have no surface. Mesh readers ignore them; scene readers show them.
+    /// Lines and points have no surface. Mesh readers ignore lines and points; scene readers make
+    /// them visible.
     Line,
     Point,
-    /// Sets the material of the following statements.
+    /// Sets the material for the statements that follow.
     Material,
-    /// Names the material files.
+    /// Names one or more material files.
     Library,
-    /// Sets the smoothing group of the following faces. Faces of a group that lack normals are
-    /// smoothed.
+    /// Sets the smoothing group for the faces that follow. Faces in a smoothing group that lack
+    /// normals are smoothed.
     Smoothing,
-    /// Known statement that does not affect the mesh.
+    /// Known statement that has no effect on the mesh.
     Ignored,
 }
 
-/// Supported statements, by their first word.
+/// Supported statements, each with its first word.
 const STATEMENTS: &[(&str, Statement)] = &[
     ("v", Statement::Position),
     ("vt", Statement::Uv),
     ("vn", Statement::Normal),
     ("f", Statement::Face),
-    // `f` in versions of the format before 2.11.
+    // Versions of the format before 2.11 use `fo` instead of `f`.
     ("fo", Statement::Face),
     ("o", Statement::Ignored),
     ("g", Statement::Ignored),
@@ -75,7 +77,7 @@ const STATEMENTS: &[(&str, Statement)] = &[
 ];
 
 fn statement(word: &[u8]) -> Option<Statement> {
-    // Fast path: nearly all statements of a file are of these two kinds.
+    // Fast path: nearly all statements in a file are of these two kinds.
     match word {
         b"v" => Some(Statement::Position),
         b"f" => Some(Statement::Face),
@@ -83,7 +85,7 @@ fn statement(word: &[u8]) -> Option<Statement> {
     }
 }
 
-/// Mesh format entry for Wavefront files.
+/// Entry for Wavefront files in the list of mesh formats.
 pub(super) const FORMAT: MeshFormat = MeshFormat {
     name: "Wavefront OBJ",
     extensions: &["obj"],
@@ -100,24 +102,25 @@ fn recognise(bytes: &[u8]) -> bool {
     Words::new(head).next_statement().is_some_and(|word| statement(&head[word]).is_some())
 }
 
-/// Reads a file; see [`read_mesh`](super::read_mesh).
+/// Reads a Wavefront file; see [`read_mesh`](super::read_mesh).
 fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     read_with(bytes, file, &mut StateChanges::default(), diagnostics)
 }
 
-/// State change between faces: index of the first triangle that it applies to, and the new state.
+/// Change of state between faces: the index of the first triangle that it applies to, and the new
+/// state.
 type StateChange<T> = (usize, T);
 
-/// Changes of the material and of the smoothing group between the faces of a Wavefront file.
+/// Changes of material and smoothing group between the faces of a Wavefront file.
 #[derive(Default)]
 struct StateChanges {
-    /// Byte range of the material's name.
+    /// Byte range of the name of the material.
     materials: Vec<StateChange<Range<usize>>>,
-    /// Number of the smoothing group; 0 for none.
+    /// Number of the smoothing group, or 0 if there is none.
     groups: Vec<StateChange<u32>>,
 }
 
-/// Reads a mesh and the state changes between its faces.
+/// Reads a mesh, and the state changes between its faces.
 fn read_with(bytes: &[u8], file: u32, switches: &mut StateChanges, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     let mut report = Report::new(file, diagnostics);
     let mut mesh = MeshData::default();
@@ -136,23 +139,23 @@ fn read_with(bytes: &[u8], file: u32, switches: &mut StateChanges, diagnostics: 
     report.finish(diagnostics, mesh)
 }
 
-/// Vertices read from one part of a Wavefront file, with the diagnostics.
+/// Vertices that were read from one part of a Wavefront file, with the diagnostics for that part.
 struct Vertices {
     mesh: MeshData,
-    /// Byte range of the first unsupported statement, and the number of such statements.
+    /// Byte range of the first unsupported statement, and the number of unsupported statements.
     unknown: Option<(Range<usize>, usize)>,
     report: Report,
 }
 
-/// Numbers of positions, texture coordinates and normals.
+/// Number of positions, of texture coordinates, and of normals.
 type Counts = [usize; 3];
 
 fn counts(mesh: &MeshData) -> Counts {
     [mesh.positions.len(), mesh.uvs.len(), mesh.normals.len()]
 }
 
-/// Reads positions, texture coordinates and normals, and checks the keywords of all other
-/// statements. Returns the counts before each part.
+/// Reads positions, texture coordinates, and normals, and checks the keywords of all other
+/// statements. Returns the number of vertices of each kind before each part.
 fn read_vertices(bytes: &[u8], parts: &[Range<usize>], mesh: &mut MeshData, report: &mut Report) -> Vec<Counts> {
     let read = |part: &Range<usize>| vertices(bytes, part.clone(), report.part());
     let read: Vec<Vertices> = parts.par_iter().map(read).collect();
@@ -201,7 +204,7 @@ fn vertices(bytes: &[u8], part: Range<usize>, mut report: Report) -> Vertices {
             Some(Statement::Position) => {
                 let ([x, y, z, r, g, b], count) = numbers(bytes, keyword, 3, 3, &mut words, &mut report);
                 mesh.positions.push(Vec3::new(x, y, z));
-                // The position may be followed by a weight or a colour.
+                // A weight or a colour may follow the position.
                 if count == 6 {
                     mesh.colors.resize(mesh.positions.len() - 1, [1.0; 4]);
                     let [r, g, b] = [r, g, b].map(decode);
@@ -232,16 +235,16 @@ fn vertices(bytes: &[u8], part: Range<usize>, mut report: Report) -> Vertices {
     Vertices { mesh, unknown, report }
 }
 
-/// Decodes an sRGB value from 0 to 1. Any other value, or NaN, becomes 1.
+/// Decodes an sRGB value in the range from 0 to 1. Returns 1 for any other value, including NaN.
 fn decode(value: f32) -> f32 {
     if (0.0..=1.0).contains(&value) { durer_image::decode_srgb((value * 255.0 + 0.5) as u8) } else { 1.0 }
 }
 
-/// Reads the numbers of a statement; returns them and their count. The first `needed` numbers are
-/// required, and the first `sound` must be finite; missing or invalid ones are 0.
+/// Reads the numbers of a statement and returns them with their count. The first `needed` numbers
+/// must be present, and the first `sound` must be finite; missing or invalid ones become 0.
 ///
-/// More numbers may follow, such as weights and colours. Other words are errors, since they suggest
-/// that two lines were joined.
+/// Additional numbers, such as weights and colours, are allowed. Any other words are errors, since
+/// they suggest that two lines were joined by mistake.
 fn numbers<const N: usize>(
     bytes: &[u8],
     keyword: Range<usize>,
@@ -258,8 +261,8 @@ fn numbers<const N: usize>(
         match parse_f32(&bytes[word.clone()]) {
             Ok(value) if count < N => values[count] = value,
             Ok(_) => {}
-            // The others may be infinite: they are either unused or a colour, and `decode` handles
-            // that.
+            // The other numbers may be infinite: either they are unused, or they are colours, which
+            // `decode` clamps.
             Err(NumberError::NotFinite) if count >= sound => _ = values.get_mut(count).map(|value| *value = f32::NAN),
             Err(error) => report_number(report, error, word.clone(), &bytes[word]),
         }

@@ -1,5 +1,5 @@
-//! Renders light from infinitely far away into an equirectangular picture, the scene's environment
-//! map.
+//! Renders light that comes from infinitely far away into an equirectangular picture, which becomes
+//! the scene's environment map.
 
 use durer_diag::Span;
 use durer_image::{self as image, Image, ImageError, Layer, WriteOptions};
@@ -14,16 +14,16 @@ use std::f32::consts::{PI, TAU};
 /// Number of samples along each side of a texel.
 const SAMPLES_PER_SIDE: u32 = 3;
 
-/// Memory in bytes per texel while the picture is computed: its colour, and the encoded file, whose
-/// buffer can grow to twice its size.
+/// Number of bytes of memory needed per texel to compute the picture: for its colour, and for the
+/// encoded file, whose buffer can grow to twice its size.
 const BYTES_PER_TEXEL: u64 = 4 * size_of::<Color>() as u64;
 
-/// Renders the light from each direction in world space into a picture, and makes it the scene's
-/// environment map.
+/// Renders the light from each direction in world space into a picture, and uses this picture as
+/// the scene's environment map.
 ///
 /// # Errors
 ///
-/// [`ImageError::Memory`] if this needs more than `allowed` bytes of memory.
+/// Returns [`ImageError::Memory`] if this needs more than `allowed` bytes of memory.
 pub(super) fn set_environment(
     scene: &mut Scene,
     (name, span): (&str, Span),
@@ -46,12 +46,13 @@ pub(super) fn set_environment(
     Ok(())
 }
 
-/// Returns how many bytes of `memory` remain besides these pictures.
+/// Returns how many of the `memory` bytes are left after these pictures are stored.
 pub(super) fn remaining_memory<'a>(pictures: impl IntoIterator<Item = &'a Image>, memory: u64) -> u64 {
     pictures.into_iter().fold(memory, |left, picture| left.saturating_sub(size_of_val(&picture.pixels[..]) as u64))
 }
 
-/// Returns the nearest texel of an equirectangular picture in a direction, with y up.
+/// Returns the texel of an equirectangular picture that is nearest to a direction, where y points
+/// up.
 pub(super) fn nearest(picture: &Image, dir: DVec3) -> Color {
     let dir = dir.as_vec3();
     let (u, v) = (fp::atan2(dir.x, -dir.z) / TAU + 0.5, fp::atan2((dir.x * dir.x + dir.z * dir.z).sqrt(), dir.y) / PI);
@@ -59,8 +60,9 @@ pub(super) fn nearest(picture: &Image, dir: DVec3) -> Color {
     picture.get(texel(u, picture.width), texel(v, picture.height)).unwrap_or_default()
 }
 
-/// Looks up an equirectangular picture in a direction, with y up. The first and last rows are at
-/// the poles. Interpolates bilinearly between rows, and between the centres of columns.
+/// Looks up an equirectangular picture in a direction, where y points up. The first row and the
+/// last row are at the poles. The lookup interpolates bilinearly between rows and between the
+/// centres of columns.
 ///
 /// Source: measured with Mitsuba 3.9, whose `envmap` has this layout.
 pub(super) fn bilinear_between_poles(picture: &Image, dir: DVec3) -> Color {
@@ -76,8 +78,9 @@ pub(super) fn bilinear_between_poles(picture: &Image, dir: DVec3) -> Color {
     row(above).lerp(row(above + 1), y - above as f32)
 }
 
-/// Looks up a picture with bilinear interpolation. `place` is a fraction of the picture's width and
-/// height, from the upper left corner. The picture repeats beyond its borders.
+/// Looks up a picture with bilinear interpolation. `place` gives the position as fractions of the
+/// picture's width and height, measured from the upper left corner. The picture repeats beyond its
+/// borders.
 pub(super) fn bilinear(image: &Image, place: Vec2) -> Color {
     let (width, height) = (image.width as i64, image.height as i64);
     let (x, y) = (place.x * width as f32 - 0.5, place.y * height as f32 - 0.5);

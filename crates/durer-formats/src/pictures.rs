@@ -1,4 +1,4 @@
-//! Reads and converts the pictures used by materials, for readers of scenes.
+//! Reads and converts the pictures that materials use, for readers of scenes.
 
 use super::model::ReadInput;
 use super::shared_report::SharedReport;
@@ -10,11 +10,11 @@ use durer_scene::scene::{PictureBytes, Scene, TextureImage};
 use durer_scene::source::Digest;
 use std::sync::Arc;
 
-/// Memory in bytes per pixel for converting a picture, in addition to the picture itself: the new
-/// picture and its 8-bit data, raw and encoded.
+/// Number of bytes of memory needed per pixel to convert a picture, not counting the picture
+/// itself: for the new picture and its 8-bit data, both raw and encoded.
 pub(super) const CONVERSION_BYTES_PER_PIXEL: usize = 2 * size_of::<Color>();
 
-/// Reader of the pictures that a scene names; also converts pictures, and reports errors.
+/// Reader for the pictures that a scene names, which also converts pictures and reports errors.
 #[derive(Clone, Copy)]
 pub(super) struct Pictures<'a> {
     pub input: &'a ReadInput<'a>,
@@ -28,23 +28,23 @@ impl Pictures<'_> {
         bytes.map_err(|error| self.report.push(Diagnostic::error(error.to_string()).code("missing-file").at(at))).ok()
     }
 
-    /// Reads a file as a picture, decoding 8-bit values as sRGB.
+    /// Reads a file as a picture and decodes 8-bit values as sRGB.
     pub fn image(&self, name: &str, at: Span) -> Option<Image> {
         self.decoded(name, at, image::decode_srgb)
     }
 
-    /// Reads a file as a picture. `decode` is the transfer function of its 8-bit values.
+    /// Reads a file as a picture. `decode` is the transfer function of the 8-bit values.
     pub fn decoded(&self, name: &str, at: Span, decode: fn(u8) -> f32) -> Option<Image> {
         let bytes = self.bytes(name, at)?;
         self.read(name, &bytes, decode).map_err(|error| self.report_error(name, at, &error)).ok()
     }
 
-    /// Decodes a picture, and reserves the memory for converting it.
+    /// Decodes a picture, and reserves memory for converting it.
     fn read(&self, name: &str, bytes: &[u8], decode: fn(u8) -> f32) -> Result<Image, ImageError> {
         Encoded::open(bytes, name)?.read_for(CONVERSION_BYTES_PER_PIXEL, self.input.memory, decode)
     }
 
-    /// Returns a file as an 8-bit picture; floating-point formats are converted to PNG.
+    /// Returns a file as an 8-bit picture; pictures in floating-point formats are converted to PNG.
     pub fn eight_bits(&self, name: &str, at: Span) -> Option<PictureBytes> {
         let bytes = self.bytes(name, at)?;
         match Encoded::open(&bytes, name) {
@@ -60,8 +60,9 @@ impl Pictures<'_> {
         }
     }
 
-    /// Returns a file as an 8-bit picture, and a factor on its values. A floating-point picture
-    /// with values above 1 is divided by its maximum, and the factor is that maximum.
+    /// Returns a file as an 8-bit picture, together with a factor for its values. If a
+    /// floating-point picture has values above 1, it is divided by its maximum, and the factor is
+    /// that maximum.
     pub fn eight_bits_scaled(&self, name: &str, at: Span) -> Option<(PictureBytes, f32)> {
         let bytes = self.bytes(name, at)?;
         if Encoded::open(&bytes, name).is_ok_and(|encoded| encoded.depth() == Depth::Float) {
@@ -76,8 +77,9 @@ impl Pictures<'_> {
         Some((self.eight_bits(name, at)?, 1.0))
     }
 
-    /// Converts a picture from another transfer function to sRGB if `is_color`, otherwise to linear
-    /// values. `decode` maps an 8-bit value, scaled to between 0 and 1, to a linear value.
+    /// Converts a picture with another transfer function to sRGB if `is_color` is true, and to
+    /// linear values otherwise. `decode` converts an 8-bit value, scaled to the range from 0 to 1,
+    /// to a linear value.
     pub fn reencoded(
         &self,
         picture: &TextureImage,
@@ -85,17 +87,17 @@ impl Pictures<'_> {
         is_color: bool,
         decode: impl Fn(f32) -> f32,
     ) -> Option<TextureImage> {
-        // Pictures in memory were already converted to a standard transfer function.
+        // Pictures in memory have already been converted to a standard transfer function.
         let PictureBytes::File(path) = &picture.bytes else { return None };
         let mut image = self.decoded(path, at, image::decode_linear)?;
         image.pixels.iter_mut().for_each(|pixel| *pixel = pixel.map(&decode).clamp(Color::ZERO, Color::ONE));
-        // Data other than colours stays linear.
+        // Pictures with data other than colours stay linear.
         let bytes = as_png(image, if is_color { Transfer::Srgb } else { Transfer::Linear })?;
         let path = format!("{path}#{}.png", &Digest::of(&bytes).to_string()[..12]);
         Some(TextureImage { bytes: PictureBytes::Memory(path, bytes), mapping: picture.mapping })
     }
 
-    /// Returns the mean of all values of a picture.
+    /// Returns the mean of all values in a picture.
     pub fn mean(&self, picture: &TextureImage, at: Span) -> Option<f32> {
         match &picture.bytes {
             PictureBytes::File(path) => self.image(path, at).map(|image| mean(&image)),
@@ -105,8 +107,8 @@ impl Pictures<'_> {
         }
     }
 
-    /// Creates a linear picture by applying `change` to each texel. `decode` is the transfer
-    /// function of the source.
+    /// Creates a linear picture by applying `change` to each texel of another picture. `decode` is
+    /// the transfer function of that picture.
     pub fn changed(
         &self,
         picture: &TextureImage,
@@ -125,8 +127,8 @@ impl Pictures<'_> {
         Some(TextureImage { bytes: PictureBytes::Memory(path, bytes), mapping: picture.mapping })
     }
 
-    /// Joins two pictures with the same mapping, or one with itself, texel by texel. Returns the
-    /// colour picture and the factor on its values; `None` if the mappings differ.
+    /// Joins two pictures that have the same mapping, or a picture with itself, texel by texel.
+    /// Returns the colour picture and the factor for its values, or `None` if the mappings differ.
     pub fn joined(
         &self,
         [one, other]: [&TextureImage; 2],
@@ -173,24 +175,24 @@ pub(super) fn picture_error(name: &str, error: &ImageError) -> Diagnostic {
     }
 }
 
-/// Adds a picture to the scene's assets; returns its asset name.
+/// Adds a picture to the assets of the scene and returns its asset name.
 pub(super) fn asset(scene: &mut Scene, picture: TextureImage, span: Span) -> FileName {
-    // Include the mapping in the name, because a file can be used with several mappings.
+    // Include the mapping in the name, because the same file can be used with several mappings.
     let mapping = Digest::of(format!("{:?}", picture.mapping).as_bytes()).to_string();
     let path = format!("{}#{}", picture.bytes.path(), &mapping[..12]);
     scene.assets.pictures.entry(path.clone()).or_insert(picture);
     FileName { path, span }
 }
 
-/// Returns a picture of four texels: `one` at the upper left and lower right, `other` at the other
-/// two. Also returns the factor on its values.
+/// Returns a picture with four texels: `one` at the upper left and lower right, and `other` at the
+/// remaining two. Also returns the factor for its values.
 pub(super) fn checkerboard(one: Color, other: Color) -> Option<(PictureBytes, f32)> {
     let (bytes, most) = from_four_texels([one, other, other, one])?;
     let PictureBytes::Memory(_, bytes) = bytes else { return None };
     Some((PictureBytes::Memory(format!("checkerboard-{other}-{one}.png"), bytes), most))
 }
 
-/// Returns a picture of four texels, upper row first, and the factor on its values.
+/// Returns a picture with four texels, given in rows from the top, and the factor for its values.
 pub(super) fn from_four_texels(colors: [Color; 4]) -> Option<(PictureBytes, f32)> {
     let most = colors.iter().fold(1.0, |most: f32, color| most.max(color.max_element()));
     let pixels = colors.map(|color| color / most);

@@ -1,5 +1,5 @@
-//! Reader and writer of Stanford `.ply` meshes, as text or binary in either byte order, with any
-//! elements and properties.
+//! Reader and writer of Stanford `.ply` meshes, which can be text or binary in either byte order,
+//! with any elements and properties.
 
 mod body;
 mod fixed;
@@ -19,7 +19,7 @@ use values::{AsciiValues, BinaryValues};
 use write::write;
 pub(super) use write::write_all_attributes;
 
-/// Mesh format entry for PLY.
+/// Entry for PLY in the list of mesh formats.
 pub(super) const FORMAT: MeshFormat =
     MeshFormat { name: "PLY", extensions: &["ply"], recognise, read, apply_quirks: without_quirks, write, up: Axis::Y };
 
@@ -28,7 +28,7 @@ fn recognise(bytes: &[u8]) -> bool {
     matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r', ..])
 }
 
-/// Reads a file; see [`read_mesh`](super::read_mesh).
+/// Reads a PLY file; see [`read_mesh`](super::read_mesh).
 fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     let mut report = Report::new(file, diagnostics);
     let mesh = read_reporting(bytes, &mut report).unwrap_or_default();

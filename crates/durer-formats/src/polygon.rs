@@ -1,44 +1,46 @@
-//! Triangulation of polygons.
+//! Splits polygons into triangles.
 //!
-//! A polygon with n corners becomes n - 2 triangles with the same winding and no additional
-//! vertices. Strictly convex polygons become fans. Others are projected onto the coordinate plane
-//! where their area is largest, and cut by ear clipping. Source: Meisters, *Polygons have ears*,
-//! 1975; O'Rourke, *Computational Geometry in C*, chapter 1.
+//! A polygon with n corners becomes n - 2 triangles that have the same winding, without additional
+//! vertices. Strictly convex polygons are split into fans. Other polygons are projected onto the
+//! coordinate plane where their area is largest, and then split by ear clipping. Sources: Meisters,
+//! *Polygons have ears*, 1975; O'Rourke, *Computational Geometry in C*, chapter 1.
 
 use durer_scene::math::Vec3;
 use std::collections::VecDeque;
 
-/// Error: the polygons of a file are too large and too irregular to triangulate in reasonable time.
+/// Error that the polygons of a file are too large and too irregular to be triangulated in
+/// reasonable time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct TooComplex;
 
-/// Triangulator for the polygons of one file, with a limit on the total work. Reuses its buffers.
+/// Triangulator for the polygons of one file, which limits the total amount of work. The
+/// triangulator reuses its buffers for all polygons.
 #[derive(Default)]
 pub(super) struct Triangulator {
-    /// Remaining point-in-triangle tests.
+    /// Number of point-in-triangle tests that may still be made.
     budget: u64,
-    /// Projected corners in counter-clockwise order.
+    /// Projected corners of the polygon in counter-clockwise order.
     points: Vec<[f64; 2]>,
     previous: Vec<u32>,
     next: Vec<u32>,
-    /// True for remaining corners that are not strictly convex. Only such corners can lie inside an
-    /// ear.
+    /// True for each remaining corner that is not strictly convex. Only these corners can lie
+    /// inside an ear.
     blocks: Vec<bool>,
     blockers: Vec<u32>,
-    /// Corners that might be ears.
+    /// Corners that could be ears.
     candidates: VecDeque<u32>,
     waiting: Vec<bool>,
 }
 
 impl Triangulator {
-    /// Creates a triangulator for a file of this many bytes. The work limit grows with the file
-    /// size, and is low enough for any file to finish in reasonable time.
+    /// Creates a triangulator for a file that has this many bytes. The work limit grows with the
+    /// size of the file, but it is low enough for any file to be finished in reasonable time.
     pub fn new(file_bytes: usize) -> Self {
         Triangulator { budget: (1 << 28) + 256 * file_bytes as u64, ..Triangulator::default() }
     }
 
-    /// Triangulates a polygon with `count` corners; calls `emit` with the three corner indices of
-    /// each triangle.
+    /// Triangulates a polygon with `count` corners, and calls `emit` with the three corner indices
+    /// of each triangle.
     pub fn triangulate(
         &mut self,
         count: usize,
@@ -65,10 +67,10 @@ impl Triangulator {
         Ok(())
     }
 
-    /// Projects the polygon along the axis with the largest component of its normal, so that the
-    /// projection winds counter-clockwise.
+    /// Projects the polygon along the coordinate axis for which its normal has the largest
+    /// component, so that the projection has counter-clockwise winding.
     fn project(&mut self, count: usize, corner: impl Fn(usize) -> Vec3) {
-        // Newell's normal: the sum of the signed areas over all edges, relative to the first
+        // Newell's normal is the sum of the signed areas over all edges, relative to the first
         // corner.
         let origin = corner(0).as_dvec3();
         let from_origin = |i: usize| corner(i).as_dvec3() - origin;
@@ -84,13 +86,13 @@ impl Triangulator {
         self.points.extend((0..count).map(|i| [from_origin(i)[u], from_origin(i)[v]]));
     }
 
-    /// Returns true if all corners turn left and the outline winds once.
+    /// Returns true if the outline turns left at all corners and goes around only once.
     fn is_strictly_convex(&self) -> bool {
         let points = &self.points;
         let count = points.len();
         let at = |i: usize| points[i % count];
-        // A pentagram turns left everywhere too, but its edges change their horizontal direction
-        // four times.
+        // A pentagram also turns left at every corner, but the horizontal direction of its edges
+        // changes four times.
         let rightward = |i: usize| at(i + 1)[0] > at(i)[0] || at(i + 1)[0] == at(i)[0] && at(i + 1)[1] > at(i)[1];
         let turns = (0..count).filter(|&i| rightward(i) != rightward(i + 1)).count();
         turns <= 2 && (0..count).all(|i| area(at(i), at(i + 1), at(i + 2)) > 0.0)
@@ -104,7 +106,8 @@ impl Triangulator {
             let Some(tip) = self.next_ear(left)? else { continue };
             let (before, after) = (self.previous[tip as usize], self.next[tip as usize]);
             emit([before, tip, after].map(|i| i as usize));
-            // Remove the tip from the ring. This affects only its two neighbours.
+            // Remove the tip of the ear from the ring of corners. Removing the tip affects only its
+            // two neighbours.
             self.next[before as usize] = after;
             self.previous[after as usize] = before;
             self.next[tip as usize] = u32::MAX;
@@ -139,17 +142,19 @@ impl Triangulator {
         }
         self.blockers.clear();
         self.blockers.extend((0..count).filter(|&i| self.blocks[i as usize]));
-        // Start with every other corner: cutting neighbouring ears would create slivers.
+        // Start with every other corner, because cutting off neighbouring ears would create
+        // slivers.
         self.candidates.clear();
         self.candidates.extend((0..count).step_by(2).chain((1..count).step_by(2)));
         self.waiting.clear();
         self.waiting.resize(count as usize, true);
     }
 
-    /// Returns the next corner to cut off; `None` if the next candidate is not an ear.
+    /// Returns the next corner to cut off, or `None` if the next candidate is not an ear.
     fn next_ear(&mut self, left: u32) -> Result<Option<u32>, TooComplex> {
         let Some(tip) = self.candidates.pop_front() else {
-            // Self-intersecting outlines can run out of ears: cut off the least harmful corner.
+            // Outlines that intersect themselves can run out of ears; in this case, cut off the
+            // least harmful corner.
             self.spend_budget(self.points.len() as u64)?;
             return Ok(Some(self.least_harmful(left)));
         };
@@ -158,7 +163,7 @@ impl Triangulator {
         Ok((!gone && self.is_ear(tip)?).then_some(tip))
     }
 
-    /// Returns true if a corner is strictly convex and no other corner lies in its triangle.
+    /// Returns true if a corner is strictly convex and no other corner lies inside its triangle.
     fn is_ear(&mut self, tip: u32) -> Result<bool, TooComplex> {
         let [a, b, c] = self.triangle(tip);
         if area(a, b, c) <= 0.0 {
@@ -173,7 +178,7 @@ impl Triangulator {
                 continue;
             }
             let p = self.points[blocker];
-            // Outlines with holes pass some points twice, so a point equal to a corner of the
+            // Outlines with holes visit some points twice, so a point that equals a corner of the
             // triangle does not count as inside.
             let inside = area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0;
             if inside && p != a && p != b && p != c {
@@ -184,7 +189,7 @@ impl Triangulator {
         Ok(true)
     }
 
-    /// Returns a corner with zero area, otherwise a convex one, otherwise any corner.
+    /// Returns a corner whose triangle has zero area, or else a convex corner, or else any corner.
     fn least_harmful(&self, left: u32) -> u32 {
         let first = self.any_left();
         let ring = || std::iter::successors(Some(first), |&i| Some(self.next[i as usize])).take(left as usize);
@@ -215,8 +220,8 @@ impl Triangulator {
     }
 }
 
-/// Returns true if a quadrilateral should be split along the diagonal from its first corner. This
-/// is the case unless only the other diagonal lies inside.
+/// Returns true if a quadrilateral should be split along the diagonal that starts at its first
+/// corner. This diagonal is used unless only the other one lies inside the quadrilateral.
 fn splits_at_first(corners: [Vec3; 4]) -> bool {
     let [a, b, c, d] = corners.map(|p| p.as_dvec3());
     let normal = (c - a).cross(d - b);
@@ -226,7 +231,8 @@ fn splits_at_first(corners: [Vec3; 4]) -> bool {
     first || !second
 }
 
-/// Returns twice the signed area of a triangle; positive if it winds counter-clockwise.
+/// Returns twice the signed area of a triangle, which is positive if its winding is
+/// counter-clockwise.
 fn area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }

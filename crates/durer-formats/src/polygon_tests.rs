@@ -1,12 +1,11 @@
 use super::*;
 
 /// Triangulates a polygon in a tilted plane. Returns the triangles and twice their signed areas,
-/// positive on the side of the polygon's normal.
+/// which are positive if the winding agrees with the polygon's normal.
 fn cut(outline: &[[f32; 2]]) -> (Vec<[usize; 3]>, Vec<f64>) {
     let corner = |i: usize| {
         let [x, y] = outline[i];
-        // An affine map with determinant 1 in the xy plane, so that areas projected along z are
-        // unchanged.
+        // The map is affine and keeps x and y, so that areas projected along z are unchanged.
         Vec3::new(x, y, 0.25 * x + 0.5 * y)
     };
     let mut triangles = Vec::new();
@@ -41,7 +40,7 @@ fn concave_outlines_keep_area_and_winding() {
             [x as f32, y as f32]
         })
         .collect();
-    // A square with a square hole; the bridge between them is traversed twice.
+    // The outline is a square with a square hole, and it follows the bridge between them twice.
     let ring =
         [[0, 0], [4, 0], [4, 4], [0, 4], [0, 0], [1, 1], [1, 3], [3, 3], [3, 1], [1, 1]].map(|p| p.map(|c| c as f32));
     let comb: Vec<[f32; 2]> = (0..200)
@@ -50,7 +49,7 @@ fn concave_outlines_keep_area_and_winding() {
         .collect();
     for outline in [&dart[..], &l, &star, &ring, &comb] {
         let outline = outline.to_vec();
-        // Start at every corner, in both windings.
+        // Start the outline at every corner, in both winding orders.
         for start in 0..outline.len() {
             let mut turned = outline.clone();
             turned.rotate_left(start);

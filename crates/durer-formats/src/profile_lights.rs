@@ -1,5 +1,5 @@
-//! Point lights with a directional distribution, stored as measured light profiles: one each for
-//! red, green and blue, or a single one if they are equal.
+//! Point lights with a directional distribution, which is stored as measured light profiles: one
+//! each for red, green, and blue, or only one if the three are equal.
 
 use durer_diag::Span;
 use durer_scene::describe::FileName;
@@ -10,8 +10,8 @@ use durer_scene::scene::{Scene, Spanned};
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
-/// Axes of a light profile in the light's own space: the direction of vertical angle 0, of
-/// horizontal angle 0, and of horizontal angle 90 degrees.
+/// Axes of a light profile in the light's own space: the directions of vertical angle 0, horizontal
+/// angle 0, and horizontal angle 90 degrees.
 #[derive(Clone, Copy)]
 pub(super) struct Axes {
     pub down: Vec3,
@@ -20,14 +20,16 @@ pub(super) struct Axes {
 }
 
 impl Axes {
-    /// Returns axes about z, from x towards -y: in profiles, horizontal angles grow from front
-    /// towards front × down. A mirroring transform reverses this, so the side is flipped.
+    /// Returns axes whose vertical angles start at z and whose horizontal angles turn from x
+    /// towards -y. Horizontal angles of profiles increase from front towards front × down. A
+    /// transform that mirrors reverses this direction, so the side is flipped.
     pub fn about_z(transform: &DAffine3) -> Axes {
         let side = if transform.matrix3.determinant() < 0.0 { Vec3::Y } else { Vec3::NEG_Y };
         Axes { down: Vec3::Z, front: Vec3::X, side }
     }
 
-    /// Returns axes about y, from x towards z. See [`Axes::about_z`].
+    /// Returns axes whose vertical angles start at y and whose horizontal angles turn from x
+    /// towards z. See [`Axes::about_z`].
     pub fn about_y(transform: &DAffine3) -> Axes {
         let side = if transform.matrix3.determinant() < 0.0 { Vec3::NEG_Z } else { Vec3::Z };
         Axes { down: Vec3::Y, front: Vec3::X, side }
@@ -42,17 +44,17 @@ impl Axes {
     }
 }
 
-/// Returns the ends of `count` equal steps from 0 to `last`, including both.
+/// Returns the end points of `count` equal steps from 0 to `last`, including 0 and `last`.
 pub(super) fn steps(last: f32, count: u32) -> Vec<f32> {
     (0..=count).map(|i| last * i as f32 / count as f32).collect()
 }
 
-/// Measured light profiles, each with its colour, that together form one coloured point light.
+/// Measured light profiles, each with a colour, that form one coloured point light together.
 pub(super) struct ProfileLight(Vec<(Vec3, PhotometricProfile)>);
 
 impl ProfileLight {
-    /// Samples the intensity `light`, a function of the direction in the light's own space, at
-    /// vertical and horizontal angles in degrees.
+    /// Samples the intensity `light`, which is a function of the direction in the light's own
+    /// space, at vertical and horizontal angles in degrees.
     pub fn new([vertical, horizontal]: [Vec<f32>; 2], axes: &Axes, light: impl Fn(Vec3) -> Color) -> ProfileLight {
         let mut values = Vec::with_capacity(vertical.len() * horizontal.len());
         for &across in &horizontal {
@@ -75,13 +77,13 @@ impl ProfileLight {
         })
     }
 
-    /// Returns the total luminous flux of all profiles.
+    /// Returns the total luminous flux of all the profiles.
     pub fn flux(&self) -> f32 {
         let flux: f64 = self.0.iter().map(|(hue, light)| f64::from(hue.dot(LUMINANCE)) * light.flux()).sum();
         flux as f32
     }
 
-    /// Adds the lights to the scene of a file; `color` is the intensity where a profile is 1.
+    /// Adds the lights to the scene of a file; `color` is the intensity for a profile value of 1.
     pub fn add(self, scene: &mut Scene, file: &str, (transform, axes): (DAffine3, Axes), color: Color, at: Span) {
         let axis = |local: Vec3| transform.transform_vector3(local.as_dvec3()).normalize_or(DVec3::Y).as_vec3();
         for (hue, profile) in self.0 {

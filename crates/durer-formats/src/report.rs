@@ -3,9 +3,9 @@
 use durer_diag::{Diagnostic, Diagnostics, ERROR_LIMIT, Severity, Span};
 use std::ops::Range;
 
-/// Collects the diagnostics of one file, and forwards them sorted by their spans.
+/// Collector for the diagnostics of one file, which it forwards sorted by their spans.
 ///
-/// Readers may process a file in several passes; sorting hides this from the user.
+/// A reader may process a file in several passes; sorting hides this from the user.
 pub(super) struct Report {
     file: u32,
     diagnostics: Vec<Diagnostic>,
@@ -15,14 +15,14 @@ pub(super) struct Report {
 }
 
 impl Report {
-    /// Creates an empty report for a file. Its error limit is the number of errors that
-    /// `diagnostics` can still take.
+    /// Creates an empty report for a file. The report collects as many errors as `diagnostics` can
+    /// still take.
     pub fn new(file: u32, diagnostics: &Diagnostics) -> Self {
         let max_errors = ERROR_LIMIT.saturating_sub(diagnostics.error_count());
         Report { file, diagnostics: Vec::new(), errors: 0, max_errors }
     }
 
-    /// Creates an empty report for a part of the file, to be joined to this report later.
+    /// Creates an empty report for a part of the file, which is joined to this report later.
     pub fn part(&self) -> Report {
         Report {
             file: self.file,
@@ -33,7 +33,7 @@ impl Report {
     }
 
     /// Appends the report of the next part, up to the error limit, as if both parts had been read
-    /// as one.
+    /// at once.
     pub fn join(&mut self, part: Report) {
         for diagnostic in part.diagnostics {
             if self.is_full() {
@@ -44,8 +44,8 @@ impl Report {
         }
     }
 
-    /// Adds an error at a byte range. The caller can add labels and help to the returned
-    /// diagnostic.
+    /// Adds an error at a byte range. The caller can add labels and help to the diagnostic that is
+    /// returned.
     pub fn error(&mut self, at: Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
         self.add(at, Diagnostic::error(message))
     }
@@ -70,18 +70,18 @@ impl Report {
         &mut self.diagnostics[index]
     }
 
-    /// Returns the span of a byte range. [`read_mesh`](crate::read_mesh) has checked that offsets
-    /// fit into 32 bits.
+    /// Returns the span of a byte range. [`read_mesh`](crate::read_mesh) has already checked that
+    /// offsets fit into 32 bits.
     pub fn span(&self, at: Range<usize>) -> Span {
         Span { file: self.file, start: at.start as u32, end: at.end as u32 }
     }
 
-    /// Returns true if there is an error.
+    /// Returns true if the report contains an error.
     pub fn has_errors(&self) -> bool {
         self.errors > 0
     }
 
-    /// Returns true if no more errors are collected, so that reading on is useless.
+    /// Returns true if no more errors can be collected, so that there is no point in reading on.
     pub fn is_full(&self) -> bool {
         self.errors >= self.max_errors
     }
@@ -91,18 +91,19 @@ impl Report {
         self.diagnostics.len()
     }
 
-    /// Forwards all diagnostics, sorted by position; returns `result` if there was no error.
+    /// Forwards all diagnostics, sorted by position; returns `result` if there were no errors.
     pub fn finish<T>(mut self, diagnostics: &mut Diagnostics, result: T) -> Option<T> {
         self.diagnostics.sort_by_key(|diagnostic| diagnostic.span.map_or(u32::MAX, |span| span.start));
         let failed = self.diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
-        // A full report means that reading stopped early.
+        // If the report is full, reading stopped early.
         let complete = !failed && self.max_errors > 0;
         self.diagnostics.into_iter().for_each(|diagnostic| diagnostics.push(diagnostic));
         complete.then_some(result)
     }
 }
 
-/// Quotes a piece of a file for a message: in backquotes, escaped, at most 40 characters.
+/// Quotes a part of a file for use in a message: in backquotes, escaped, and with at most 40
+/// characters.
 pub(super) fn quoted(bytes: &[u8]) -> String {
     const MAX_CHARS: usize = 40;
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * MAX_CHARS)]);
@@ -113,7 +114,7 @@ pub(super) fn quoted(bytes: &[u8]) -> String {
     format!("`{shown}`")
 }
 
-/// Formats a count with its noun: `1 vertex`, `no vertices`, `8 vertices`.
+/// Formats a count together with its noun: `1 vertex`, `no vertices`, `8 vertices`.
 pub(super) fn count_text(count: usize, one: &str, many: &str) -> String {
     match count {
         0 => format!("no {many}"),

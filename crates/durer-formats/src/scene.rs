@@ -1,5 +1,5 @@
-//! Readers of scene files; [`SCENE_FORMATS`] has one entry for each format. A mesh file is read as
-//! a scene with one mesh.
+//! Readers of scene files; [`SCENE_FORMATS`] contains one entry for each format. A mesh file is
+//! read as a scene with one mesh.
 
 use super::model::SceneFormat;
 pub use super::model::{ReadInput, WriteContext, WriteScene};
@@ -19,8 +19,8 @@ use glam::DVec3;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Scene formats, in the order in which a file's content is checked. Any other file is in the
-/// scene language.
+/// Scene formats, in the order in which the content of a file is checked for them. A file in none
+/// of these formats is assumed to be in the scene language.
 pub const SCENE_FORMATS: &[SceneFormat] = &[
     #[cfg(feature = "gltf")]
     super::gltf::FORMAT,
@@ -55,20 +55,21 @@ const fn single_mesh_format(format: &MeshFormat) -> SceneFormat {
 /// Maximum height in pixels of an environment map that is resampled for another up axis.
 const MAX_ROWS: u32 = 2048;
 
-/// Returns the scene format for a file name, by its extension.
+/// Returns the scene format that a file name indicates by its extension.
 pub fn scene_format_for(name: &str) -> Option<&'static SceneFormat> {
     let extension = extension(name);
     SCENE_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
 }
 
-/// Returns the format of a model: by the extension of its name, otherwise by its content. `None` if
-/// the file is in the scene language or of an unknown format.
+/// Returns the format of a model, which is determined by the extension of its name or, if that is
+/// unknown, by its content. Returns `None` if the file is in the scene language or if its format is
+/// unknown.
 pub fn find_scene_format(bytes: &[u8], name: &str) -> Option<&'static SceneFormat> {
     scene_format_for(name).or_else(|| SCENE_FORMATS.iter().find(|format| (format.recognise)(bytes)))
 }
 
-/// Returns an error if a file is to be read as one format (`None`: the scene language) but its
-/// first bytes are of another.
+/// Returns an error if a file is to be read in one format (`None` means the scene language) but its
+/// first bytes show another.
 pub fn other_format(bytes: &[u8], file: u32, name: &str, format: Option<&SceneFormat>) -> Option<Diagnostic> {
     wrong_format_error(bytes, file, name, format.map_or(&[], |format| format.extensions))
 }
@@ -93,7 +94,8 @@ pub fn read_model(format: &SceneFormat, input: &ReadInput, diagnostics: &mut Dia
     Some(scene)
 }
 
-/// Sets a scene's camera to the last view in a Radiance file. Returns `None` after errors.
+/// Sets the camera of a scene to the last view in a Radiance file. Returns `None` if there are
+/// errors.
 #[cfg(feature = "radiance")]
 fn set_view(
     scene: &mut Scene,
@@ -108,27 +110,28 @@ fn set_view(
     is_sound.then_some(())
 }
 
-/// Reports that this build cannot read Radiance's view files.
+/// Reports that Radiance's view files are not supported by this build.
 #[cfg(not(feature = "radiance"))]
 fn set_view(_: &mut Scene, _: &ReadInput, name: &str, _: &Arc<[u8]>, diagnostics: &mut Diagnostics) -> Option<()> {
     diagnostics.push(Diagnostic::error(format!("`{name}`: this build cannot read views of Radiance")));
     None
 }
 
-/// Reads a file named by an option, at any path. Returns its name and bytes.
+/// Reads a file that an option names; the file may be at any path. Returns the name and the bytes
+/// of the file.
 fn read_option_file(input: &ReadInput, path: &Path, diagnostics: &mut Diagnostics) -> Option<(String, Arc<[u8]>)> {
     let read = input.source.read_user_file(path);
     let refuse = |error: SourceError| diagnostics.push(Diagnostic::error(error.to_string()).code("missing-file"));
     Some((path.display().to_string(), read.map_err(refuse).ok()?))
 }
 
-/// Reads a mesh file as a scene of one mesh without a material.
+/// Reads a mesh file as a scene that contains one mesh without a material.
 fn one_mesh(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let span = Span { file: input.file, start: 0, end: 0 };
     let data = read_mesh(input.bytes, input.file, input.name, diagnostics)?;
     input.files.borrow_mut().truncate(input.file, 0, diagnostics);
     let data = if data.triangles.is_empty() && !data.positions.is_empty() {
-        // A file with vertices but no faces is a point cloud.
+        // A file that has vertices but no faces is a point cloud.
         let points: Vec<u32> = (0..data.positions.len() as u32).collect();
         let note = Diagnostic::note(sticks::message(0, points.len())).code("points-and-lines");
         diagnostics.push(note.at(span));
@@ -142,8 +145,8 @@ fn one_mesh(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     Some(scene)
 }
 
-/// Replaces the background and the directional lights by an environment map, whose upper edge
-/// points along `up`.
+/// Replaces the background and the directional lights with an environment map, whose upper edge
+/// points in the direction `up`.
 fn set_environment(scene: &mut Scene, name: &str, bytes: Arc<[u8]>, up: Axis, memory: u64) -> Result<(), ImageError> {
     scene.background = Background { color: Vec3::ZERO, ..Background::default() };
     let near = |light: &Spanned<Light>| light.value.position().is_some();
@@ -151,7 +154,7 @@ fn set_environment(scene: &mut Scene, name: &str, bytes: Arc<[u8]>, up: Axis, me
     let decoded = || Encoded::open(&bytes, name).and_then(|encoded| encoded.read(memory, image::decode_srgb));
     let sides = ModelAxes::new(up);
     let turned = |dir: DVec3| DVec3::new(dir.dot(sides.right), dir.dot(sides.up), dir.dot(sides.front));
-    // If a picture cannot be decoded, compiling the scene reports it.
+    // If a picture cannot be decoded, the error is reported when the scene is compiled.
     if let Some(picture) = (up != Axis::Y).then(decoded).and_then(Result::ok) {
         let light = |dir: DVec3| panorama::nearest(&picture, turned(dir));
         let memory = panorama::remaining_memory([&picture], memory);

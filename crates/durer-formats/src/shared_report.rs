@@ -1,10 +1,10 @@
-//! Collector for the diagnostics of a file, shared by all parts of a reader.
+//! Collector for the diagnostics of a file that all parts of a reader share.
 
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
-/// Collector for the diagnostics of a scene file that all parts of its reader share by reference.
+/// Collector for the diagnostics of a scene file; all parts of the reader hold references to it.
 #[derive(Default)]
 pub(crate) struct SharedReport {
     diagnostics: RefCell<Diagnostics>,
@@ -20,7 +20,7 @@ impl SharedReport {
         self.diagnostics.borrow_mut().push(diagnostic);
     }
 
-    /// Adds the diagnostics of another file's reader.
+    /// Adds the diagnostics from the reader of another file.
     pub fn extend(&self, others: Diagnostics) {
         self.diagnostics.borrow_mut().extend(others);
     }
@@ -35,18 +35,18 @@ impl SharedReport {
         self.push(Diagnostic { help, ..Diagnostic::error(message).code("bad-value").at(at) });
     }
 
-    /// Warns that something cannot be rendered as the format specifies; the message names the
-    /// substitute.
+    /// Warns that something cannot be rendered as the format specifies; the message says what is
+    /// used instead.
     pub fn unsupported(&self, at: Span, message: impl Into<String>) {
         self.push(Diagnostic::warning(message).code(NO_COUNTERPART).at(at));
     }
 
-    /// Warns as [`SharedReport::other`] does, but only once per message.
+    /// Warns as [`SharedReport::other`] does, but only once for each message.
     pub fn unsupported_once(&self, at: Span, message: impl Into<String>) {
         self.warn_once(NO_COUNTERPART, at, message);
     }
 
-    /// Warns with a code, but only once per message.
+    /// Warns with a code, but only once for each message.
     pub fn warn_once(&self, code: &'static str, at: Span, message: impl Into<String>) {
         let message = message.into();
         if self.reported.borrow_mut().insert(message.clone()) {
@@ -70,7 +70,7 @@ impl SharedReport {
     }
 }
 
-/// Returns help text that suggests a similar word, if there is one.
+/// Returns a help text that suggests a similar word, if there is one.
 pub(crate) fn suggest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
     durer_diag::did_you_mean(word, known).map(|suggestion| format!("did you mean `{suggestion}`?"))
 }

@@ -1,9 +1,9 @@
-//! Signatures of file formats: first bytes that identify a file whatever its name.
+//! Signatures of file formats, which are first bytes that identify a file regardless of its name.
 
 use durer_diag::{Diagnostic, Span};
 
-/// Signatures: the bytes, the kind of file, and the extension that its name should have. `None` if
-/// Dürer does not read such files as scenes.
+/// List of signatures, each with its bytes, the kind of file, and the extension that the file's
+/// name should have. The extension is `None` if Dürer does not read such files as scenes.
 const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"glTF", "binary glTF", Some("glb")),
     (b"ply\n", "PLY", Some("ply")),
@@ -40,10 +40,10 @@ const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"#usda", "USD", None),
 ];
 
-/// Kind of a photometric file, which describes a light, not a scene.
+/// Kind of a photometric file, which describes a light rather than a scene.
 const LUMINAIRE: &str = "a measured luminaire (IES)";
 
-/// Returns an error if a file's signature shows that it has another format than the one with these
+/// Returns an error if the signature of a file shows that the file is not in the format with these
 /// extensions.
 pub(super) fn wrong_format_error(bytes: &[u8], file: u32, name: &str, extensions: &[&str]) -> Option<Diagnostic> {
     let (start, what, own) = SIGNATURES.iter().find(|(start, ..)| bytes.starts_with(start))?;

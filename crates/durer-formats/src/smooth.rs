@@ -7,10 +7,11 @@ use std::array::from_fn;
 use std::collections::HashMap;
 
 /// Computes normals for the triangles that have none. The normal at a vertex is the mean of the
-/// adjacent face normals, weighted by the angle of each face at the vertex.
+/// normals of adjacent faces, weighted by the angle of each face at the vertex.
 ///
-/// `part(triangle, corner)` separates vertices at the same position: two corners share a normal if
-/// they have the same position and the same part. `None` leaves the triangle unchanged.
+/// `part(triangle, corner)` separates vertices at the same position: two corners share a normal
+/// only if they are at the same position and belong to the same part. If it returns `None`, the
+/// triangle is not changed.
 ///
 /// Source: Thürmer and Wüthrich, *Computing Vertex Normals from Polygonal Facets*, Journal of
 /// Graphics Tools 3(1), 1998.

@@ -1,12 +1,13 @@
-//! Visible geometry for lines and points, which have no surface: thin sticks and small balls.
+//! Visible geometry for lines and points, which have no surface: thin sticks and small balls take
+//! their place.
 
 use super::report::count_text;
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::ObjectKind;
 use durer_scene::shape::{Cone, Cylinder, MeshData, Sphere};
 
-/// Returns a cylinder or cone between two points, with a radius at each end; `None` if the points
-/// coincide.
+/// Returns a cylinder or cone between two points, with a given radius at each end, or `None` if the
+/// points coincide.
 pub(super) fn stick(from: Vec3, to: Vec3, [first, last]: [f32; 2]) -> Option<ObjectKind> {
     let shape = match first == last {
         true => Cylinder { base: from, top: to, radius: first }.into(),
@@ -15,27 +16,28 @@ pub(super) fn stick(from: Vec3, to: Vec3, [first, last]: [f32; 2]) -> Option<Obj
     (from != to).then_some(ObjectKind::Primitive(shape))
 }
 
-/// Returns a sphere at a point.
+/// Returns a sphere with its centre at a point.
 pub(super) fn ball(center: Vec3, radius: f32) -> ObjectKind {
     ObjectKind::Primitive(Sphere { center, radius }.into())
 }
 
-/// Number of sides of a tessellated stick.
+/// Number of sides of a stick that is tessellated.
 const SIDES: u32 = 6;
-/// Radii of points, and of lines without a radius, as fractions of the diagonal of the bounding
-/// box.
+/// Radius of points, and of lines for which no radius is given, as fractions of the diagonal of the
+/// bounding box.
 const LINE_RADIUS: f32 = 0.006;
 const POINT_RADIUS: f32 = 0.015;
-/// Maximum number of lines, and of points, that become geometry. If there are more, every n-th is
-/// shown.
+/// Maximum number of lines, and of points, that are turned into geometry. If there are more, only
+/// every n-th one is shown.
 const MAX: usize = 1 << 21;
 
-/// Returns n such that at most [`MAX`] items remain if only every n-th of `count` is shown.
+/// Returns the smallest n for which at most [`MAX`] of `count` items remain if only every n-th item
+/// is shown.
 fn step(count: usize) -> usize {
     count.div_ceil(MAX).max(1)
 }
 
-/// Message that lines and points are shown as sticks and balls.
+/// Message saying that lines and points are shown as sticks and balls.
 pub(super) fn message(lines: usize, points: usize) -> String {
     let all =
         [(lines, "line", "lines"), (points, "point", "points")].map(|(count, one, many)| match (count, step(count)) {
@@ -47,15 +49,14 @@ pub(super) fn message(lines: usize, points: usize) -> String {
     format!("{all} without a surface: thin sticks and small balls are shown")
 }
 
-/// Builds a triangle mesh of thin sticks for lines between vertices and small balls for single
-/// vertices. Vertices keep their colours and texture coordinates.
+/// Builds a triangle mesh with thin sticks for the lines between vertices, and small balls for
+/// single vertices. The vertices keep their colours and texture coordinates.
 pub(super) fn sticks_and_balls(data: &MeshData, lines: &[[u32; 2]], points: &[u32]) -> MeshData {
     let used = || lines.iter().flatten().chain(points).map(|&i| data.positions[i as usize]);
     let low = used().reduce(Vec3::min).unwrap_or_default();
     let size = (used().reduce(Vec3::max).unwrap_or_default() - low).length();
     let size = if size > 0.0 && size.is_finite() { size } else { 1.0 };
-    // Limit the radius so that the balls of a dense point cloud just touch their neighbours on a
-    // surface.
+    // Limit the radius so that neighbouring balls of a dense point cloud on a surface just touch.
     let shown_points = points.len().div_ceil(step(points.len()));
     let ball = POINT_RADIUS.min(0.6 / (shown_points as f32).sqrt());
     let mut mesh = MeshData::default();
@@ -77,7 +78,7 @@ pub(super) fn sticks_and_balls(data: &MeshData, lines: &[[u32; 2]], points: &[u3
         }
     }
     for &vertex in points.iter().step_by(step(points.len())) {
-        // An octahedron with the normals of a sphere.
+        // The ball is an octahedron with the normals of a sphere.
         let first = mesh.positions.len() as u32;
         for normal in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z] {
             push_vertex(&mut mesh, data, vertex, data.positions[vertex as usize] + ball * size * normal, normal);
@@ -93,7 +94,7 @@ pub(super) fn sticks_and_balls(data: &MeshData, lines: &[[u32; 2]], points: &[u3
     mesh
 }
 
-/// Appends a vertex to `mesh`, with the colour and texture coordinates of vertex `vertex` of
+/// Appends a vertex to `mesh`, with the colour and texture coordinates of the vertex `vertex` of
 /// `other`.
 fn push_vertex(mesh: &mut MeshData, other: &MeshData, vertex: u32, position: Vec3, normal: Vec3) {
     mesh.positions.push(position);

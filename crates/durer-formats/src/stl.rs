@@ -1,9 +1,9 @@
-//! Reader and writer of stereolithography `.stl` meshes, which contain only triangles, as text or
-//! binary.
+//! Reader and writer of stereolithography `.stl` meshes, which consist only of triangles, as text
+//! or binary.
 //!
 //! Source: *StereoLithography Interface Specification*, 3D Systems, 1989. The order of a facet's
-//! corners determines its normal, so the stored normals are ignored, as are the colours that some
-//! programs store in the last two bytes of a facet.
+//! corners determines its normal, so the stored normals are ignored. Some programs store colours in
+//! the last two bytes of a facet, which are ignored too.
 
 mod text;
 mod write;
@@ -17,22 +17,22 @@ use durer_scene::shape::mesh::{MeshData, position_key};
 use std::collections::HashMap;
 use write::write;
 
-/// Size in bytes of the header of a binary file: free text, then the number of facets.
+/// Size in bytes of the header of a binary file, which contains free text and the number of facets.
 const HEAD: usize = 84;
-/// Size in bytes of a facet: normal, three corners, two unspecified bytes.
+/// Size in bytes of a facet: a normal, three corners, and two unspecified bytes.
 const FACET: usize = 50;
 
-/// Mesh format entry for STL.
+/// Entry for STL in the list of mesh formats.
 pub(super) const FORMAT: MeshFormat =
     MeshFormat { name: "STL", extensions: &["stl"], recognise, read, apply_quirks: without_quirks, write, up: Axis::Z };
 
-/// Returns true if a file begins like an STL file, or has the size that follows from a binary
-/// header.
+/// Returns true if a file begins like an STL file, or if its size agrees with the number of facets
+/// in a binary header.
 fn recognise(bytes: &[u8]) -> bool {
     is_text(bytes) || promised(bytes).is_some_and(|count| count > 0 && size_of_facets(count) == bytes.len() as u64)
 }
 
-/// Returns true if a file is text. Binary files can begin with the word `solid` too.
+/// Returns true if a file is a text file. Binary files can also begin with the word `solid`.
 fn is_text(bytes: &[u8]) -> bool {
     let head =
         bytes[..bytes.len().min(1 << 12)].strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes[..bytes.len().min(1 << 12)]);
@@ -43,7 +43,7 @@ fn is_text(bytes: &[u8]) -> bool {
     begins && !exact && !head.contains(&0) && (has(b"facet") || has(b"endsolid") || head.len() < HEAD)
 }
 
-/// Returns the number of facets stated in the header of a binary file.
+/// Returns the number of facets that the header of a binary file states.
 fn promised(bytes: &[u8]) -> Option<u32> {
     Some(u32::from_le_bytes(*bytes.get(80..)?.first_chunk()?))
 }
@@ -52,7 +52,7 @@ fn size_of_facets(count: u32) -> u64 {
     HEAD as u64 + FACET as u64 * u64::from(count)
 }
 
-/// Reads a file; see [`read_mesh`](super::read_mesh).
+/// Reads an STL file; see [`read_mesh`](super::read_mesh).
 fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     let mut report = Report::new(file, diagnostics);
     let mut mesh = Builder::default();
@@ -105,8 +105,8 @@ fn read_binary(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
     }
 }
 
-/// Builder of a mesh from STL facets. Merges corners at equal positions, because STL has no shared
-/// vertices.
+/// Builder that creates a mesh from STL facets. The builder merges corners at equal positions,
+/// because facets in STL do not share vertices.
 #[derive(Default)]
 struct Builder {
     data: MeshData,

@@ -1,4 +1,4 @@
-//! Shared helpers for tests of readers: read texts as scenes and format the diagnostics.
+//! Shared helpers for tests of readers, which read texts as scenes and format the diagnostics.
 
 use crate::folder::FolderSource;
 use crate::scene::{ReadInput, find_scene_format, read_model};
@@ -10,8 +10,8 @@ use std::path::Path;
 use std::sync::Arc;
 use tempfile::TempDir;
 
-/// Reads a text as a file in a folder. Returns diagnostics as `file:line:column severity message`,
-/// in order.
+/// Reads a text as if it were a file in a folder. Returns the diagnostics in order, in the form
+/// `file:line:column severity message`.
 pub(super) fn read_in(folder: &Path, name: &str, text: impl AsRef<[u8]>) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let path = folder.join(name);
@@ -21,8 +21,8 @@ pub(super) fn read_in(folder: &Path, name: &str, text: impl AsRef<[u8]>) -> (Opt
     (loaded.map(|loaded| loaded.scene), lines(&diagnostics, &files))
 }
 
-/// Reads a model with this crate's own test build, whose size limits are lower. [`read_in`] uses
-/// the crate `durer`, which is linked against the normal build.
+/// Reads a model with the test build of this crate, which has lower size limits. [`read_in`]
+/// instead uses the crate `durer`, which is linked against the normal build.
 pub(super) fn read_with_low_limits(name: &str, text: &str) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let bytes: Arc<[u8]> = text.as_bytes().into();
@@ -42,7 +42,7 @@ pub(super) fn read_with_low_limits(name: &str, text: &str) -> (Option<Scene>, Ve
     (scene, lines(&diagnostics, &files.borrow()))
 }
 
-/// Formats diagnostics as `file:line:column severity message (help)`.
+/// Formats diagnostics in the form `file:line:column severity message (help)`.
 fn lines(diagnostics: &Diagnostics, files: &Files) -> Vec<String> {
     let line = |found: &Diagnostic| {
         let severity = match found.severity {
@@ -61,7 +61,7 @@ fn lines(diagnostics: &Diagnostics, files: &Files) -> Vec<String> {
     diagnostics.iter().map(line).collect()
 }
 
-/// Creates a temporary folder containing some files.
+/// Creates a temporary folder that contains the given files.
 pub(super) fn folder(files: &[(&str, &[u8])]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in files {

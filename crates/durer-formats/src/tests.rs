@@ -1,4 +1,4 @@
-//! Tests of all mesh formats, and helpers for the tests of each format.
+//! Tests of all mesh formats, and helpers that the tests of each format use.
 
 use super::*;
 use durer_diag::{Files, Severity};
@@ -6,7 +6,8 @@ use durer_scene::math::random::Random;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Reads bytes as a file with a given name. Returns diagnostics as `line:column severity: message`.
+/// Reads bytes as if they were a file with the given name. Returns the diagnostics in the form
+/// `line:column severity: message`.
 pub(super) fn read(bytes: &[u8], name: &str) -> (Option<MeshData>, Vec<String>) {
     let mut files = Files::default();
     let file = files.add(name, bytes.into());
@@ -25,14 +26,14 @@ pub(super) fn read(bytes: &[u8], name: &str) -> (Option<MeshData>, Vec<String>) 
     (mesh, diagnostics.iter().map(line).collect())
 }
 
-/// Reads a file that must cause no diagnostics.
+/// Reads a file that must not cause any diagnostics.
 pub(super) fn read_clean(bytes: &[u8], name: &str) -> MeshData {
     let (mesh, findings) = read(bytes, name);
     assert_eq!(findings, [""; 0], "{name}");
     mesh.unwrap()
 }
 
-/// Reads all prefixes of a file, and mutated copies of it, to check that no reader panics.
+/// Reads all prefixes of a file, and randomly changed copies of it, to check that no reader panics.
 pub(super) fn abuse(bytes: &[u8], name: &str) {
     let try_it = |bytes: &[u8]| {
         if let Some(mesh) = read(bytes, name).0 {
@@ -49,7 +50,7 @@ pub(super) fn abuse(bytes: &[u8], name: &str) {
             match random(3) {
                 0 => changed[at] ^= 1 << random(8),
                 1 => changed[at] = random(256) as u8,
-                // Bytes from elsewhere in the file cause realistic errors.
+                // Bytes from elsewhere in the file produce realistic errors.
                 _ => changed[at] = changed[random(changed.len())],
             }
         }
@@ -100,13 +101,13 @@ fn errors_are_limited_and_full_diagnostics_stop_reading() {
     (0..durer_diag::ERROR_LIMIT).for_each(|_| diagnostics.push(Diagnostic::error("before")));
     assert_eq!(read_mesh(b"v 0 0 0", 0, "m.obj", &mut diagnostics), None);
     assert_eq!(diagnostics.error_count(), durer_diag::ERROR_LIMIT);
-    // Errors of other files do not affect this one.
+    // Errors in other files do not affect this one.
     let mut diagnostics = Diagnostics::default();
     diagnostics.push(Diagnostic::error("before"));
     assert!(read_mesh(b"v 0 0 0", 0, "m.obj", &mut diagnostics).is_some());
 }
 
-/// Collects all files with an extension below a folder.
+/// Collects all files below a folder that have the given extension.
 fn files_below(folder: &Path, extension: &str, found: &mut Vec<PathBuf>) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     for path in entries.flatten().map(|entry| entry.path()) {

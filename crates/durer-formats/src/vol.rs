@@ -1,8 +1,9 @@
 //! Reader and writer of Mitsuba's volume files, which contain densities on a grid.
 //!
-//! Layout, little-endian: `VOL`, the version (3), then as 32-bit numbers: the type (1 for `f32`),
-//! the counts along x, y and z, the number of channels (1), the six coordinates of the bounds, and
-//! the values with x varying fastest. Source: Mitsuba 3's documentation, `gridvolume`.
+//! A file is little-endian and contains `VOL` and the version (3), followed by 32-bit numbers: the
+//! type (1 for `f32`), the counts along x, y, and z, the number of channels (1), the six
+//! coordinates of the bounds, and the values, ordered so that x varies fastest. Source:
+//! documentation of Mitsuba 3, `gridvolume`.
 
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::math::{Aabb, Vec3};
@@ -10,12 +11,12 @@ use durer_scene::medium::DensityGrid;
 
 const HEADER: usize = 48;
 
-/// Reads a density grid and its bounds. The densities may take at most `memory` bytes.
+/// Reads a density grid and its bounds. The densities may use at most `memory` bytes.
 pub fn read(bytes: &[u8], file: u32, memory: u64, diagnostics: &mut Diagnostics) -> Option<(Aabb, DensityGrid)> {
     with_diagnostics(parse(bytes, memory), bytes, file, diagnostics)
 }
 
-/// Returns the mean of a file's values, which can have one or three channels.
+/// Returns the mean of the values in a file, which can have one or three channels.
 pub fn mean(bytes: &[u8], file: u32, memory: u64, diagnostics: &mut Diagnostics) -> Option<Vec3> {
     let (_, _, channels, values) = with_diagnostics(values(bytes, &[1, 3], memory), bytes, file, diagnostics)?;
     let mut sums = [0.0; 3];
@@ -24,7 +25,7 @@ pub fn mean(bytes: &[u8], file: u32, memory: u64, diagnostics: &mut Diagnostics)
     Some(Vec3::from_array(std::array::from_fn(|i| (sums[i.min(channels - 1)] / count) as f32)))
 }
 
-/// Byte offset and message of an error.
+/// Byte offset where an error occurred, and the error message.
 type ParseError = (usize, String);
 
 fn with_diagnostics<T>(
@@ -46,8 +47,8 @@ fn parse(bytes: &[u8], memory: u64) -> Result<(Aabb, DensityGrid), ParseError> {
     grid.map(|grid| (bounds, grid)).ok_or((HEADER, "the densities cannot be used".into()))
 }
 
-/// Reads the bounds, the counts along the axes, the number of channels and the values of a file.
-/// `channels` lists the numbers of channels that the caller supports.
+/// Reads the bounds, the counts along the axes, the number of channels, and the values of a file.
+/// `channels` lists the numbers of channels that the caller can handle.
 fn values(bytes: &[u8], channels: &[usize], memory: u64) -> Result<(Aabb, [u32; 3], usize, Vec<f32>), ParseError> {
     if !bytes.starts_with(b"VOL") || bytes.get(3) != Some(&3) {
         return Err((0, "not a Mitsuba volume file: it must begin with `VOL` and version 3".into()));
@@ -108,7 +109,7 @@ pub fn write(bounds: &Aabb, grid: &DensityGrid) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    /// Returns a file of 2 x 1 x 1 densities.
+    /// Returns a file that contains 2 x 1 x 1 densities.
     fn file() -> Vec<u8> {
         let mut bytes = b"VOL\x03".to_vec();
         [1_i32, 2, 1, 1, 1].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
@@ -135,7 +136,7 @@ mod tests {
         assert_eq!(changed(24, f32::NAN.to_le_bytes()), 24);
         assert_eq!(changed(52, (-1.0_f32).to_le_bytes()), 52);
         assert_eq!(parse(&file(), 7).unwrap_err().0, 8);
-        // Counts larger than any file can contain.
+        // The file declares counts that are larger than any file can hold.
         assert_eq!(changed(8, i32::MAX.to_le_bytes()), file().len());
     }
 }

@@ -1,8 +1,8 @@
-//! Pull parser for XML; elements and attributes have spans.
+//! Pull parser for XML, which records the spans of elements and attributes.
 //!
-//! Two features that scenes do not need are rejected: document type declarations, with which a few
-//! bytes can expand to gigabytes or include another file, and entities other than the five
-//! predefined ones.
+//! The parser rejects two features that scenes do not need. One is document type declarations, with
+//! which a few bytes can expand to gigabytes or include another file. The other is entities other
+//! than the five predefined ones.
 
 use durer_diag::{Diagnostic, Span};
 use quick_xml::events::attributes::{AttrError, Attributes};
@@ -10,27 +10,27 @@ use quick_xml::{Reader, escape, events};
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// Maximum depth of nested elements.
+/// Maximum depth to which elements may be nested.
 const MAX_DEPTH: usize = 128;
 
-/// Pull parser of one XML text.
+/// Pull parser for a single XML text.
 pub(super) struct Xml<'a> {
     text: &'a str,
     file: u32,
-    /// Number of bytes skipped before the text: the length of a byte order mark.
+    /// Number of bytes that were skipped before the text, which is the length of a byte order mark.
     skipped: usize,
     reader: Reader<&'a [u8]>,
-    /// Spans of the open elements.
+    /// Spans of the elements that are open.
     open: Vec<Span>,
     /// True if the last element was self-closing.
     empty: bool,
-    /// True after the first element.
+    /// True once the first element has been read.
     has_root_element: bool,
 }
 
-/// Start tag of an XML element, with its attributes.
+/// Start tag of an XML element, together with its attributes.
 pub(super) struct Tag<'a> {
-    /// Local name, without the namespace prefix.
+    /// Local name of the element, without its namespace prefix.
     pub name: &'a str,
     pub at: Span,
     pub attributes: Vec<Attribute<'a>>,
@@ -38,24 +38,24 @@ pub(super) struct Tag<'a> {
 
 /// Attribute of an XML element.
 pub(super) struct Attribute<'a> {
-    /// Local name, without the namespace prefix.
+    /// Local name of the attribute, without its namespace prefix.
     pub name: &'a str,
     pub value: Cow<'a, str>,
-    /// Span of the value.
+    /// Span of the attribute's value.
     pub at: Span,
 }
 
-/// Event returned by the XML parser: an element begins, an element ends, or the text ends.
+/// Event that the XML parser returns when an element begins, an element ends, or the text ends.
 pub(super) enum Event<'a> {
     Open(Tag<'a>),
-    /// The innermost open element ends.
+    /// The innermost open element ends here.
     Close,
-    /// The text ends.
+    /// The text ends here.
     End,
 }
 
 impl<'a> Tag<'a> {
-    /// Returns the attribute with this name.
+    /// Returns the attribute that has this name.
     pub fn get(&self, name: &str) -> Option<&Attribute<'a>> {
         self.attributes.iter().find(|attribute| attribute.name == name)
     }
@@ -81,12 +81,12 @@ pub(super) fn has_root(bytes: &[u8], names: &[&str]) -> bool {
     }
 }
 
-/// Removes the namespace prefix of a name.
+/// Removes the namespace prefix from a name.
 fn local(name: &str) -> &str {
     name.rsplit(':').next().unwrap_or(name)
 }
 
-/// Converts UTF-16 text with a byte order mark to UTF-8; returns other bytes unchanged.
+/// Converts UTF-16 text that has a byte order mark to UTF-8; returns other bytes unchanged.
 pub(super) fn utf8(bytes: Arc<[u8]>) -> Arc<[u8]> {
     let number: fn([u8; 2]) -> u16 = match *bytes {
         [0xff, 0xfe, ..] => u16::from_le_bytes,
@@ -99,7 +99,7 @@ pub(super) fn utf8(bytes: Arc<[u8]>) -> Arc<[u8]> {
 }
 
 impl<'a> Xml<'a> {
-    /// Starts parsing a text, which must be UTF-8.
+    /// Starts to parse a text, which must be UTF-8.
     pub fn new(bytes: &'a [u8], file: u32) -> Result<Self, Box<Diagnostic>> {
         let span = |start: usize, end: usize| Span { file, start: start as u32, end: end as u32 };
         if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
@@ -122,7 +122,7 @@ impl<'a> Xml<'a> {
         Span { file: self.file, start: at(start), end: at(end.max(start)) }
     }
 
-    /// Returns the span of a slice of the text.
+    /// Returns the span of a part of the text.
     fn span_of(&self, piece: &str) -> Span {
         let start = piece.as_ptr() as usize - self.text.as_ptr() as usize;
         self.span(start, start + piece.len())
@@ -169,7 +169,7 @@ impl<'a> Xml<'a> {
                         None => Ok(Event::End),
                     };
                 }
-                // Text, comments and processing instructions are skipped.
+                // Text, comments, and processing instructions are skipped.
                 _ => {}
             }
         }
@@ -238,8 +238,8 @@ impl<'a> Xml<'a> {
 mod tests {
     use super::*;
 
-    /// Returns the elements as `name@offset[attribute=value@offset]`, and the error that ends
-    /// parsing.
+    /// Returns the elements in the form `name@offset[attribute=value@offset]`, and the error that
+    /// ends parsing.
     fn diagnose(text: &str) -> (Vec<String>, Option<(String, u32)>) {
         let mut all = Vec::new();
         let mut xml = match Xml::new(text.as_bytes(), 0) {

@@ -1,23 +1,23 @@
-//! Reader of ZIP archives. It checks the uncompressed size of a part before it allocates memory for
-//! it.
+//! Reader of ZIP archives. The reader checks the uncompressed size of a part before it allocates
+//! memory for the part.
 
 use flate2::read::DeflateDecoder;
 use rawzip::{CompressionMethod, ZipArchive, ZipArchiveEntryWayfinder};
 use std::collections::BTreeMap;
 use std::io::Read;
 
-/// Maximum number of parts in an archive.
+/// Maximum number of parts that an archive may have.
 const MAX_PARTS: usize = 1 << 16;
-/// Limits against decompression bombs: the maximum ratio of all uncompressed bytes to the archive's
-/// size, and a number of bytes that is always allowed. Models as text compress to a tenth, rarely
-/// to a fiftieth.
+/// Limits that protect against decompression bombs: the maximum ratio between the size of all
+/// uncompressed parts and the size of the archive, and a number of bytes that is always allowed.
+/// Models stored as text compress to about a tenth of their size, and rarely to a fiftieth.
 const MAX_RATIO: u64 = 200;
 const FREE_BYTES: u64 = 1 << 24;
 
-/// ZIP archive in memory, whose parts are decompressed on request.
+/// ZIP archive in memory; its parts are decompressed on request.
 pub(super) struct Zip<'a> {
     bytes: &'a [u8],
-    /// Parts by name: location, compression method and uncompressed size.
+    /// Location, compression method, and uncompressed size of each part, by the name of the part.
     parts: BTreeMap<String, (ZipArchiveEntryWayfinder, CompressionMethod, u64)>,
     /// Number of bytes that may still be decompressed.
     left: u64,
@@ -29,7 +29,7 @@ pub(super) fn recognise(bytes: &[u8]) -> bool {
 }
 
 impl<'a> Zip<'a> {
-    /// Reads the directory of an archive.
+    /// Reads the list of parts in an archive.
     pub fn open(bytes: &'a [u8]) -> Result<Self, String> {
         let archive = ZipArchive::from_slice(bytes).map_err(|error| error.to_string())?;
         let mut parts = BTreeMap::new();
@@ -47,12 +47,12 @@ impl<'a> Zip<'a> {
         Ok(Zip { bytes, parts, left: FREE_BYTES + MAX_RATIO * bytes.len() as u64 })
     }
 
-    /// Returns the names of all parts.
+    /// Returns the names of all parts in the archive.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.parts.keys().map(String::as_str)
     }
 
-    /// Decompresses a part; `None` if the archive has no such part.
+    /// Decompresses a part; returns `None` if the archive has no such part.
     pub fn part(&mut self, name: &str) -> Option<Result<Vec<u8>, String>> {
         let (place, method, size) = *self.parts.get(name)?;
         Some(self.unpacked(place, method, size))
@@ -73,8 +73,8 @@ impl<'a> Zip<'a> {
         let archive = ZipArchive::from_slice(self.bytes).map_err(|error| error.to_string())?;
         let entry = archive.get_entry(place).map_err(|error| error.to_string())?;
         let mut bytes = Vec::new();
-        // The decoder verifies size and checksum at the end of the part, so reading one byte more
-        // than the stated size is enough to detect a wrong size.
+        // The decoder checks the size and the checksum when it reaches the end of the part, so
+        // reading one byte more than the stated size reveals a wrong size.
         let read = match method {
             CompressionMethod::STORE => entry.verifying_reader(entry.data()).take(size + 1).read_to_end(&mut bytes),
             CompressionMethod::DEFLATE => {

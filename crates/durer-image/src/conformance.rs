@@ -1,9 +1,9 @@
-//! Tests of the requirements that every format in the table must meet.
+//! Tests of requirements that every format in the table must meet.
 
 use super::*;
 use proptest::prelude::*;
 
-/// An asymmetric picture with rows long enough to be compressed.
+/// Creates an asymmetric picture whose rows are long enough to be compressed.
 fn sample() -> Image {
     let pixel = |i: u32| Vec3::new(i as f32 / 26.0, (i * i % 7) as f32 / 6.0, if i < 13 { 0.0 } else { 0.75 });
     Image::from_pixels(9, 3, (0..27).map(pixel).collect()).unwrap()
@@ -71,12 +71,12 @@ fn alpha_is_written_where_a_format_has_it_and_black_elsewhere() {
         let mut out = Vec::new();
         format.write(std::slice::from_ref(&layer), &WriteOptions::default(), &mut out).unwrap();
         let back = read(&out, &name(format)).unwrap();
-        // `read` drops alpha. Formats with 8-bit alpha store colours that are not premultiplied.
+        // `read` discards alpha. Formats with 8-bit alpha store colours that are not premultiplied.
         let straight = ["PNG", "TGA"].contains(&format.name);
         let expected = if straight { 128.0 / 255.0 } else { 0.25 };
         assert!((back.pixels[0].x - expected).abs() < 0.002, "{}: {}", format.name, back.pixels[0]);
         assert_eq!(back.pixels[1], Vec3::ZERO, "{}", format.name);
-        // The number of values must match the number of pixels.
+        // The number of coverage values must match the number of pixels.
         let odd = Layer { coverage: Some(vec![0.5]), ..layer.clone() };
         assert!(format.write(&[odd], &WriteOptions::default(), &mut Vec::new()).is_err());
     }
@@ -103,15 +103,15 @@ fn no_prefix_is_a_picture() {
     for format in FORMATS {
         let bytes = written(format, LayerKind::Color, Transfer::Linear, &sample());
         for end in 0..bytes.len() {
-            // The last bytes of a PNG, its end chunk, may be missing.
+            // The last bytes of a PNG file, which are its end chunk, may be missing.
             let whole = read(&bytes[..end], &name(format)).is_ok();
             assert!(!whole || end + 16 > bytes.len(), "{} of {} bytes of {}", end, bytes.len(), format.name);
         }
     }
 }
 
-/// Checks that forged bytes give an error or some other picture, but no panic and no picture larger
-/// than the limit.
+/// Checks that forged bytes cause an error or some other picture, but neither a panic nor a picture
+/// larger than the limit.
 fn survives(format: &Format, bytes: &[u8]) {
     if let Ok(image) = read(bytes, &name(format)) {
         assert!(image.check().is_ok());
@@ -133,7 +133,7 @@ proptest! {
         let format = &FORMATS[which];
         let mut bytes = written(format, LayerKind::Color, Transfer::Linear, &sample());
         for (index, value) in flips {
-            // Most errors concern the first bytes.
+            // Most of the checks in decoders concern the first bytes.
             let range = if at_head { bytes.len().min(48) } else { bytes.len() };
             bytes[index.index(range)] = value;
         }

@@ -1,13 +1,14 @@
-//! Content that is written to files and streams.
+//! Content to be written to files and streams.
 
 use std::io::{self, Write};
 
-/// Content of a file to save: bytes, or a value that is serialised while it is written.
+/// Content of a file to be saved, which is either bytes or a value that is serialised while it is
+/// written.
 pub trait Content {
-    /// Writes the whole content to `out`.
+    /// Writes the entire content to `out`.
     ///
     /// # Errors
-    /// Errors of `out`.
+    /// Returns the errors that `out` reports.
     fn write_to(&self, out: &mut dyn Write) -> io::Result<()>;
 }
 

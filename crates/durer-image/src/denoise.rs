@@ -1,39 +1,40 @@
-//! A denoiser that is guided by the surface at each pixel.
+//! Denoiser that is guided by the surface visible at each pixel.
 //!
-//! On a smooth surface, the irradiance, which is the light divided by the albedo, is smooth too.
-//! The filter averages it over pixels with similar normals, positions, and albedos, more strongly
-//! where the variance is higher. Denoised pictures are estimates, and they are biased.
+//! On a smooth surface, the irradiance, which is the light divided by the albedo, is also smooth.
+//! The filter averages the irradiance over pixels with similar normals, positions, and albedos, and
+//! it does so more strongly where the variance is higher. Denoised pictures are only estimates, and
+//! they are biased.
 //!
 //! Source: Dammertz and others, *Edge-Avoiding À-Trous Wavelet Transform for fast Global
-//! Illumination Filtering*, HPG 2010. The weights by variance are the spatial half of Schied and
-//! others, *Spatiotemporal Variance-Guided Filtering*, HPG 2017.
+//! Illumination Filtering*, HPG 2010. The weights based on variance are the spatial half of Schied
+//! and others, *Spatiotemporal Variance-Guided Filtering*, HPG 2017.
 
 use super::Image;
 use crate::{Color, LUMINANCE};
 use durer_bvh::math::{Vec3, fp};
 use rayon::prelude::*;
 
-/// Auxiliary images that guide the denoiser: albedo, normal, position, and variance of each pixel,
-/// row by row.
+/// Auxiliary images that guide the denoiser: the albedo, normal, position, and variance of each
+/// pixel, stored row by row.
 #[derive(Clone, Copy, Debug)]
 pub struct GuideImages<'a> {
-    /// Albedo.
+    /// Albedo of the surface.
     pub albedo: &'a [Color],
-    /// Unit normal of the surface; zero where the camera ray hit nothing.
+    /// Unit normal of the surface, or zero where the camera ray hit nothing.
     pub normal: &'a [Vec3],
-    /// Position.
+    /// Position of the surface point.
     pub position: &'a [Vec3],
-    /// Estimated variance of the pixel's luminance.
+    /// Estimated variance of the luminance of the pixel.
     pub variance: &'a [f32],
 }
 
-/// Number of filter passes. The step width doubles in each.
+/// Number of filter passes. The step width doubles with each pass.
 const ROUNDS: u32 = 5;
 
-/// One row of the kernel: a cubic B-spline.
+/// One row of the filter kernel, which is a cubic B-spline.
 const KERNEL: [f32; 5] = [1.0 / 16.0, 0.25, 0.375, 0.25, 1.0 / 16.0];
 
-/// Pixel during denoising: light divided by albedo, and the variance of its luminance.
+/// Pixel during denoising, with its light divided by the albedo and the variance of its luminance.
 #[derive(Clone, Copy)]
 struct Pixel {
     light: Color,
@@ -46,7 +47,7 @@ fn luminance(color: Color) -> f32 {
 
 /// Denoises a picture. The result is the same, bit for bit, for any number of threads.
 ///
-/// Returns `None` if the size of a guide differs from that of the picture.
+/// Returns `None` if the size of a guide image differs from the size of the picture.
 pub fn denoise(picture: &Image, guides: &GuideImages) -> Option<Image> {
     let count = picture.pixels.len();
     let fits = |length: usize| length == count;
@@ -57,7 +58,7 @@ pub fn denoise(picture: &Image, guides: &GuideImages) -> Option<Image> {
     {
         return None;
     }
-    // For surfaces without albedo, such as mirrors and lights, filter the light itself.
+    // For surfaces without an albedo, such as mirrors and lights, filter the light itself.
     let albedo: Vec<Color> =
         guides.albedo.iter().map(|&a| if a.min_element() > 0.01 { a } else { Color::ONE }).collect();
     let mut pixels: Vec<Pixel> = (0..count)
@@ -78,7 +79,7 @@ fn averaged(pixels: &[Pixel], guides: &GuideImages, width: u32, i: usize, step: 
     let (width, height) = (i64::from(width), pixels.len() as i64 / i64::from(width));
     let (x, y) = (i as i64 % width, i as i64 / width);
     let at = |x: i64, y: i64| ((0..width).contains(&x) && (0..height).contains(&y)).then_some((y * width + x) as usize);
-    // Variances are noisy too, so average them over the neighbours.
+    // The variances are noisy too, so average them over neighbouring pixels.
     let near = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)));
     let (sum, weights) = near
         .filter_map(|(dx, dy)| {
@@ -98,7 +99,7 @@ fn averaged(pixels: &[Pixel], guides: &GuideImages, width: u32, i: usize, step: 
             let mut weight = row * column;
             if hit {
                 weight *= fp::pow(normal.dot(guides.normal[j]).max(0.0), 64.0);
-                // Distance from the tangent plane, relative to the distance of the points.
+                // Distance from the tangent plane, relative to the distance between the points.
                 let way = guides.position[j] - position;
                 let beside = way.dot(normal).abs() / way.length().max(1e-20);
                 weight *= fp::exp(-8.0 * beside * beside);
@@ -121,8 +122,9 @@ mod tests {
     use super::*;
     use durer_bvh::internal::random::Random;
 
-    /// Two walls that meet in the middle, one of them checkered, with light that increases to the
-    /// right, without and with noise of a known variance.
+    /// Creates pictures of two walls that meet in the middle. One of the walls is checkered, and
+    /// the light increases to the right. One picture has no noise, and the other has noise of a
+    /// known variance.
     fn noisy(deviation: f32) -> (Image, Image, [Vec<Vec3>; 3], Vec<f32>) {
         let (width, height) = (48_u32, 32_u32);
         let mut random = Random(11);
@@ -160,7 +162,7 @@ mod tests {
             error(&clean, &truth),
             error(&noisy, &truth)
         );
-        // Without noise, hardly anything changes.
+        // Without noise, denoising changes hardly anything.
         let none = vec![0.0; variance.len()];
         let same = denoise(&truth, &GuideImages { variance: &none, ..guides }).unwrap();
         assert!(error(&same, &truth) < 1e-3, "{}", error(&same, &truth));

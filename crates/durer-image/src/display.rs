@@ -1,19 +1,19 @@
-//! Conversion of linear colours to 8-bit values: exposure, tone mapping, and transfer function.
+//! Conversion of linear colours to 8-bit values by exposure, tone mapping, and a transfer function.
 
 use super::Transfer;
 use crate::{Color, LUMINANCE};
 use durer_bvh::math::{Vec3, fp};
 use glam::Mat3;
 
-/// Conversion of linear colours to 8-bit values for a file or a screen: exposure, tone mapping, and
-/// transfer function. Floating-point formats ignore it.
+/// Conversion of linear colours to 8-bit values for a file or a screen by exposure, tone mapping,
+/// and a transfer function. Floating-point formats ignore this conversion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Display {
-    /// Factor on colours, applied first.
+    /// Factor by which colours are multiplied before anything else.
     pub exposure: f32,
-    /// Tone mapping operator.
+    /// Operator for tone mapping.
     pub tone: Tone,
-    /// Transfer function, applied last.
+    /// Transfer function, which is applied last.
     pub transfer: Transfer,
 }
 
@@ -36,27 +36,28 @@ impl Display {
     }
 }
 
-/// Tone mapping operator, which compresses the range of linear colours for display.
+/// Tone mapping operator, which compresses the range of linear colours so that they can be
+/// displayed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tone {
-    /// No tone mapping: values above 1 are clipped.
+    /// No tone mapping; values above 1 are clipped.
     #[default]
     None,
     /// Scales each colour so that its luminance L becomes L / (1 + L). Source: Reinhard and others,
     /// *Photographic Tone Reproduction for Digital Images*, 2002.
     Reinhard,
-    /// A fit of the ACES curve for each channel. Source: Narkowicz, *ACES Filmic Tone Mapping
-    /// Curve*, 2016.
+    /// Applies a fit of the ACES curve to each channel. Source: Narkowicz, *ACES Filmic Tone
+    /// Mapping Curve*, 2016.
     Aces,
-    /// AgX as in Blender. Source: Sobotka; polynomial by Wrensch, *Minimal AgX Implementation*,
-    /// 2023.
+    /// AgX tone mapping as in Blender. Source: Sobotka; the polynomial is from Wrensch, *Minimal
+    /// AgX Implementation*, 2023.
     Agx,
-    /// Preserves colours up to 0.8. Source: Khronos, *PBR Neutral Tone Mapper*, 2024.
+    /// Preserves colours up to a value of 0.8. Source: Khronos, *PBR Neutral Tone Mapper*, 2024.
     KhronosNeutral,
 }
 
 impl Tone {
-    /// Pairs of name, as on the command line, and operator.
+    /// Pairs of an operator's name, as on the command line, and the operator.
     pub const ALL: [(&'static str, Tone); 5] = [
         ("none", Tone::None),
         ("reinhard", Tone::Reinhard),
@@ -65,12 +66,12 @@ impl Tone {
         ("khronos-neutral", Tone::KhronosNeutral),
     ];
 
-    /// Finds an operator by name.
+    /// Finds a tone mapping operator by its name.
     pub fn from_name(name: &str) -> Option<Tone> {
         Tone::ALL.iter().find(|row| row.0 == name).map(|row| row.1)
     }
 
-    /// Maps a linear colour to a linear display colour.
+    /// Maps a linear colour to a linear colour for display.
     pub fn apply(self, color: Color) -> Color {
         match self {
             Tone::None => color,
@@ -145,8 +146,8 @@ mod tests {
             assert!(before > 0.9, "{name}: {before}");
             assert_eq!(Tone::from_name(name), Some(tone));
         }
-        // Khronos guarantees that base colours up to 0.8 are preserved, minus the 0.04 that every
-        // dielectric reflects.
+        // Khronos guarantees that base colours up to 0.8 are preserved, except that the 0.04 that
+        // every dielectric reflects is subtracted.
         assert!((Tone::KhronosNeutral.apply(Vec3::splat(0.5)) - 0.46).length() < 1e-6);
         assert_eq!(Tone::None.apply(Vec3::splat(7.0)), Vec3::splat(7.0));
     }

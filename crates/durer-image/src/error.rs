@@ -1,31 +1,31 @@
-//! Errors from reading and writing pictures.
+//! Errors that occur when pictures are read and written.
 
 use durer_diag::{format_bytes_down, format_bytes_up};
 
-/// Error from decoding, encoding, or creating a picture.
+/// Error that occurs when a picture is decoded, encoded, or created.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImageError {
-    /// The extension of a file name is unknown.
+    /// The file name has an unknown extension.
     #[error("`{path}` does not have the extension of a picture file; known extensions are {known}{}", suggestion(.similar))]
     UnknownExtension {
-        /// The file name.
+        /// The file name with the unknown extension.
         path: String,
-        /// Suggested extension, without the dot.
+        /// Suggested extension, without the leading dot.
         similar: Option<&'static str>,
         /// List of the usual extensions of all formats.
         known: String,
     },
-    /// Neither the content nor the name determines the format.
+    /// Neither the content nor the name of the file indicates the format.
     #[error("`{name}` is not a picture of a known format")]
     Unrecognised {
         /// Name under which the picture was read.
         name: String,
     },
-    /// The content violates the rules of the format, or ends too early.
+    /// The content violates the rules of its format or ends too early.
     #[error("not a valid {format} picture: {reason}")]
     Malformed {
-        /// Name of the format.
+        /// Name of the picture format.
         format: &'static str,
         /// Description of the problem.
         reason: String,
@@ -33,22 +33,22 @@ pub enum ImageError {
     /// The format is known, but this variant of it cannot be read or written.
     #[error("{format}: {reason}")]
     Unsupported {
-        /// Name of the format.
+        /// Name of the picture format.
         format: &'static str,
         /// Description of the unsupported feature.
         reason: String,
     },
-    /// The size in the header exceeds the limit for a file of this length.
+    /// The size in the header is too large for a file of this length.
     #[error("a picture of {width} x {height} pixels is too large for a file of {bytes} bytes")]
     TooLarge {
-        /// Declared width in pixels.
+        /// Width in pixels that the header declares.
         width: u64,
-        /// Declared height in pixels.
+        /// Height in pixels that the header declares.
         height: u64,
         /// Length of the file in bytes.
         bytes: usize,
     },
-    /// Decoding would take more memory than allowed.
+    /// Decoding the picture would use more memory than is allowed.
     #[error(
         "its {width} x {height} pixels need about {} of memory, but only {} is left",
         format_bytes_up(*.needed), format_bytes_down(*.allowed)
@@ -58,19 +58,19 @@ pub enum ImageError {
         width: u64,
         /// Height in pixels.
         height: u64,
-        /// Memory that decoding takes, in bytes.
+        /// Number of bytes of memory that decoding needs.
         needed: u64,
-        /// Memory that is allowed, in bytes.
+        /// Number of bytes of memory that decoding may use.
         allowed: u64,
     },
     /// An allocation of this many bytes failed.
     #[error("it needs {} of memory in one allocation, which failed", format_bytes_up(*.0))]
     OutOfMemory(u64),
-    /// 8-bit values were requested, but the picture has more bits per channel.
+    /// 8-bit values were requested, but the picture has more than 8 bits per channel.
     #[error("the picture does not have eight bits per channel")]
     NotEightBit,
-    /// The width or height is 0, there are too many pixels, or their number is not width times
-    /// height.
+    /// The width or height is 0, there are too many pixels, or the number of pixels is not width
+    /// times height.
     #[error("{width} x {height} is not a possible size: a picture has from 1 to {} pixels", super::MAX_PIXELS)]
     InvalidSize {
         /// Width in pixels.
@@ -81,10 +81,11 @@ pub enum ImageError {
     /// The list of layers is empty.
     #[error("there is no layer to write")]
     NoLayer,
-    /// Several layers were passed to a format that holds only one. Write each to its own file.
+    /// Several layers were passed to a format that can hold only one. Write each layer to its own
+    /// file instead.
     #[error("{format} holds one layer, not {count}")]
     SeveralLayers {
-        /// Name of the format.
+        /// Name of the picture format.
         format: &'static str,
         /// Number of layers.
         count: usize,
@@ -92,7 +93,7 @@ pub enum ImageError {
     /// The layers of a file have different sizes.
     #[error("the layer `{name}` has a different size from the first")]
     LayerSizes {
-        /// Name of the first layer that differs.
+        /// Name of the first layer whose size differs.
         name: String,
     },
 }
@@ -102,17 +103,17 @@ fn suggestion(similar: &Option<&'static str>) -> String {
 }
 
 impl ImageError {
-    /// Creates an error for content that violates the rules of the format.
+    /// Creates an error for content that violates the rules of its format.
     pub(super) fn malformed(format: &'static str, reason: impl ToString) -> ImageError {
         ImageError::Malformed { format, reason: reason.to_string() }
     }
 
-    /// Creates an error for a failed allocation of `count` items of `size` bytes.
+    /// Creates an error for a failed allocation of `count` items of `size` bytes each.
     pub(super) fn out_of_memory(count: usize, size: usize) -> ImageError {
         ImageError::OutOfMemory(count as u64 * size as u64)
     }
 
-    /// Creates an error for an unsupported variant of the format.
+    /// Creates an error for a variant of a format that is not supported.
     pub(super) fn unsupported(format: &'static str, reason: impl ToString) -> ImageError {
         ImageError::Unsupported { format, reason: reason.to_string() }
     }

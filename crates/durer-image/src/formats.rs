@@ -1,4 +1,4 @@
-//! Table of picture file formats.
+//! Table of all picture file formats.
 //!
 //! To add a format, add a file to this folder and a row to [`FORMATS`].
 
@@ -52,7 +52,7 @@ pub static FORMATS: &[Format] = &[
     hdr::FORMAT,
 ];
 
-/// Formats that can be read, but not written.
+/// Formats that can be read but not written.
 static READ_ONLY: &[Format] = &[
     #[cfg(feature = "jpeg")]
     jpeg::FORMAT,
@@ -62,61 +62,63 @@ static READ_ONLY: &[Format] = &[
     ktx2::FORMAT,
 ];
 
-/// Kind of values that a file format stores for each channel: 8-bit integers or floating point.
+/// Kind of values that a file format stores for each channel, which are 8-bit integers or
+/// floating-point numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
-    /// Values from 0 to 255, after the [`Transfer`] function.
+    /// Integer values from 0 to 255, to which the [`Transfer`] function has been applied.
     EightBit,
-    /// Floating-point values, which can exceed 1.
+    /// Floating-point values, which can be greater than 1.
     Float,
 }
 
 /// Options for encoding a picture with [`Format::write`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WriteOptions<'a> {
-    /// Conversion of colours to 8-bit values. Floating-point formats ignore it.
+    /// Conversion of linear colours to 8-bit values. Floating-point formats ignore this conversion.
     pub display: Display,
-    /// Metadata as pairs of name and text, stored by formats that support it.
+    /// Metadata as pairs of a name and a text, stored only by formats that support it.
     pub attributes: &'a [(&'static str, String)],
 }
 
-/// Size and memory needs of a picture, from the header of its file.
+/// Size of a picture and the memory needed to decode it, taken from the header of its file.
 pub(super) struct ImageHeader {
-    /// Width and height as stored in the header, possibly invalid.
+    /// Width and height as stated in the header; they may be invalid.
     pub width: u64,
     pub height: u64,
-    /// True if a channel has eight bits.
+    /// True if each channel has eight bits.
     pub is_eight_bit: bool,
-    /// Memory that decoding takes, including the decoded picture: bytes per pixel, and an
-    /// additional number of bytes, `extra_bytes`.
+    /// Memory that decoding needs, including the decoded picture: a number of bytes per pixel, plus
+    /// `extra_bytes`.
     pub bytes_per_pixel: u64,
     pub extra_bytes: u64,
 }
 
-/// Decoded pixels of a picture file, with the depth that they have in the file.
+/// Decoded pixels of a picture file, with the number of bits per channel that they have in the
+/// file.
 pub enum Raster {
-    /// 8 bits per channel.
+    /// Values with 8 bits per channel.
     Eight(Image8),
-    /// 16 bits per channel, scaled to the range from 0 to 1 without applying a transfer function.
-    /// The list is the opacity of each pixel; empty if the file has none.
+    /// Values with 16 bits per channel, scaled to the range from 0 to 1 without applying a transfer
+    /// function. The list contains the opacity of each pixel; it is empty if the file stores none.
     Sixteen(Image, Vec<f32>),
-    /// Floating-point values as stored in the file. The list is the opacity of each pixel; empty if
-    /// the file has none.
+    /// Floating-point values as they are stored in the file. The list contains the opacity of each
+    /// pixel; it is empty if the file stores none.
     Float(Image, Vec<f32>),
 }
 
-/// Encoder of a [`Format`]: appends a file with these layers, whose number and sizes were already
-/// checked.
+/// Encoder of a [`Format`], which appends a file with these layers. Their number and sizes have
+/// already been checked.
 type Encode = fn(&[Layer], &WriteOptions, &mut Vec<u8>) -> Result<(), ImageError>;
 
 /// A picture file format, such as PNG or OpenEXR, with the functions that read and write it.
 #[derive(Debug)]
 pub struct Format {
-    /// Display name.
+    /// Name of the format for display.
     pub name: &'static str,
-    /// File name extensions in lower case, without the dot; the usual one comes first.
+    /// File name extensions in lower case, without the leading dot; the usual one comes first.
     pub extensions: &'static [&'static str],
-    /// Depth of a channel.
+    /// Kind of values that each channel has.
     pub depth: Depth,
     /// True if a file can contain several layers.
     pub supports_layers: bool,
@@ -124,27 +126,29 @@ pub struct Format {
     pub max_side: u32,
     /// Returns true if the bytes begin with the format's signature.
     has_signature: fn(&[u8]) -> bool,
-    /// Reads the header only.
+    /// Reads only the header of a file.
     head: fn(&[u8]) -> Result<ImageHeader, ImageError>,
-    /// Decodes a picture whose size was already checked.
+    /// Decodes a picture whose size has already been checked.
     decode: fn(&[u8]) -> Result<Raster, ImageError>,
     encode: Encode,
-    /// Row-by-row writer, if supported.
+    /// Functions for writing row by row, if the format supports it.
     pub rows: Option<&'static RowFormat>,
 }
 
 impl Format {
-    /// Checks that a picture of this size can be written in the format, for example before a long
+    /// Checks that a picture of this size can be written in this format, for example before a long
     /// render.
     ///
     /// # Errors
-    /// [`ImageError::Size`] and [`ImageError::Unsupported`].
+    /// Returns [`ImageError::Size`] or [`ImageError::Unsupported`] if the picture cannot be
+    /// written.
     pub fn check_size(&self, width: u32, height: u32) -> Result<(), ImageError> {
         limits::checked_count(width, height)?;
         self.check_sides(width, height)
     }
 
-    /// Checks the size of a picture that is written row by row, and so may be too large for memory.
+    /// Checks the size of a picture that is written row by row and may therefore be too large for
+    /// memory.
     ///
     /// # Errors
     /// [`ImageError::Unsupported`].
@@ -161,9 +165,10 @@ impl Format {
     /// Appends a file with these layers to `out`.
     ///
     /// # Errors
-    /// [`ImageError::NoLayer`]; [`ImageError::SeveralLayers`] if the format holds only one;
-    /// [`ImageError::LayerSizes`]; [`ImageError::Size`]; and [`ImageError::Unsupported`] for a size
-    /// or name that the format cannot hold.
+    /// Returns [`ImageError::NoLayer`] if there is no layer, [`ImageError::SeveralLayers`] if the
+    /// format can hold only one, [`ImageError::LayerSizes`] if the sizes differ,
+    /// [`ImageError::Size`] if a size is invalid, and [`ImageError::Unsupported`] if the format
+    /// cannot hold a size or name.
     pub fn write(&self, layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
         let first = layers.first().ok_or(ImageError::NoLayer)?;
         if layers.len() > 1 && !self.supports_layers {
@@ -189,7 +194,7 @@ impl Format {
         self.catch(|| (self.decode)(bytes))
     }
 
-    /// Runs a decoder and treats a panic as a malformed file, since most decoders are third-party
+    /// Runs a decoder and treats a panic as a malformed file, because most decoders are third-party
     /// code.
     fn catch<T>(&self, work: impl FnOnce() -> Result<T, ImageError>) -> Result<T, ImageError> {
         catch_panic(work).unwrap_or_else(|| Err(ImageError::malformed(self.name, "its decoder failed")))
@@ -200,7 +205,7 @@ impl Format {
     }
 }
 
-/// Finds the format for the extension of a file name.
+/// Finds the format that a file name indicates by its extension.
 ///
 /// # Errors
 /// [`ImageError::UnknownExtension`].
@@ -213,7 +218,7 @@ pub fn format_for(path: impl AsRef<Path>) -> Result<&'static Format, ImageError>
     })
 }
 
-/// Finds the format by content or, failing that, by name.
+/// Finds the format of a file by its content or, if the content does not identify it, by its name.
 pub(super) fn recognise(bytes: &[u8], name: &str) -> Result<&'static Format, ImageError> {
     let all = || FORMATS.iter().chain(READ_ONLY);
     let by_content = all().find(|format| (format.has_signature)(bytes));
@@ -221,13 +226,13 @@ pub(super) fn recognise(bytes: &[u8], name: &str) -> Result<&'static Format, Ima
     by_content.or_else(by_name).ok_or_else(|| ImageError::Unrecognised { name: name.into() })
 }
 
-/// Usual file name extension for a picture, whose format is determined by its content or, failing
-/// that, by its name. `None` if the format is unknown.
+/// Returns the usual file name extension for a picture. Its format is determined by its content or,
+/// if the content does not identify it, by its name. Returns `None` if the format is unknown.
 pub fn extension_of(bytes: &[u8], name: &str) -> Option<&'static str> {
     recognise(bytes, name).ok().map(|format| format.extensions[0])
 }
 
-/// Lists the usual extensions of all formats, for a message.
+/// Lists the usual extensions of all formats, for use in a message.
 fn known_extensions() -> String {
     let endings: Vec<String> = FORMATS.iter().map(|format| format!(".{}", format.extensions[0])).collect();
     endings.join(", ")
@@ -237,18 +242,19 @@ fn extension(path: &str) -> Option<String> {
     Some(Path::new(path).extension()?.to_str()?.to_lowercase())
 }
 
-/// Conversion of a layer to 8-bit values.
+/// Returns the conversion of a layer to 8-bit values.
 fn display(layer: &Layer, options: &WriteOptions) -> Display {
     match (layer.kind, options.display.transfer) {
-        // A transfer function would falsify data. `Course`, which only truncates, is an exception:
-        // the course applied it to all pictures.
+        // Applying a transfer function to data would falsify it. `Course`, which only truncates, is
+        // an exception, because the course applied it to all pictures.
         (LayerKind::Data, Transfer::Srgb) => Transfer::Linear.into(),
         (LayerKind::Data, transfer) => transfer.into(),
         _ => options.display,
     }
 }
 
-/// 8-bit values of a picture: red, green, and blue, top row first. Computed in parallel.
+/// Returns the 8-bit red, green, and blue values of a picture, starting with the top row. The
+/// values are computed in parallel.
 #[cfg(feature = "codecs")]
 fn eight_bit(layer: &Layer, options: &WriteOptions) -> Vec<u8> {
     const STEP: usize = 1 << 14;

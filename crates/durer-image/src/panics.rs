@@ -1,17 +1,17 @@
-//! Catches panics of third-party decoders, which are reported as errors.
+//! Catches panics in third-party decoders, so that they can be reported as errors.
 //!
-//! This crate sets no panic hook. A program whose hook prints panics should call [`are_expected`]
-//! first.
+//! This crate does not set a panic hook. A program with a hook that prints panics should call
+//! [`are_expected`] first.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 thread_local! {
-    /// True while this thread runs code whose panics are caught.
+    /// True while this thread runs code in which panics are caught.
     static EXPECTED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Runs `work` and returns its result; `None` if it panicked.
+/// Runs `work` and returns its result, or `None` if it panicked.
 pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Option<T> {
     let before = EXPECTED.replace(true);
     let result = catch_unwind(AssertUnwindSafe(work));
@@ -19,8 +19,8 @@ pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Option<T> {
     result.ok()
 }
 
-/// Returns true if [`catch_panic`] would catch a panic of this thread, so that a panic hook need
-/// not print it. False in a thread that is ending.
+/// Returns true if [`catch_panic`] would catch a panic in this thread, so that a panic hook does
+/// not need to print it. Returns false in a thread that is ending.
 pub fn are_expected() -> bool {
     EXPECTED.try_with(Cell::get).unwrap_or(false)
 }

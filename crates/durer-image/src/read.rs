@@ -5,8 +5,8 @@ use super::limits::declared_count;
 use super::{Depth, Image, Image8, ImageError, decode_linear, decode_srgb};
 use durer_bvh::math::Vec3;
 
-/// A picture file of which only the header was read, so that its size and memory needs are known
-/// before decoding.
+/// A picture file of which only the header has been read, so that its size and the memory it needs
+/// are known before it is decoded.
 pub struct Encoded<'a> {
     format: &'static Format,
     bytes: &'a [u8],
@@ -15,13 +15,14 @@ pub struct Encoded<'a> {
 }
 
 impl<'a> Encoded<'a> {
-    /// Reads the header. The content determines the format or, failing that, the extension of
-    /// `name_hint`.
+    /// Reads the header of a file. The format is determined by the content or, if the content does
+    /// not identify it, by the extension of `name_hint`.
     ///
     /// # Errors
-    /// [`ImageError::Unrecognised`], [`ImageError::Malformed`], [`ImageError::Unsupported`],
-    /// [`ImageError::TooLarge`] for more than [`pixel_limit`](super::pixel_limit) pixels, and
-    /// [`ImageError::Size`] for a picture without pixels.
+    /// Returns [`ImageError::Unrecognised`], [`ImageError::Malformed`],
+    /// [`ImageError::Unsupported`], [`ImageError::TooLarge`] if there are more than
+    /// [`pixel_limit`](super::pixel_limit) pixels, or [`ImageError::Size`] for a picture without
+    /// pixels.
     pub fn open(bytes: &'a [u8], name_hint: &str) -> Result<Self, ImageError> {
         let format = recognise(bytes, name_hint)?;
         let head = format.head(bytes)?;
@@ -34,24 +35,25 @@ impl<'a> Encoded<'a> {
         (self.head.width as usize, self.head.height as usize)
     }
 
-    /// Depth of a channel in the format.
+    /// Kind of values that each channel has in the file format.
     pub fn depth(&self) -> Depth {
         self.format.depth
     }
 
-    /// Memory in bytes that [`Encoded::read8`] takes in addition to the bytes of the file.
+    /// Number of bytes of memory that [`Encoded::read8`] needs in addition to the bytes of the
+    /// file.
     pub fn memory_needed8(&self) -> u64 {
         (self.count as u64).saturating_mul(self.head.bytes_per_pixel).saturating_add(self.head.extra_bytes)
     }
 
-    /// Memory in bytes that [`Encoded::read`] takes.
+    /// Number of bytes of memory that [`Encoded::read`] needs.
     pub fn memory_needed(&self) -> u64 {
         let floats = if self.head.is_eight_bit { self.count * size_of::<Vec3>() } else { 0 };
         self.memory_needed8().saturating_add(floats as u64)
     }
 
-    /// Memory in bytes that [`Encoded::read_raster`] takes, including one copy of the values by the
-    /// caller.
+    /// Number of bytes of memory that [`Encoded::read_raster`] needs, including one copy of the
+    /// values made by the caller.
     pub fn memory_needed_raster(&self) -> u64 {
         let texel = if self.head.is_eight_bit { size_of::<[u8; 4]>() } else { size_of::<[f32; 4]>() };
         self.memory_needed8().max((2 * self.count * texel) as u64)
@@ -60,8 +62,8 @@ impl<'a> Encoded<'a> {
     /// Decodes the values of an 8-bit file.
     ///
     /// # Errors
-    /// [`ImageError::NotEightBit`], [`ImageError::Memory`] if decoding needs more than `memory`
-    /// bytes, and errors of [`Encoded::open`].
+    /// Returns [`ImageError::NotEightBit`], [`ImageError::Memory`] if decoding needs more than
+    /// `memory` bytes, or the errors of [`Encoded::open`].
     pub fn read8(&self, memory: u64) -> Result<Image8, ImageError> {
         if !self.head.is_eight_bit {
             return Err(ImageError::NotEightBit);
@@ -75,16 +77,17 @@ impl<'a> Encoded<'a> {
     /// Decodes the values as they are stored in the file.
     ///
     /// # Errors
-    /// [`ImageError::Memory`] if decoding needs more than `memory` bytes, and errors of
+    /// Returns [`ImageError::Memory`] if decoding needs more than `memory` bytes, or the errors of
     /// [`Encoded::open`].
     pub fn read_raster(&self, memory: u64) -> Result<Raster, ImageError> {
         self.decode(self.memory_needed_raster(), memory)
     }
 
-    /// Decodes the pixels. 8-bit values are converted by `decode`, and others are not changed.
+    /// Decodes the pixels. 8-bit values are converted by `decode`, and other values are not
+    /// changed.
     ///
     /// # Errors
-    /// Errors of [`Encoded::read8`].
+    /// Returns the errors of [`Encoded::read8`].
     pub fn read(&self, memory: u64, decode: fn(u8) -> f32) -> Result<Image, ImageError> {
         self.read_for(0, memory, decode)
     }
@@ -93,7 +96,7 @@ impl<'a> Encoded<'a> {
     /// per pixel for later processing.
     ///
     /// # Errors
-    /// Errors of [`Encoded::read`].
+    /// Returns the errors of [`Encoded::read`].
     pub fn read_for(&self, more: usize, memory: u64, decode: fn(u8) -> f32) -> Result<Image, ImageError> {
         let later = (self.count as u64).saturating_mul((size_of::<Vec3>() + more) as u64);
         Ok(match self.decode(self.memory_needed().max(later), memory)? {
@@ -117,32 +120,33 @@ impl<'a> Encoded<'a> {
     }
 }
 
-/// Decodes a picture. The content determines the format or, failing that, the extension of
-/// `name_hint`.
+/// Decodes a picture. The format is determined by the content or, if the content does not identify
+/// it, by the extension of `name_hint`.
 ///
-/// 8-bit values are divided by 255 without a transfer function, as the course does for textures;
-/// see also [`read_srgb`]. Values of floating-point formats are not changed, including NaN and
-/// infinities. Alpha is dropped. At most [`pixel_limit`](super::pixel_limit) pixels are read. For
-/// other limits, use [`Encoded`].
+/// 8-bit values are divided by 255 without applying a transfer function, as the course does for
+/// textures; see also [`read_srgb`]. Values in floating-point formats are not changed, including
+/// NaN and infinities. Alpha is discarded. At most [`pixel_limit`](super::pixel_limit) pixels are
+/// read. Use [`Encoded`] to set other limits.
 ///
 /// # Errors
-/// Errors of [`Encoded::open`].
+/// Returns the errors of [`Encoded::open`].
 pub fn read(bytes: &[u8], name_hint: &str) -> Result<Image, ImageError> {
     Encoded::open(bytes, name_hint)?.read(u64::MAX, decode_linear)
 }
 
-/// Decodes a picture as [`read`] does, but converts 8-bit values from sRGB to linear.
+/// Decodes a picture as [`read`] does, but converts 8-bit values from sRGB to linear values.
 ///
 /// # Errors
-/// Errors of [`read`].
+/// Returns the errors of [`read`].
 pub fn read_srgb(bytes: &[u8], name_hint: &str) -> Result<Image, ImageError> {
     Encoded::open(bytes, name_hint)?.read(u64::MAX, decode_srgb)
 }
 
-/// Decodes the values of an 8-bit picture, for exact comparisons.
+/// Decodes the stored values of an 8-bit picture, for exact comparisons.
 ///
 /// # Errors
-/// Errors of [`read`], and [`ImageError::NotEightBit`].
+/// Returns the errors of [`read`], and [`ImageError::NotEightBit`] if the picture has more than 8
+/// bits per channel.
 pub fn read8(bytes: &[u8], name_hint: &str) -> Result<Image8, ImageError> {
     Encoded::open(bytes, name_hint)?.read8(u64::MAX)
 }

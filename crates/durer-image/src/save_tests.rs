@@ -1,4 +1,4 @@
-//! Tests of saving.
+//! Tests of saving files.
 
 use super::*;
 
@@ -85,7 +85,7 @@ fn devices_are_written_to_directly() {
     save("/dev/null", b"x").unwrap();
     assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
 
-    // This device is always full. A file saved together with it is unchanged.
+    // The device `/dev/full` is always full. A file that is saved together with it stays unchanged.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a");
     save(&path, b"old").unwrap();
@@ -133,7 +133,7 @@ fn pipes_are_written_through_or_refused() {
             place => break place.unwrap(),
         }
     };
-    // More than a pipe can hold.
+    // The data is larger than the capacity of a pipe.
     let bytes = vec![7; 1 << 20];
     save_all(&[(&place, &bytes)]).unwrap();
     drop(place);

@@ -1,9 +1,9 @@
 //! Temporary files that are removed even if the program is killed.
 //!
 //! On Linux, the file has no name until it is complete (`O_TMPFILE`), so it vanishes when the
-//! program ends. Only if it replaces an old file does it briefly have a temporary name. On other
-//! systems it has a temporary name from the start. The next program removes temporary files that a
-//! killed program has left, which it recognises because they are not locked.
+//! program ends. Only if it replaces an old file does it have a temporary name for a short time. On
+//! other systems, the file has a temporary name from the start. If a killed program has left
+//! temporary files, the next program removes them; it recognises them because they are not locked.
 
 use std::fs::{self, File};
 use std::io;
@@ -11,22 +11,22 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tempfile::NamedTempFile;
 
-/// Prefix and suffix of temporary file names. The names of files that were complete before they got
-/// a name begin with `READY`.
+/// Prefix and suffix of the names of temporary files. The names of files that were already complete
+/// when they got a name begin with `READY`.
 const PREFIX: &str = ".durer-";
 const READY: &str = ".durer-ready-";
 const SUFFIX: &str = ".tmp";
 
-/// Age above which an unlocked file that may be incomplete is removed. A younger one may be about
-/// to be locked by a running program.
+/// Age above which a file that is not locked and may be incomplete is removed. A younger file may
+/// belong to a running program that is about to lock it.
 const MIN_STALE_AGE: Duration = Duration::from_secs(60);
 
-/// A temporary file that is being written and then moved to its target by [`Temporary::persist`].
+/// A temporary file that is being written. [`Temporary::persist`] then moves it to its target.
 pub(super) enum Temporary {
-    /// A file without a name.
+    /// A file that has no name.
     #[cfg(target_os = "linux")]
     Unnamed(File, PathBuf),
-    /// A file with a temporary name.
+    /// A file that has a temporary name.
     Named(NamedTempFile),
 }
 
@@ -51,14 +51,15 @@ impl Temporary {
         }
     }
 
-    /// Moves the file to the target. Replaces an existing file.
+    /// Moves the file to its target path. If there is a file at this path, it is replaced.
     pub(super) fn persist(self, target: &Path) -> io::Result<()> {
         let named = match self {
             Temporary::Named(named) => named,
             #[cfg(target_os = "linux")]
             Temporary::Unnamed(file, folder) => match link(&file, target) {
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-                    // A link cannot replace a file. A rename can, but needs a temporary name.
+                    // A hard link cannot replace a file. A rename can, but it needs a temporary
+                    // name.
                     let link = |path: &Path| link(&file, path);
                     let (_, path) = builder(READY).make_in(folder, link)?.into_parts();
                     return path.persist(target).map_err(|failed| failed.error);
@@ -73,14 +74,14 @@ impl Temporary {
 fn builder(prefix: &str) -> tempfile::Builder<'_, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(prefix).suffix(SUFFIX);
-    // The system applies the user's mask, as for any new file.
+    // The system applies the user's file mode mask, as it does for any new file.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder
 }
 
-/// Creates a file without a name, if the system and the folder support this and allow naming it
-/// later.
+/// Creates a file without a name, if the system and the folder support this and the file can be
+/// given a name later.
 #[cfg(target_os = "linux")]
 fn unnamed(folder: &Path) -> io::Result<Option<File>> {
     use rustix::fs::{Mode, OFlags};
@@ -89,7 +90,7 @@ fn unnamed(folder: &Path) -> io::Result<Option<File>> {
     }
     match rustix::fs::open(folder, OFlags::TMPFILE | OFlags::WRONLY | OFlags::CLOEXEC, Mode::from_raw_mode(0o666)) {
         Ok(file) => Ok(Some(file.into())),
-        // Errors of systems without support.
+        // Systems without support for unnamed files return these errors.
         Err(rustix::io::Errno::OPNOTSUPP | rustix::io::Errno::ISDIR | rustix::io::Errno::INVAL) => Ok(None),
         Err(error) => Err(error.into()),
     }
@@ -103,8 +104,8 @@ fn link(file: &File, path: &Path) -> io::Result<()> {
     Ok(rustix::fs::linkat(CWD, own, CWD, path, AtFlags::SYMLINK_FOLLOW)?)
 }
 
-/// Locks the file, so that other programs do not remove it. If locks are not supported, they keep
-/// it only while it is young.
+/// Locks the file, so that other programs do not remove it. If locks are not supported, other
+/// programs spare the file only while it is young.
 fn lock(file: &File) {
     #[cfg(unix)]
     let _ = rustix::fs::flock(file, rustix::fs::FlockOperation::NonBlockingLockExclusive);
@@ -112,7 +113,7 @@ fn lock(file: &File) {
     let _ = file;
 }
 
-/// Removes temporary files of killed programs from a folder.
+/// Removes temporary files that killed programs have left in a folder.
 pub(super) fn remove_stale(folder: &Path) {
     #[cfg(unix)]
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -121,13 +122,13 @@ pub(super) fn remove_stale(folder: &Path) {
         if !name.starts_with(PREFIX) || !name.ends_with(SUFFIX) {
             continue;
         }
-        // Opening a pipe would block.
+        // Opening a pipe would block the program.
         let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
         let Some(file) = is_file.then(|| File::open(entry.path()).ok()).flatten() else { continue };
         let free = rustix::fs::flock(&file, rustix::fs::FlockOperation::NonBlockingLockExclusive).is_ok();
         let age = entry.metadata().and_then(|data| data.modified()).ok().and_then(|time| time.elapsed().ok());
         if free && (name.starts_with(READY) || age.is_some_and(|age| age > MIN_STALE_AGE)) {
-            // Ignore errors: the file may belong to another user.
+            // Ignore errors, because the file may belong to another user.
             let _ = fs::remove_file(entry.path());
         }
     }
@@ -135,7 +136,7 @@ pub(super) fn remove_stale(folder: &Path) {
     let _ = folder;
 }
 
-/// Removes the name of the temporary file from an error, since users do not know it.
+/// Removes the name of the temporary file from an error, because the user does not know this name.
 fn without_path(error: io::Error) -> io::Error {
     let inner = error.get_ref().and_then(std::error::Error::source).and_then(|e| e.downcast_ref::<io::Error>());
     match inner.and_then(io::Error::raw_os_error) {
@@ -158,7 +159,7 @@ mod tests {
         put(".durer-old.tmp");
         let old = File::options().write(true).open(folder.path().join(".durer-old.tmp")).unwrap();
         old.set_modified(std::time::SystemTime::now() - 2 * MIN_STALE_AGE).unwrap();
-        // A file of a running program.
+        // A file that belongs to a program that is still running.
         let living = builder(READY).tempfile_in(folder.path()).unwrap();
         lock(living.as_file());
         remove_stale(folder.path());

@@ -1,4 +1,4 @@
-//! Conversion between linear floating point and 8-bit values.
+//! Conversion between linear floating-point values and 8-bit values.
 
 use durer_bvh::math::{Vec3, fp};
 use std::sync::LazyLock;
@@ -6,20 +6,21 @@ use std::sync::LazyLock;
 /// Transfer function that converts linear values to 8-bit values, such as the sRGB curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Transfer {
-    /// The sRGB curve of IEC 61966-2-1, which screens expect, with rounding to nearest.
+    /// The sRGB curve of IEC 61966-2-1, which screens expect. Values are rounded to the nearest
+    /// integer.
     #[default]
     Srgb,
-    /// No curve, with rounding to nearest.
+    /// No curve. Values are rounded to the nearest integer.
     Linear,
-    /// No curve, with truncation instead of rounding, as in the programs of the course.
+    /// No curve. Values are truncated instead of rounded, as in the programs of the course.
     Course,
 }
 
 impl Transfer {
-    /// List of transfer functions.
+    /// List of all transfer functions.
     pub const ALL: [Transfer; 3] = [Transfer::Srgb, Transfer::Linear, Transfer::Course];
 
-    /// Name on the command line.
+    /// Name of the function on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Transfer::Srgb => "srgb",
@@ -28,12 +29,12 @@ impl Transfer {
         }
     }
 
-    /// Finds a transfer function by name.
+    /// Finds a transfer function by its name.
     pub fn from_name(name: &str) -> Option<Transfer> {
         Transfer::ALL.into_iter().find(|transfer| transfer.name() == name)
     }
 
-    /// Converts a linear value to 8 bits, clamped to 0..=255. NaN becomes 0.
+    /// Converts a linear value to an 8-bit value, clamped to 0..=255. NaN becomes 0.
     pub fn encode(self, value: f32) -> u8 {
         match self {
             Transfer::Srgb => SRGB.encode(value),
@@ -42,26 +43,27 @@ impl Transfer {
         }
     }
 
-    /// Converts each channel to 8 bits.
+    /// Converts each channel of a colour to 8 bits.
     pub fn encode_pixel(self, pixel: Vec3) -> [u8; 3] {
         pixel.to_array().map(|value| self.encode(value))
     }
 }
 
-/// Lookup table for 8-bit sRGB.
+/// Lookup table for encoding 8-bit sRGB values.
 static SRGB: LazyLock<SrgbTable> = LazyLock::new(SrgbTable::new);
 
-/// Lookup table that encodes linear values as 8-bit sRGB, from the thresholds of its 256 steps.
+/// Lookup table that encodes linear values as 8-bit sRGB, using the thresholds between its 256
+/// steps.
 struct SrgbTable {
-    /// Least linear value of each step, followed by infinity.
+    /// Smallest linear value of each step, followed by infinity.
     least: [f32; 257],
-    /// Step at the start of each of [`CELLS`] equal intervals of [0, 1]. An interval contains at
-    /// most one threshold.
+    /// Steps at the starts of [`CELLS`] equal intervals of [0, 1]. Each interval contains at most
+    /// one threshold.
     guide: [u8; CELLS + 1],
 }
 
-/// Number of intervals of the lookup table. It exceeds the steepest slope of the curve, which is
-/// 255 * 12.92 steps per unit at black.
+/// Number of intervals in the lookup table. The number is larger than the steepest slope of the
+/// curve, which is 255 * 12.92 steps per unit at black.
 const CELLS: usize = 4096;
 
 impl SrgbTable {
@@ -69,7 +71,8 @@ impl SrgbTable {
         let curve = |value: f32| round(srgb_from_linear(value));
         let mut least = [f32::INFINITY; 257];
         for (step, least) in least.iter_mut().enumerate().take(256) {
-            // Positive floats are ordered as their bits, and the curve is monotonic.
+            // The bits of positive floating-point numbers have the same order as the numbers, and
+            // the curve is monotonic.
             let (mut low, mut high) = (0, 1.0_f32.to_bits());
             while low < high {
                 let middle = low.midpoint(high);
@@ -81,28 +84,28 @@ impl SrgbTable {
     }
 
     fn encode(&self, value: f32) -> u8 {
-        // NaN stays NaN, and its cell is 0.
+        // NaN remains NaN, and its cell is 0.
         let value = value.clamp(0.0, 1.0);
         let step = usize::from(self.guide[(value * CELLS as f32) as usize]);
         (step + usize::from(value >= self.least[step + 1])) as u8
     }
 }
 
-/// Multiplies by 255 and rounds to nearest. The cast saturates and turns NaN into 0.
+/// Multiplies by 255 and rounds to the nearest integer. The cast saturates and turns NaN into 0.
 fn round(value: f32) -> u8 {
     (value * 255.0).round() as u8
 }
 
-/// Computes `(int)(value * 255)` as in C, then clamps to 0..=255.
+/// Computes `(int)(value * 255)` as in C, and then clamps the result to 0..=255.
 ///
-/// On the machines of the course, values that do not fit an `int` (infinities, NaN, and very large
-/// values) became the least `int` and were then clamped to 0.
+/// On the machines of the course, values that do not fit into an `int` (infinities, NaN, and very
+/// large values) became the smallest `int` and were then clamped to 0.
 fn truncate(value: f32) -> u8 {
     let scaled = value * 255.0;
     if scaled < i32::MAX as f32 { (scaled as i32).clamp(0, 255) as u8 } else { 0 }
 }
 
-/// The sRGB curve for values in [0, 1].
+/// Applies the sRGB curve to values in [0, 1].
 fn srgb_from_linear(value: f32) -> f32 {
     if value <= 0.0031308 { 12.92 * value } else { 1.055 * fp::pow(value, 1.0 / 2.4) - 0.055 }
 }
@@ -112,12 +115,12 @@ pub fn decode_linear(value: u8) -> f32 {
     f32::from(value) / 255.0
 }
 
-/// Converts an 8-bit sRGB value to a linear one by the inverse curve of IEC 61966-2-1.
+/// Converts an 8-bit sRGB value to a linear value with the inverse curve of IEC 61966-2-1.
 pub fn decode_srgb(value: u8) -> f32 {
     linear_from_srgb(decode_linear(value))
 }
 
-/// Converts an sRGB value in [0, 1] to a linear one.
+/// Converts an sRGB value in [0, 1] to a linear value.
 pub fn linear_from_srgb(value: f32) -> f32 {
     if value <= 0.04045 { value / 12.92 } else { fp::pow((value + 0.055) / 1.055, 2.4) }
 }
@@ -147,7 +150,7 @@ mod tests {
         assert_eq!(row(f32::NAN), [0, 0, 0]);
         assert_eq!(row(f32::INFINITY), [255, 255, 0]);
         assert_eq!(row(f32::NEG_INFINITY), [0, 0, 0]);
-        // The greatest values that fit an `int`, and larger ones.
+        // The first value still fits into an `int` after scaling, and the larger ones do not.
         assert_eq!(row(8.0e6), [255, 255, 255]);
         assert_eq!(row(9.0e6), [255, 255, 0]);
         assert_eq!(row(f32::MAX), [255, 255, 0]);

@@ -1,4 +1,4 @@
-//! Handles an HTTP connection: serves one file, or upgrades to a WebSocket.
+//! Handles one HTTP connection, which either receives one file or is upgraded to a WebSocket.
 
 use crate::head::{self, RequestHead};
 use crate::{Shared, page, socket};
@@ -6,28 +6,29 @@ use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream};
 use std::time::Duration;
 
-/// Time limit for reading the request and for sending the response.
+/// Time limit for reading the request, and for sending the response.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// Limits in time and bytes for reading from a client after its response was sent.
+/// Limits on the time and the number of bytes for reading from a client after its response has been
+/// sent.
 const DRAIN_TIMEOUT: Duration = Duration::from_secs(1);
 const MAX_DRAINED: u64 = 1 << 20;
 
-/// Content security policy, sent with every response.
+/// Content security policy that is sent with every response.
 const POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; \
                       connect-src 'self' ws://127.0.0.1:* ws://localhost:*; worker-src 'self'; base-uri 'none'; \
                       form-action 'none'; frame-ancestors 'none'";
 
 /// Sends an error response if too many connections are open.
 pub(crate) fn refuse(mut stream: &TcpStream) {
-    // Do not block on a slow client.
+    // Do not let a slow client block the server.
     let _ = stream.set_nonblocking(true);
     let _ = stream.write_all(b"HTTP/1.1 503 Service Unavailable\r\nContent-Length: 0\r\nConnection: close\r\n\r\n");
 }
 
-/// Answers the single request of a connection.
+/// Answers the only request of a connection.
 pub(crate) fn serve(mut stream: TcpStream, shared: &Shared) {
-    // Ignore errors: the client has disconnected or sent an invalid request.
+    // Ignore errors, because they mean that the client has disconnected or sent an invalid request.
     let _ = answer(&mut stream, shared);
 }
 
@@ -63,7 +64,8 @@ fn answer(stream: &mut TcpStream, shared: &Shared) -> io::Result<()> {
 }
 
 fn upgrade(stream: &mut TcpStream, head: &RequestHead, shared: &Shared) -> io::Result<()> {
-    // Browsers always send `Origin` with WebSocket requests, so reject clients without it.
+    // Browsers always send `Origin` with WebSocket requests, so clients that do not send it are
+    // rejected.
     let (true, Some(key), Some(_)) = (head.upgrade, &head.key, &head.origin) else {
         return send(stream, "426 Upgrade Required", "text/plain", b"this path needs a WebSocket\n");
     };
@@ -86,8 +88,8 @@ fn send(stream: &mut TcpStream, status: &str, kind: &str, body: &[u8]) -> io::Re
     stream.write_all(head.as_bytes())?;
     stream.write_all(body)?;
     stream.flush()?;
-    // If bytes were unread at the close, the connection would be reset and the client could lose
-    // the response. Read them first.
+    // If unread bytes were left when the connection is closed, the connection would be reset, and
+    // the client could lose the response. Therefore, read these bytes first.
     stream.shutdown(Shutdown::Write)?;
     stream.set_read_timeout(Some(DRAIN_TIMEOUT))?;
     io::copy(&mut stream.take(MAX_DRAINED), &mut io::sink()).map(|_| ())

@@ -3,10 +3,11 @@
 use std::io::{self, Read};
 use std::net::TcpStream;
 
-/// Maximum size of a request head in bytes.
+/// Maximum size of the head of a request in bytes.
 const MAX_HEAD: usize = 8 << 10;
 
-/// Request line and relevant headers of an HTTP request to the server. Request bodies are not read.
+/// Request line and relevant headers of an HTTP request to the server. The body of a request is not
+/// read.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct RequestHead {
     pub method: String,
@@ -15,7 +16,7 @@ pub(crate) struct RequestHead {
     pub origin: Option<String>,
     pub upgrade: bool,
     pub key: Option<String>,
-    /// Bytes received after the end of the head.
+    /// Bytes that were received after the end of the head.
     pub rest: Vec<u8>,
 }
 
@@ -37,7 +38,7 @@ pub(crate) fn read(stream: &mut TcpStream) -> io::Result<RequestHead> {
     }
 }
 
-/// Parses the head of a request; `None` if it is incomplete.
+/// Parses the head of a request; returns `None` if the head is incomplete.
 pub(crate) fn parse(bytes: &[u8]) -> io::Result<Option<RequestHead>> {
     let invalid = |error| io::Error::new(io::ErrorKind::InvalidData, error);
     let mut headers = [httparse::EMPTY_HEADER; 64];
@@ -52,7 +53,7 @@ pub(crate) fn parse(bytes: &[u8]) -> io::Result<Option<RequestHead>> {
     for header in request.headers {
         let value = String::from_utf8_lossy(header.value).into_owned();
         match header.name.to_ascii_lowercase().as_str() {
-            // Reject a second `Host` header, because proxies disagree on which one counts.
+            // Reject a second `Host` header, because proxies do not agree on which of them counts.
             "host" if head.host.is_some() => return Err(io::ErrorKind::InvalidData.into()),
             "host" => head.host = Some(value),
             "origin" => head.origin = Some(value),
@@ -66,19 +67,19 @@ pub(crate) fn parse(bytes: &[u8]) -> io::Result<Option<RequestHead>> {
 
 impl RequestHead {
     /// Returns true if the request comes from a page on this machine. After DNS rebinding, a
-    /// foreign name resolves to the loopback interface, but the browser still sends that name. The
-    /// port is ignored, because it differs behind `ssh -L`.
+    /// foreign name resolves to the loopback interface, but the browser still sends the foreign
+    /// name. The port is ignored, because it is a different one behind `ssh -L`.
     pub fn is_local(&self) -> bool {
         let Some(host) = &self.host else { return false };
         let same = |origin: &String| origin.strip_prefix("http://").is_some_and(|origin| origin == host);
         is_loopback(host) && self.origin.as_ref().is_none_or(same)
     }
 
-    /// Returns the path after the token; `None` if the token is wrong.
+    /// Returns the path that follows the token, or `None` if the token is wrong.
     pub fn path_after_token(&self, token: &str) -> Option<&str> {
         let path = self.path.split(['?', '#']).next()?.strip_prefix('/')?;
         let (found, rest) = path.split_once('/')?;
-        // Compare all bytes, so that the time does not depend on the token.
+        // Compare all bytes, so that the time taken does not depend on the token.
         let differ = found.bytes().zip(token.bytes()).fold(0, |all, (a, b)| all | (a ^ b));
         (found.len() == token.len() && differ == 0).then_some(rest)
     }

@@ -1,7 +1,8 @@
-//! Server of `durer live`: the web page, and a WebSocket to a [`durer_session::Host`].
+//! Server of `durer live`, which provides the web page and a WebSocket to a
+//! [`durer_session::Host`].
 //!
-//! The server listens on the loopback interface only. Every path begins with a random token, `Host`
-//! and `Origin` must name the loopback interface, and only the files of the page are served.
+//! The server listens only on the loopback interface. Every path must begin with a random token,
+//! `Host` and `Origin` must name the loopback interface, and only the files of the page are served.
 
 mod connection;
 mod head;
@@ -15,20 +16,20 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::time::Duration;
 
-/// Maximum number of open connections.
+/// Maximum number of connections that may be open at once.
 const MAX_CONNECTIONS: usize = 48;
-/// Interval at which the server checks whether it should stop.
+/// Interval at which the server checks if it should stop.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
-/// The web server of `durer live`, listening on the loopback interface.
+/// The web server of `durer live`, which listens on the loopback interface.
 #[derive(Debug)]
 pub struct Server {
     listener: TcpListener,
     shared: Arc<Shared>,
 }
 
-/// State that the connections of a [`Server`] share: the token, the scene to open, and the count of
-/// open connections.
+/// State that the connections of a [`Server`] share: the token, the scene to be opened, and the
+/// number of open connections.
 #[derive(Debug)]
 pub(crate) struct Shared {
     pub token: String,
@@ -38,11 +39,12 @@ pub(crate) struct Shared {
 }
 
 impl Server {
-    /// Listens on a port (0 for any free one). Pages that connect start with `start`.
+    /// Listens on a port; 0 selects any free port. Pages that connect start with the scene in
+    /// `start`.
     ///
     /// # Errors
     ///
-    /// Fails if the port is in use, or if the system provides no random numbers.
+    /// Returns an error if the port is in use, or if the system provides no random numbers.
     pub fn bind(port: u16, start: SessionFiles) -> io::Result<Server> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         listener.set_nonblocking(true)?;
@@ -57,17 +59,17 @@ impl Server {
     ///
     /// # Errors
     ///
-    /// Fails if the system does not report the port.
+    /// Returns an error if the system does not report the port.
     pub fn address(&self) -> io::Result<String> {
         let SocketAddr::V4(address) = self.listener.local_addr()? else { return Err(io::ErrorKind::Other.into()) };
         Ok(format!("http://{address}/{}/", self.shared.token))
     }
 
-    /// Serves until `stop` returns true.
+    /// Serves requests until `stop` returns true.
     ///
     /// # Errors
     ///
-    /// Returns errors of the listening socket.
+    /// Returns the errors of the listening socket.
     pub fn run(&self, stop: impl Fn() -> bool) -> io::Result<()> {
         while !stop() {
             match self.listener.accept() {
@@ -78,7 +80,8 @@ impl Server {
                         connection::refuse(&stream);
                         continue;
                     }
-                    // If no thread can be started, drop the connection; the browser will try again.
+                    // If no thread can be started, close the connection; the browser will try
+                    // again.
                     let _ =
                         std::thread::Builder::new().name("durer-live".into()).stack_size(64 << 20).spawn(move || {
                             let _held = held;
@@ -98,7 +101,7 @@ impl Server {
     }
 }
 
-/// Counts one open connection of the server until it is dropped.
+/// Counts as one open connection of the server until it is dropped.
 struct ConnectionSlot(Arc<Shared>);
 
 impl ConnectionSlot {

@@ -1,8 +1,8 @@
-//! The files of the web page, which is built from `web/`.
+//! The files of the web page, which are built from `web/`.
 
 macro_rules! files {
     ($($name:literal),+ $(,)?) => {
-        /// Names and contents of the files.
+        /// Names and contents of the files of the page.
         const FILES: &[(&str, &[u8])] = &[$(($name, include_bytes!(concat!("../../../web/dist/", $name)))),+];
     };
 }
@@ -17,7 +17,7 @@ files![
     "inter-greek-wght-normal.woff2",
 ];
 
-/// Returns the contents and the media type of a file of the page.
+/// Returns the contents and the media type of a file that belongs to the page.
 pub(crate) fn file(path: &str) -> Option<(&'static [u8], &'static str)> {
     let name = if path.is_empty() { "index.html" } else { path };
     let (name, bytes) = FILES.iter().find(|(known, _)| *known == name)?;
@@ -31,7 +31,7 @@ pub(crate) fn file(path: &str) -> Option<(&'static [u8], &'static str)> {
     Some((bytes, kind))
 }
 
-/// Returns the HTML page with a marker that makes it connect to this server.
+/// Returns the HTML page with a marker that makes the page connect to this server.
 pub(crate) fn index() -> Vec<u8> {
     let html = String::from_utf8_lossy(file("").map_or(&[][..], |found| found.0));
     html.replacen("<head>", "<head>\n    <meta name=\"durer-server\" content=\"1\" />", 1).into_bytes()

@@ -10,17 +10,17 @@ use std::time::{Duration, Instant};
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Error, Message, WebSocket};
 
-/// Maximum size in bytes of a message from the page. Large enough for a model that is dropped on
-/// the page.
+/// Maximum size of a message from the page in bytes. The limit is large enough for a model that is
+/// dropped onto the page.
 const MAX_MESSAGE: usize = 360 << 20;
-/// Time to wait for a message while idle.
+/// Time to wait for a message when there is nothing to do.
 const IDLE_WAIT: Duration = Duration::from_millis(250);
-/// Time after which a page that does not read its messages is disconnected.
+/// Time after which a page is disconnected if it does not read its messages.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(20);
 
 /// Handles messages from the page, and renders between them, until the page disconnects.
 pub(crate) fn serve(stream: TcpStream, rest: Vec<u8>, shared: &Shared) {
-    // Ignore errors: a connection can end at any time.
+    // Ignore errors, because a connection can end at any time.
     let _ = run_session(stream, rest, shared);
 }
 
@@ -56,7 +56,8 @@ fn run_session(stream: TcpStream, rest: Vec<u8>, shared: &Shared) -> Result<(), 
     Ok(())
 }
 
-/// Returns the next message; `None` if none arrives in time. Does not wait if `at_once` is true.
+/// Returns the next message, or `None` if none arrives in time. If `at_once` is true, the function
+/// does not wait.
 fn next(socket: &mut WebSocket<TcpStream>, at_once: bool) -> Result<Option<Message>, Error> {
     if at_once {
         socket.get_ref().set_nonblocking(true)?;

@@ -1,4 +1,4 @@
-//! Tests the server with pages, other programs and attackers as clients.
+//! Tests the server with pages, other programs, and attackers as clients.
 
 use durer_live::{Server, SessionFiles};
 use std::io::{Read, Write};
@@ -11,7 +11,7 @@ use std::time::Duration;
 use tungstenite::client::IntoClientRequest;
 use tungstenite::{Message, WebSocket};
 
-/// A server in a thread that stops when it is dropped.
+/// A server that runs in a thread and stops when it is dropped.
 struct TestServer {
     address: String,
     stop: Arc<AtomicBool>,
@@ -39,7 +39,7 @@ impl TestServer {
     fn raw(&self, request: &[u8]) -> String {
         let mut stream = TcpStream::connect(self.host()).unwrap();
         stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
-        // The server may close the connection early if it refuses the request.
+        // The server may close the connection early if it rejects the request.
         let _ = stream.write_all(request);
         let mut answer = Vec::new();
         let _ = stream.read_to_end(&mut answer);
@@ -67,7 +67,7 @@ impl Drop for TestServer {
     }
 }
 
-/// Waits for the next event of a kind and returns it.
+/// Waits for the next event of the given kind and returns it.
 fn wait_for_event(socket: &mut WebSocket<TcpStream>, kind: &str) -> serde_json::Value {
     loop {
         let Message::Binary(bytes) = socket.read().unwrap() else { continue };
@@ -129,7 +129,7 @@ fn page_opens_edits_and_saves_a_scene_and_gets_conflicts() {
     ask(&mut socket, serde_json::json!({ "kind": "save", "force": false }));
     wait_for_event(&mut socket, "saved");
     assert_eq!(std::fs::read_to_string(&file).unwrap(), blue);
-    // Change the file as another program would.
+    // Change the file in the same way as another program would.
     std::fs::write(&file, format!("# mine\n{text}")).unwrap();
     let changed = wait_for_event(&mut socket, "text");
     assert_eq!(
@@ -163,7 +163,7 @@ fn scenes_from_pages_read_files_in_the_folder_only() {
         ask(&mut socket, serde_json::json!({ "kind": "edit", "text": text }));
         let scene = wait_for_event(&mut socket, "scene");
         assert!(scene["contents"].is_null(), "{name}: {scene}");
-        // Another name for the scene file is rejected too.
+        // Another name for the scene file is also rejected.
         let elsewhere = folder.path().join("scene.txt");
         ask(&mut socket, serde_json::json!({ "kind": "open", "name": elsewhere, "text": text.replace("../", "") }));
         let scene = wait_for_event(&mut socket, "scene");
@@ -177,7 +177,7 @@ fn foreign_origins_and_wrong_tokens_are_refused() {
     assert!(server.connect("http://evil.example").is_err());
     assert!(server.connect("null").is_err());
     let mut socket = server.connect(&format!("http://{}", server.host())).unwrap();
-    // An invalid message is answered, and the socket stays open.
+    // The server answers an invalid message, and the socket stays open.
     socket.send(Message::text("{")).unwrap();
     wait_for_event(&mut socket, "refused");
     socket.send(Message::binary(vec![1, 2, 3])).unwrap();
@@ -185,7 +185,8 @@ fn foreign_origins_and_wrong_tokens_are_refused() {
     assert!(wait_for_event(&mut socket, "language")["words"].as_array().unwrap().len() > 30);
 }
 
-/// Opens a small scene and changes its number of balls. Returns its number of objects.
+/// Opens a small scene and changes the number of balls in it. Returns the number of objects in the
+/// scene.
 fn objects(socket: &mut WebSocket<TcpStream>, count: usize) -> Option<u64> {
     let balls: String = (0..count).map(|i| format!("Sphere {{ center {i} 0 0 radius 0.4 }} ")).collect();
     let text =
@@ -209,14 +210,14 @@ fn clients_that_mean_harm_lose_their_connection_and_nobody_else_does() {
             })
             .collect()
     };
-    // A text of one gibibyte, according to its header; a frame without a mask; a reserved opcode;
-    // noise.
+    // The messages are a text whose header claims one gibibyte, a frame without a mask, one with a
+    // reserved opcode, and noise.
     let mut attacks = vec![
         [vec![0x81, 0xff], (1_u64 << 30).to_be_bytes().to_vec(), vec![0; 4]].concat(),
         [vec![0x81, 0xff], u64::MAX.to_be_bytes().to_vec(), vec![0; 4]].concat(),
         vec![0x81, 5, b'h', b'e', b'l', b'l', b'o'],
         vec![0x83, 0x80, 0, 0, 0, 0],
-        // Text that is not UTF-8.
+        // The bytes are not valid UTF-8.
         vec![0x81, 0x82, 0, 0, 0, 0, 0xff, 0xfe],
     ];
     attacks.extend((0..40).map(|i| garbage(1 + 37 * i)));
@@ -225,12 +226,12 @@ fn clients_that_mean_harm_lose_their_connection_and_nobody_else_does() {
         let stream = socket.get_mut();
         let _ = stream.write_all(&attack);
         let _ = stream.shutdown(std::net::Shutdown::Write);
-        // The server closes the connection, with or without a response.
+        // The server closes the connection, with or without sending a response.
         stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
         let mut rest = Vec::new();
         let _ = stream.read_to_end(&mut rest);
     }
-    // The session of the page is unaffected.
+    // The session of the page is not affected.
     ask(&mut page, serde_json::json!({ "kind": "cast", "origin": [2, 0, 9], "direction": [0, 0, -1], "t_max": null }));
     assert_eq!(wait_for_event(&mut page, "cast")["cast"]["hit"]["object"], 2);
 }
@@ -265,7 +266,7 @@ fn requests_of_any_size_and_form_are_answered() {
         let why = wait_for_event(&mut page, "refused");
         assert!(why["why"].as_str().is_some_and(|why| why.len() < 1000), "{message:.80}: {why}");
     }
-    // Every size and crop is answered with a picture, even an invalid one.
+    // The server answers every size and crop, even an invalid one, with a picture.
     for request in [
         r#"{"kind":"size","width":0,"height":0}"#,
         r#"{"kind":"crop","crop":[4294967295,0,0,4294967295]}"#,
@@ -282,7 +283,7 @@ fn client_that_does_not_read_blocks_no_one() {
     let origin = format!("http://{}", server.host());
     let mut deaf = server.connect(&origin).unwrap();
     assert_eq!(objects(&mut deaf, 5), Some(5));
-    // Request megabytes of responses without reading them.
+    // Request megabytes of responses without reading any of them.
     for _ in 0..400 {
         ask(&mut deaf, serde_json::json!({ "kind": "language" }));
     }
@@ -302,7 +303,7 @@ fn session_survives_a_thousand_connections() {
     let mut held = Vec::new();
     for i in 0..1000 {
         held.extend(TcpStream::connect(server.host()).ok());
-        // The system limits the number of open connections per process.
+        // The system limits the number of connections that a process can have open.
         if held.len() > 200 {
             held.drain(..100);
         }
@@ -324,7 +325,7 @@ fn idle_connections_block_others_for_a_short_time_only() {
     let server = TestServer::new(None);
     let host = format!("Host: {}\r\n", server.host());
     let idle: Vec<TcpStream> = (0..200).filter_map(|_| TcpStream::connect(server.host()).ok()).collect();
-    // The connection is refused, or reset before the response arrives.
+    // The connection is refused, or it is reset before the response arrives.
     assert!(!server.get(server.path(), &host).starts_with("HTTP/1.1 200"));
     drop(idle);
     let answered = (0..100).any(|_| {

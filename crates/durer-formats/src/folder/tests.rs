@@ -1,7 +1,8 @@
 use super::*;
 use std::os::unix::fs::symlink;
 
-/// Creates `outside/secret.obj` and `scene/{near.obj, models/cube.obj}`; the source reads `scene`.
+/// Creates `outside/secret.obj` and `scene/{near.obj, models/cube.obj}`, and returns a source that
+/// reads from `scene`.
 fn house() -> (tempfile::TempDir, FolderSource) {
     let root = tempfile::tempdir().unwrap();
     fs::create_dir_all(root.path().join("scene/models")).unwrap();
@@ -57,7 +58,7 @@ fn nothing_outside_the_folder_is_read_unless_allowed() {
     for name in names {
         assert_eq!(&*free.read(name).unwrap(), b"secret", "{name}");
     }
-    // A link to a file inside the folder is allowed.
+    // A link to a file inside the allowed folder may be followed.
     symlink("models/cube.obj", root.path().join("scene/inner.obj")).unwrap();
     assert_eq!(&*source.read("inner.obj").unwrap(), b"cube");
 }
@@ -141,7 +142,8 @@ fn file_is_read_whole_despite_a_wrong_size() {
     let path = folder.path().join("a");
     fs::write(&path, b"0123456789").unwrap();
     let read = |size, most| read_all(fs::File::open(&path).unwrap(), size, most).unwrap().to_vec();
-    // The file may have grown or shrunk. At most one byte beyond the limit is read.
+    // The file may have grown or shrunk since its size was determined. The function reads at most
+    // one byte beyond the limit.
     for size in [10, 0, 4, 25] {
         assert_eq!(read(size, 100), b"0123456789", "{size}");
     }

@@ -1,4 +1,4 @@
-//! Conversion of a JSON tree into a scene.
+//! Conversion of a parsed JSON document into a scene.
 
 use super::tree::{Member, Node, Value, parse};
 use super::values::{Members, Reader};
@@ -17,7 +17,7 @@ use durer_scene::math::Vec3;
 use durer_scene::scene::{CsgOperation, Group, Material, MatrixOp, NamedTexture, Object, ObjectKind as What, Scene};
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
-/// A parsed JSON file that has not yet been converted to a scene. See [`Document::scene`].
+/// A JSON document that has been parsed but not yet converted to a scene. See [`Document::scene`].
 pub struct Document<'a> {
     text: &'a [u8],
     report: Report,
@@ -25,7 +25,7 @@ pub struct Document<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// Parses the JSON. Syntax errors are reported later, by [`Document::scene`].
+    /// Parses the JSON text. Syntax errors are not reported until [`Document::scene`] is called.
     pub fn open(text: &'a [u8], file: u32, diagnostics: &Diagnostics) -> Self {
         let mut report = Report::new(file, diagnostics);
         let root = match text.len() < u32::MAX as usize {
@@ -42,7 +42,7 @@ impl<'a> Document<'a> {
         Document { text, report, root: root.ok() }
     }
 
-    /// Returns the dialect that defines the meaning of the keywords; [`Dialect::Durer`] if the file
+    /// Returns the dialect that defines what the keywords mean, or [`Dialect::Durer`] if the file
     /// names none.
     pub fn dialect(&self) -> Dialect {
         let Some(Node { value: Value::Object(members), .. }) = &self.root else { return Dialect::Durer };
@@ -53,7 +53,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Reads the scene and reports all errors; `None` if there are any.
+    /// Reads the scene and reports all errors; returns `None` if there are any.
     pub fn scene(self, diagnostics: &mut Diagnostics) -> Option<Scene> {
         let (text, report, kinds) = (self.text, self.report, schema::objects());
         let mut reader = Reader { text, report, material: None, uses: Vec::new(), depth: 0, object_types: &kinds };
@@ -66,7 +66,7 @@ impl Reader<'_> {
     fn scene(&mut self, root: &Node) -> Scene {
         let mut scene = Scene::default();
         let Some((_, mut members)) = self.typed(root, "scene", &["Scene"]) else { return scene };
-        // Reference to the schema, used by editors.
+        // Reference to the JSON schema, which editors use.
         members.take("$schema");
         if let Some(node) = members.take("dialect") {
             self.one_of(node, "dialect", &Dialect::ALL.map(Dialect::name));
@@ -111,7 +111,7 @@ impl Reader<'_> {
         scene
     }
 
-    /// Warns about material indices out of range.
+    /// Warns about material indices that are out of range.
     fn check_materials(&mut self, count: usize) {
         for (index, at) in std::mem::take(&mut self.uses) {
             if index as usize >= count {
@@ -165,7 +165,8 @@ impl Reader<'_> {
         self.items(node, name).iter().filter_map(|node| self.matrix(node, wrong)).collect()
     }
 
-    /// Reads `{"Translate": [0, 1, 0]}`. `wrong` returns an error for a matrix with invalid values.
+    /// Reads a transform such as `{"Translate": [0, 1, 0]}`. `wrong` creates the error for a matrix
+    /// with invalid values.
     fn matrix(&mut self, node: &Node, wrong: fn(MatrixOp) -> Option<Diagnostic>) -> Option<MatrixOp> {
         let Value::Object(members) = &node.value else {
             self.expected(node, "an object", "matrix");
@@ -243,7 +244,7 @@ impl Reader<'_> {
             let wrong = |op| invalid_matrix_error(op).or_else(|| flat_matrix_error(op));
             let ops = members.take("matrices").map(|node| self.matrices(node, "matrices", wrong)).unwrap_or_default();
             let inner = self.required(&mut members, "object").and_then(|node| self.object(node));
-            // The object inside a transform may name its own material.
+            // The object inside a transform may specify its own material.
             if let (None, Some(inner)) = (stated, &inner) {
                 material = inner.material;
             }
@@ -264,7 +265,7 @@ impl Reader<'_> {
         Some(Object { node: what, material, span: self.span(&node.head()) })
     }
 
-    /// Reads the member `objects`.
+    /// Reads the member `objects` of the scene.
     fn inside(&mut self, members: &mut Members) -> Vec<Object> {
         let node = self.required(members, "objects");
         node.map(|node| self.objects(node, "objects")).unwrap_or_default()

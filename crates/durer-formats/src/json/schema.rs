@@ -1,5 +1,5 @@
-//! JSON Schema (2020-12) of JSON scenes. Like the language reference, it is generated from the
-//! descriptions of the statements.
+//! JSON Schema (version 2020-12) of JSON scenes. The schema is generated from the descriptions of
+//! the statements, as the language reference is.
 
 use super::MAX_DEPTH;
 use durer_scene::camera::Camera;
@@ -12,17 +12,17 @@ use durer_scene::scene::{Background, CsgOperation, MatrixOp, NamedTexture};
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 use serde_json::{Map, Value, json};
 
-/// Returns the keywords of all kinds in a described list.
+/// Returns the keywords of all kinds of items in a described list.
 pub(super) fn keywords<T: DescribedKind>() -> Vec<&'static str> {
     T::kinds().iter().map(word).collect()
 }
 
-/// Returns the keyword of a described item in the Dürer dialect.
+/// Returns the keyword that a described item has in the Dürer dialect.
 pub(super) fn word<T: DescribedKind>(item: &T) -> &'static str {
     item.keyword(Dialect::Durer)
 }
 
-/// Returns the item for a keyword, with default values.
+/// Returns the item that a keyword stands for, with default values.
 pub(super) fn of_keyword<T: DescribedKind>(keyword: &str) -> Option<T> {
     T::kinds().into_iter().find(|item| word(item) == keyword)
 }
@@ -40,7 +40,7 @@ pub(super) fn objects() -> Vec<&'static str> {
     keywords::<Primitive>().into_iter().chain(others).chain(made).collect()
 }
 
-/// Returns the JSON Schema of a complete scene.
+/// Returns the JSON Schema of an entire scene.
 pub fn schema() -> Value {
     let list = |of: &str, about: &str| json!({"type": "array", "items": reference(of), "description": about});
     let members = json!({
@@ -98,12 +98,13 @@ fn one_of(items: Vec<Value>) -> Value {
     json!({ "oneOf": items })
 }
 
-/// Converts an `f32` to a JSON number with the fewest digits that read back to the same value.
+/// Converts an `f32` to the JSON number with the fewest digits that still reads back as the same
+/// value.
 fn number(x: f32) -> Value {
     x.to_string().parse::<f64>().map_or(Value::Null, Value::from)
 }
 
-/// Joins a doc comment into one line.
+/// Joins the lines of a doc comment into one line.
 fn about(doc: &str) -> String {
     doc.lines().map(str::trim).collect::<Vec<_>>().join(" ").trim().to_string()
 }
@@ -142,7 +143,8 @@ fn field(field: &Field) -> Value {
     value
 }
 
-/// Returns the schema of an object with these members; those in `required` must be present.
+/// Returns the schema of an object with these members, of which those in `required` must be
+/// present.
 fn object(doc: &str, members: Value, required: &[&str]) -> Value {
     json!({
         "type": "object",
@@ -153,7 +155,7 @@ fn object(doc: &str, members: Value, required: &[&str]) -> Value {
     })
 }
 
-/// Returns the schema of a described item with further members.
+/// Returns the schema of a described item that has additional members.
 fn described<T: DescribedKind>(item: &T, more: Value, also: &[&'static str]) -> Value {
     let mut members = Map::new();
     if let Value::Object(more) = more {
@@ -165,21 +167,22 @@ fn described<T: DescribedKind>(item: &T, more: Value, also: &[&'static str]) -> 
     object(item.doc(), members.into(), &required)
 }
 
-/// Returns the schema of an item without a `type`.
+/// Returns the schema of an item that has no `type` member.
 fn record<T: DescribedKind + Default>(more: Value) -> Value {
     described(&T::default(), more, &[])
 }
 
-/// Returns the schema of an item with its `type`.
+/// Returns the schema of an item that has a `type` member.
 fn named<T: DescribedKind>(item: &T, more: &Value) -> Value {
     described(item, with(more, "type", json!({ "const": word(item) })), &["type"])
 }
 
-/// Returns a copy of `members` with one more member.
+/// Returns a copy of `members` with one more member added.
 ///
-/// This is not a closure: closures that changed a `Value` passed to them and returned it used
-/// memory after it was freed (rustc 1.95, opt-level 2, detected by valgrind; not reproduced in a
-/// small program of the same form). The code was safe, so this was probably a miscompilation.
+/// This code is a function because equivalent closures, which changed a `Value` passed to them and
+/// returned it, used memory after it was freed (rustc 1.95, opt-level 2, detected by valgrind; a
+/// small program of the same form did not show the problem). The code was safe Rust, so this was
+/// probably a miscompilation.
 fn with(members: &Value, name: &str, value: Value) -> Value {
     let mut all = members.clone();
     all[name] = value;

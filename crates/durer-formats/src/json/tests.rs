@@ -1,5 +1,5 @@
-//! Tests of JSON scenes: round trips, positions of errors, and agreement between the schema and the
-//! reader.
+//! Tests of JSON scenes: that they can be written and read back, that errors have the right
+//! positions, and that the schema agrees with the reader.
 
 use super::{Document, schema, write};
 use crate::course;
@@ -9,7 +9,7 @@ use durer_scene::dialect::Dialect;
 use durer_scene::scene::{Material, ObjectKind, Scene};
 use serde_json::{Value, json};
 
-/// Reads a scene; returns the diagnostics as `line:column message`.
+/// Reads a scene and returns its diagnostics in the form `line:column message`.
 fn read(text: &str) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut found) = (Files::default(), Diagnostics::default());
     let file = files.add("x.json", text.as_bytes().into());
@@ -21,7 +21,7 @@ fn read(text: &str) -> (Option<Scene>, Vec<String>) {
     (scene, messages.collect())
 }
 
-/// Asserts that two scenes are equal bit for bit, since `PartialEq` treats 0 and -0 as equal.
+/// Asserts that two scenes are equal bit for bit, because `PartialEq` treats 0 and -0 as equal.
 #[track_caller]
 fn same(a: &Scene, b: &Scene, context: &str) {
     assert_eq!(a, b, "{context}");
@@ -71,8 +71,8 @@ fn handwritten_scene_is_read() {
     let Material::Principled(gold) = &scene.materials[0].value else { panic!() };
     assert_eq!((gold.base_metalness, gold.specular_roughness), (1.0, 0.5));
     let objects = &scene.root.as_ref().unwrap().objects;
-    // An object without a material has that of the previous object; a transform has that of its
-    // object.
+    // An object without a material takes the material of the previous object; a transform takes
+    // that of the object inside it.
     assert_eq!(objects.iter().map(|object| object.material).collect::<Vec<_>>(), [Some(2), Some(1)]);
     let ObjectKind::Transform(_, inner) = &objects[1].node else { panic!() };
     let ObjectKind::Group(group) = &inner.node else { panic!() };
@@ -162,7 +162,7 @@ fn number_of_errors_and_nesting_are_limited() {
     assert!(nested(super::MAX_DEPTH).0.is_some());
     assert!(nested(super::MAX_DEPTH + 1).1[0].contains("objects are nested more than 200 levels deep"));
     assert!(nested(1000).1[0].contains("values are nested more than 640 levels deep"));
-    // A material index out of range is reported, and the scene is still read.
+    // A material index that is out of range is reported, but the scene is still read.
     let (scene, messages) = read(&SMALL.replace("\"material\": 2", "\"material\": 3"));
     assert!(
         scene.is_some() && messages[0].contains("material 3 does not exist: the scene has 3 materials"),
@@ -170,8 +170,8 @@ fn number_of_errors_and_nesting_are_limited() {
     );
 }
 
-/// Returns true if a value matches a schema. Supports the part of JSON Schema that the generated
-/// schema uses.
+/// Returns true if a value matches a schema. Supports only the part of JSON Schema that the
+/// generated schema uses.
 fn fits(root: &Value, schema: &Value, value: &Value) -> bool {
     let equal = |a: &Value, b: &Value| match (a, b) {
         (Value::Number(a), Value::Number(b)) => a.as_f64() == b.as_f64(),
@@ -224,7 +224,7 @@ fn fits(root: &Value, schema: &Value, value: &Value) -> bool {
     })
 }
 
-/// Changes one value at a random place in a tree.
+/// Changes one value at a random position in a JSON tree.
 fn changed(random: &mut SceneGenerator, value: &mut Value) {
     let others = [
         json!(null),
@@ -259,7 +259,7 @@ fn changed(random: &mut SceneGenerator, value: &mut Value) {
     }
 }
 
-/// Errors that the reader reports but a JSON Schema cannot express.
+/// Errors that the reader reports but that a JSON Schema cannot express.
 const BEYOND: [&str; 7] = [
     "already exists",
     "may use only earlier",

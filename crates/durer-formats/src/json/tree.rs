@@ -1,25 +1,26 @@
-//! Parser of JSON (RFC 8259) into a tree whose values have byte ranges. It is strict, and it
-//! rejects duplicate names in an object.
+//! Parser that converts JSON text (RFC 8259) into a tree in which every value has its byte range.
+//! The parser is strict, and it rejects objects in which two members have the same name.
 
 use std::ops::Range;
 
-/// Maximum depth of nested values. Each of the language's 200 levels of objects takes three levels
-/// of JSON: an object, a list and a transform.
+/// Maximum depth to which values may be nested. The language allows 200 levels of objects, and each
+/// takes three levels of JSON: an object, a list, and a transform.
 const MAX_DEPTH: usize = 640;
 
-/// JSON value with its byte range in the text; node of the tree that [`parse`] returns.
+/// JSON value together with its byte range in the text; [`parse`] returns a tree of these nodes.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
     pub value: Value,
     pub at: Range<usize>,
 }
 
-/// Content of a JSON [`Node`]: null, a boolean, a number, a string, an array or an object.
+/// Content of a JSON [`Node`], which is null, a boolean, a number, a string, an array, or an
+/// object.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Null,
     Bool,
-    /// A number. Its text is at the node's byte range.
+    /// A JSON number. The text of the number is at the byte range of the node.
     Number,
     String(String),
     Array(Vec<Node>),
@@ -39,12 +40,12 @@ pub(super) struct Member {
 pub(super) struct SyntaxError {
     pub at: Range<usize>,
     pub message: String,
-    /// Range of a related position, such as the first of two equal names.
+    /// Range of a related position, such as the first of two members with the same name.
     pub first: Option<Range<usize>>,
 }
 
 impl Node {
-    /// Name of the kind of value, for messages.
+    /// Name of the kind of value, for use in messages.
     pub fn kind(&self) -> &'static str {
         match &self.value {
             Value::Null => "`null`",
@@ -56,8 +57,8 @@ impl Node {
         }
     }
 
-    /// Range to show in messages: the opening bracket of a list or an object, otherwise the whole
-    /// value.
+    /// Range to underline in messages: the opening bracket of a list or an object, or all of any
+    /// other value.
     pub fn head(&self) -> Range<usize> {
         match &self.value {
             Value::Array(_) | Value::Object(_) => self.at.start..self.at.start + 1,
@@ -68,7 +69,7 @@ impl Node {
 
 /// Parses a JSON text.
 pub(super) fn parse(text: &[u8]) -> Result<Node, SyntaxError> {
-    // Windows editors may put a byte order mark first.
+    // Editors on Windows may put a byte order mark at the start.
     let at = if text.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
     let mut parser = Parser { text, at, depth: 0 };
     let node = parser.value()?;
@@ -97,7 +98,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Skips a byte if it comes next; returns true if it did.
+    /// Skips the next byte if it is the given one, and returns true if so.
     fn skip_if(&mut self, byte: u8) -> bool {
         let passes = self.peek() == Some(byte);
         self.at += usize::from(passes);
@@ -108,7 +109,8 @@ impl Parser<'_> {
         Err(SyntaxError { at, message: message.into(), first: None })
     }
 
-    /// Returns an error for the word at the current position; `wanted` says what was expected.
+    /// Returns an error for the word at the current position; `wanted` describes what was expected
+    /// instead.
     fn unexpected(&self, wanted: &str) -> SyntaxError {
         let ends = |b: &u8| b.is_ascii_whitespace() || b",:[]{}\"".contains(b);
         let rest = &self.text[self.at..];
@@ -258,7 +260,8 @@ impl Parser<'_> {
         String::from_utf8(bytes).or_else(|_| self.error(start..self.at, "this string is not UTF-8"))
     }
 
-    /// Reads an escape and returns its character. On failure, `at` is the position of the error.
+    /// Reads an escape sequence and returns its character. On failure, `at` is the position that
+    /// the error refers to.
     fn escaped(&mut self) -> Option<char> {
         self.at += 1;
         let letter = self.peek()?;
@@ -275,7 +278,7 @@ impl Parser<'_> {
                 if !(0xd800..0xdc00).contains(&first) {
                     return char::from_u32(first);
                 }
-                // Characters above U+FFFF are written as a surrogate pair.
+                // Characters above U+FFFF are written as surrogate pairs.
                 let second = (self.skip_if(b'\\') && self.skip_if(b'u')).then(|| self.hexadecimal()).flatten()?;
                 let low = second.checked_sub(0xdc00).filter(|low| *low < 0x400)?;
                 char::from_u32(0x10000 + ((first - 0xd800) << 10 | low))?
@@ -291,7 +294,8 @@ impl Parser<'_> {
     }
 }
 
-/// Returns the earliest member that repeats a name, preceded by the member with the same name.
+/// Returns the earliest member whose name is already used, preceded by the member that used it
+/// first.
 fn first_duplicate(members: &[Member]) -> Option<(&Member, &Member)> {
     let mut sorted: Vec<usize> = (0..members.len()).collect();
     sorted.sort_by_key(|&i| (&members[i].name, i));

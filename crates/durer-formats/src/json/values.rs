@@ -1,5 +1,5 @@
-//! Reads JSON values into the fields of statements, and checks their types, constraints and member
-//! names.
+//! Reads JSON values into the fields of statements, and checks their types, their constraints, and
+//! the names of members.
 
 use super::schema;
 use super::tree::{Member, Node, Value};
@@ -16,30 +16,31 @@ use std::ops::Range;
 pub(super) struct Reader<'a> {
     pub text: &'a [u8],
     pub report: Report,
-    /// Material of the previous object; used by objects that name no material.
+    /// Material of the previous object, which is used for objects that name no material.
     pub material: Option<u32>,
-    /// Every use of a material index with its byte range; checked once all materials are read.
+    /// Every use of a material index with its byte range; the indices are checked after all
+    /// materials have been read.
     pub uses: Vec<(u32, Range<usize>)>,
     pub depth: usize,
-    /// Keywords that an object's `type` may have.
+    /// Keywords that are allowed as the `type` of an object.
     pub object_types: &'a [&'static str],
 }
 
-/// Members of one JSON object that is being read; records which have been read, so that unknown
-/// ones can be reported.
+/// Members of one JSON object that is being read. The struct records which members have been read,
+/// so that unknown ones can be reported.
 pub(super) struct Members<'n> {
-    /// Name of the object, used in messages.
+    /// Name of the object that is used in messages.
     pub name: &'n str,
     at: Range<usize>,
     all: &'n [Member],
     taken: Vec<bool>,
-    /// Names passed to [`Members::take`]. After reading, these are all the names the object may
-    /// have.
+    /// Names that were passed to [`Members::take`]. After reading, these are all the member names
+    /// that the object may have.
     known: Vec<&'static str>,
 }
 
 impl<'n> Members<'n> {
-    /// Returns the value of a member and marks it as read.
+    /// Returns the value of a member and marks the member as read.
     pub fn take(&mut self, name: &'static str) -> Option<&'n Node> {
         self.known.push(name);
         let index = self.all.iter().position(|member| member.name == name)?;
@@ -57,7 +58,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reports a value of the wrong kind.
+    /// Reports a value that has the wrong type.
     pub fn expected(&mut self, node: &Node, what: &str, name: &str) {
         let message = format!("`{name}` needs {what}, but found {}", node.kind());
         self.error(node.head(), "bad-value", message, None);
@@ -68,7 +69,7 @@ impl Reader<'_> {
         self.report.span(at.clone())
     }
 
-    /// Returns the members of an object; reports any other value.
+    /// Returns the members of an object; reports an error for any other value.
     pub fn members<'n>(&mut self, node: &'n Node, name: &'n str) -> Option<Members<'n>> {
         let Value::Object(all) = &node.value else {
             self.expected(node, "an object", name);
@@ -77,7 +78,7 @@ impl Reader<'_> {
         Some(Members { name, at: node.head(), all, taken: vec![false; all.len()], known: Vec::new() })
     }
 
-    /// Reports members that were not read.
+    /// Reports members that were not read because their names are unknown.
     pub fn finish(&mut self, members: Members) {
         let Members { name, all, taken, known, .. } = members;
         for (member, _) in all.iter().zip(taken).filter(|(_, taken)| !taken) {
@@ -89,7 +90,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns the items of a list; reports any other value and returns an empty slice.
+    /// Returns the items of a list; for any other value, reports an error and returns an empty
+    /// slice.
     pub fn items<'n>(&mut self, node: &'n Node, name: &str) -> &'n [Node] {
         match &node.value {
             Value::Array(items) => items,
@@ -100,7 +102,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns a string; reports any other value.
+    /// Returns a string; reports an error for any other value.
     pub fn string<'n>(&mut self, node: &'n Node, name: &str) -> Option<&'n str> {
         match &node.value {
             Value::String(text) => Some(text),
@@ -111,7 +113,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads a string that must be one of `words`.
+    /// Reads a string that must be one of the strings in `words`.
     pub fn one_of<'w>(&mut self, node: &Node, name: &str, words: &[&'w str]) -> Option<&'w str> {
         let text = self.string(node, name)?;
         let word = words.iter().copied().find(|word| *word == text);
@@ -124,7 +126,7 @@ impl Reader<'_> {
         word
     }
 
-    /// Reads a finite `f32`; reports any other value.
+    /// Reads a finite `f32`; reports an error for any other value.
     pub fn number(&mut self, node: &Node, name: &str) -> Option<f32> {
         if !matches!(node.value, Value::Number) {
             self.expected(node, "a number", name);
@@ -168,7 +170,7 @@ impl Reader<'_> {
             Value::Number => std::str::from_utf8(&self.text[node.at.clone()]).ok()?.parse::<f64>().ok(),
             _ => None,
         };
-        // Some programs write integers as 3.0.
+        // Some programs write integers in the form 3.0.
         let whole = number.filter(|n| n.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(n));
         if whole.is_none() {
             let message = format!(
@@ -183,7 +185,7 @@ impl Reader<'_> {
         whole.map(|number| number as u32)
     }
 
-    /// Reads a value of a field's type and checks its constraint.
+    /// Reads a value of the type of a field and checks the constraint of the field.
     fn value(&mut self, node: &Node, name: &str, kind: FieldKind, rule: Constraint) -> Option<describe::Value> {
         let value = match kind {
             FieldKind::Float => describe::Value::Float(self.number(node, name)?),
@@ -197,7 +199,7 @@ impl Reader<'_> {
                     self.error(node.at.clone(), "bad-value", message, Some(help));
                     return None;
                 }
-                // Excludes the quotes, so that a path can be replaced in the text.
+                // The range excludes the quotes, so that a path can be replaced in the text.
                 let span = self.span(&(node.at.start + 1..node.at.end - 1));
                 describe::Value::Path(FileName { path: path.to_string(), span })
             }
@@ -210,7 +212,7 @@ impl Reader<'_> {
         Some(value)
     }
 
-    /// Reads a list of rows of `width` numbers each.
+    /// Reads a list of rows with `width` numbers each.
     pub fn rows(&mut self, node: &Node, name: &str, width: usize) -> Option<Vec<Vec<f32>>> {
         if !matches!(node.value, Value::Array(_)) {
             self.expected(node, "a list", name);
@@ -229,7 +231,7 @@ impl Reader<'_> {
         Some(rows)
     }
 
-    /// Reads the fields of a described item from an object, which may have further members.
+    /// Reads the fields of a described item from an object that may also have other members.
     pub fn fields<T: DescribedKind>(&mut self, item: &mut T, members: &mut Members) {
         for (i, field) in item.fields().iter().enumerate() {
             match members.take(field.name) {
@@ -247,7 +249,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads a described item from an object that has no other members.
+    /// Reads a described item from an object that may have no other members.
     pub fn item<T: DescribedKind>(&mut self, mut entry: T, node: &Node, name: &str) -> T {
         if let Some(mut members) = self.members(node, name) {
             self.fields(&mut entry, &mut members);
@@ -256,7 +258,8 @@ impl Reader<'_> {
         entry
     }
 
-    /// Returns an object's members and its `type`, which must be one of `known`.
+    /// Returns the members of an object and its `type`, which must be one of the keywords in
+    /// `known`.
     pub fn typed<'n>(&mut self, node: &'n Node, what: &'n str, known: &[&str]) -> Option<(&'n str, Members<'n>)> {
         let mut members = self.members(node, what)?;
         let Some(named) = members.take("type") else {
@@ -278,7 +281,7 @@ impl Reader<'_> {
         Some((word, members))
     }
 
-    /// Reads one kind of a described list, selected by the object's `type`.
+    /// Reads an item from a described list; the object's `type` selects the kind of item.
     pub fn choice<T: DescribedKind>(&mut self, node: &Node, what: &str) -> Option<T> {
         let (word, mut members) = self.typed(node, what, &schema::keywords::<T>())?;
         let mut item = schema::of_keyword::<T>(word)?;
@@ -287,12 +290,12 @@ impl Reader<'_> {
         Some(item)
     }
 
-    /// Reads an item and attaches its span.
+    /// Reads an item and stores its span.
     pub fn spanned<T>(&mut self, node: &Node, read: impl FnOnce(&mut Self) -> Option<T>) -> Option<Spanned<T>> {
         Some(Spanned { value: read(self)?, span: self.span(&node.head()) })
     }
 
-    /// Returns a required member; reports an error if it is missing.
+    /// Returns a required member, or reports an error if it is missing.
     pub fn required<'n>(&mut self, members: &mut Members<'n>, name: &'static str) -> Option<&'n Node> {
         let node = members.take(name);
         if node.is_none() {

@@ -1,4 +1,4 @@
-//! Writer of scenes as JSON text.
+//! Writer that formats scenes as JSON text.
 
 use super::schema::word;
 use durer_scene::describe::{DescribedKind, Value};
@@ -6,18 +6,18 @@ use durer_scene::dialect::Dialect;
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Material, MatrixOp, Object, ObjectKind, Scene};
 
-/// Maximum width of a line in columns, unless its value cannot be split.
+/// Maximum width of a line in columns; only a line whose value cannot be split may be longer.
 const WIDTH: usize = 120;
 
-/// JSON value to be written: text that is already formatted, a list, or an object.
+/// JSON value to be written: text that is already formatted, or a list or object of such values.
 enum Json {
-    /// A number or a string, already formatted as JSON.
+    /// A number or a string that is already formatted as JSON.
     Plain(String),
     List(Vec<Json>),
     Object(Vec<(&'static str, Json)>),
 }
 
-/// Formats a scene as JSON text; `dialect` defines the meaning of its keywords.
+/// Formats a scene as JSON text; `dialect` defines the meaning of the scene's keywords.
 pub fn write(scene: &Scene, dialect: Dialect) -> String {
     let mut members = vec![("type", string("Scene"))];
     if dialect != Dialect::Durer {
@@ -45,7 +45,7 @@ pub fn write(scene: &Scene, dialect: Dialect) -> String {
 }
 
 fn string(text: &str) -> Json {
-    // Serializing a string cannot fail.
+    // Serializing a string never fails.
     Json::Plain(serde_json::to_string(text).unwrap_or_default())
 }
 
@@ -61,7 +61,7 @@ fn vector(v: Vec3) -> Json {
     numbers(&v.to_array())
 }
 
-/// Members for the fields that have values.
+/// JSON members for those fields that have values.
 fn fields<T: DescribedKind>(item: &T) -> Vec<(&'static str, Json)> {
     let value = |value: Value| match value {
         Value::Float(x) => number(x),
@@ -139,7 +139,7 @@ fn object(object: &Object) -> Json {
 }
 
 impl Json {
-    /// Writes the value on one line if it fits, otherwise one item per line.
+    /// Writes the value on one line if it fits, and otherwise writes one item per line.
     fn write(&self, out: &mut String, depth: usize) {
         let mut line = String::new();
         if self.fits(&mut line, WIDTH.saturating_sub(4 * depth)) {
@@ -173,7 +173,7 @@ impl Json {
         }
     }
 
-    /// Appends the value as one line; returns false if it exceeds `width` bytes.
+    /// Appends the value on one line; returns false if it is longer than `width` bytes.
     fn fits(&self, line: &mut String, width: usize) -> bool {
         match self {
             Json::Plain(text) => line.push_str(text),

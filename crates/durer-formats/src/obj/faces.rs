@@ -9,14 +9,15 @@ use durer_scene::shape::mesh::{MeshData, NO_INDEX};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Indices of a face corner: position, texture coordinate and normal.
+/// Indices of a corner of a face: its position, texture coordinate, and normal.
 type Corner = [u32; 3];
 
-/// Names of the items that a corner's indices refer to: singular, plural and keyword.
+/// Names of the items that the indices of a corner refer to: singular, plural, and keyword.
 const KINDS: [(&str, &str, &str); 3] =
     [("vertex", "vertices", "v"), ("texture coordinate", "texture coordinates", "vt"), ("normal", "normals", "vn")];
 
-/// Triangles read from one part of a Wavefront file, with the state changes and diagnostics.
+/// Triangles that were read from one part of a Wavefront file, with the state changes and
+/// diagnostics of that part.
 struct Faces {
     mesh: MeshData,
     switches: StateChanges,
@@ -25,8 +26,8 @@ struct Faces {
     report: Report,
 }
 
-/// Reads the faces in parallel and triangulates them. Repeated corners are harmless, so they are
-/// kept. `before` contains the number of vertices of each kind before each part.
+/// Reads the faces in parallel and splits them into triangles. Repeated corners do no harm, so they
+/// are kept. `before` contains the number of vertices of each kind that come before each part.
 pub(super) fn read_faces(
     bytes: &[u8],
     parts: &[Range<usize>],
@@ -42,8 +43,8 @@ pub(super) fn read_faces(
     for part in read {
         let first = mesh.triangles.len();
         mesh.triangles.extend(part.mesh.triangles);
-        // If any triangle has texture coordinates or normals, every triangle needs an entry, so pad
-        // the entries before the first such triangle.
+        // If any triangle has texture coordinates or normals, every triangle needs an entry, so
+        // entries are added for the triangles before the first one that has them.
         for (all, own) in
             [(&mut mesh.triangle_uvs, part.mesh.triangle_uvs), (&mut mesh.triangle_normals, part.mesh.triangle_normals)]
         {
@@ -97,7 +98,7 @@ fn faces(bytes: &[u8], part: Range<usize>, before: Counts, whole: &MeshData, rep
                 reader.faces.switches.materials.push((reader.faces.mesh.triangles.len(), name));
             }
             Some(Statement::Smoothing) => {
-                // `off` does not parse and means group 0.
+                // `off` does not parse as a number, and so it means group 0.
                 let word = words.next_word().map_or(&[][..], |word| &bytes[word]);
                 let group = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()).unwrap_or(0);
                 reader.faces.switches.groups.push((reader.faces.mesh.triangles.len(), group));
@@ -112,7 +113,7 @@ fn faces(bytes: &[u8], part: Range<usize>, before: Counts, whole: &MeshData, rep
     reader.faces
 }
 
-/// Returns the rest of a statement as one range, since names may contain spaces.
+/// Returns the rest of a statement as one range, because names may contain spaces.
 pub(super) fn rest_of(words: &mut Words, end: usize) -> Range<usize> {
     match words.next_word() {
         Some(first) => first.start..words.skip_rest().unwrap_or(first.end),
@@ -123,9 +124,9 @@ pub(super) fn rest_of(words: &mut Words, end: usize) -> Range<usize> {
 /// Reads the `f` statements of one part of a Wavefront file.
 struct FaceReader<'a> {
     bytes: &'a [u8],
-    /// Number of vertices, texture coordinates and normals in the whole file.
+    /// Number of vertices, texture coordinates, and normals in the whole file.
     total: Counts,
-    /// Number of each before the current statement.
+    /// Number of vertices, texture coordinates, and normals before the current statement.
     before: Counts,
     positions: &'a [Vec3],
     corners: Vec<Corner>,
@@ -157,14 +158,14 @@ impl FaceReader<'_> {
         }
     }
 
-    /// Parses a corner of the form `a`, `a/t`, `a//n` or `a/t/n`.
+    /// Parses a corner in the form `a`, `a/t`, `a//n`, or `a/t/n`.
     fn corner(&mut self, word: Range<usize>) -> Option<Corner> {
         let mut corner = [NO_INDEX; 3];
         let mut start = word.start;
         for (part, slot) in corner.iter_mut().enumerate() {
             let rest = &self.bytes[start..word.end];
             let end = start + rest.iter().position(|&byte| byte == b'/').unwrap_or(rest.len());
-            // All indices except the position may be empty.
+            // Every index except that of the position may be empty.
             if end > start || part == 0 {
                 let counts = [self.total[part], self.before[part]];
                 *slot = index(self.bytes, start..end, part, counts, &mut self.faces.report)?;
@@ -181,7 +182,8 @@ impl FaceReader<'_> {
     }
 
     fn note_degenerate(&mut self, place: &Range<usize>) {
-        // Compare only neighbouring corners: outlines with holes pass a vertex twice on purpose.
+        // Compare only neighbouring corners, because outlines with holes visit a vertex twice on
+        // purpose.
         let last = self.corners.len() - 1;
         let repeats = |i: usize| self.corners[i][0] == self.corners[if i == last { 0 } else { i + 1 }][0];
         if (0..=last).any(repeats) {
@@ -209,9 +211,9 @@ impl FaceReader<'_> {
     }
 }
 
-/// Reads an index, which counts from 1 or, if negative, backwards from the last statement of its
-/// kind. `total` and `so_far` are the numbers of such statements in the whole file and before this
-/// statement.
+/// Reads an index. Positive indices count from 1, and negative ones count backwards from the last
+/// statement of their kind. `total` and `so_far` are the numbers of such statements in the whole
+/// file and before the current statement.
 pub(super) fn index(
     bytes: &[u8],
     at: Range<usize>,
@@ -244,8 +246,8 @@ pub(super) fn index(
     None
 }
 
-/// Appends the indices of a triangle. The list stays empty until a triangle has indices; then it is
-/// padded for the triangles before.
+/// Appends the indices of a triangle. The list stays empty until a triangle has indices; at that
+/// point, entries are added for all earlier triangles.
 fn push_optional(list: &mut Vec<[u32; 3]>, before: usize, indices: [u32; 3]) {
     if !list.is_empty() || indices != [NO_INDEX; 3] {
         list.resize(before, [NO_INDEX; 3]);

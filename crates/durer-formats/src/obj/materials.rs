@@ -1,7 +1,7 @@
 //! Reader of Wavefront `.mtl` files; `mtl.rs` converts the materials.
 //!
-//! Sources: *The MTL material format*, Alias|Wavefront, 1995; Clara.io's extension for physically
-//! based rendering (Pr, Pm, Pc, Pcr, Ps, Ke, norm).
+//! Sources: *The MTL material format*, Alias|Wavefront, 1995; and Clara.io's extension for
+//! physically based rendering (Pr, Pm, Pc, Pcr, Ps, Ke, norm).
 
 use super::mtl::MtlMaterial;
 use super::words::Words;
@@ -20,15 +20,16 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Material library of a Wavefront scene: materials by name, and the textures that they use.
+/// Material library of a Wavefront scene, which contains the materials by name and the textures
+/// that they use.
 #[derive(Default)]
 pub(super) struct Library {
     pub materials: BTreeMap<String, PrincipledMaterial>,
     pub pictures: BTreeMap<String, TextureImage>,
 }
 
-/// Reads the files of an `mtllib` statement, which names one file with spaces in its name, or
-/// several files.
+/// Reads the files that an `mtllib` statement names. The statement contains either one file name,
+/// possibly with spaces, or several file names.
 pub(super) fn read_files(
     input: &ReadInput,
     names: &Range<usize>,
@@ -40,7 +41,7 @@ pub(super) fn read_files(
     let all = unquoted(&all).to_string();
     let files = match find_file(input, &all, span) {
         Some(whole) => vec![(all.clone(), Some(whole))],
-        // Some programs escape spaces within a name with a backslash.
+        // Some programs put a backslash before each space in a name.
         None => {
             let names = all.replace("\\ ", "\0");
             let names = names.split_whitespace().map(|name| name.replace('\0', " "));
@@ -63,7 +64,8 @@ pub(super) fn read_files(
     }
 }
 
-/// Texture statements, and the field that each sets. A parameter without a value counts as 1.
+/// Texture statements, with the field that each of them sets. If the file gives no value for the
+/// parameter itself, the value counts as 1.
 type Field = fn(&mut PrincipledMaterial) -> &mut Option<FileName>;
 const MAPS: [(&str, Field); 12] = [
     ("map_ks", |m| &mut m.specular_color_texture),
@@ -80,14 +82,15 @@ const MAPS: [(&str, Field); 12] = [
     ("map_bump", |m| &mut m.bump_texture),
 ];
 
-/// Height of white in a bump map with `-bm 1`, as a fraction of the diagonal of the model's
-/// bounding box, because the format defines no unit.
+/// Height that white stands for in a bump map with `-bm 1`, as a fraction of the diagonal of the
+/// model's bounding box, because the format does not define a unit.
 const BUMP: f32 = 0.002;
 
-/// Statements without a counterpart, and the value at which each has no effect.
+/// Statements that have no counterpart in Dürer, with the value at which each of them has no
+/// effect.
 const WITHOUT_EFFECT: [(&str, f32); 2] = [("anisor", 0.0), ("sharpness", 60.0)];
 
-/// Word of an `.mtl` statement with its span.
+/// A word of an `.mtl` statement, with its span.
 struct Word {
     text: String,
     at: Span,
@@ -96,12 +99,12 @@ struct Word {
 /// Reads the statements of one `.mtl` file into a [`Library`].
 struct Reader<'a, 'i> {
     input: &'a ReadInput<'i>,
-    /// Index of the file.
+    /// Index of the `.mtl` file.
     file: u32,
-    /// Name of the file.
+    /// Name of the `.mtl` file.
     path: &'a str,
     library: &'a mut Library,
-    /// Ignored keywords, with the span of the first use.
+    /// Keywords that are ignored, with the span where each was first used.
     ignored_keywords: BTreeMap<String, Span>,
 }
 
@@ -139,7 +142,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Applies a statement to a material. Errors are returned with a span.
+    /// Applies a statement to a material. Any error is returned with its span.
     fn word(
         &mut self,
         keyword: &Word,
@@ -149,7 +152,7 @@ impl Reader<'_, '_> {
     ) -> Result<(), (Span, String)> {
         let word = &keyword.text;
         let number = || -> Result<Option<f32>, (Span, String)> {
-            // Some programs write `d -halo 0.5`.
+            // Some programs write the opacity in the form `d -halo 0.5`.
             let number = rest.iter().find(|word| word.text != "-halo");
             let number = number.ok_or_else(|| (keyword.at, format!("`{word}` needs a number")))?;
             let text = number.text.as_bytes();
@@ -157,7 +160,7 @@ impl Reader<'_, '_> {
             parse_f32(text).map(Some).map_err(problem)
         };
         let color = || -> Result<Option<Vec3>, (Span, String)> {
-            // A colour in CIE XYZ or as a spectrum begins with a word.
+            // A colour that is given in CIE XYZ or as a spectrum begins with a word.
             let is_xyz = rest.first().is_some_and(|word| word.text == "xyz");
             match numbers(&rest[usize::from(is_xyz)..])[..] {
                 [x, y, z, ..] if is_xyz => {
@@ -189,7 +192,7 @@ impl Reader<'_, '_> {
                 m.has_diffuse_map = true;
                 m.diffuse_map = self.texture_map(keyword, rest, m, diagnostics);
             }
-            // The ambient colour and its maps are ignored: indirect light is computed.
+            // The ambient colour and its maps are ignored, because indirect light is computed.
             "ka" | "map_ka" | "map_aat" => {}
             lower => match MAPS.iter().find(|row| row.0 == lower) {
                 Some((_, field)) => {
@@ -200,7 +203,7 @@ impl Reader<'_, '_> {
                             rest.iter().position(|word| word.text == "-bm").map(|at| numbers(&rest[at + 1..]));
                         let strength = strength.and_then(|numbers| numbers.first().copied());
                         m.other_textures.bump_height = BUMP * strength.unwrap_or(1.0);
-                        // Many programs write normal maps with the statement for bump maps.
+                        // Many programs use the statement for bump maps to specify normal maps.
                         if names_normals(rest) {
                             field = |m| &mut m.normal_texture;
                         }
@@ -218,7 +221,8 @@ impl Reader<'_, '_> {
         self.ignored_keywords.entry(word.to_string()).or_insert(at);
     }
 
-    /// Reads a texture: options that begin with `-`, then a file name, which may contain spaces.
+    /// Reads a texture, which consists of options that begin with `-` and a file name that may
+    /// contain spaces.
     fn texture_map(
         &mut self,
         keyword: &Word,
@@ -258,18 +262,21 @@ impl Reader<'_, '_> {
                 "-imfchan" => {
                     mapping.channel = next.and_then(|word| match word {
                         "m" => Some(Channel::Alpha),
-                        // Luminance and depth. In a grey picture, every channel has these.
+                        // `l` (luminance) and `z` (depth) name no channel of their own. In a grey
+                        // picture, all channels contain these values.
                         word => Channel::from_word(word),
                     });
                     1
                 }
-                // -blendu, -blendv, -boost, -bm, -cc, -texres, -type, -colorspace have one value.
+                // The options -blendu, -blendv, -boost, -bm, -cc, -texres, -type, and -colorspace
+                // have one value.
                 _ => 1,
             };
         }
-        // Texture coordinates have v upwards, but the picture's rows go down.
+        // The texture coordinate v points upwards, but the rows of the picture are stored from top
+        // to bottom.
         mapping.transform = [[scale[0], 0.0, offset[0]], [0.0, scale[1], 1.0 - scale[1] - offset[1]]];
-        // Some programs write options after the name.
+        // Some programs write the options after the file name.
         let named = rest.get(at..).unwrap_or_default();
         let behind = named.iter().skip(1).position(|word| is_option(&word.text));
         let named = &named[..behind.map_or(named.len(), |behind| behind + 1)];
@@ -290,7 +297,7 @@ impl Reader<'_, '_> {
         Some(FileName { path, span })
     }
 
-    /// Adds a material to the library, unless it already contains one with this name.
+    /// Adds a material to the library, unless the library already contains one with this name.
     fn finish(&mut self, mut material: MtlMaterial) {
         if material.drops_filter() {
             self.leave_out("Tf", material.filter_at);
@@ -300,7 +307,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Removes quotes around a name.
+/// Removes the quotes around a name.
 fn unquoted(name: &str) -> &str {
     let name = name.trim();
     ['"', '\''].into_iter().find_map(|quote| name.strip_prefix(quote)?.strip_suffix(quote)).unwrap_or(name)
@@ -314,19 +321,20 @@ fn is_option(word: &str) -> bool {
     OPTIONS.contains(&word)
 }
 
-/// Returns the leading numbers of a list of words.
+/// Returns the numbers at the start of a list of words.
 fn numbers(words: &[Word]) -> Vec<f32> {
     words.iter().map_while(|word| parse_f32(word.text.as_bytes()).ok()).collect()
 }
 
-/// Returns true if the file name at the end of a statement looks like that of a normal map.
+/// Returns true if the file name at the end of a statement looks like the name of a normal map.
 fn names_normals(rest: &[Word]) -> bool {
     let name = rest.last().map(|name| name.text.to_lowercase()).unwrap_or_default();
     let stem = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem);
     ["normal", "_nrm", "_ddn", "_norm"].iter().any(|word| stem.contains(word)) || stem.ends_with("_n")
 }
 
-/// Finds a file of the scene: at the path as written, or by its file name in the scene's folder.
+/// Finds a file of the scene, either at its path as written or by its bare file name in the folder
+/// of the scene.
 fn find_file(input: &ReadInput, path: &str, span: Span) -> Option<FileName> {
     let portable = path.replace('\\', "/");
     let last = portable.rsplit('/').next().unwrap_or_default();

@@ -6,8 +6,8 @@ use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::Vec3;
 
-/// Material from an `.mtl` file: the values of its statements, before they are converted to OpenPBR
-/// parameters.
+/// Material from an `.mtl` file, which stores the values of its statements before they are
+/// converted to OpenPBR parameters.
 #[derive(Default)]
 pub(super) struct MtlMaterial {
     pub name: String,
@@ -30,7 +30,7 @@ pub(super) struct MtlMaterial {
     pub diffuse_map: Option<FileName>,
     /// True if the material has a `map_Kd` statement, even if the file is missing.
     pub has_diffuse_map: bool,
-    /// The other textures and the bump height; all other fields have their defaults.
+    /// The other textures, and the height of the bump map; all other fields have default values.
     pub other_textures: PrincipledMaterial,
 }
 
@@ -46,9 +46,9 @@ impl MtlMaterial {
         self.model.unwrap_or(2.0) as i32
     }
 
-    /// Returns the fraction of light that is transmitted. In a physically based material it is
-    /// `Tf`, as Blender reads and writes it. Otherwise it follows from the illumination model: 4,
-    /// 6, 7 and 9 are glass.
+    /// Returns the fraction of light that the material transmits. In a physically based material,
+    /// this fraction is `Tf`, as Blender reads and writes it. In other materials, it follows from
+    /// the illumination model: models 4, 6, 7, and 9 are glass.
     fn transmission(&self) -> f32 {
         let opacity = self.opacity();
         match (self.filter, self.model()) {
@@ -63,7 +63,8 @@ impl MtlMaterial {
         self.opacity.unwrap_or(1.0).clamp(0.0, 1.0)
     }
 
-    /// Returns true if transmitted light should be tinted but the conversion cannot express it.
+    /// Returns true if the transmitted light should be tinted but the conversion cannot express
+    /// this.
     pub fn drops_filter(&self) -> bool {
         let filters = self.filter.is_some_and(|filter| filter != Vec3::ONE);
         filters && !self.is_physical() && self.transmission() == 0.0 && self.opacity() < 1.0
@@ -73,18 +74,18 @@ impl MtlMaterial {
     pub fn into_principled(self) -> PrincipledMaterial {
         let (physical, model) = (self.is_physical(), self.model());
         let (transmission, opacity) = (self.transmission(), self.opacity());
-        // A texture without `Kd` is shown with its full brightness.
+        // A texture without `Kd` is shown at full brightness.
         let default = if self.diffuse_map.is_some() { Vec3::ONE } else { Vec3::splat(0.8) };
         let mut m = PrincipledMaterial { base_color: self.diffuse.unwrap_or(default), ..self.other_textures };
         m.base_color_texture = self.diffuse_map;
-        // Programs that use only the texture often write a black `Kd`.
+        // Programs that use only the texture often write a black `Kd` as well.
         if self.has_diffuse_map && m.base_color == Vec3::ZERO {
             m.base_color = Vec3::ONE;
         }
         let pictured = |picture: &Option<FileName>| if picture.is_some() { 1.0 } else { 0.0 };
         let specular = self.specular.unwrap_or(Vec3::splat(pictured(&m.specular_color_texture)));
-        // Choose the roughness whose highlight is as wide as Blinn's with this exponent: alpha^2 =
-        // 2 / (n + 2) and roughness^2 = alpha.
+        // Choose the roughness that gives a highlight as wide as that of Blinn's model with this
+        // exponent: alpha^2 = 2 / (n + 2) and roughness^2 = alpha.
         let exponent = self.exponent.unwrap_or(if specular == Vec3::ZERO { 0.0 } else { 50.0 }).max(0.0);
         let rough = m.specular_roughness_texture.is_some();
         let by_exponent = if rough { 1.0 } else { (2.0 / (exponent + 2.0)).sqrt().sqrt() };
@@ -93,37 +94,38 @@ impl MtlMaterial {
         m.specular_ior = self.ior.filter(|ior| *ior >= 1.0 && *ior < 10.0).unwrap_or(1.5);
         let level = specular.max_element().min(1.0);
         m.specular_weight = match model {
-            // These models have no highlights.
+            // Illumination models with these numbers have no highlights.
             0 | 1 => 0.0,
             _ if !physical => level,
-            // In a physically based material, `Ks` is Disney's `specular`, where 0.5 stands for the
-            // reflectance given by the index, as in Blender.
+            // In a physically based material, `Ks` is Disney's `specular` parameter, where 0.5
+            // stands for the reflectance that the index of refraction gives, as in Blender.
             _ if self.specular.is_some() || m.specular_color_texture.is_some() => 2.0 * level,
             _ => 1.0,
         };
         if physical && m.base_metalness > 0.0 {
-            // The specular weight applies only to the dielectric part.
+            // The specular weight applies only to the dielectric part of the material.
             (m.specular_ior, m.specular_weight) = (opaque_ior(&m), 1.0);
         }
-        // Models 3 and 8 are mirrors. A mirror with a black base colour is a metal.
+        // Illumination models 3 and 8 are mirrors. A mirror that has a black base colour is a
+        // metal.
         if matches!(model, 3 | 8) && m.base_color.max_element() < 0.05 && specular != Vec3::ZERO {
             (m.base_color, m.base_metalness, m.specular_weight) = (specular.min(Vec3::ONE), 1.0, 1.0);
         }
         let by_filter = physical && self.filter.is_some();
         match transmission > 0.0 && !by_filter {
             true => m.specular_weight = 1.0,
-            // In other models, `d` is an opacity.
+            // In the other models, `d` is an opacity.
             false => m.opacity = opacity,
         }
         m.transmission_weight = transmission;
         if let Some(filter) = self.filter.filter(|_| transmission > 0.0) {
             let (tint, picture) = match by_filter {
-                // The maximum of `Tf` is the fraction. Transmitted light is also tinted by the base
-                // colour.
+                // The largest component of `Tf` is the transmitted fraction. The base colour also
+                // tints transmitted light.
                 true => (m.base_color * filter / filter.max_element(), m.base_color_texture.clone()),
                 false => (filter.min(Vec3::ONE), None),
             };
-            // Light crosses the surface twice, on entering and on leaving.
+            // Light crosses the surface twice: on entering and on leaving.
             m.transmission_color = Vec3::from_array(tint.to_array().map(f32::sqrt));
             m.transmission_color_texture = picture;
         }

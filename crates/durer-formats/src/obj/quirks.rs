@@ -1,11 +1,11 @@
-//! Imitates the course programs' readers of Wavefront files.
+//! Imitates how the course programs read Wavefront files.
 
 use super::{Statement, statement, words::Words};
 use durer_scene::dialect::{Quirk, QuirkSet};
 use std::borrow::Cow;
 
-/// Returns the file without the parts that programs with these quirks ignore. Corners are
-/// overwritten with spaces, so that byte offsets stay valid; a last line is cut off.
+/// Returns the file without the parts that programs with these quirks ignore. Ignored corners are
+/// overwritten with spaces, so that byte offsets stay valid; an ignored last line is cut off.
 ///
 /// The quirks are [`Quirk::LostLastLine`] and [`Quirk::ThreeCorners`].
 pub fn apply_quirks(bytes: &[u8], quirks: QuirkSet) -> Cow<'_, [u8]> {

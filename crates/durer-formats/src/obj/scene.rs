@@ -1,4 +1,4 @@
-//! Reads a Wavefront file as a scene, with one mesh for each material that it uses.
+//! Reads a Wavefront file as a scene that has one mesh for each material in the file.
 
 use super::faces::rest_of;
 use super::materials::{self, Library};
@@ -18,11 +18,12 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Scene format entry for Wavefront files.
+/// Entry for Wavefront files in the list of scene formats.
 pub(crate) const FORMAT: SceneFormat = SceneFormat {
     name: super::FORMAT.name,
     extensions: super::FORMAT.extensions,
-    // The first word is not distinctive, so only the extension identifies the format.
+    // The first word of a file is not distinctive, so the format is recognised only by its
+    // extension.
     recognise: |_| false,
     read,
     write: None,
@@ -31,7 +32,7 @@ pub(crate) const FORMAT: SceneFormat = SceneFormat {
     light_hint: None,
 };
 
-/// Reads a file; see [`read_model`](crate::scene::read_model).
+/// Reads a Wavefront file; see [`read_model`](crate::scene::read_model).
 fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
         diagnostics.push(error);
@@ -61,7 +62,7 @@ fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     wires.groups.retain(|wires| !wires.lines.is_empty() || !wires.points.is_empty());
     let alone = data.triangles.is_empty() && wires.groups.is_empty() && !data.positions.is_empty();
     if alone && !report.has_errors() {
-        // A file with only vertices is a point cloud.
+        // A file that contains only vertices is a point cloud.
         let points = (0..data.positions.len() as u32).collect();
         wires.groups.push(LinesAndPoints { points, ..LinesAndPoints::default() });
     }
@@ -108,14 +109,14 @@ fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     Some(scene)
 }
 
-/// Pairs each switch with the range of triangles that it applies to; the last range ends at
+/// Pairs each state change with the range of triangles that it applies to; the last range ends at
 /// `count`.
 fn runs<T>(switches: &[StateChange<T>], count: usize) -> impl Iterator<Item = (Range<usize>, &T)> {
     let ends = switches.iter().skip(1).map(|switch| switch.0).chain([count]);
     switches.iter().zip(ends).map(|((start, what), end)| (*start..end, what))
 }
 
-/// Computes normals for triangles of smoothing groups that have none in the file.
+/// Computes normals for the triangles in smoothing groups that have no normals in the file.
 fn smooth(data: &mut MeshData, switches: &[StateChange<u32>]) {
     if switches.iter().all(|&(_, group)| group == 0) {
         return;
@@ -125,8 +126,8 @@ fn smooth(data: &mut MeshData, switches: &[StateChange<u32>]) {
     smoothed(data, |triangle, _| (groups[triangle] > 0).then(|| groups[triangle]));
 }
 
-/// Splits a mesh by material name, in the order of first use. Each part comes with a byte range
-/// where its name occurs.
+/// Splits a mesh by the names of its materials, in the order in which they are first used. Each
+/// part comes with a byte range where the name of its material occurs.
 fn parts(data: &MeshData, bytes: &[u8], switches: &[StateChange<Range<usize>>]) -> Vec<(MeshData, Range<usize>)> {
     let runs = runs(switches, data.triangles.len()).map(|(run, at)| (run, at.clone()));
     let before = 0..switches.first().map_or(data.triangles.len(), |switch| switch.0);
@@ -140,14 +141,14 @@ fn parts(data: &MeshData, bytes: &[u8], switches: &[StateChange<Range<usize>>]) 
         order[number].0.push(run);
     }
     match order.as_slice() {
-        // Nothing to split.
+        // There is only one material, so nothing needs to be split.
         [] => vec![(data.clone(), 0..0)],
         [(_, at)] => vec![(data.clone(), at.clone())],
         _ => order.into_iter().map(|(runs, at)| (part(data, &runs), at)).collect(),
     }
 }
 
-/// Copies a subset of the triangles, with the vertices that they use.
+/// Copies some of the triangles, together with the vertices that they use.
 fn part(data: &MeshData, runs: &[Range<usize>]) -> MeshData {
     let mut part = MeshData::default();
     let pick = |list: &[[u32; 3]]| -> Vec<[u32; 3]> {
@@ -174,7 +175,7 @@ fn part(data: &MeshData, runs: &[Range<usize>]) -> MeshData {
     part
 }
 
-/// Renumbers the used indices from 0; returns the corresponding old indices.
+/// Renumbers the indices in use, starting from 0, and returns the old index for each new one.
 fn renumber(list: &mut [[u32; 3]]) -> Vec<u32> {
     let mut used: Vec<u32> = list.iter().flatten().copied().filter(|&i| i != NO_INDEX).collect();
     used.sort_unstable();

@@ -8,7 +8,8 @@ use std::sync::Arc;
 
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-/// Returns the diagnostics for a square's vertices, which take four lines, followed by more text.
+/// Returns the diagnostics for a file in which the vertices of a square, on four lines, are
+/// followed by the given text.
 fn findings(more: &str) -> Vec<String> {
     read(format!("{SQUARE}{more}").as_bytes(), "m.obj").1
 }
@@ -90,7 +91,7 @@ fn wrong_numbers() {
     for (text, expected) in cases {
         assert_eq!(findings(text), [expected], "{text}");
     }
-    // An invalid vertex still counts, so that faces that use it are not reported as well.
+    // An invalid vertex is still counted, so that faces that use it are not reported as well.
     assert_eq!(findings("v 1 2\nf 1 2 5\nf 1 2 9\n").len(), 2);
 }
 
@@ -148,7 +149,7 @@ fn nothing_panics() {
     abuse(text.replace("vt 1.#INF\n", "").as_bytes(), "m.obj");
 }
 
-/// Returns the name, the number of triangles and the number of vertices of each mesh in a scene.
+/// Returns the name, the number of triangles, and the number of vertices of each mesh in a scene.
 fn meshes(scene: &Scene) -> Vec<(String, usize, usize)> {
     let count = |(name, data): (&String, &Arc<MeshData>)| (name.clone(), data.triangles.len(), data.positions.len());
     scene.assets.meshes.iter().map(count).collect()
@@ -161,7 +162,7 @@ fn lines_points_and_lone_vertices_become_sticks_and_balls() {
     let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     let (scene, messages) = read(&format!("mtllib m.mtl\n{vertices}f 1 2 3\nusemtl red\nl -1/1 1 2\np 3\n"));
     let named = |name: &str, triangles, positions| (name.to_string(), triangles, positions);
-    // Two sticks of six sides, and an octahedron.
+    // The scene contains two sticks with six sides each, and an octahedron.
     assert_eq!(meshes(&scene.unwrap()), [named("m.obj", 1, 3), named("m.obj#red", 32, 30)]);
     let note = "2 lines and 1 point without a surface: thin sticks and small balls are shown";
     assert_eq!(messages, [format!("m.obj:6:8 note {note}")]);
@@ -196,26 +197,27 @@ fn material_file_names_may_have_blanks() {
 
 #[test]
 fn smoothing_group_smooths_its_faces() {
-    // Two squares at a right angle along the x axis.
+    // Two squares share an edge along the x axis and form a right angle.
     let corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 1\nv 0 0 1\n";
     let of = |faces: &str| {
         let (scene, messages) = read_in(&std::env::temp_dir(), "m.obj", &format!("{corners}{faces}"));
         assert_eq!(messages, [""; 0], "{faces}");
         let scene = scene.unwrap();
         let data = scene.assets.meshes.values().next().unwrap();
-        // The normal of each face's first corner, which is the origin.
+        // Get the normal at the first corner of each face, which is at the origin.
         let normal = |triangle: usize| data.normals[data.triangle_normals[triangle][0] as usize];
         data.triangle_normals.first().map(|_| [normal(0), normal(2)])
     };
     let half = (Vec3::Z + Vec3::Y).normalize();
     let [one, other] = of("s 1\nf 1 2 3 4\nf 1 6 5 2\n").unwrap();
-    // Two triangles that meet at a corner of a square are weighted by their angles.
+    // The normals of two triangles that meet at a corner of a square are weighted by the angles of
+    // the triangles.
     assert!((one - half).length() < 1e-6 && one == other, "{one} {other}");
-    // Each of the two groups has its own normals.
+    // Each of the two smoothing groups has its own normals.
     assert_eq!(of("s 1\nf 1 2 3 4\ns 2\nf 1 6 5 2\n").unwrap(), [Vec3::Z, Vec3::Y]);
     assert_eq!(of("s off\nf 1 2 3 4\nf 1 6 5 2\n"), None);
     assert_eq!(of("f 1 2 3 4\nf 1 6 5 2\n"), None);
-    // Normals in the file are kept.
+    // Normals that the file contains are kept.
     let [one, other] = of("vn 0 1 0\ns 1\nf 1//1 2//1 3//1 4//1\nf 1 6 5 2\n").unwrap();
     assert_eq!([one, other], [Vec3::Y, Vec3::Y]);
 }
@@ -233,6 +235,6 @@ fn texture_without_kd_keeps_its_colours() {
         Material::Principled(layers) => layers.base_color.x,
         _ => panic!(),
     };
-    // The last material belongs to the ground.
+    // The last material is that of the ground.
     assert_eq!(scene.unwrap().materials[..3].iter().map(base).collect::<Vec<_>>(), [1.0, 0.5, 0.8]);
 }

@@ -1,4 +1,4 @@
-//! Reads lines and points of a Wavefront file, which have no surface.
+//! Reads the lines and points of a Wavefront file, which have no surface.
 
 use super::Statement;
 use super::faces::index;
@@ -10,7 +10,7 @@ use std::ops::Range;
 /// Lines and points of a Wavefront file that share one material.
 #[derive(Default)]
 pub(super) struct LinesAndPoints {
-    /// Byte range where the material's name occurs; empty if there is no material.
+    /// Byte range where the name of the material occurs, or an empty range if there is no material.
     pub(super) material: Range<usize>,
     /// Pairs of vertex indices.
     pub(super) lines: Vec<[u32; 2]>,
@@ -20,17 +20,17 @@ pub(super) struct LinesAndPoints {
 /// Reader of the line and point statements `l` and `p` of a Wavefront file.
 pub(super) struct WireReader<'a> {
     pub(super) bytes: &'a [u8],
-    /// Number of vertices in the whole file, and number of vertices before the current statement.
+    /// Number of vertices in the whole file, and the number of them before the current statement.
     pub(super) vertices: [usize; 2],
-    /// Byte range of the current material's name.
+    /// Byte range of the name of the current material.
     pub(super) material: Range<usize>,
-    /// Lines and points by material, in order of first use.
+    /// Lines and points grouped by material, in the order in which the materials are first used.
     pub(super) groups: Vec<LinesAndPoints>,
     numbers: BTreeMap<&'a [u8], usize>,
 }
 
 impl<'a> WireReader<'a> {
-    /// Creates a reader for a file with this many vertices.
+    /// Creates a reader for a file that contains this many vertices.
     pub(super) fn new(bytes: &'a [u8], vertices: usize) -> Self {
         WireReader { bytes, vertices: [vertices, 0], material: 0..0, groups: Vec::new(), numbers: BTreeMap::new() }
     }
@@ -44,7 +44,7 @@ impl<'a> WireReader<'a> {
         let wires = &mut self.groups[number];
         let mut last = None;
         while let Some(word) = words.next_word() {
-            // Ignore the texture coordinate: a stick has none.
+            // Ignore the texture coordinate, because a stick has none.
             let length = self.bytes[word.clone()].iter().position(|&byte| byte == b'/').unwrap_or(word.len());
             let at = word.start..word.start + length;
             let Some(vertex) = index(self.bytes, at, 0, self.vertices, report) else { return };

@@ -1,12 +1,14 @@
-//! Tokenizer for Wavefront files: splits a file into statements, and statements into words.
+//! Tokenizer for Wavefront files, which splits a file into statements and each statement into
+//! words.
 
 use crate::number::is_not_finite_tail;
 use std::ops::Range;
 
-/// Cursor over the words of a Wavefront file, one statement after the other.
+/// Cursor that reads the words of a Wavefront file, one statement after another.
 ///
-/// A statement ends with its line, unless the line ends in a backslash. `#` starts a comment, which
-/// always ends with the line. Words are returned as byte ranges, so nothing is copied.
+/// A statement ends at the end of its line, unless the line ends in a backslash. `#` starts a
+/// comment, which always ends at the end of the line. Words are returned as byte ranges, so that no
+/// text is copied.
 #[derive(Clone)]
 pub(super) struct Words<'a> {
     bytes: &'a [u8],
@@ -14,23 +16,24 @@ pub(super) struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
-    /// Starts at the beginning of a file, after a byte order mark if there is one.
+    /// Creates a cursor at the start of a file, after a byte order mark if the file has one.
     pub fn new(bytes: &'a [u8]) -> Self {
         Words { bytes, at: if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 } }
     }
 
-    /// Starts at one of the [`parts`] of a file. Ranges are relative to the whole file.
+    /// Creates a cursor at the start of one of the [`parts`] of a file. Byte ranges are relative to
+    /// the whole file.
     pub fn within(bytes: &'a [u8], part: Range<usize>) -> Self {
         let whole = Words::new(&bytes[..part.end]);
         Words { at: whole.at.max(part.start), ..whole }
     }
 
-    /// Moves to the next statement and returns its first word; `None` at the end of the file.
+    /// Moves to the next statement and returns its first word, or `None` at the end of the file.
     pub fn next_statement(&mut self) -> Option<Range<usize>> {
         loop {
             match self.next_word() {
                 Some(word) => return Some(word),
-                // Skip the line end, if there is one.
+                // Skip the line break, if there is one.
                 None if self.at < self.bytes.len() => self.at += 1,
                 None => return None,
             }
@@ -62,7 +65,7 @@ impl<'a> Words<'a> {
             let ends = match byte {
                 b' ' | b'\t' | 0x0b | 0x0c | b'\n' | b'\r' => true,
                 b'\\' => self.continuation() > 0,
-                // `#` starts a comment, unless it is part of `1.#INF`.
+                // `#` starts a comment, except in `1.#INF`.
                 b'#' => !is_not_finite_tail(&self.bytes[self.at..]),
                 _ => false,
             };
@@ -74,7 +77,7 @@ impl<'a> Words<'a> {
         Some(start..self.at)
     }
 
-    /// Skips the rest of the statement; returns the end of its last word if words were left.
+    /// Skips the rest of the statement; if any words were left, returns the end of the last one.
     pub fn skip_rest(&mut self) -> Option<usize> {
         std::iter::from_fn(|| self.next_word()).last().map(|word| word.end)
     }
@@ -89,7 +92,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Returns the length in bytes of a line continuation at the cursor; 0 if there is none.
+    /// Returns the length in bytes of a line continuation at the cursor, or 0 if there is none.
     fn continuation(&self) -> usize {
         match self.bytes[self.at..] {
             [b'\\', b'\r', b'\n', ..] => 3,
@@ -100,8 +103,8 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Splits a file into parts of about a megabyte that end between statements, for parallel reading.
-/// The result does not depend on the number of processors.
+/// Splits a file into parts of about one megabyte for parallel reading; each part ends between two
+/// statements. The result does not depend on the number of processors.
 pub(super) fn parts(bytes: &[u8]) -> Vec<Range<usize>> {
     const SIZE: usize = 1 << 20;
     let mut all = Vec::new();

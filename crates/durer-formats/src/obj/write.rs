@@ -1,14 +1,14 @@
-//! Writer of Wavefront files: all attributes of a mesh except second texture coordinates and
-//! tangents.
+//! Writer of Wavefront files, which keeps all attributes of a mesh except second texture
+//! coordinates and tangents.
 
 use durer_scene::shape::MeshData;
 use durer_scene::shape::mesh::NO_INDEX;
 use std::fmt::Write;
 
-/// Formats a mesh as a Wavefront file. Numbers have the fewest digits that read back to the same
-/// value.
+/// Formats a mesh as a Wavefront file. Numbers are written with the fewest digits that read back as
+/// the same value.
 pub(crate) fn write(mesh: &MeshData) -> Vec<u8> {
-    // Writing to a String cannot fail.
+    // Writing to a `String` never fails.
     let mut out = String::new();
     for (i, p) in mesh.positions.iter().enumerate() {
         let _ = write!(out, "v {} {} {}", p.x, p.y, p.z);

@@ -1,16 +1,16 @@
-//! Reader and writer of IES files, which contain light distributions of luminaires: ANSI/IES LM-63
-//! of 1986 to 2019.
+//! Reader and writer of IES files, which contain the light distributions of luminaires, according
+//! to ANSI/IES LM-63, versions 1986 to 2019.
 //!
-//! A file has lines of text, of which `TILT=` is the last, then numbers: the counts of angles, the
-//! angles, and the candela values.
+//! A file begins with lines of text, the last of which starts with `TILT=`. The lines are followed
+//! by numbers: the number of angles of each kind, the angles, and the candela values.
 
 use durer_diag::{Diagnostic, Diagnostics, Severity, Span};
 use durer_scene::light::photometric::{PhotometricProfile, ProfileKind};
 
-/// Maximum number of angles; more than any photometer measures.
+/// Maximum number of angles, which is more than any photometer measures.
 const MAX_ANGLES: f64 = 4_000.0;
 
-/// Cursor over the numbers of an IES file.
+/// Cursor that reads the numbers of an IES file.
 struct Numbers<'t> {
     text: &'t str,
     at: usize,
@@ -23,8 +23,8 @@ impl Numbers<'_> {
         Box::new(Diagnostic::error(message).code("bad-file").at(span))
     }
 
-    /// Reads the next number; `what` names it in errors. Some files in circulation also separate
-    /// numbers by commas.
+    /// Reads the next number; `what` is its name in error messages. Some files in circulation use
+    /// commas as well to separate numbers.
     fn next(&mut self, what: &str) -> Result<(f64, usize), Box<Diagnostic>> {
         let rest = &self.text[self.at..];
         let between = |c: char| c.is_whitespace() || c == ',';
@@ -51,7 +51,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// Reads a factor, which must not be negative.
+    /// Reads a factor that must not be negative.
     fn factor(&mut self, what: &str) -> Result<f64, Box<Diagnostic>> {
         let (number, start) = self.next(what)?;
         match number >= 0.0 {
@@ -77,7 +77,7 @@ impl Numbers<'_> {
     }
 }
 
-/// Reads an IES file. Returns `None` after pushing errors to the diagnostics.
+/// Reads an IES file. If there are errors, adds them to the diagnostics and returns `None`.
 pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<PhotometricProfile> {
     let (profile, odd) = parse(text, file).map_err(|error| diagnostics.push(*error)).ok()?;
     odd.into_iter().for_each(|warning| diagnostics.push(warning));
@@ -106,7 +106,8 @@ fn parse(text: &str, file: u32) -> Result<(PhotometricProfile, Vec<Diagnostic>),
     match tilt.as_str() {
         "NONE" => {}
         "INCLUDE" => {
-            // Skip the factors for tilted luminaires, which have no effect in the usual position.
+            // Skip the factors for tilted luminaires, which have no effect when the luminaire is
+            // mounted in its usual position.
             numbers.next("tilt geometry")?;
             let pairs = numbers.count("number of tilt angles")?;
             numbers.angles(pairs, "tilt angle")?;
@@ -138,7 +139,8 @@ fn parse(text: &str, file: u32) -> Result<(PhotometricProfile, Vec<Diagnostic>),
         numbers.next(what)?;
     }
     let ballast = numbers.factor("ballast factor")?;
-    // A photometric factor in the standard of 1986. It is reserved in later standards, and 1.
+    // The standard of 1986 defines this number as a photometric factor. In later standards, this
+    // number is reserved and always 1.
     let (reserved, _) = numbers.next("reserved number")?;
     numbers.next("watts")?;
     let vertical = numbers.angles(verticals, "vertical angle")?;
@@ -171,8 +173,8 @@ fn parse(text: &str, file: u32) -> Result<(PhotometricProfile, Vec<Diagnostic>),
     };
     let (first, last) = (horizontal[0], horizontal[horizontals - 1]);
     if kind == ProfileKind::C && horizontals > 1 && first == 0.0 && last > 180.0 && last < 360.0 {
-        // The file leaves the remaining angles undefined, so close the circle with the first
-        // values.
+        // The file does not define the remaining angles, so close the circle with the values of the
+        // first angle.
         warn(angles.clone(), "the horizontal angles end before 360: the gap is interpolated linearly");
         horizontal.push(360.0);
         candela.extend_from_within(..verticals);
@@ -186,7 +188,7 @@ fn parse(text: &str, file: u32) -> Result<(PhotometricProfile, Vec<Diagnostic>),
     Ok((PhotometricProfile { kind, vertical, horizontal, candela }, odd))
 }
 
-/// Encodes a profile as an IES file that reads back bit for bit.
+/// Encodes a profile as an IES file that reads back exactly, bit for bit.
 pub fn write(profile: &PhotometricProfile) -> Vec<u8> {
     let PhotometricProfile { kind, vertical, horizontal, candela } = profile;
     let kind = match kind {
@@ -224,8 +226,8 @@ mod tests {
 
     #[test]
     fn flux_matches_closed_form() {
-        // I = 1000 cos over the lower half gives pi 1000 lm. 100 cd in all directions gives 4 pi
-        // 100 lm.
+        // An intensity of 1000 cos(gamma) cd over the lower half gives a flux of 1000 pi lm. An
+        // intensity of 100 cd in all directions gives 400 pi lm.
         let angles: Vec<f64> = (0..=36).map(|i| 2.5 * f64::from(i)).collect();
         let cosine: Vec<String> = angles.iter().map(|a| format!("{}", 1000.0 * fp_cos(*a))).collect();
         let angles: Vec<String> = angles.iter().map(f64::to_string).collect();
@@ -280,7 +282,7 @@ mod tests {
                 "{text}: {line}:{column} {warning:?}"
             );
             if expected.contains("360") {
-                // Halfway from 270 to 360.
+                // The angle is halfway between 270 and 360 degrees.
                 let (sin, cos) = durer_scene::math::fp::sin_cos_degrees(315.0);
                 let dir = durer_scene::math::Vec3::new(cos as f32, sin as f32, 0.0);
                 assert!((profile.at(dir) - 2.0).abs() < 1e-3, "{}", profile.at(dir));
@@ -321,7 +323,7 @@ mod tests {
             ("TILT=NONE\n1 1 1 1e9 1 1 2", "2:7 the number of vertical angles must be a whole number from 1 to 4000"),
             ("TILT=lamp.tlt\n1 1", "1:1 tilt data in another file (`LAMP.TLT`) is not supported"), // prose: keep
             ("TILT=NONE\n1 x", "2:3 expected the lumens per light source, found `x`"),
-            // Found by fuzzing: the difference to the next angle is not finite.
+            // Fuzzing found this case: the difference to the next angle is not finite.
             (
                 "TILT=NONE\n1 1 1 2 1 1 2 0 0 0\n1 1 1\n-1e126 2\n0\n1 2",
                 "4:1 a vertical angle must lie between -360 and 360 degrees",

@@ -1,36 +1,36 @@
-//! Reader of EULUMDAT files (`.ldt`), which contain light distributions of luminaires and are
+//! Reader of EULUMDAT files (`.ldt`), which contain the light distributions of luminaires and are
 //! common in Europe.
 //!
-//! A file has one value per line, in a fixed order: the type of luminaire, the symmetry of its
-//! planes, its light sources and their flux, the angles, and intensities in candela per 1000 lumens
-//! of that flux.
+//! A file has one value per line, in a fixed order: the type of the luminaire, the symmetry of its
+//! half-planes, its light sources and their flux, the angles, and the intensities in candela per
+//! 1000 lumens of that flux.
 //!
 //! Source: A. W. Stockmar, *EULUMDAT: ein Leuchtendatenformat für den europäischen
-//! Beleuchtungsplaner*, Licht '90; the order of lines as Paul Bourke and Lighting Sciences publish
-//! it.
+//! Beleuchtungsplaner*, Licht '90; the order of the lines follows the descriptions that Paul Bourke
+//! and Lighting Sciences have published.
 
 use durer_diag::{Diagnostic, Diagnostics, Severity, Span};
 use durer_scene::light::photometric::{PhotometricProfile, ProfileKind};
 
-/// Limits of the format: number of planes, and number of angles in each plane.
+/// Limits of the format: the number of half-planes, and the number of angles in each of them.
 const MAX_PLANES: usize = 721;
 const MAX_ANGLES: usize = 361;
 
-/// Symmetry of a EULUMDAT light distribution, which determines the half-planes that the file lists.
+/// Symmetry of a EULUMDAT light distribution, which determines which half-planes the file lists.
 #[derive(Clone, Copy)]
 enum Symmetry {
     None,
-    /// Rotational symmetry: all half-planes are equal.
+    /// Rotational symmetry, which makes all half-planes equal.
     Axis,
-    /// Mirror symmetry about the plane of C = 0 and 180 degrees.
+    /// Mirror symmetry about the plane through C = 0 and 180 degrees.
     C0,
-    /// Mirror symmetry about the plane of C = 90 and 270 degrees.
+    /// Mirror symmetry about the plane through C = 90 and 270 degrees.
     C90,
-    /// Mirror symmetry about both planes.
+    /// Mirror symmetry about both of these planes.
     Both,
 }
 
-/// Cursor over the lines of a EULUMDAT file.
+/// Cursor that reads the lines of a EULUMDAT file.
 struct Lines<'t> {
     text: &'t str,
     at: usize,
@@ -45,7 +45,7 @@ impl<'t> Lines<'t> {
         Box::new(Diagnostic::error(message).code("bad-file").at(span))
     }
 
-    /// Returns the next line without surrounding whitespace, and its offset.
+    /// Returns the next line without surrounding whitespace, and the offset of the line.
     fn next(&mut self, what: &str) -> LdtResult<(&'t str, usize)> {
         if self.at >= self.text.len() {
             return Err(self.error(self.at, self.at, format!("the file ends where the {what} should be")));
@@ -61,7 +61,7 @@ impl<'t> Lines<'t> {
         (0..lines).try_for_each(|_| self.next(what).map(drop))
     }
 
-    /// Reads a number; the decimal separator may be a comma.
+    /// Reads a number, in which the decimal separator may be a comma.
     fn number(&mut self, what: &str) -> LdtResult<(f64, usize, usize)> {
         let (line, start) = self.next(what)?;
         let end = start + line.len();
@@ -104,15 +104,15 @@ impl<'t> Lines<'t> {
     }
 }
 
-/// Returns true if a text begins like a EULUMDAT file: the second and the third line, type of
-/// luminaire and symmetry, are integers.
+/// Returns true if a text begins like a EULUMDAT file: its second and third lines, the type of the
+/// luminaire and its symmetry, are integers.
 pub(super) fn recognise(text: &str) -> bool {
     let mut lines = text.lines().map(str::trim).skip(1);
     let mut is_whole = || lines.next().is_some_and(|line| line.parse::<u32>().is_ok());
     is_whole() && is_whole()
 }
 
-/// Reads a EULUMDAT file. Returns `None` after pushing errors to the diagnostics.
+/// Reads a EULUMDAT file. If there are errors, adds them to the diagnostics and returns `None`.
 pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<PhotometricProfile> {
     parse(text, file, diagnostics).map_err(|error| diagnostics.push(*error)).ok()
 }
@@ -137,7 +137,7 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<Phot
     let factor = lines.not_negative("conversion factor")?;
     lines.skip(1, "tilt")?;
     let sets = lines.integer("number of sets of light sources", 1, 20)?;
-    // The sets are alternatives; use the first one.
+    // The sets of light sources are alternatives, so use the first one.
     lines.skip(2, "number and type of the light sources")?;
     let flux = lines.not_negative("flux of the light sources")?;
     lines.skip(3 + 6 * (sets - 1), "colour and watts of the light sources")?;
@@ -164,13 +164,13 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<Phot
     }
     let mut profile = PhotometricProfile { kind: ProfileKind::C, vertical, horizontal, candela };
     match symmetry {
-        // Close the circle with the first plane.
+        // Close the circle by repeating the first half-plane.
         Symmetry::None if count > 1 && profile.horizontal[count - 1] < 360.0 => {
             profile.horizontal.push(360.0);
             profile.candela.extend_from_within(..verticals);
         }
-        // EULUMDAT lists half-planes from C = 270 over 0 to 90 degrees; profiles list 90 to 270, as
-        // IES files do.
+        // For this symmetry, EULUMDAT files list the half-planes from C = 270 through 0 to 90
+        // degrees, whereas profiles list those from 90 to 270 degrees, as IES files do.
         Symmetry::C90 => mirror_half(&mut profile),
         _ => {}
     }
@@ -183,7 +183,7 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> LdtResult<Phot
 }
 
 impl Lines<'_> {
-    /// Selects the half-planes for which the file has intensities.
+    /// Selects the half-planes for which the file contains intensities.
     fn select_planes(&self, symmetry: Symmetry, planes: Vec<f32>, at: std::ops::Range<usize>) -> LdtResult<Vec<f32>> {
         let within = |from: f32, to: f32| planes.iter().copied().filter(|c| (from..=to).contains(c)).collect();
         let (kept, ends): (Vec<f32>, _) = match symmetry {
@@ -191,13 +191,14 @@ impl Lines<'_> {
             Symmetry::None => (planes, [0.0, f32::NAN]),
             Symmetry::C0 => (within(0.0, 180.0), [0.0, 180.0]),
             Symmetry::C90 => {
-                // Half-planes are listed from 270 to 360, then from 0 to 90 degrees.
+                // The half-planes are listed from 270 to 360 degrees, and then from 0 to 90
+                // degrees.
                 let below = planes.iter().filter(|c| **c >= 270.0 && **c < 360.0).map(|c| c - 360.0);
                 (below.chain(within(0.0, 90.0)).collect(), [-90.0, 90.0])
             }
             Symmetry::Both => (within(0.0, 90.0), [0.0, 90.0]),
         };
-        // Without symmetry, the last half-plane can be at any angle.
+        // Without symmetry, the last half-plane may be at any angle.
         let [first, last] = ends;
         if kept.first() == Some(&first) && (last.is_nan() || kept.last() == Some(&last)) {
             return Ok(kept);
@@ -209,7 +210,8 @@ impl Lines<'_> {
     }
 }
 
-/// Replaces the half-planes from -90 to 90 degrees by their mirror images, from 90 to 270 degrees.
+/// Replaces the half-planes between -90 and 90 degrees with their mirror images between 90 and 270
+/// degrees.
 fn mirror_half(profile: &mut PhotometricProfile) {
     let verticals = profile.vertical.len();
     profile.horizontal = profile.horizontal.iter().rev().map(|c| 180.0 - c).collect();
@@ -222,9 +224,9 @@ mod tests {
     use durer_diag::Files;
     use durer_scene::math::{Vec3, fp};
 
-    /// Returns a test file with the given symmetry, number of half-planes around the circle, flux,
-    /// and intensities as a function of C and gamma. Only the half-planes in `written` are in the
-    /// file.
+    /// Returns a test file with the given symmetry, number of half-planes around the circle, and
+    /// flux. Its intensities are a function of C and gamma. The file contains only the half-planes
+    /// in `written`.
     fn file(symmetry: u32, count: usize, flux: &str, written: &[f64], value: impl Fn(f64, f64) -> f64) -> String {
         let gammas: Vec<f64> = (0..=36).map(|i| 5.0 * f64::from(i)).collect();
         let planes = (0..count).map(|i| 360.0 / count as f64 * i as f64);
@@ -258,7 +260,8 @@ mod tests {
 
     #[test]
     fn every_symmetry_fills_the_circle() {
-        // Candela per 1000 lumens of 2000 lumens. Each function has the symmetry of its row.
+        // The values are in candela per 1000 lumens, and the flux is 2000 lumens. Each function has
+        // the symmetry that is named in its row.
         let cos = |degrees: f64| fp::sin_cos_degrees(degrees).1;
         let sin = |degrees: f64| fp::sin_cos_degrees(degrees).0;
         let all: Vec<f64> = (0..24).map(|i| 15.0 * f64::from(i)).collect();
@@ -282,7 +285,7 @@ mod tests {
                     let dir = Vec3::new((flat * cos(c)) as f32, (flat * sin(c)) as f32, cos(g) as f32);
                     let expected = 2.0 * value(cos(c), sin(c)) * (1.0 + cos(g));
                     let found = f64::from(profile.at(dir));
-                    // Values between half-planes are interpolated linearly.
+                    // Values between the half-planes are interpolated linearly.
                     assert!(
                         (found - expected).abs() < 0.006 * expected,
                         "{symmetry}, {c}, {g}: {found}, not {expected}"

@@ -1,4 +1,4 @@
-//! Reads the rows of a PLY file; decides which elements to read, and in which order.
+//! Reads the rows of a PLY file, and decides which elements to read and in which order.
 
 use super::header::{Element, Property};
 use super::values::{ValueError, ValueReader};
@@ -8,17 +8,18 @@ use crate::report::{Report, count_text, quoted};
 use durer_scene::shape::mesh::MeshData;
 use std::ops::Range;
 
-/// Error type of the PLY reader: reading cannot continue, and the error has already been reported.
+/// Error type of the PLY reader, which means that reading cannot continue and that the error has
+/// already been reported.
 pub(super) struct ErrorReported;
 
-/// Reader that converts the rows of all elements of a PLY file to a mesh.
+/// Reader that converts the rows of all elements in a PLY file to a mesh.
 pub(super) struct RowReader<'a, 'r, V> {
     pub bytes: &'a [u8],
     pub report: &'r mut Report,
     pub values: V,
     pub mesh: MeshData,
     pub triangulator: Triangulator,
-    /// Corners of the current face or strip.
+    /// Corners of the current face or triangle strip.
     pub corners: Vec<u32>,
 }
 
@@ -28,7 +29,7 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
         RowReader { bytes, report, values, mesh: MeshData::default(), triangulator, corners: Vec::new() }
     }
 
-    /// Reads all elements: the vertices first, wherever they are in the file.
+    /// Reads all elements, starting with the vertices, wherever they are in the file.
     pub fn read(mut self, elements: &[Element]) -> Option<MeshData> {
         self.read_elements(elements).ok()?;
         Some(self.mesh)
@@ -36,7 +37,7 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
 
     fn read_elements(&mut self, elements: &[Element]) -> Result<(), ErrorReported> {
         let mut has_vertices = false;
-        // Faces that precede the vertices are skipped here and read at the end.
+        // Faces that come before the vertices are skipped here and read at the end.
         let mut later: Vec<(&Element, V)> = Vec::new();
         for element in elements {
             self.check_rows(element)?;
@@ -68,7 +69,7 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
             self.read_faces(element)?;
         }
         let MeshData { uvs, normals, triangles, triangle_uvs, triangle_normals, .. } = &mut self.mesh;
-        // Texture coordinates and normals are stored for each vertex, so their indices are those of
+        // Texture coordinates and normals are stored per vertex, so they have the same indices as
         // the vertices.
         if !uvs.is_empty() {
             triangle_uvs.clone_from(triangles);
@@ -79,7 +80,7 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
         Ok(())
     }
 
-    /// Reports an element that has more rows than the rest of the file can contain.
+    /// Reports an element whose rows cannot all fit into the rest of the file.
     fn check_rows(&mut self, element: &Element) -> Result<(), ErrorReported> {
         let sizes = element.properties.iter().map(|p| p.length_type.map_or(V::fixed_size(p.number_type), |_| None));
         let Some(size) = sizes.sum::<Option<usize>>() else { return Ok(()) };
@@ -98,17 +99,18 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
         Ok(())
     }
 
-    /// Returns the number of promised rows, limited by the size of the file. Used to reserve
-    /// memory.
+    /// Returns the number of rows that the header promises, limited by what the size of the file
+    /// allows. The result is used to reserve memory.
     pub fn likely_rows(&self, element: &Element) -> usize {
-        // Even an empty list has a length, and a text value takes at least one digit and one space.
+        // Even an empty list stores its length, and a value in a text file takes at least one digit
+        // and one space.
         let smallest = |p: &Property| V::fixed_size(p.length_type.unwrap_or(p.number_type)).unwrap_or(2);
         let row = element.properties.iter().map(smallest).sum::<usize>().max(1);
         element.rows.min((self.values.remainder().len() / row + 1) as u64) as usize
     }
 
     fn skip_rows(&mut self, element: &Element) -> Result<(), ErrorReported> {
-        // Rows without properties take no bytes, so any number of them could be promised.
+        // Rows without properties take no bytes, so a header can promise any number of them.
         if element.properties.is_empty() {
             return Ok(());
         }
@@ -120,7 +122,7 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
         Ok(())
     }
 
-    /// Skips the value or list of a property in one row.
+    /// Skips the value or list that a property has in one row.
     pub fn skip_property(&mut self, element: &Element, row: u64, property: &Property) -> Result<(), ErrorReported> {
         let count = match property.length_type {
             Some(_) => self.list_length(element, row, property)?,
@@ -129,8 +131,7 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
         self.values.skip(property.number_type, count).map_err(|error| self.fail(error, element, row))
     }
 
-    /// Reads the length of a list, and checks that the rest of the file can contain that many
-    /// values.
+    /// Reads the length of a list and checks that so many values can fit into the rest of the file.
     pub fn list_length(&mut self, element: &Element, row: u64, property: &Property) -> Result<usize, ErrorReported> {
         let Some(scalar) = property.length_type else { return Ok(1) };
         let length = self.values.integer(scalar).map_err(|error| self.fail(error, element, row))?;
@@ -149,7 +150,8 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
         }
     }
 
-    /// Reports a missing or invalid value. The caller must stop unless it can skip the value.
+    /// Reports a missing or invalid value. The caller must stop reading unless it can skip the
+    /// value.
     pub fn fail(&mut self, error: ValueError, element: &Element, row: u64) -> ErrorReported {
         let at = self.values.last();
         match error {
@@ -165,7 +167,8 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
         ErrorReported
     }
 
-    /// Reports an invalid value and continues, unless the file has ended or the report is full.
+    /// Reports an invalid value and continues, unless the file has ended or no more errors can be
+    /// reported.
     pub fn report_and_continue(&mut self, error: ValueError, element: &Element, row: u64) -> Result<(), ErrorReported> {
         let stop = self.fail(error, element, row);
         if error == ValueError::End || self.report.is_full() { Err(stop) } else { Ok(()) }
@@ -173,7 +176,7 @@ impl<'a, 'r, V: ValueReader> RowReader<'a, 'r, V> {
 
     fn wrong_number(&mut self, error: NumberError, at: Range<usize>) {
         let value = &self.bytes[at.clone()];
-        // The raw bytes of a binary value would not help the reader of the message.
+        // The raw bytes of a binary value would not help the user.
         if V::fixed_size(super::header::NumberType::U8).is_some() {
             self.report.error(at, "expected a finite number, found an infinite value or NaN").help =
                 Some("numbers must lie within the range of 32-bit floating point, about ±3.4e38".into());

@@ -1,7 +1,7 @@
-//! Fast reader of binary rows with a fixed size, which nearly all large files have.
+//! Fast reader for binary rows of a fixed size, which nearly all large files have.
 //!
-//! Rows that are invalid or vary in size are left to the reader of single rows, which reports
-//! errors.
+//! Rows that are invalid or vary in size are left to the slower reader of single rows, which
+//! reports the errors.
 
 use super::body::RowReader;
 use super::header::{Element, NumberType};
@@ -10,19 +10,19 @@ use super::values::ValueReader;
 use durer_scene::math::{Vec2, Vec3};
 use rayon::prelude::*;
 
-/// Number of rows in a parallel task. They stay in a core's cache while their columns are read one
-/// by one.
+/// Number of rows that one parallel task reads. So many rows fit into a core's cache while their
+/// columns are read one after another.
 const BLOCK: usize = 1 << 11;
 
-/// Binary rows of one PLY element, all of the same size.
+/// Binary rows of one PLY element that all have the same size.
 struct Rows<'a> {
     bytes: &'a [u8],
-    /// Size of a row in bytes.
+    /// Size of each row in bytes.
     size: usize,
     big_endian: bool,
 }
 
-/// Visits a column of numbers of one type; returns true if all are valid.
+/// Visits a column of numbers of one type and returns true if all of them are valid.
 macro_rules! column {
     ($rows:expr, $at:expr, $number:ty, |$i:ident, $value:ident| $is_good:expr) => {{
         let (rows, mut good) = ($rows, true);
@@ -36,11 +36,11 @@ macro_rules! column {
     }};
 }
 
-/// Type of a number and its byte offset in a row.
+/// Type of a number, and its byte offset within a row.
 type NumberLayout = (NumberType, usize);
 
 impl Rows<'_> {
-    /// Reads `N` numbers of each row; `None` if one is not finite.
+    /// Reads `N` numbers from each row; returns `None` if any of them is not finite.
     fn gather<const N: usize>(&self, places: [NumberLayout; N]) -> Option<Vec<[f32; N]>> {
         let mut all = vec![[0.0; N]; self.bytes.len() / self.size];
         let blocks = all.par_chunks_mut(BLOCK).zip(self.bytes.par_chunks(BLOCK * self.size));
@@ -51,7 +51,7 @@ impl Rows<'_> {
         sound.all(|sound| sound).then_some(all)
     }
 
-    /// Reads `N` numbers of each row; returns an empty list if the rows lack one of the columns.
+    /// Reads `N` numbers from each row; returns an empty list if one of the columns is missing.
     fn all<const N: usize>(&self, places: &[Option<NumberLayout>]) -> Option<Vec<[f32; N]>> {
         let places: Option<Vec<NumberLayout>> = places.iter().copied().collect();
         match places.and_then(|places| places.try_into().ok()) {
@@ -60,7 +60,7 @@ impl Rows<'_> {
         }
     }
 
-    /// Passes one number of each row to `put`; returns true if all are finite.
+    /// Passes one number from each row to `put`; returns true if all of them are finite.
     fn each(&self, (scalar, at): NumberLayout, mut put: impl FnMut(usize, f32)) -> bool {
         macro_rules! read {
             ($number:ty) => {
@@ -83,8 +83,8 @@ impl Rows<'_> {
         }
     }
 
-    /// Reads three vertex indices of each row from the list at the given position; `None` if a list
-    /// has another length or an index is not below `vertices`.
+    /// Reads three vertex indices of each row from the list at the given position; returns `None`
+    /// if a list has another length or if an index is not less than `vertices`.
     fn triangles(&self, count: NumberLayout, corners: NumberType, vertices: usize) -> Option<Vec<[u32; 3]>> {
         let mut all = vec![[0; 3]; self.bytes.len() / self.size];
         let first = count.1 + count.0.size();
@@ -102,7 +102,7 @@ impl Rows<'_> {
         sound.all(|sound| sound).then_some(all)
     }
 
-    /// Passes one integer of each row to `is_good`; returns true if all are accepted.
+    /// Passes one integer from each row to `is_good`; returns true if it accepts all of them.
     fn all_integers(&self, (scalar, at): NumberLayout, mut is_good: impl FnMut(usize, i64) -> bool) -> bool {
         macro_rules! read {
             ($number:ty) => {
@@ -122,7 +122,7 @@ impl Rows<'_> {
 }
 
 impl<V: ValueReader> RowReader<'_, '_, V> {
-    /// Returns the rows of an element, of `size` bytes each, if the file contains all of them.
+    /// Returns the rows of an element, each `size` bytes long, if the file contains all of them.
     fn rows(&self, element: &Element, size: usize) -> Option<Rows<'_>> {
         let big_endian = V::BIG_ENDIAN?;
         let left = &self.bytes[self.values.remainder()];
@@ -130,7 +130,7 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
         Some(Rows { bytes: left.get(..length).filter(|_| size > 0)?, size, big_endian })
     }
 
-    /// Reads all vertices at once; `None` if they must be read row by row.
+    /// Reads all vertices at once; returns `None` if they must be read row by row.
     pub(super) fn fixed_vertices(&mut self, element: &Element, columns: &[Option<usize>]) -> Option<()> {
         let mut places = [None; COLUMNS.len()];
         let mut size = 0;
@@ -143,7 +143,7 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
             }
             size += property.number_type.size();
         }
-        // Colours need decoding and clamping; the reader of single rows does this.
+        // Colours must be decoded and clamped, which the reader of single rows does.
         if places[8..12].iter().any(Option::is_some) {
             return None;
         }
@@ -162,7 +162,8 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
         self.values.skip(NumberType::U8, length).ok()
     }
 
-    /// Reads all faces at once if they are triangles; `None` if they must be read row by row.
+    /// Reads all faces at once if they are triangles; returns `None` if they must be read row by
+    /// row.
     pub(super) fn fixed_faces(&mut self, element: &Element, list: usize) -> Option<()> {
         let mut size = 0;
         let mut found = None;

@@ -1,11 +1,11 @@
-//! Header of a PLY file, which describes the rows after it.
+//! Header of a PLY file, which describes the rows that follow it.
 
 use crate::number::parse_integer;
 use crate::report::{Report, quoted};
 use durer_diag::did_you_mean;
 use std::ops::Range;
 
-/// Encoding of the rows of a PLY file: text, or binary in either byte order.
+/// Encoding of the rows in a PLY file, which is text or binary in either byte order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     Ascii,
@@ -32,7 +32,7 @@ pub(super) enum NumberType {
     F64,
 }
 
-/// Old and new name of each number type.
+/// Old name and new name of each number type.
 const SCALARS: [(&str, &str, NumberType); 8] = [
     ("char", "int8", NumberType::I8),
     ("uchar", "uint8", NumberType::U8),
@@ -56,7 +56,7 @@ impl NumberType {
     }
 
     /// Value that stands for full intensity in a colour of this type: the maximum of an integer
-    /// type, or 1 for floats.
+    /// type, or 1 for floating-point types.
     pub fn full_intensity(self) -> f32 {
         match self {
             NumberType::I8 => 127.0,
@@ -77,29 +77,30 @@ impl NumberType {
 
 /// Property of a PLY element: the name and type of one column of its rows.
 pub(super) struct Property {
-    /// Byte range of the name.
+    /// Byte range of the property's name.
     pub name: Range<usize>,
     /// Type of the value, or of the values in a list.
     pub number_type: NumberType,
-    /// Type of the length, if the property is a list.
+    /// Type of the length if the property is a list.
     pub length_type: Option<NumberType>,
 }
 
-/// Element declared in a PLY header, such as `vertex` or `face`: a table with a number of rows.
+/// Element that a PLY header declares, such as `vertex` or `face`. An element is a table with a
+/// number of rows.
 pub(super) struct Element {
-    /// Byte range of the name.
+    /// Byte range of the element's name.
     pub name: Range<usize>,
     /// Number of rows that the header promises.
     pub rows: u64,
     pub properties: Vec<Property>,
 }
 
-/// Parsed header of a PLY file.
+/// Header of a PLY file after parsing.
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
-    /// True if triangles without normals are shaded flat, regardless of the default. A Dürer
-    /// extension.
+    /// True if triangles without normals are shaded flat, whatever the default is. The flag is a
+    /// Dürer extension of the format.
     pub flat: bool,
     /// Byte offset of the first row.
     pub body: usize,
@@ -110,7 +111,7 @@ const KEYWORDS: [&str; 6] = ["format", "element", "property", "comment", "obj_in
 /// Value of `obj_info` that sets [`Header::flat`].
 pub(super) const FLAT: &[u8] = b"flat";
 
-/// Reads the header of a PLY file. Returns `None` after reporting errors.
+/// Reads the header of a PLY file. Returns `None` if there are errors, after reporting them.
 pub(super) fn read_header(bytes: &[u8], report: &mut Report) -> Option<Header> {
     let mut lines = Lines { bytes, at: 0 };
     let first = lines.next_line().unwrap_or(0..0);
@@ -140,7 +141,7 @@ pub(super) fn read_header(bytes: &[u8], report: &mut Report) -> Option<Header> {
     None
 }
 
-/// Parser of a PLY header, with the elements found so far.
+/// Parser for a PLY header, which stores the elements found so far.
 struct HeaderReader<'a, 'r> {
     bytes: &'a [u8],
     report: &'r mut Report,
@@ -159,7 +160,7 @@ impl<'a> HeaderReader<'a, '_> {
         self.report.error(at.clone(), format!("expected {what}, found {}", quoted(&self.bytes[at]))).help = help;
     }
 
-    /// Reports a line with missing or extra words.
+    /// Reports a line in which words are missing or that has too many words.
     fn incomplete(&mut self, words: &[Range<usize>], form: &str) {
         let line = words[0].start..words[words.len() - 1].end;
         self.report.error(line, format!("expected `{form}`"));
@@ -172,7 +173,7 @@ impl<'a> HeaderReader<'a, '_> {
         match ENCODINGS.iter().find(|(name, _)| *name == self.text(encoding)) {
             Some(&(_, known)) => self.encoding = Some(known),
             None => {
-                // Continue, so that further errors are reported.
+                // Continue, so that later errors are reported as well.
                 self.encoding = Some(Encoding::Ascii);
                 let names = ENCODINGS.map(|(name, _)| name);
                 self.unknown(&format!("one of `{}`", names.join("`, `")), encoding.clone(), names);
@@ -187,7 +188,7 @@ impl<'a> HeaderReader<'a, '_> {
     fn element(&mut self, words: &[Range<usize>]) {
         let [_, name, rows] = words else {
             self.incomplete(words, "element <name> <number of rows>");
-            // Keep the element, so that its properties are checked too.
+            // Keep the element, so that its properties are checked as well.
             return self.elements.push(Element { name: words[0].clone(), rows: 0, properties: Vec::new() });
         };
         let number_type = parse_integer(&self.bytes[rows.clone()]).filter(|&rows| rows >= 0);
@@ -237,7 +238,7 @@ impl<'a> HeaderReader<'a, '_> {
     }
 }
 
-/// Iterator over the lines of a PLY header, without line ends.
+/// Iterator over the lines of a PLY header, without their line breaks.
 struct Lines<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -248,8 +249,8 @@ impl Lines<'_> {
         let rest = self.bytes.get(self.at..).filter(|rest| !rest.is_empty())?;
         let length = rest.iter().position(|&byte| byte == b'\n' || byte == b'\r').unwrap_or(rest.len());
         let line = self.at..self.at + length;
-        // A lone carriage return ends a line only if the first line also ends in one, because
-        // binary rows may begin with any byte.
+        // A lone carriage return ends a line only if it also ends the first line, because binary
+        // rows may begin with any byte.
         let ending = match rest[length..] {
             [b'\r', b'\n', ..] if !self.ends_with_return_alone() => 2,
             [] => 0,

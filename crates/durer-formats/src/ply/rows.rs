@@ -1,4 +1,4 @@
-//! Reads vertices, faces and triangle strips of a PLY file.
+//! Reads the vertices, faces, and triangle strips of a PLY file.
 
 use super::body::{ErrorReported, RowReader};
 use super::header::{Element, Property};
@@ -10,9 +10,10 @@ use durer_image::decode_srgb;
 use durer_scene::math::{Vec2, Vec3};
 use durer_scene::shape::mesh::NO_INDEX;
 
-/// Vertex properties that are read, each with all its names, in the order of a [`Row`].
+/// Vertex properties that are read, each with all of its possible names, in the order in which a
+/// [`Row`] stores them.
 ///
-/// The last ten are Dürer extensions for the other attributes of a mesh.
+/// The last ten are Dürer extensions for other attributes of a mesh.
 pub(super) const COLUMNS: [&[&str]; 22] = [
     &["x"],
     &["y"],
@@ -39,13 +40,14 @@ pub(super) const COLUMNS: [&[&str]; 22] = [
 ];
 
 /// Values of one vertex: position, normal, texture coordinates, colour and opacity, linear colour
-/// and opacity, second texture coordinates, tangent.
+/// and opacity, second texture coordinates, and tangent.
 type Row = [f32; COLUMNS.len()];
 
 const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 impl<V: ValueReader> RowReader<'_, '_, V> {
-    /// Returns the column of a [`Row`] for each property; `None` if the property is not read.
+    /// Returns the column of a [`Row`] that each property is read into; `None` if a property is not
+    /// read.
     fn columns(&mut self, element: &Element) -> Result<Vec<Option<usize>>, ErrorReported> {
         let mut columns = vec![None; element.properties.len()];
         let mut found: [Option<usize>; COLUMNS.len()] = [None; COLUMNS.len()];
@@ -54,7 +56,7 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
             let Some(column) = COLUMNS.iter().position(|names| names.iter().any(|n| n.as_bytes() == name)) else {
                 continue;
             };
-            // A list with the name of a colour has another meaning.
+            // A list that has the name of a colour has a different meaning.
             if property.length_type.is_some() && column >= 8 {
                 continue;
             }
@@ -62,7 +64,7 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
                 self.report.error(property.name.clone(), format!("{} must be a number, not a list", quoted(name)));
             }
             match found[column] {
-                // Some files have two sets of texture coordinates; use the first.
+                // Some files contain two sets of texture coordinates, of which the first is used.
                 Some(_) if column >= 6 => continue,
                 Some(first) => {
                     let first = self.report.span(element.properties[first].name.clone());
@@ -88,7 +90,7 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
         let has = |range: std::ops::Range<usize>| range.clone().all(|column| columns.contains(&Some(column)));
         let (has_normals, has_uvs, has_colors) = (has(3..6), has(6..8), has(8..11));
         let (has_linear, has_second, has_tangents) = (has(12..16), has(16..18), has(18..22));
-        // Integer colours are fractions of the type's maximum.
+        // Integer colours are fractions of the maximum value of their type.
         let most = |column: usize| {
             let at = columns.iter().position(|found| *found == Some(column));
             at.map_or(1.0, |at| element.properties[at].number_type.full_intensity())
@@ -141,7 +143,7 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
         Ok(())
     }
 
-    /// Reads faces or triangle strips, as the element's name says.
+    /// Reads faces or triangle strips, depending on the name of the element.
     pub(super) fn read_faces(&mut self, element: &Element) -> Result<(), ErrorReported> {
         if element.rows == 0 {
             return Ok(());
@@ -161,7 +163,7 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
                     self.skip_property(element, row, property)?;
                     continue;
                 }
-                // An invalid vertex index has been reported; skip the face.
+                // An invalid vertex index has already been reported, so skip the face.
                 match self.read_corners(element, row, list, strips)? {
                     true if strips => self.split_strip(),
                     true => self.cut_face()?,
@@ -178,7 +180,7 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
             CORNER_LISTS.iter().any(|list| list.as_bytes() == &self.bytes[element.properties[*i].name.clone()])
         };
         let Some(list) = (0..element.properties.len()).find(named) else {
-            // Suggest a list with a similar name.
+            // Suggest a list that has a similar name.
             let text = |p: &Property| String::from_utf8_lossy(&self.bytes[p.name.clone()]);
             let near = element.properties.iter().find(|p| did_you_mean(&text(p), CORNER_LISTS).is_some());
             let help = near.map(|p| format!("rename {} to `vertex_indices`", quoted(&self.bytes[p.name.clone()])));
@@ -195,7 +197,7 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
         Ok(list)
     }
 
-    /// Reads the vertex indices of one face; returns `false` if one is invalid.
+    /// Reads the vertex indices of one face; returns `false` if one of them is invalid.
     fn read_corners(&mut self, element: &Element, row: u64, list: usize, strips: bool) -> Result<bool, ErrorReported> {
         let property = &element.properties[list];
         let length = self.list_length(element, row, property)?;
@@ -243,13 +245,13 @@ impl<V: ValueReader> RowReader<'_, '_, V> {
         })
     }
 
-    /// Splits a strip into triangles: each corner forms a triangle with the two before it, and
-    /// every other triangle has the opposite winding.
+    /// Splits a strip into triangles. Each corner forms a triangle with the two corners before it,
+    /// and the winding alternates from one triangle to the next.
     fn split_strip(&mut self) {
         for strip in self.corners.split(|&corner| corner == NO_INDEX) {
             for (i, window) in strip.windows(3).enumerate() {
                 let [a, b, c] = [window[0], window[1], window[2]];
-                // Degenerate triangles only join strips; skip them.
+                // Degenerate triangles serve only to join strips, so skip them.
                 if a != b && b != c && a != c {
                     self.mesh.triangles.push(if i % 2 == 0 { [a, b, c] } else { [b, a, c] });
                 }

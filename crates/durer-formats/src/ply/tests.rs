@@ -8,7 +8,8 @@ const HEADER: &str = "ply\nformat ascii 1.0\ncomment by hand\nobj_info none\nele
     property int8 b\nelement nothing 99999999999\nelement face 2\nproperty uint flags\n\
     property list int uint vertex_indices\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n";
 
-/// Rows of the test file. A type precedes each value, for the binary encodings.
+/// Rows of the test file. A type precedes each value, so that the rows can also be written in
+/// binary.
 const VALUES: &str = "u8:255 f32:0 f64:0.1 i16:-3 f32:0 f32:0 f32:1 u8:0 f32:0.5 f32:1
     u8:0 f32:1e-3 f64:0 i16:0 f32:0 f32:0 f32:1 u8:1 f32:7 f32:0 f32:0
     u8:0 f32:1 f64:1 i16:0 f32:0 f32:0 f32:1 u8:2 f32:7 f32:8 f32:1 f32:0
@@ -52,7 +53,8 @@ fn text_and_both_byte_orders_are_equivalent() {
     assert_eq!(mesh.positions[0], Vec3::new(0.0, 0.1, -3.0));
     assert_eq!(mesh.normals[3], Vec3::Y);
     assert_eq!(mesh.uvs[0], Vec2::new(0.5, 1.0));
-    // A triangle, a quadrilateral, a strip with a degenerate joint, and a strip after a restart.
+    // The faces are a triangle, a quadrilateral, a strip with a degenerate joint, and a strip that
+    // follows a restart.
     assert_eq!(mesh.triangles[0], [0, 1, 2]);
     assert_eq!(mesh.triangles[3..], [[0, 1, 2], [2, 1, 3], [1, 2, 3]]);
     assert_eq!((&mesh.triangle_uvs, &mesh.triangle_normals), (&mesh.triangles, &mesh.triangles));
@@ -68,7 +70,7 @@ fn faces_may_precede_vertices() {
     assert_eq!(read_clean(text.as_bytes(), "m.ply"), read_clean(TRIANGLE.as_bytes(), "m.ply"));
 }
 
-/// Reads the triangle with part of its text replaced; returns the only diagnostic.
+/// Reads the triangle after replacing a part of its text, and returns the only diagnostic.
 fn finding(from: &str, to: &str) -> String {
     assert!(TRIANGLE.contains(from), "{from}");
     let findings = read(TRIANGLE.replacen(from, to, 1).as_bytes(), "m.ply").1;
@@ -237,7 +239,7 @@ fn all_mesh_attributes_round_trip() {
             assert_eq!(again.second_uvs[corner], mesh.second_uvs[place]);
             assert_eq!(again.tangents[corner], mesh.tangents[place]);
             assert_eq!(again.uvs[corner], mesh.uvs[mesh.triangle_uvs[i][k] as usize]);
-            // A corner without a normal gets the face normal.
+            // A corner without a normal gets the normal of its face.
             let flat = durer_scene::shape::triangle::face_normal(mesh.triangles[i].map(|i| mesh.positions[i as usize]));
             let normal = mesh.normals.get(mesh.triangle_normals[i][k] as usize).copied().unwrap_or(flat);
             assert_eq!(again.normals[corner], normal);

@@ -1,10 +1,10 @@
-//! Sequential reading of the values of a PLY file, as text or binary.
+//! Sequential reading of values from a PLY file, as text or binary.
 
 use super::header::NumberType;
 use crate::number::{NumberError, parse_f32, parse_integer};
 use std::ops::Range;
 
-/// Reason why a value in a PLY row cannot be used.
+/// Reason why a value in a row of a PLY file cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ValueError {
     /// The file ends before the value.
@@ -13,28 +13,29 @@ pub(super) enum ValueError {
     Number(NumberError),
 }
 
-/// Cursor that reads the values of PLY rows one after the other; implemented for text and binary
-/// files.
+/// Cursor that reads the values of PLY rows one after another; it is implemented for text and for
+/// binary files.
 pub(super) trait ValueReader: Clone {
-    /// `Some(true)` for big-endian, `Some(false)` for little-endian binary values; `None` for text.
+    /// `Some(true)` for big-endian values, `Some(false)` for little-endian values, and `None` for
+    /// text.
     const BIG_ENDIAN: Option<bool>;
-    /// Byte range of the last value that was read; empty at the end of the file.
+    /// Byte range of the last value that was read, or an empty range at the end of the file.
     fn last(&self) -> Range<usize>;
-    /// Upper bound on the number of values of this type that can still follow.
+    /// Upper bound on the number of values of this type that can still follow in the file.
     fn most_left(&self, scalar: NumberType) -> usize;
     /// Reads a finite number.
     fn float(&mut self, scalar: NumberType) -> Result<f32, ValueError>;
     /// Reads an integer.
     fn integer(&mut self, scalar: NumberType) -> Result<i64, ValueError>;
-    /// Skips `count` values of a type, which need not be valid numbers.
+    /// Skips `count` values of a type, which may be invalid numbers.
     fn skip(&mut self, scalar: NumberType, count: usize) -> Result<(), ValueError>;
-    /// Byte range of the unread rest, without leading whitespace.
+    /// Byte range of the part that has not been read yet, without leading whitespace.
     fn remainder(&self) -> Range<usize>;
-    /// Size in bytes of a value of this type; `None` if it varies.
+    /// Size in bytes of a value of this type, or `None` if the size varies.
     fn fixed_size(scalar: NumberType) -> Option<usize>;
 }
 
-/// Cursor over the values of a text PLY file, which are separated by whitespace.
+/// Cursor that reads the values of a text PLY file, which are separated by whitespace.
 #[derive(Clone)]
 pub(super) struct AsciiValues<'a> {
     bytes: &'a [u8],
@@ -83,7 +84,7 @@ impl ValueReader for AsciiValues<'_> {
 
     fn remainder(&self) -> Range<usize> {
         let mut rest = self.clone();
-        // The range is empty after the last word.
+        // After the last word, the range is empty.
         _ = rest.word();
         rest.start..self.bytes.len()
     }
@@ -93,7 +94,7 @@ impl ValueReader for AsciiValues<'_> {
     }
 }
 
-/// Cursor over the values of a binary PLY file.
+/// Cursor that reads the values of a binary PLY file.
 #[derive(Clone)]
 pub(super) struct BinaryValues<'a, const BIG_ENDIAN: bool> {
     bytes: &'a [u8],

@@ -1,5 +1,5 @@
-//! Writer of meshes as binary PLY. `write` outputs positions, colours and triangles for any
-//! program; `write_all_attributes` outputs all attributes for Dürer's own reader.
+//! Writer of meshes in the binary PLY format. `write` stores positions, colours, and triangles for
+//! any program; `write_all_attributes` stores all attributes for Dürer's own reader.
 
 use super::rows::COLUMNS;
 use durer_image::Transfer;
@@ -9,7 +9,7 @@ use durer_scene::shape::mesh::NO_INDEX;
 use durer_scene::shape::triangle::face_normal;
 use std::collections::HashMap;
 
-/// Encodes positions, colours and triangles of a mesh as a binary PLY file.
+/// Encodes the positions, colours, and triangles of a mesh as a binary PLY file.
 pub(crate) fn write(mesh: &MeshData) -> Vec<u8> {
     let mut head = format!("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.positions.len());
     ["x", "y", "z"].iter().for_each(|axis| head += &format!("property float {axis}\n"));
@@ -32,9 +32,9 @@ pub(crate) fn write(mesh: &MeshData) -> Vec<u8> {
     out
 }
 
-/// Encodes all attributes of a mesh: normals, both sets of texture coordinates, linear colours and
-/// tangents. A corner without a normal or texture coordinates, while others have them, gets the
-/// face normal or 0.
+/// Encodes all attributes of a mesh, including normals, both sets of texture coordinates, linear
+/// colours, and tangents. If some corners have a normal or texture coordinates and others do not,
+/// the others get the normal of their face or texture coordinates of 0.
 pub(crate) fn write_all_attributes(mesh: &MeshData) -> Vec<u8> {
     let VertexList { vertices, triangles, normals } = VertexList::of(mesh);
     let (has_normals, has_uvs) = (!mesh.triangle_normals.is_empty(), !mesh.triangle_uvs.is_empty());
@@ -76,12 +76,12 @@ pub(crate) fn write_all_attributes(mesh: &MeshData) -> Vec<u8> {
     out
 }
 
-/// Vertices of a PLY file to be written: unique triples of indices of a position, texture
-/// coordinates and a normal.
+/// Vertices of a PLY file to be written, which are unique triples of indices of a position, texture
+/// coordinates, and a normal.
 struct VertexList {
     vertices: Vec<[u32; 3]>,
     triangles: Vec<[u32; 3]>,
-    /// The mesh's normals, followed by face normals for triangles that lack normals.
+    /// The normals of the mesh, followed by face normals for the triangles that have none.
     normals: Vec<Vec3>,
 }
 

@@ -1,5 +1,5 @@
-//! Reader of text STL: `solid`, and for each triangle `facet normal x y z`, `outer loop`, three
-//! lines `vertex x y z`, `endloop`, `endfacet`.
+//! Reader of text STL files, which begin with `solid`. Each triangle consists of `facet normal x y
+//! z`, `outer loop`, three lines `vertex x y z`, `endloop`, and `endfacet`.
 
 use super::Builder;
 use crate::number::{parse_f32, report_number};
@@ -7,8 +7,8 @@ use crate::report::{Report, count_text, quoted};
 use durer_scene::math::Vec3;
 use std::ops::Range;
 
-/// Reads the facets of a text STL file. Only the vertices are used; the other words are checked for
-/// mistakes.
+/// Reads the facets of a text STL file. Only the vertices are used, but the other words are checked
+/// for mistakes.
 pub fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
     let mut corners: Vec<Vec3> = Vec::with_capacity(3);
     let mut facet: Option<Range<usize>> = None;
@@ -17,7 +17,7 @@ pub fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
         let Some(first) = words.next() else { continue };
         let word = bytes[first.clone()].to_ascii_lowercase();
         match word.as_slice() {
-            // The rest of the line is a name.
+            // The rest of the line is a name and is skipped.
             b"solid" | b"endsolid" | b"outer" | b"\xef\xbb\xbfsolid" => {}
             b"facet" => {
                 unfinished(&mut corners, facet.take(), report);
@@ -51,7 +51,7 @@ pub fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
 
 /// Reports a facet that does not have exactly three vertices.
 fn unfinished(corners: &mut Vec<Vec3>, facet: Option<Range<usize>>, report: &mut Report) {
-    // An invalid number has been reported already.
+    // An invalid number has already been reported.
     if let Some(at) = facet.filter(|_| !report.has_errors()) {
         report.error(at, format!("a facet needs 3 corners, found {}", count_text(corners.len(), "corner", "corners")));
     }

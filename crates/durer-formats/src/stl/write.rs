@@ -1,4 +1,4 @@
-//! Writer of meshes as binary STL: triangles and their normals.
+//! Writer of meshes as binary STL files, which contain triangles and their normals.
 
 use durer_scene::math::Vec3;
 use durer_scene::shape::MeshData;

@@ -1,4 +1,4 @@
-//! Parses property resources: colours, mixtures of colours, and texture coordinates.
+//! Parses property resources, which are colours, mixtures of colours, and texture coordinates.
 
 use super::model::{Color, Model, Properties, PropertyKind};
 use super::parser::{ErrorReported, Parser};
@@ -16,7 +16,7 @@ impl Model {
         }
     }
 
-    /// Returns the colour of a property; white for texture coordinates.
+    /// Returns the colour of a property, which is white for texture coordinates.
     fn color(&self, id: u32, index: u32) -> Option<Color> {
         match &self.properties.get(&id)?.group {
             PropertyKind::Colors(colors) => colors.get(index as usize).copied(),
@@ -44,7 +44,7 @@ impl Parser<'_, '_> {
         Ok(())
     }
 
-    /// Reads an sRGB colour, `#RRGGBB` or `#RRGGBBAA`, as linear values.
+    /// Reads an sRGB colour in the form `#RRGGBB` or `#RRGGBBAA` and returns linear values.
     fn color(&self, tag: &Tag, name: &str) -> Option<Color> {
         let Some(attribute) = tag.get(name) else {
             self.report.error(tag.at, format!("`<{}>` needs `{name}=\"#RRGGBB\"`", tag.name));
@@ -97,7 +97,7 @@ impl Parser<'_, '_> {
         Ok(picture.map(|picture| PropertyKind::Texture { picture, uvs }))
     }
 
-    /// Reads integers separated by spaces.
+    /// Reads integers that are separated by spaces.
     fn list(&self, tag: &Tag, name: &str) -> Vec<u32> {
         let Some(attribute) = tag.get(name) else {
             self.report.error(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
@@ -110,7 +110,7 @@ impl Parser<'_, '_> {
         })
     }
 
-    /// Reads composite materials: mixtures of base materials in given proportions.
+    /// Reads composite materials, which are mixtures of base materials in given proportions.
     fn composites(&mut self, tag: &Tag) -> Result<Option<PropertyKind>, ErrorReported> {
         let (base, indices) = (self.integer(tag, "matid"), self.list(tag, "matindices"));
         let known = base.and_then(|base| self.model.count(base));
@@ -139,7 +139,7 @@ impl Parser<'_, '_> {
         Ok(Some(PropertyKind::Colors(colors)))
     }
 
-    /// Reads multiproperties: layers of properties, the last one on top.
+    /// Reads multiproperties, which are layers of properties; the last layer is on top.
     fn multiproperties(&mut self, tag: &Tag) -> Result<Option<PropertyKind>, ErrorReported> {
         let pids = self.list(tag, "pids");
         if let Some(missing) = pids.iter().find(|pid| !self.model.properties.contains_key(pid)) {
@@ -163,7 +163,7 @@ impl Parser<'_, '_> {
                     let texture = matches!(self.model.properties.get(pid)?.group, PropertyKind::Texture { .. });
                     color.filter(|_| !texture)
                 });
-                // Each layer covers the layers below it in proportion to its opacity.
+                // Each layer hides the layers below it in proportion to its opacity.
                 let over = layers.reduce(|below, above| {
                     let a = above[3];
                     let mix = |c: usize| a * above[c] + (1.0 - a) * below[c];

@@ -1,4 +1,5 @@
-//! Converts a model into a scene: meshes by material, and components with their transforms.
+//! Converts a model into a scene that contains meshes split by material, and components with their
+//! transforms.
 
 use super::model::{Mesh, Model, Object, ObjectRef, PropertyKind};
 use super::package::Package;
@@ -27,17 +28,18 @@ struct SceneMaker<'a> {
     package: Package<'a>,
     report: &'a SharedReport,
     models: BTreeMap<String, Option<Rc<Model>>>,
-    /// Converted objects by part and id, with the number of scene objects in each.
+    /// Objects that have been converted, by part and id, each with the number of scene objects in
+    /// it.
     converted: BTreeMap<(String, u32), (Rc<scene::Group>, usize)>,
-    /// Material index for each texture resource, by part and id. After it, the material of meshes
-    /// with vertex colours.
+    /// Material index for each texture resource, by part and id. The field after it is the material
+    /// of meshes with vertex colours.
     pictures: BTreeMap<(String, u32), Option<u32>>,
     colored: Option<u32>,
     count: usize,
     scene: Scene,
 }
 
-/// Builds the scene of a package.
+/// Builds the scene of a 3MF package.
 pub(super) fn scene(package: Package, report: &SharedReport) -> Option<Scene> {
     let root = package.root.clone();
     let at = Span { file: package.input.file, start: 0, end: 0 };
@@ -75,7 +77,7 @@ impl SceneMaker<'_> {
         model
     }
 
-    /// Converts build items or components.
+    /// Converts the references to objects in build items or components.
     fn convert_refs(&mut self, part: &str, places: &[ObjectRef], depth: u32) -> Vec<scene::Object> {
         let mut objects = Vec::new();
         for place in places {
@@ -89,7 +91,7 @@ impl SceneMaker<'_> {
                 return objects;
             }
             let inner = scene::Object { node: ObjectKind::Group((*group).clone()), material: None, span: place.at };
-            // Translations are in the unit of the part that contains the build item.
+            // Translations are measured in the unit of the part that contains the build item.
             let unit = self.models.get(part).and_then(Option::as_ref).map_or(1.0, |model| model.unit);
             objects.push(
                 inner.transformed(DAffine3 { translation: unit * place.transform.translation, ..place.transform }),
@@ -98,7 +100,7 @@ impl SceneMaker<'_> {
         objects
     }
 
-    /// Converts an object of a part. Each object is converted only once.
+    /// Converts an object that a part contains. Each object is converted only once.
     fn object(&mut self, part: &str, place: &ObjectRef, depth: u32) -> Option<(Rc<scene::Group>, usize)> {
         let key = (part.to_string(), place.id);
         if let Some(cached) = self.converted.get(&key) {
@@ -123,7 +125,7 @@ impl SceneMaker<'_> {
             Object::Mesh(mesh) => self.mesh((part, &model, place.id), mesh, *at),
             Object::Components(places) => self.convert_refs(part, places, depth + 1),
         };
-        // Each use of the object adds this count; see `convert_refs`.
+        // The final count is added for each use of the object; see `convert_refs`.
         let count = (self.count - before).max(objects.len());
         self.count = before;
         let group = (Rc::new(scene::Group { objects }), count);
@@ -131,16 +133,16 @@ impl SceneMaker<'_> {
         Some(group)
     }
 
-    /// Converts the mesh of an object: one mesh for triangles with colours or without properties,
-    /// and one for each texture.
+    /// Converts the mesh of an object to one mesh for the triangles that have colours or no
+    /// properties, and one mesh for each texture.
     fn mesh(&mut self, (part, model, id): (&str, &Model, u32), mesh: &Mesh, at: Span) -> Vec<scene::Object> {
         let unit = model.unit as f32;
         let property = |i: usize| {
             let own = mesh.properties.get(i).copied().flatten();
             own.or(mesh.default_property.map(|(list, index)| (list, [index; 3])))
         };
-        // Triangles and the properties of their corners, grouped by texture; `None` is the group
-        // without a texture.
+        // Triangles and the properties of their corners, grouped by texture; the group `None` has
+        // no texture.
         let mut skins: BTreeMap<Option<u32>, MeshBuilder> = BTreeMap::new();
         for (i, triangle) in mesh.triangles.iter().enumerate() {
             let skin = |picture| (picture, [[1.0; 4]; 3], [Vec2::ZERO; 3]);
@@ -198,7 +200,7 @@ impl SceneMaker<'_> {
         *self.colored.get_or_insert_with(|| scene.add_material(Material::Principled(Box::new(plastic()))))
     }
 
-    /// Returns the material that shows a texture resource.
+    /// Returns the material that shows the texture of a resource.
     fn picture(&mut self, part: &str, model: &Model, id: u32, at: Span) -> Option<u32> {
         let key = (part.to_string(), id);
         if let Some(cached) = self.pictures.get(&key) {
@@ -236,7 +238,7 @@ fn plastic() -> PrincipledMaterial {
     PrincipledMaterial { base_color: Vec3::ONE, specular_roughness: 0.4, ..PrincipledMaterial::default() }
 }
 
-/// Mesh under construction for the triangles of one material; each corner has its own colour and
+/// Mesh that is being built from the triangles of one material; each corner has its own colour and
 /// texture coordinates.
 #[derive(Default)]
 struct MeshBuilder {

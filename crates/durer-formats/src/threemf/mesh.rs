@@ -6,7 +6,7 @@ use crate::xml::Tag;
 use durer_scene::math::Vec3;
 
 impl Parser<'_, '_> {
-    /// Parses a `<mesh>`. `default` is the default property of its triangles.
+    /// Parses a `<mesh>` element. `default` is the property of triangles that name none.
     pub fn mesh(&mut self, default: Option<Property>) -> Result<Mesh, ErrorReported> {
         let mut mesh = Mesh { default_property: default, ..Mesh::default() };
         while let Some(tag) = self.next()? {
@@ -39,7 +39,7 @@ impl Parser<'_, '_> {
         Ok(())
     }
 
-    /// Reads a vertex index, which must be below `count`.
+    /// Reads a vertex index, which must be less than `count`.
     fn corner(&self, tag: &Tag, name: &str, count: usize) -> Option<u32> {
         let number = self.integer(tag, name)?;
         if number as usize >= count {
@@ -73,7 +73,7 @@ impl Parser<'_, '_> {
         Ok(())
     }
 
-    /// Reads the properties of a triangle's corners; `None` if the triangle has none.
+    /// Reads the properties of a triangle's corners; returns `None` if the triangle has none.
     fn property(&self, tag: &Tag, default: Option<Property>) -> Option<(u32, [u32; 3])> {
         let p1 = self.optional_number(tag, "p1")?;
         let Some(pid) = self.optional_number(tag, "pid").or(default.map(|default| default.0)) else {

@@ -1,7 +1,7 @@
-//! Reader of 3MF, a format for 3D printing: models in a ZIP archive.
+//! Reader of files in the 3MF format for 3D printing, which stores models in a ZIP archive.
 //!
 //! Sources: *3D Manufacturing Format, Core Specification* 1.3; *Materials and Properties Extension*
-//! 1.2; *Production Extension* 1.1; *Beam Lattice Extension* 1.2; 3MF Consortium. Lengths are
+//! 1.2; *Production Extension* 1.1; *Beam Lattice Extension* 1.2; 3MF Consortium. All lengths are
 //! converted to millimetres.
 
 mod colors;
@@ -20,7 +20,7 @@ use super::{too_large, zip};
 use durer_diag::Diagnostics;
 use durer_scene::scene::{Axis, Scene};
 
-/// Scene format entry for 3MF.
+/// Entry for 3MF in the list of scene formats.
 pub(super) const FORMAT: SceneFormat = SceneFormat {
     name: "3MF",
     extensions: &["3mf"],
@@ -32,12 +32,12 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     light_hint: None,
 };
 
-/// Returns true for ZIP archives, since no other supported format is one.
+/// Returns true for ZIP archives, because no other supported format is based on ZIP.
 fn recognise(bytes: &[u8]) -> bool {
     zip::recognise(bytes)
 }
 
-/// Reads a file; see [`read_model`](super::scene::read_model).
+/// Reads a 3MF file; see [`read_model`](super::scene::read_model).
 fn read(input: &ReadInput, diagnostics: &mut Diagnostics) -> Option<Scene> {
     if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
         diagnostics.push(error);

@@ -1,4 +1,4 @@
-//! Access to the ZIP archive: finds the model part, and reads parts by name.
+//! Access to the parts of a ZIP archive: finds the model part, and reads parts by their names.
 
 use crate::files::percent_decoded;
 use crate::model::ReadInput;
@@ -8,11 +8,11 @@ use crate::zip::Zip;
 use durer_diag::{Diagnostic, Span};
 use std::sync::Arc;
 
-/// Suffix of the relationship type that marks the model part.
+/// Ending of the type of the relationship that marks the model part.
 const MODEL: &str = "/3dmodel";
 const RELATIONS: &str = "_rels/.rels";
 
-/// An open 3MF archive: finds and reads its parts, and reports errors.
+/// An open 3MF archive, which finds and reads parts and reports errors.
 pub(super) struct Package<'a> {
     pub input: &'a ReadInput<'a>,
     report: &'a SharedReport,
@@ -38,8 +38,8 @@ impl<'a> Package<'a> {
         Some(package)
     }
 
-    /// Returns the name of the model part: the target of the relationship, otherwise the only part
-    /// that ends in `.model`.
+    /// Returns the name of the model part, which is the target of the relationship or else the only
+    /// part whose name ends in `.model`.
     fn find_model(&mut self, at: Span) -> Option<String> {
         let (mut roots, mut broken) = (Vec::new(), false);
         if let Some((bytes, file)) = self.part(RELATIONS, at) {
@@ -95,7 +95,7 @@ impl<'a> Package<'a> {
         }
     }
 
-    /// Finds the name of a part in the archive, ignoring case and decoding percent escapes.
+    /// Finds the name of a part in the archive; ignores letter case and decodes percent escapes.
     fn find_part(&self, name: &str) -> Option<String> {
         let plain = |name: &str| percent_decoded(name).unwrap_or_else(|| name.to_string()).to_lowercase();
         let same = |part: &&str| *part == name;
@@ -103,7 +103,7 @@ impl<'a> Package<'a> {
         self.zip.names().find(same).or_else(|| self.zip.names().find(alike)).map(str::to_string)
     }
 
-    /// Returns the bytes of a part; reports an error if it cannot be read.
+    /// Returns the bytes of a part; reports an error if the part cannot be read.
     pub fn bytes(&mut self, name: &str, at: Span) -> Option<Arc<[u8]>> {
         let name = &self.find_part(name)?;
         match self.zip.part(name)? {
@@ -116,7 +116,7 @@ impl<'a> Package<'a> {
         }
     }
 
-    /// Reads a text part and registers it as a file, so that spans can refer to it.
+    /// Reads a part that contains text and registers it as a file, so that spans can refer to it.
     pub fn part(&mut self, name: &str, at: Span) -> Option<(Arc<[u8]>, u32)> {
         let bytes = utf8(self.bytes(name, at)?);
         if bytes.len() >= u32::MAX as usize {

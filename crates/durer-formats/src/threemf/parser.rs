@@ -1,4 +1,4 @@
-//! Parses the XML of a model part: resources and build items.
+//! Parses the XML of a model part, which contains resources and build items.
 
 use super::model::{Model, Object, ObjectRef, PropertyKind};
 use super::package::Package;
@@ -8,22 +8,23 @@ use durer_diag::{Diagnostic, Span};
 use glam::DAffine3;
 use std::sync::Arc;
 
-/// Units of length, in millimetres.
+/// Units of length, and their sizes in millimetres.
 const UNITS: [(&str, f64); 6] =
     [("micron", 1e-3), ("millimeter", 1.0), ("centimeter", 10.0), ("inch", 25.4), ("foot", 304.8), ("meter", 1000.0)];
 const TYPES: [&str; 5] = ["model", "solidsupport", "support", "surface", "other"];
 
-/// Parser of the XML of one model part.
+/// Parser for the XML of one model part.
 pub(super) struct Parser<'a, 'x> {
     pub xml: Xml<'x>,
     pub report: &'a SharedReport,
     pub model: Model,
 }
 
-/// Error type of the 3MF parser: parsing cannot continue, and the error has already been reported.
+/// Error type of the 3MF parser, which means that parsing cannot continue and that the error has
+/// already been reported.
 pub(super) struct ErrorReported;
 
-/// Reads and parses a model part of an archive.
+/// Reads a model part from an archive and parses it.
 pub fn read(package: &mut Package, name: &str, at: Span, report: &SharedReport) -> Option<Model> {
     let Some((bytes, file)) = package.part(name, at) else {
         if !report.has_errors() {
@@ -45,7 +46,7 @@ pub fn read(package: &mut Package, name: &str, at: Span, report: &SharedReport) 
 }
 
 impl<'x> Parser<'_, 'x> {
-    /// Returns the next child of the open element; `None` at its end.
+    /// Returns the next child of the open element, or `None` at the end of the element.
     pub fn next(&mut self) -> Result<Option<Tag<'x>>, ErrorReported> {
         match self.xml.next() {
             _ if self.report.is_full() => Err(ErrorReported),
@@ -58,7 +59,7 @@ impl<'x> Parser<'_, 'x> {
         }
     }
 
-    /// Skips to the end of the open element.
+    /// Skips everything up to the end of the open element.
     pub fn skip(&mut self) -> Result<(), ErrorReported> {
         let mut depth = 1;
         while depth > 0 {
@@ -100,7 +101,7 @@ impl<'x> Parser<'_, 'x> {
                 _ => self.skip()?,
             }
         }
-        // No element may follow `<model>`.
+        // No other element may follow `<model>`.
         self.next()?;
         if built.is_none() {
             self.report.error(tag.at, "a model needs a `<build>` that lists the objects to show");
@@ -119,7 +120,7 @@ impl<'x> Parser<'_, 'x> {
         Ok(())
     }
 
-    /// Reads the id of a resource, which must be unique.
+    /// Reads the id of a resource; no other resource may have the same id.
     pub fn new_id(&self, tag: &Tag) -> Option<u32> {
         let id = self.integer(tag, "id")?;
         let earlier = self.model.objects.get(&id).map(|earlier| earlier.1);
@@ -193,7 +194,7 @@ impl<'x> Parser<'_, 'x> {
         Ok(())
     }
 
-    /// Reads build items or components.
+    /// Reads a list of build items or components.
     fn object_refs(&mut self, name: &str) -> Result<Vec<ObjectRef>, ErrorReported> {
         let mut places = Vec::new();
         while let Some(tag) = self.next()? {
@@ -208,7 +209,8 @@ impl<'x> Parser<'_, 'x> {
         Ok(places)
     }
 
-    /// Reads a transform of twelve numbers for row vectors: three axes, then the translation.
+    /// Reads a transform, given as twelve numbers for multiplication with row vectors: three axes,
+    /// then the translation.
     fn transform(&self, tag: &Tag) -> DAffine3 {
         let Some(attribute) = tag.get("transform") else { return DAffine3::IDENTITY };
         let words = attribute.value.split_whitespace();

@@ -1,5 +1,5 @@
-//! Tests of the 3MF reader: generated archives, positions of errors, and the 3MF Consortium's test
-//! files if they are installed.
+//! Tests of the 3MF reader, which use generated archives, the positions of errors, and the test
+//! files of the 3MF Consortium if they are installed.
 
 use durer::{LoadOptions, load};
 use durer_diag::{Diagnostics, Files};
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 const RELATIONS: &str = "<Relationships><Relationship Target='/3D/a.model' Type='http://x/3dmodel'/></Relationships>";
 
-/// Returns an archive of compressed parts.
+/// Returns an archive that contains compressed parts.
 fn archive(parts: &[(&str, &[u8])]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut zip = ZipArchiveWriter::new(&mut bytes);
@@ -32,7 +32,7 @@ fn archive(parts: &[(&str, &[u8])]) -> Vec<u8> {
     bytes
 }
 
-/// Reads a file; returns its scene and the diagnostics.
+/// Reads a file and returns its scene and the diagnostics.
 fn read_file(path: &Path) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let loaded = load(path, &LoadOptions::default(), &mut files, &mut diagnostics).unwrap();
@@ -53,8 +53,8 @@ fn read_parts(parts: &[(&str, &[u8])]) -> (Option<Scene>, Vec<String>) {
     read_file(&path)
 }
 
-/// Returns a model of a tetrahedron with additional attributes on its triangles, additional
-/// resources and build items.
+/// Returns a model of a tetrahedron; additional attributes on its triangles, resources, and build
+/// items can be given.
 fn model(resources: &str, object: &str, triangles: [&str; 4], items: &str) -> String {
     let corners =
         ["<triangle v1='0' v2='2' v3='1'", "<triangle v1='0' v2='1' v3='3'", "<triangle v1='1' v2='2' v3='3'"];
@@ -79,7 +79,7 @@ fn clean(model: &str) -> Scene {
     scene.unwrap()
 }
 
-/// Returns the shapes of a file with their transforms to world space.
+/// Returns the shapes in a file, each with its transform to world space.
 fn shown(scene: &Scene) -> Vec<(DAffine3, &Object)> {
     fn gather<'a>(object: &'a Object, map: DAffine3, all: &mut Vec<(DAffine3, &'a Object)>) {
         match &object.node {
@@ -87,7 +87,7 @@ fn shown(scene: &Scene) -> Vec<(DAffine3, &Object)> {
             ObjectKind::Transform(ops, inner) => {
                 gather(inner, map * MatrixOp::product(ops, MatrixRules::default()), all)
             }
-            // Skip the default ground.
+            // Skip the ground that is added by default.
             ObjectKind::Primitive(Primitive::Plane(_)) => {}
             _ => all.push((map, object)),
         }
@@ -111,7 +111,7 @@ fn units_items_and_components_are_transformed() {
     let scene = clean(&text);
     let places = shown(&scene);
     assert_eq!((places.len(), scene.assets.meshes.len()), (3, 1));
-    // A centimetre is ten millimetres; x is mapped to y, and y to -x.
+    // A centimetre is ten millimetres. The transform maps x to y, and y to -x.
     let x = |i: usize| places[i].0.transform_point3(10.0 * DVec3::X);
     assert_eq!([x(0), x(1)], [DVec3::new(10.0, 0.0, 0.0), DVec3::new(50.0, 70.0, 70.0)]);
     assert_eq!(x(2), DVec3::new(50.0 - 70.0, 60.0 + 50.0, 140.0));
@@ -209,7 +209,7 @@ fn changed_bytes_cause_no_panic() {
     let mut numbers = Random(7);
     let mut random = |below| numbers.below(below);
     for round in 0..600 {
-        // Change bytes of the archive, or of the text inside it.
+        // Change some bytes of the archive, or of the text inside it.
         let inner = round % 2 == 0;
         let mut changed = if inner { text.as_bytes().to_vec() } else { bytes.clone() };
         for _ in 0..1 + random(3) {
@@ -223,7 +223,7 @@ fn changed_bytes_cause_no_panic() {
     }
 }
 
-/// Returns the folder of the Consortium's test files, if it exists.
+/// Returns the folder that contains the Consortium's test files, if it exists.
 fn corpus() -> Option<PathBuf> {
     let usual = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
     let corpus = std::env::var_os("DURER_CORPUS").map_or(usual, PathBuf::from).join("samples/meshes/3mf");
@@ -241,9 +241,9 @@ fn entries(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Test files with invalid models that are read without an error, because the fault does not affect
-/// a picture: relationships and data that are not shown, schemas, and property layers that a
-/// printer could not produce.
+/// Test files with invalid models that are still read without an error, because the fault does not
+/// affect the picture. The faults concern relationships and data that are not shown, schemas, and
+/// property layers that a printer could not produce.
 const HARMLESS: [&str; 18] = [
     "3MF100_Extension_Chapter4b_MatId_IsNotBaseMaterials",
     "3MF100_Extension_Chapter5b_MultipleReferenceToBaseAndCompositeMatterials",

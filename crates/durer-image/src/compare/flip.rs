@@ -1,8 +1,9 @@
-//! FLIP: a measure of the difference that is perceived when alternating between two pictures.
+//! FLIP, a measure of the difference that people perceive when alternating between two pictures.
 //!
-//! Source: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, *FLIP: A Difference
-//! Evaluator for Alternating Images*, HPG 2020; for HDR pictures Andersson, Nilsson, Shirley and
-//! Akenine-Möller, *Visualizing Errors in Rendered High Dynamic Range Images*, Eurographics 2021.
+//! Sources: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, *FLIP: A
+//! Difference Evaluator for Alternating Images*, HPG 2020; for HDR pictures, Andersson, Nilsson,
+//! Shirley and Akenine-Möller, *Visualizing Errors in Rendered High Dynamic Range Images*,
+//! Eurographics 2021.
 
 mod color;
 mod hdr;
@@ -14,19 +15,21 @@ use std::f64::consts::PI;
 
 pub(super) use hdr::hdr_flip;
 
-/// Pixels per degree of the visual field: a screen 0.7 m wide with 3840 pixels, 0.7 m away.
+/// Number of pixels per degree of the visual field, for a screen that is 0.7 m wide, has 3840
+/// pixels, and is viewed from 0.7 m away.
 const PIXELS_PER_DEGREE: f64 = 3840.0 * PI / 180.0;
 
-/// Parameters of the contrast sensitivity functions: weights and scales of Gaussians. 2020, table
-/// 1.
+/// Parameters of the contrast sensitivity functions, which are the weights and scales of Gaussians
+/// (paper of 2020, table 1).
 const ACHROMATIC: f64 = 0.0047;
 const RED_GREEN: f64 = 0.0053;
 const BLUE_YELLOW: [(f64, f64); 2] = [(34.1, 0.04), (13.5, 0.025)];
 
-/// Distance between the peaks of the edge filter, in degrees. 2020, section 4.2.
+/// Distance between the two peaks of the edge filter, in degrees (paper of 2020, section 4.2).
 const EDGE_WIDTH: f64 = 0.082;
 
-/// Exponent of colour differences, and the knee of their mapping. 2020, sections 4.1 to 4.3.
+/// Exponent that is applied to colour differences, and the knee of the curve that maps them to
+/// errors (paper of 2020, sections 4.1 to 4.3).
 const COLOR_EXPONENT: f32 = 0.7;
 const ERROR_KNEE: (f32, f32) = (0.4, 0.95);
 
@@ -34,7 +37,7 @@ const ERROR_KNEE: (f32, f32) = (0.4, 0.95);
 struct Filters {
     achromatic: Kernel,
     red_green: Kernel,
-    /// Gaussians with their weights. Their sum is not separable, but each of them is.
+    /// Gaussians and their weights. The sum of the Gaussians is not separable, but each of them is.
     blue_yellow: [(f32, Kernel); 2],
     smooth: Kernel,
     edge: Kernel,
@@ -44,11 +47,13 @@ struct Filters {
 
 impl Filters {
     fn new() -> Filters {
-        // Spatial filters: the contrast sensitivity functions, transformed from frequency to space.
+        // The spatial filters are the contrast sensitivity functions, transformed from the
+        // frequency domain to the spatial domain.
         let radius = (3.0 * (BLUE_YELLOW[0].1 / (2.0 * PI * PI)).sqrt() * PIXELS_PER_DEGREE).ceil() as usize;
         let deviation = |b: f64| (b / (2.0 * PI * PI)).sqrt() * PIXELS_PER_DEGREE;
         let csf = |b: f64| Kernel::gaussian(radius, deviation(b));
-        // Weight of each Gaussian in the sum of both, from its sum over the square of pixels.
+        // The weight of each Gaussian in the sum of both follows from its sum over the square of
+        // pixels.
         let part = |(a, b): (f64, f64)| {
             let sigma = deviation(b);
             let row: f64 = (-(radius as i32)..=radius as i32).map(|x| gauss(f64::from(x), sigma)).sum();
@@ -57,8 +62,8 @@ impl Filters {
         let total: f64 = BLUE_YELLOW.iter().map(|&row| part(row)).sum();
         let blue_yellow = BLUE_YELLOW.map(|row| ((part(row) / total) as f32, csf(row.1)));
 
-        // Feature filters: first and second derivative of a Gaussian, with positive weights summing
-        // to 1 and negative ones to -1.
+        // The feature filters are the first and second derivatives of a Gaussian. Their positive
+        // weights sum to 1, and their negative weights to -1.
         let sigma = 0.5 * EDGE_WIDTH * PIXELS_PER_DEGREE;
         let radius = (3.0 * sigma).ceil() as usize;
         let first = |x: f64| x * gauss(x, sigma);
@@ -89,24 +94,24 @@ fn gauss(x: f64, deviation: f64) -> f64 {
     f64::from(fp::exp((-0.5 * x * x / (deviation * deviation)) as f32))
 }
 
-/// Perceived colour and features of a pixel after FLIP's spatial filters.
+/// Perceived colour and features of a pixel after the spatial filters of FLIP.
 struct PixelFeatures {
-    /// Colour in Hunt-adjusted L*a*b*.
+    /// Colour in L*a*b* with the Hunt effect.
     color: Vec3,
-    /// Strengths of the edge and of the point at this pixel.
+    /// Strength of an edge, and strength of a point, at this pixel.
     edge: f32,
     point: f32,
 }
 
 /// Computes the error of each pixel, from 0 to 1, between two pictures of linear light from 0 to 1.
 ///
-/// This is the error map of the paper from 2020, at 67 pixels per degree, the usual viewing
-/// distance.
+/// The result is the error map from the paper of 2020, at the usual viewing distance of 67 pixels
+/// per degree.
 pub(super) fn flip(width: usize, height: usize, a: &[Vec3], b: &[Vec3]) -> Vec<f32> {
     flip_of((width, height), |index| a[index], |index| b[index])
 }
 
-/// Computes [`flip`] of pictures whose pixels are computed on demand.
+/// Computes [`flip`] for pictures whose pixels are computed on demand.
 fn flip_of(
     (width, height): (usize, usize),
     a: impl Fn(usize) -> Vec3 + Sync,
@@ -114,7 +119,7 @@ fn flip_of(
 ) -> Vec<f32> {
     let filters = Filters::new();
     let one = picture_filters(&filters);
-    // The planes of the first picture, then of the second.
+    // The planes of the first picture come before those of the second.
     let both: Vec<Filter> = one.iter().copied().chain(one.iter().map(|&(p, x, y)| (p + 3, x, y))).collect();
     let planes = |y: usize, rows: &mut [Vec<f32>]| {
         let (first, second) = rows.split_at_mut(3);
@@ -130,8 +135,8 @@ fn flip_of(
     filter_rows((width, height), 6, &both, planes, finish)
 }
 
-/// Computes the luminance and two colour differences of a row, as in YCxCz without its constant
-/// factors, which do not matter, since the filters are linear.
+/// Computes the luminance and two colour differences of a row, as in the YCxCz colour space. Its
+/// constant factors are left out, because they do not matter for linear filters.
 fn opponent_row(start: usize, rows: &mut [Vec<f32>], light: impl Fn(usize) -> Vec3) {
     let [luminance, red_green, blue_yellow] = rows else { unreachable!("three planes") };
     for (x, ((l, rg), by)) in luminance.iter_mut().zip(red_green).zip(blue_yellow).enumerate() {
@@ -140,7 +145,7 @@ fn opponent_row(start: usize, rows: &mut [Vec<f32>], light: impl Fn(usize) -> Ve
     }
 }
 
-/// Filters of one picture: four for colour, and two derivatives along each axis.
+/// Filters of one picture: four for its colours, and two derivatives along each axis.
 fn picture_filters(filters: &Filters) -> [Filter<'_>; 8] {
     let Filters { achromatic, red_green, blue_yellow: [(_, wide), (_, narrow)], smooth, edge, point, .. } = filters;
     [
@@ -159,7 +164,7 @@ fn picture_filters(filters: &Filters) -> [Filter<'_>; 8] {
 fn pixel_features(filters: &Filters, rows: &[Vec<f32>], x: usize) -> PixelFeatures {
     let [l, rg, wide, narrow, edge_x, edge_y, point_x, point_y] = std::array::from_fn(|filter| rows[filter][x]);
     let by = filters.blue_yellow[0].0 * wide + filters.blue_yellow[1].0 * narrow;
-    // Clip colours that a screen cannot show.
+    // Clip colours that a screen cannot display.
     let rgb = rgb_from_xyz(Vec3::new(l + rg, l, l - by) * WHITE).clamp(Vec3::ZERO, Vec3::ONE);
     PixelFeatures {
         color: hunt_lab(xyz_from_rgb(rgb) / WHITE),
@@ -174,8 +179,8 @@ fn error(filters: &Filters, a: &PixelFeatures, b: &PixelFeatures) -> f32 {
     if distance == 0.0 {
         return 0.0;
     }
-    // Differences that occur in ordinary pictures are mapped to most of the range. Larger ones
-    // share the rest.
+    // Differences that occur in ordinary pictures are mapped to most of the error range. Larger
+    // differences share the rest of the range.
     let (difference, knee) = (fp::pow(distance, COLOR_EXPONENT), ERROR_KNEE.0 * filters.largest);
     let color = if difference < knee {
         ERROR_KNEE.1 / knee * difference

@@ -1,8 +1,8 @@
-//! Heat maps of errors.
+//! Heat maps that show errors as colours.
 
 use crate::Image8;
 
-/// Colours of errors at equal steps from 0 to 1. Their lightness increases, so that the map can
+/// Colours for errors at equal steps from 0 to 1. Their lightness increases, so that the map can
 /// also be read in greyscale.
 const RAMP: [[f32; 3]; 6] = [
     [0.0, 0.0, 8.0],
@@ -13,13 +13,13 @@ const RAMP: [[f32; 3]; 6] = [
     [255.0, 255.0, 210.0],
 ];
 
-/// Heat map of errors from 0 (black) to 1 (light yellow), row by row.
+/// Heat map of errors from 0 (black) to 1 (light yellow), stored row by row.
 pub fn heat_map(width: u32, height: u32, errors: &[f32]) -> Image8 {
     Image8 { width, height, pixels: errors.iter().map(|&error| heat(error)).collect(), alpha: Vec::new() }
 }
 
 fn heat(error: f32) -> [u8; 3] {
-    // NaN counts as zero.
+    // NaN is treated as zero.
     let error = if error > 0.0 { error.min(1.0) } else { 0.0 };
     let place = error * (RAMP.len() - 1) as f32;
     let below = (place as usize).min(RAMP.len() - 2);

@@ -1,4 +1,4 @@
-//! Computes the measures of a comparison.
+//! Computes the measures that a comparison reports.
 
 use super::filter::mean;
 use super::flip::{flip, hdr_flip};
@@ -12,44 +12,43 @@ use durer_bvh::math::{Vec3, fp};
 pub struct Measures {
     /// Root mean square of the difference over all channels, in the unit of the compared values.
     pub rmse: f64,
-    /// Ratio of the peak value 1 to `rmse`, in decibels; infinite for equal pictures.
+    /// Ratio of the peak value 1 to `rmse`, in decibels; infinite if the pictures are equal.
     pub psnr: f64,
-    /// Mean structural similarity of the displayed luma, at most 1; `None` if the picture is
-    /// smaller than the window of 11 pixels.
+    /// Mean structural similarity of the luma of the displayed pictures, at most 1; `None` if the
+    /// pictures are smaller than the window of 11 pixels.
     pub ssim: Option<f64>,
     /// Mean FLIP error of the displayed pictures, from 0 to 1.
     pub flip: f64,
-    /// Mean HDR-FLIP error, from 0 to 1; only for linear light.
+    /// Mean HDR-FLIP error, from 0 to 1; present only for linear light.
     pub hdr_flip: Option<f64>,
-    /// Pixel with the largest difference of a channel; `None` if all finite values are equal.
+    /// Pixel with the largest difference in any channel; `None` if all finite values are equal.
     pub largest: Option<Largest>,
-    /// Number of pixels with a channel that differs by more than the tolerance.
+    /// Number of pixels in which any channel differs by more than the tolerance.
     pub over_tolerance: usize,
-    /// Numbers of pixels with a value that is not finite, in the reference and in the other
-    /// picture.
+    /// Number of pixels with a value that is not finite, in the reference and in the other picture.
     pub not_finite: [usize; 2],
-    /// Column and row of the first pixel where either picture is not finite and the other one
-    /// differs.
+    /// Column and row of the first pixel at which one picture is not finite and the other one has
+    /// different values.
     pub first_not_finite: Option<(u32, u32)>,
 }
 
 /// Pixel in which a channel differs most between a picture and its reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Largest {
-    /// Absolute difference of the channel.
+    /// Absolute difference in that channel.
     pub difference: f32,
     /// Column of the pixel.
     pub x: u32,
     /// Row of the pixel.
     pub y: u32,
-    /// Pixel of the reference.
+    /// Colour of the pixel in the reference.
     pub reference: Vec3,
-    /// Pixel of the other picture.
+    /// Colour of the pixel in the other picture.
     pub test: Vec3,
 }
 
-/// Allowance for rounding errors, so that a tolerance of 2/255 includes differences of two 8-bit
-/// steps.
+/// Margin for rounding errors, which ensures that a tolerance of 2/255 includes differences of two
+/// 8-bit steps.
 const SLACK: f32 = 1e-6;
 
 /// Returns true if two pixels differ by more than a tolerance.
@@ -57,7 +56,7 @@ pub(super) fn over(reference: Vec3, test: Vec3, tolerance: f32) -> bool {
     (reference - test).abs().max_element() > tolerance + SLACK
 }
 
-/// Computes the measures and the map of FLIP errors (HDR-FLIP for linear light).
+/// Computes the measures and the map of FLIP errors (HDR-FLIP errors for linear light).
 pub(super) fn measure(pair: &Pair, tolerance: f32) -> (Measures, Vec<f32>) {
     let mut sum = 0.0;
     let mut over_tolerance = pair.finite_differs.len();
@@ -78,7 +77,7 @@ pub(super) fn measure(pair: &Pair, tolerance: f32) -> (Measures, Vec<f32>) {
     let rmse = (sum / (3.0 * pair.reference.len() as f64)).sqrt();
     let equal = sum == 0.0;
     let (ssim, flip_map) = if equal {
-        // Equal pictures need no filtering.
+        // Equal pictures do not need to be filtered.
         let large = pair.width.min(pair.height) >= 11;
         (large.then_some(1.0), vec![0.0; pair.reference.len()])
     } else {

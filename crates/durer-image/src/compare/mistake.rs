@@ -1,5 +1,5 @@
-//! Detection of common mistakes. Each mistake is applied to the reference, and the one that makes
-//! the reference most similar to the picture explains the difference.
+//! Detection of common mistakes in rendered pictures. Each mistake is applied to the reference, and
+//! the one that makes the reference most similar to the picture is taken as the explanation.
 
 mod flow;
 mod parts;
@@ -18,48 +18,48 @@ use rayon::prelude::*;
 use rule::{ORIENTATIONS, Rule};
 use sample::{Sample, View};
 
-/// A common mistake, such as a mirrored picture, that explains a difference between two pictures.
+/// A common mistake, such as mirroring, that explains a difference between two pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
     /// Keyword of the mistake, such as `mirrored`, `shifted`, or `factor`.
     pub kind: &'static str,
-    /// Description of the mistake, without a full stop: "it is mirrored left to right".
+    /// Description of the mistake, without a full stop, such as "it is mirrored left to right".
     pub description: String,
-    /// Share of the squared difference, from 0 to 1, that this finding and the ones before it
-    /// explain.
+    /// Share of the squared difference, from 0 to 1, that is explained by this finding and the ones
+    /// before it.
     ///
-    /// Measured on all pixels of small pictures, and on 100 000 pixels of larger ones.
+    /// The share is measured on all pixels of small pictures, and on 100 000 pixels of larger ones.
     pub explained: f64,
 }
 
 /// Minimum share of the difference that a mistake in a part of the picture must explain.
 const MIN_EXPLAINED_PART: f64 = 0.9;
-/// Unexplained share of the difference above which findings are dropped, since a wrong explanation
-/// is worse than none.
+/// Unexplained share of the difference above which findings are dropped, because a wrong
+/// explanation is worse than none.
 const MAX_LEFT: f64 = 0.05;
-/// Unexplained share above which findings are dropped if they have fitted parameters.
+/// Unexplained share above which findings with fitted parameters are dropped.
 const MAX_LEFT_FITTED: f64 = 0.02;
-/// Minimum number of differing pixels in which a pattern can be recognised.
+/// Minimum number of differing pixels that are needed to recognise a pattern.
 const MIN_DIFFERING_PIXELS: usize = 12;
 /// Minimum share of the remaining difference that a finding must explain.
 const MAX_REST: f64 = 0.5;
-/// Maximum number of mistakes that are combined.
+/// Maximum number of mistakes that are combined in one explanation.
 const MAX_MISTAKES: usize = 3;
 
-/// Maximum remaining difference, relative to the variance of the picture. Without this limit, a
-/// nearly uniform picture could be explained from any reference by moving and darkening it.
+/// Maximum difference that may remain, relative to the variance of the picture. Without this limit,
+/// a nearly uniform picture could be explained from any reference that is shifted and darkened.
 const MAX_CONTRAST: f64 = 0.1;
-/// Minimum share of the pixels that the rules must reproduce for a finding without "something more
-/// is different".
+/// Minimum share of the pixels that the rules must reproduce; below it, the finding adds "something
+/// more is different".
 const MIN_MATCHED: f64 = 0.97;
-/// Smallest visible difference, for values from 0 to 1.
+/// Smallest difference that counts as visible, for values from 0 to 1.
 const VISIBLE: f32 = 2.5 / 255.0;
-/// Half a step of 8-bit values.
+/// Half of one step of 8-bit values.
 const HALF_STEP: f32 = 0.5 / 255.0;
 
-/// Finds the mistakes that best explain the difference between two pictures. The list is empty if
+/// Finds the mistakes that explain the difference between two pictures best. The list is empty if
 /// no mistake explains half of the difference. If a single mistake explains nearly all of it but
-/// other pixels differ too, its description says so.
+/// other pixels also differ, the description of the mistake says so.
 pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
     let test = View::of(pair, &pair.test);
     let reference = View::of(pair, &pair.reference);
@@ -87,7 +87,7 @@ pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
     }
 }
 
-/// Finds a sequence of rules, each of which explains most of the difference that the previous ones
+/// Finds a sequence of rules, each of which explains most of the difference that the previous rules
 /// leave.
 fn chain(pair: &Pair, test: &View, total: f64) -> (Vec<Rule>, Vec<Finding>) {
     let (mut rules, mut findings) = (Vec::new(), Vec::new());
@@ -96,7 +96,7 @@ fn chain(pair: &Pair, test: &View, total: f64) -> (Vec<Rule>, Vec<Finding>) {
         let view = View::of(pair, &reference);
         let samples = sample::samples(&view, test);
         let Some((rule, rest)) = best_rule(&view, test, &samples) else { break };
-        // A rule that explains less than half of the remaining difference is a guess.
+        // A rule that explains less than half of the remaining difference would be a mere guess.
         if rest > MAX_REST * difference(&samples) {
             break;
         }
@@ -111,21 +111,21 @@ fn chain(pair: &Pair, test: &View, total: f64) -> (Vec<Rule>, Vec<Finding>) {
     (rules, findings)
 }
 
-/// Measures of how well rules, applied to the reference, reproduce a picture. Pixels that a shift
-/// moves in from outside are ignored.
+/// Measures of how well a sequence of rules, applied to the reference, reproduces a picture. Pixels
+/// that a shift moves into the picture from outside are ignored.
 struct Fit {
-    /// Remaining share of the squared difference.
+    /// Share of the squared difference that remains.
     remaining: f64,
-    /// Remaining squared difference, relative to the picture's variance.
+    /// Squared difference that remains, relative to the variance of the picture.
     contrast: f64,
-    /// Share of correctly reproduced pixels (up to rounding), among those in which the reproduction
-    /// or the reference visibly differs from the picture.
+    /// Share of pixels that the rules reproduce correctly (except for rounding), among those pixels
+    /// of the picture that visibly differ from the reproduction or from the reference.
     matched: f64,
 }
 
 impl Fit {
     fn of(pair: &Pair, rules: &[Rule], test: &View, samples: &[Sample]) -> Fit {
-        // The values of the reference may have been rounded by up to half a step.
+        // Rounding may have changed the values of the reference by up to half a step.
         let with_offset = |offset: f32| {
             let start: Vec<Vec3> = pair.reference.iter().map(|value| pair.scale.clamp(*value + offset)).collect();
             rules.iter().fold(start, |pixels, rule| rule.apply(&View::of(pair, &pixels)))
@@ -159,25 +159,26 @@ impl Fit {
     }
 }
 
-/// Sum of squared differences over samples.
+/// Returns the sum of squared differences over all samples.
 fn difference(samples: &[Sample]) -> f64 {
     samples.iter().map(|s| f64::from((s.test - s.reference).length_squared())).sum()
 }
 
-/// Finds the rule that leaves the smallest difference, and that difference. If several rules are
-/// nearly as good, the simplest one is chosen.
+/// Finds the rule that leaves the smallest difference, and returns it with that difference. If
+/// several rules are nearly equally good, the simplest of them is chosen.
 fn best_rule(reference: &View, test: &View, samples: &[Sample]) -> Option<(Rule, f64)> {
     let rules = candidates(reference, test, samples);
     let residual =
         |rule: &Rule| -> f64 { samples.iter().map(|s| f64::from(rule.residual(reference, s).length_squared())).sum() };
     let rests: Vec<f64> = rules.par_iter().map(residual).collect();
     let least = rests.iter().copied().fold(f64::INFINITY, f64::min);
-    // Candidates are sorted by increasing number of parameters.
+    // The candidates are sorted by their number of parameters, in ascending order.
     let near = 1.25 * least + 0.01 * difference(samples);
     rules.into_iter().zip(rests).find(|(_, rest)| *rest <= near)
 }
 
-/// Candidate rules with fitted parameters, sorted by increasing number of parameters.
+/// Returns candidate rules with fitted parameters, sorted by their number of parameters in
+/// ascending order.
 fn candidates(reference: &View, test: &View, samples: &[Sample]) -> Vec<Rule> {
     let square = reference.width == reference.height;
     let mut rules: Vec<Rule> =
@@ -197,7 +198,7 @@ fn candidates(reference: &View, test: &View, samples: &[Sample]) -> Vec<Rule> {
     rules
 }
 
-/// Rounds a colour to 255ths for messages.
+/// Rounds a colour to multiples of 1/255 for use in messages.
 fn bytes(color: Vec3) -> [i32; 3] {
     color.to_array().map(|value| (value * 255.0).round() as i32)
 }

@@ -1,4 +1,4 @@
-//! Comparison of pictures.
+//! Comparison of two pictures.
 //!
 //! [`compare()`] computes the usual measures (RMSE, PSNR, SSIM, FLIP), the regions that differ
 //! most, and the common mistake that explains the difference ([`Finding`]).
@@ -25,38 +25,40 @@ pub use picture::{Picture, Scale};
 pub use picture::{linear_to_srgb, srgb_to_linear};
 pub use regions::Region;
 
-/// Tolerances and conversion for comparing two pictures with [`compare()`].
+/// Tolerances and conversion settings for comparing two pictures with [`compare()`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Maximum difference of a channel that is ignored, in the unit of the compared values. At
-    /// least 0.
+    /// Maximum difference in a channel that is ignored, in the unit of the compared values. The
+    /// tolerance must be at least 0.
     pub tolerance: f32,
-    /// Share of pixels, from 0 to 1, that may exceed the tolerance.
+    /// Share of the pixels, from 0 to 1, that may exceed the tolerance.
     pub allowed_share: f64,
-    /// Transfer function for a floating-point picture that is compared with an 8-bit one.
+    /// Transfer function that is applied to a floating-point picture when it is compared with an
+    /// 8-bit one.
     pub transfer: Transfer,
 }
 
 impl Default for Options {
-    /// A tolerance of 1/255 in every pixel, which covers rounding.
+    /// A tolerance of 1/255 for every pixel, which allows for rounding.
     fn default() -> Self {
         Options { tolerance: 1.0 / 255.0, allowed_share: 0.0, transfer: Transfer::Srgb }
     }
 }
 
-/// Result of comparing two pictures: identical, same within the tolerance, or different.
+/// Result of comparing two pictures, which are identical, the same within the tolerance, or
+/// different.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// The values are equal everywhere.
+    /// All values are equal.
     Identical,
-    /// At most the allowed share of pixels exceeds the tolerance.
+    /// The share of pixels that exceed the tolerance is within the allowed limit.
     Same,
-    /// Too many pixels exceed the tolerance.
+    /// More pixels exceed the tolerance than are allowed to.
     Different,
 }
 
 impl Verdict {
-    /// Name in reports.
+    /// Name of the result in reports.
     pub fn name(self) -> &'static str {
         match self {
             Verdict::Identical => "identical",
@@ -70,30 +72,33 @@ impl Verdict {
 /// that differ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// Width in pixels.
+    /// Width of the pictures in pixels.
     pub width: u32,
-    /// Height in pixels.
+    /// Height of the pictures in pixels.
     pub height: u32,
-    /// Scale of the compared values: display values or linear light.
+    /// Scale of the compared values, which are display values or linear light.
     pub scale: Scale,
-    /// Measures of the difference.
+    /// Measures of the difference between the pictures.
     pub measures: Measures,
     /// True if the pictures are the same, within the tolerance.
     pub verdict: Verdict,
-    /// Mistakes that explain the difference. Each explains most of the difference that the previous
-    /// ones leave. Empty if the pictures are the same, or if no mistake explains the difference.
+    /// Mistakes that explain the difference between the pictures. Each mistake explains most of the
+    /// difference that the previous ones leave. The list is empty if the pictures are the same, or
+    /// if no mistake explains the difference.
     pub findings: Vec<Finding>,
-    /// Regions that differ by more than the tolerance, worst first; at most [`Region::LIMIT`].
+    /// Regions that differ by more than the tolerance, starting with the worst; at most
+    /// [`Region::LIMIT`].
     pub regions: Vec<Region>,
-    /// FLIP error of each pixel, from 0 to 1; HDR-FLIP for linear light.
+    /// FLIP error of each pixel, from 0 to 1, or HDR-FLIP error for linear light.
     pub flip_map: Vec<f32>,
 }
 
-/// Error from comparing two pictures: they have different sizes, or one is invalid.
+/// Error that prevents two pictures from being compared: they have different sizes, or one of them
+/// is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompareError {
-    /// The sizes differ.
+    /// The pictures have different sizes.
     #[error(
         "the pictures have different sizes: {} x {} and {} x {}{}", reference.0, reference.1, test.0, test.1,
         exchanged(*reference, *test)
@@ -104,7 +109,7 @@ pub enum CompareError {
         /// Width and height of the other picture.
         test: (u32, u32),
     },
-    /// A picture is invalid.
+    /// One of the pictures is invalid.
     #[error(transparent)]
     Image(#[from] ImageError),
 }
@@ -113,13 +118,14 @@ fn exchanged(a: (u32, u32), b: (u32, u32)) -> &'static str {
     if a == (b.1, b.0) { " (width and height are swapped)" } else { "" }
 }
 
-/// Memory in bytes that decoding and comparing two pictures takes.
+/// Number of bytes of memory needed to decode and compare two pictures.
 ///
 /// # Errors
-/// [`CompareError::Sizes`], before the pictures are decoded.
+/// Returns [`CompareError::Sizes`] if the sizes differ, before the pictures are decoded.
 pub fn memory_needed(reference: &Encoded, test: &Encoded) -> Result<u64, CompareError> {
-    // Memory for both pictures, their displayed versions, and the buffers of the measures. By
-    // measurement, it is 91 bytes per pixel.
+    // The result includes memory for both pictures, for the versions of them that are displayed,
+    // and for the buffers of the measures. According to measurements, comparing takes 91 bytes per
+    // pixel.
     const BYTES_PER_PIXEL: u64 = 100;
     let [a, b] = [reference, test].map(|picture| picture.size());
     if a != b {
@@ -132,13 +138,13 @@ pub fn memory_needed(reference: &Encoded, test: &Encoded) -> Result<u64, Compare
 
 /// Compares a picture with a reference.
 ///
-/// If only one of the pictures is linear, both are compared as displayed. A pixel with a value that
-/// is not finite is excluded from the measures. It exceeds any tolerance, unless both pictures have
-/// the same values at that pixel.
+/// If only one of the pictures is linear, both are compared as they would be displayed. A pixel
+/// with a value that is not finite is excluded from the measures. A pixel of this kind exceeds any
+/// tolerance, unless both pictures have the same values there.
 ///
 /// # Errors
-/// [`CompareError::Sizes`], and [`CompareError::Image`] for a picture whose pixels do not match its
-/// size.
+/// Returns [`CompareError::Sizes`] if the sizes differ, and [`CompareError::Image`] if the number
+/// of pixels in a picture does not match its size.
 pub fn compare(reference: &Picture, test: &Picture, options: &Options) -> Result<Comparison, CompareError> {
     let pair = Pair::new(reference, test, options.transfer)?;
     let equal = pair.reference == pair.test;

@@ -1,20 +1,20 @@
-//! Pictures to compare, and their conversion to a common scale.
+//! Pictures to be compared, and their conversion to a common scale.
 
 use super::CompareError;
 use crate::{Depth, Encoded, Image, ImageError, Transfer, decode_linear, decode_srgb};
 use durer_bvh::math::{Vec3, fp};
 
-/// Meaning of the values of a compared picture: encoded for display, or linear light.
+/// Meaning of the values in a picture to be compared: encoded for display, or linear light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// Display values from 0 to 1, as stored in integer formats (255ths for 8 bits).
+    /// Display values from 0 to 1, as stored in integer formats (multiples of 1/255 for 8 bits).
     Display,
     /// Linear light of any magnitude, as stored in floating-point formats.
     Linear,
 }
 
 impl Scale {
-    /// Name in reports.
+    /// Name of the scale in reports.
     pub fn name(self) -> &'static str {
         match self {
             Scale::Display => "display",
@@ -22,7 +22,7 @@ impl Scale {
         }
     }
 
-    /// Converts a value to linear light.
+    /// Converts a value on this scale to linear light.
     pub(super) fn decode(self, value: Vec3) -> Vec3 {
         match self {
             Scale::Linear => value,
@@ -30,7 +30,7 @@ impl Scale {
         }
     }
 
-    /// Converts linear light to a value: the inverse of [`Scale::decode`].
+    /// Converts linear light to a value on this scale; this is the inverse of [`Scale::decode`].
     pub(super) fn encode(self, light: Vec3) -> Vec3 {
         match self {
             Scale::Linear => light,
@@ -38,8 +38,9 @@ impl Scale {
         }
     }
 
-    /// Smallest visible difference at a value, given the smallest visible difference `step` of
-    /// display values. For linear light, it is relative to the value.
+    /// Returns the smallest visible difference at a value, where `step` is the smallest visible
+    /// difference between display values. For linear light, the smallest visible difference is
+    /// proportional to the value.
     pub(super) fn visible(self, value: Vec3, step: f32) -> f32 {
         match self {
             Scale::Linear => step * value.abs().max_element().max(0.05),
@@ -56,47 +57,48 @@ impl Scale {
     }
 }
 
-/// Converts linear light from 0 to 1 to an sRGB value (IEC 61966-2-1).
+/// Converts linear light in the range from 0 to 1 to an sRGB value (IEC 61966-2-1).
 pub fn linear_to_srgb(light: f32) -> f32 {
     if light <= 0.0031308 { 12.92 * light } else { 1.055 * fp::pow(light, 1.0 / 2.4) - 0.055 }
 }
 
-/// Converts an sRGB value from 0 to 1 to linear light (IEC 61966-2-1).
+/// Converts an sRGB value in the range from 0 to 1 to linear light (IEC 61966-2-1).
 pub fn srgb_to_linear(value: f32) -> f32 {
     if value <= 0.04045 { value / 12.92 } else { fp::pow((value + 0.055) / 1.055, 2.4) }
 }
 
-/// A picture to compare, with values as stored in its file.
+/// A picture to be compared, with its values as they are stored in its file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Values as stored, to which no transfer function was applied.
+    /// Stored values, to which no transfer function has been applied.
     pub image: Image,
-    /// Meaning of the values.
+    /// Meaning of the stored values.
     pub scale: Scale,
 }
 
 impl Picture {
-    /// Decodes a picture. The content determines the format or, failing that, the extension of
-    /// `name`. Alpha is dropped.
+    /// Decodes a picture. The format is determined by the content or, if the content does not
+    /// identify it, by the extension of `name`. Alpha is discarded.
     ///
     /// # Errors
-    /// Errors of [`read`](crate::read).
+    /// Returns the errors of [`read`](crate::read).
     pub fn read(bytes: &[u8], name: &str) -> Result<Picture, ImageError> {
         Picture::decode(&Encoded::open(bytes, name)?, u64::MAX)
     }
 
-    /// Decodes a picture whose header was read, using at most `memory` bytes.
+    /// Decodes a picture whose header has already been read, using at most `memory` bytes.
     ///
     /// # Errors
-    /// Errors of [`Encoded::read`].
+    /// Returns the errors of [`Encoded::read`].
     pub fn decode(encoded: &Encoded, memory: u64) -> Result<Picture, ImageError> {
-        // 16-bit PNG and PPM files contain display values, too.
+        // PNG and PPM files with 16 bits per channel also contain display values.
         let scale = if encoded.depth() == Depth::Float { Scale::Linear } else { Scale::Display };
         Ok(Picture { image: encoded.read(memory, decode_linear)?, scale })
     }
 }
 
-/// A reference and a picture (`test`) to compare, of the same size and converted to the same scale.
+/// A reference and a picture (`test`) to be compared, which have the same size and were converted
+/// to the same scale.
 pub(super) struct Pair {
     pub width: usize,
     pub height: usize,
@@ -104,15 +106,15 @@ pub(super) struct Pair {
     pub reference: Vec<Vec3>,
     pub test: Vec<Vec3>,
     /// Pixels with a value that is not finite, in the reference and in the other picture. Both
-    /// pictures are set to 0 at each of these pixels.
+    /// pictures are set to 0 at all of these pixels.
     pub not_finite: [Vec<usize>; 2],
-    /// Pixels in which at least one picture is not finite and the pictures differ.
+    /// Pixels at which the pictures differ and at least one of them is not finite.
     pub finite_differs: Vec<usize>,
 }
 
 impl Pair {
-    /// Converts two pictures to the same scale. If only one is linear, `transfer` encodes it to 8
-    /// bits.
+    /// Converts two pictures to the same scale. If only one of them is linear, `transfer` encodes
+    /// it with 8 bits.
     pub fn new(reference: &Picture, test: &Picture, transfer: Transfer) -> Result<Pair, CompareError> {
         let size = |picture: &Picture| (picture.image.width, picture.image.height);
         if size(reference) != size(test) {
@@ -162,10 +164,10 @@ impl Pair {
         }
     }
 
-    /// Linear light from 0 to 1 of both pictures, as a screen would show it.
+    /// Returns the linear light of both pictures, from 0 to 1, as a screen would show it.
     pub fn displayed_light(&self) -> [Vec<Vec3>; 2] {
         let table: [f32; 256] = std::array::from_fn(|value| decode_srgb(value as u8));
-        // Nearly all values are 255ths.
+        // Nearly all values are multiples of 1/255.
         let decode = |value: f32| {
             let level = value * 255.0;
             let near = level.round();

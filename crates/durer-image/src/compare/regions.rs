@@ -8,27 +8,27 @@ use durer_bvh::math::Vec3;
 /// tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
-    /// Leftmost column.
+    /// Leftmost column of the rectangle.
     pub x: u32,
-    /// Top row.
+    /// Top row of the rectangle.
     pub y: u32,
-    /// Width in pixels.
+    /// Width of the rectangle in pixels.
     pub width: u32,
-    /// Height in pixels.
+    /// Height of the rectangle in pixels.
     pub height: u32,
     /// Number of differing pixels in the region.
     pub pixels: usize,
-    /// Mean of (picture - reference) over the differing pixels, for each channel; negative if the
-    /// picture is darker.
+    /// Mean of (picture - reference) over the differing pixels, for each channel; it is negative if
+    /// the picture is darker.
     pub mean_difference: Vec3,
-    /// Share of the picture's total squared difference, from 0 to 1.
+    /// Share of the total squared difference of the picture, from 0 to 1.
     pub share: f64,
-    /// Column and row of the pixel that differs most, for example to pass to `durer explain`.
+    /// Column and row of the pixel that differs most, which can be passed to `durer explain`.
     pub worst: (u32, u32),
 }
 
 impl Region {
-    /// Maximum number of regions.
+    /// Maximum number of regions that are reported.
     pub const LIMIT: usize = 10;
 }
 
@@ -36,7 +36,7 @@ impl Region {
 /// if their cells touch.
 const CELLS: usize = 64;
 
-/// Bounds and sums of the differing pixels of a cell, or of a region of touching cells.
+/// Bounds and sums of the differing pixels in one cell, or in a region of cells that touch.
 #[derive(Clone, Copy)]
 struct RegionSums {
     low: (usize, usize),
@@ -69,7 +69,7 @@ impl RegionSums {
     }
 }
 
-/// Finds the regions with the largest squared difference, worst first.
+/// Finds the regions with the largest squared differences, starting with the worst.
 pub(super) fn worst(pair: &Pair, tolerance: f32) -> Vec<Region> {
     let side = pair.width.max(pair.height).div_ceil(CELLS).max(2);
     let (columns, rows) = (pair.width.div_ceil(side), pair.height.div_ceil(side));
@@ -113,7 +113,7 @@ pub(super) fn worst(pair: &Pair, tolerance: f32) -> Vec<Region> {
     regions.into_iter().map(region).collect()
 }
 
-/// Joins cells that touch, even at corners, to regions. Clears the cells.
+/// Joins cells that touch, even if only at corners, into regions. Afterwards, the cells are empty.
 fn joined(cells: &mut [RegionSums], columns: usize, rows: usize) -> Vec<RegionSums> {
     let mut regions = Vec::new();
     for start in 0..cells.len() {

@@ -1,25 +1,25 @@
 //! SSIM: the structural similarity of two pictures.
 //!
 //! Source: Wang, Bovik, Sheikh and Simoncelli, *Image Quality Assessment: From Error Visibility to
-//! Structural Similarity*, IEEE Transactions on Image Processing 13(4), 2004: equation 13, with a
-//! Gaussian window of 11 pixels and deviation 1.5.
+//! Structural Similarity*, IEEE Transactions on Image Processing 13(4), 2004, equation 13, with a
+//! Gaussian window of 11 pixels and a standard deviation of 1.5.
 
 use super::filter::{Filter, Kernel, filter_rows};
 use durer_bvh::math::Vec3;
 
-/// Radius of the window. A picture must be larger than the window.
+/// Radius of the window in pixels. A picture must be larger than the window.
 const RADIUS: usize = 5;
-/// (0.01 L)^2 and (0.03 L)^2 for values whose range L is 1.
+/// The constants are (0.01 L)^2 and (0.03 L)^2, where the range L of the values is 1.
 const C1: f32 = 1e-4;
 const C2: f32 = 9e-4;
-/// Luma of Rec. 601, as the authors' program uses it for colour pictures.
+/// Luma of Rec. 601, which the program of the paper's authors uses for colour pictures.
 const LUMA: Vec3 = Vec3::new(0.299, 0.587, 0.114);
 
-/// Mean similarity of the luma of two pictures with values from 0 to 1, over all positions where
-/// the window fits.
+/// Returns the mean similarity of the luma of two pictures with values from 0 to 1, over all
+/// positions at which the window fits into the pictures.
 ///
-/// The result is from -1 to 1, where 1 means equal pictures. `None` if the pictures are smaller
-/// than the window.
+/// The result lies between -1 and 1, where 1 means that the pictures are equal. Returns `None` if
+/// the pictures are smaller than the window.
 pub(super) fn ssim(width: usize, height: usize, a: &[Vec3], b: &[Vec3]) -> Option<f64> {
     if width <= 2 * RADIUS || height <= 2 * RADIUS {
         return None;

@@ -1,4 +1,5 @@
-//! Tests of the measures against closed forms, and against other programs on procedural pictures.
+//! Tests of the measures, which compare them with closed forms and with other programs on
+//! procedural pictures.
 
 use super::*;
 use crate::Image;
@@ -9,7 +10,8 @@ fn picture(width: u32, height: u32, scale: Scale, pixel: impl Fn(u32, u32) -> Ve
     Picture { image: Image::from_pixels(width, height, pixels).unwrap(), scale }
 }
 
-/// Two procedural pictures: a gradient displaced in red, and a checkerboard displaced in blue.
+/// Creates two procedural pictures: a gradient that is displaced in red, and a checkerboard that is
+/// displaced in blue.
 fn patterns() -> [Picture; 2] {
     let pattern = |gradient: u32, shift: u32| {
         picture(64, 48, Scale::Display, move |x, y| {
@@ -26,7 +28,8 @@ fn light(picture: &Picture) -> Picture {
     Picture { image: Image { pixels, ..picture.image.clone() }, scale: Scale::Linear }
 }
 
-/// Grey from 2^-8 to 2^8, and the same with every fourth row 1.5 times as bright.
+/// Creates a grey picture with values from 2^-8 to 2^8, and a copy in which every fourth row is 1.5
+/// times as bright.
 fn wide_range() -> [Picture; 2] {
     [1.0, 1.5].map(|factor| {
         picture(64, 48, Scale::Linear, move |x, y| {
@@ -41,8 +44,8 @@ fn near(value: f64, wanted: f64, within: f64) {
     assert!((value - wanted).abs() < within, "{value} is not {wanted}");
 }
 
-/// Expected values were computed with `flip_evaluator` 1.7, the authors' package, for the same
-/// pictures.
+/// The expected values were computed for the same pictures with `flip_evaluator` 1.7, the package
+/// of FLIP's authors.
 #[test]
 fn flip_is_that_of_its_authors() {
     let [a, b] = patterns();
@@ -62,8 +65,8 @@ fn flip_is_that_of_its_authors() {
     near(compare(&a, &b, &Options::default()).unwrap().measures.hdr_flip.unwrap(), 0.158_005_94, 2e-5);
 }
 
-/// Expected value from scikit-image 0.26: `structural_similarity` with `gaussian_weights=True,
-/// sigma=1.5, use_sample_covariance=False`.
+/// The expected value comes from scikit-image 0.26: `structural_similarity` with
+/// `gaussian_weights=True, sigma=1.5, use_sample_covariance=False`.
 #[test]
 fn ssim_is_that_of_others() {
     let [a, b] = patterns();
@@ -83,13 +86,13 @@ fn constant_pictures() {
     near(found.measures.ssim.unwrap(), (2.0 * 0.4 * 0.5 + 1e-4) / (0.16 + 0.25 + 1e-4), 1e-5);
     assert_eq!(found.measures.over_tolerance, 20 * 13);
     let found = compare(&grey(20, 13, 0.0), &grey(20, 13, 1.0), &Options::default()).unwrap();
-    // Black and white differ in lightness by 100, and green and blue are 203.3 apart by equations 6
-    // and 7 of 2020; these are 100^0.7 and 203.3^0.7.
+    // Black and white differ in lightness by 100, and green and blue are 203.3 apart according to
+    // equations 6 and 7 of the paper of 2020. The two values are 100^0.7 and 203.3^0.7.
     let (distance, largest) = (25.119, 41.27);
     let color = 0.95 + (distance - 0.4 * largest) / (0.6 * largest) * 0.05;
     near(found.measures.flip, color, 1e-3);
     near(found.measures.psnr, 0.0, 1e-6);
-    // A picture that is smaller than the window has no SSIM.
+    // SSIM is not defined for a picture that is smaller than the window.
     assert_eq!(compare(&grey(10, 30, 0.0), &grey(10, 30, 1.0), &Options::default()).unwrap().measures.ssim, None);
 }
 
@@ -151,7 +154,7 @@ fn sizes_that_differ_are_an_error() {
     assert!(error.contains("3 x 4 and 4 x 3") && error.contains("swapped"), "{error}");
 }
 
-/// Two differing patches are two regions, with correct properties.
+/// Two differing patches give two regions with the right properties.
 #[test]
 fn regions_are_found() {
     let a = grey(200, 100, 0.5);
@@ -170,8 +173,8 @@ fn regions_are_found() {
     near(regions[0].share, 150.0 / 154.0, 1e-6);
 }
 
-/// Filtering in bands of rows does not change the result: a picture taller than a band gives the
-/// same measures as its transpose.
+/// Filtering in bands of rows does not change the result: a picture that is taller than one band
+/// gives the same measures as its transpose.
 #[test]
 fn rows_and_columns_are_filtered_alike() {
     let tall = |change: f32| {

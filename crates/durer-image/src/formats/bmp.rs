@@ -1,4 +1,4 @@
-//! Windows bitmap: 24 bits per pixel, bottom row first.
+//! Windows bitmap format, with 24 bits per pixel and the bottom row first.
 
 use super::{Depth, Format, ImageError, Layer, WriteOptions, codec, eight_bit};
 use ::image::{ExtendedColorType, ImageFormat, codecs::bmp::BmpEncoder};
@@ -21,7 +21,7 @@ pub const FORMAT: Format = Format {
 fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
     layers.iter().try_for_each(|layer| {
         let size = (layer.image.width, layer.image.height);
-        // The encoder returns an error for rows of 2^31 / 3 pixels, which cannot be padded.
+        // The encoder fails for rows of 2^31 / 3 or more pixels because it cannot pad them.
         codec::encode(NAME, BmpEncoder::new(&mut *out), &eight_bit(layer, options), ExtendedColorType::Rgb8, size)
     })
 }

@@ -6,8 +6,8 @@ use ::image::{ColorType, ExtendedColorType, ImageDecoder, ImageEncoder, ImageFor
 use durer_bvh::math::Vec3;
 use std::io::Cursor;
 
-/// Creates a decoder for a format of the `image` crate. Reads only the header, so limits are not
-/// needed.
+/// Creates a decoder for a format of the `image` crate. The decoder reads only the header, so no
+/// limits are needed.
 pub fn decoder<'a>(
     name: &'static str,
     format: ImageFormat,
@@ -36,8 +36,8 @@ pub fn head(decoder: &impl ImageDecoder) -> ImageHeader {
     }
 }
 
-/// Decodes the pixels. Grey becomes three equal channels, alpha is stored separately, and 16-bit
-/// values are scaled to [0, 1].
+/// Decodes the pixels of a picture. Grey becomes three equal channels, alpha is stored separately,
+/// and 16-bit values are scaled to the range [0, 1].
 pub fn raster(name: &'static str, decoder: impl ImageDecoder) -> Result<Raster, ImageError> {
     let ((width, height), color) = (decoder.dimensions(), decoder.color_type());
     let count = width as usize * height as usize;
@@ -87,7 +87,7 @@ fn filled<T>(count: usize, items: impl Iterator<Item = T>) -> Result<Vec<T>, Ima
     Ok(all)
 }
 
-/// Encodes 8-bit RGB or RGBA.
+/// Encodes 8-bit pixels as RGB or RGBA.
 pub fn encode(
     name: &'static str,
     encoder: impl ImageEncoder,

@@ -1,10 +1,10 @@
-//! OpenEXR: 32-bit floats, losslessly compressed, with any number of layers. Files that are written
-//! row by row are uncompressed and have a single layer.
+//! OpenEXR format: 32-bit floating-point values, compressed without loss, with any number of
+//! layers. Files that are written row by row are not compressed and have a single layer.
 //!
-//! All layers are in one part. The first colour layer has the channels R, G, and B, which every
-//! viewer shows. The channels of other layers begin with the name of the layer, for example
-//! `normals.R`. A layer with coverage also has a channel A, and its colours are premultiplied, as
-//! the format requires.
+//! All layers are stored in one part. The first colour layer has the channels R, G, and B, which
+//! every viewer displays. The channel names of other layers begin with the name of the layer, for
+//! example `normals.R`. A layer with coverage also has a channel A, and its colours are
+//! premultiplied, as the format requires.
 
 use super::limits::{pixel_limit, try_vec};
 use super::{
@@ -38,24 +38,26 @@ pub const FORMAT: Format = Format {
     rows: Some(&ROWS),
 };
 
-/// Row-by-row format: uncompressed blocks of one row, so that all offsets are known in advance.
+/// Format for writing row by row, which uses uncompressed blocks of one row so that all offsets are
+/// known in advance.
 static ROWS: RowFormat = RowFormat { bottom_up: false, head: head_of_rows, row, png: false };
 
-/// Channels of a single layer, in the order in which a row stores them.
+/// Channels of a single layer, in the order in which each row stores them.
 fn letters(alpha: bool) -> &'static [&'static str] {
     if alpha { &["A", "B", "G", "R"] } else { &["B", "G", "R"] }
 }
 
-/// Size of a row's values in bytes.
+/// Size in bytes of the values in one row.
 fn row_bytes(strip: &RowLayout) -> u64 {
     4 * letters(strip.alpha).len() as u64 * u64::from(strip.width)
 }
 
-/// Creates the beginning of a file: magic number, version, attributes, and offsets of the rows.
+/// Creates the beginning of a file, which consists of the magic number, the version, the
+/// attributes, and the offsets of the rows.
 ///
 /// Source: *OpenEXR File Layout*, openexr.com.
 fn head_of_rows(strip: &RowLayout) -> Result<Vec<u8>, ImageError> {
-    // A row begins with its number and its size.
+    // Each row begins with its number and its size.
     let row = 8 + row_bytes(strip);
     if row > i32::MAX as u64 {
         return Err(ImageError::unsupported(NAME, "rows of more than 2 GiB are not supported"));
@@ -82,7 +84,8 @@ fn row(strip: &RowLayout, y: u32, pixels: &[Vec3], coverage: &[f32], out: &mut V
     (0..3).rev().for_each(|axis| out.extend(pixels.iter().flat_map(|pixel| pixel[axis].to_le_bytes())));
 }
 
-/// Blocks of 16 rows with Deflate: lossless, and supported by all readers.
+/// Blocks of 16 rows that are compressed with Deflate, which is lossless and supported by all
+/// readers.
 const ENCODING: Encoding =
     Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
 
@@ -109,7 +112,7 @@ fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result
     let size = layers.first().map(|layer| (layer.image.width as usize, layer.image.height as usize));
     let mut picture = ExrImage::from_encoded_channels(size.unwrap_or_default(), ENCODING, AnyChannels::sort(list));
     for (name, text) in options.attributes {
-        // Texts are Latin-1 in this format; the attributes are ASCII.
+        // Texts are in Latin-1 in this format, and the attributes are in ASCII.
         let (name, text) = (Text::new_or_none(format!("durer:{name}")), Text::new_or_none(text));
         if let (Some(name), Some(text)) = (name, text) {
             picture.layer_data.attributes.other.insert(name, AttributeValue::Text(text));
@@ -122,13 +125,14 @@ fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result
     Ok(())
 }
 
-/// Sorts the attributes in the header of a file with one part by name.
+/// Sorts the attributes in the header of a file that has only one part by their names.
 ///
-/// The encoder writes them in the order of a hash map, which varies, but equal pictures should give
-/// equal bytes. An attribute consists of its name and its type, which both end with a zero byte,
-/// the length of its value, and the value. A zero byte ends the header.
+/// The encoder writes attributes in the order of a hash map, which varies, but equal pictures
+/// should produce equal bytes. An attribute consists of its name and its type, both of which end
+/// with a zero byte, followed by the length of its value and the value itself. The header ends with
+/// a zero byte.
 fn sort_attributes(file: &mut [u8]) {
-    // Offset after the magic number and the version.
+    // Offset of the first byte after the magic number and the version.
     const START: usize = 8;
     let mut attributes = Vec::new();
     let mut at = START;
@@ -146,8 +150,9 @@ fn sort_attributes(file: &mut [u8]) {
     file[START..at].copy_from_slice(&attributes.concat());
 }
 
-/// Selects the part to read and its channels for red, green, and blue: the first part with R, G,
-/// and B; failing that, one with Y; failing that, one with a single channel, as grey.
+/// Selects the part to be read, and its channels for red, green, and blue. The first part that has
+/// R, G, and B is used. If there is none, the first part with Y is used, and otherwise the first
+/// part with a single channel; both are read as grey.
 fn chosen(meta: &MetaData) -> Result<(&Header, [Text; 3]), ImageError> {
     let flat = || meta.headers.iter().filter(|header| !header.deep);
     let has = |header: &Header, name: &str| header.channels.list.iter().any(|channel| channel.name.eq(name));
@@ -166,8 +171,8 @@ fn chosen(meta: &MetaData) -> Result<(&Header, [Text; 3]), ImageError> {
     single.ok_or_else(|| ImageError::unsupported(NAME, "it has neither channels R, G and B nor a channel Y"))
 }
 
-/// Returns the size of the display window, and the offset of the stored pixels in it. The data may
-/// cover only a part of the window, or extend beyond it.
+/// Returns the size of the display window and the offset of the stored pixels within it. The stored
+/// pixels may cover only a part of the window or extend beyond it.
 fn window(header: &Header) -> (Vec2<usize>, Vec2<i64>) {
     let shown = header.shared_attributes.display_window;
     let from = header.own_attributes.layer_position;
@@ -182,8 +187,8 @@ fn head(bytes: &[u8]) -> Result<ImageHeader, ImageError> {
         return Err(ImageError::unsupported(NAME, "channels with reduced resolution are not supported"));
     }
     let Vec2(width, height) = header.layer_size;
-    // A block is decoded with all its channels, even unused ones: compressed, uncompressed, and
-    // sorted by rows.
+    // A block is decoded with all of its channels, even unused ones, and exists in three forms:
+    // compressed, uncompressed, and sorted by rows.
     let Vec2(across, down) = header.max_block_pixel_size();
     let block = (across.min(width) as u64).saturating_mul(down.min(height) as u64);
     if block.saturating_mul(header.channels.bytes_per_pixel as u64) > pixel_limit(bytes.len()).saturating_mul(16) {
@@ -203,7 +208,7 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     let meta = MetaData::read_from_buffered(bytes, false).map_err(malformed)?;
     let (header, [red, green, blue]) = chosen(&meta)?;
     let (Vec2(width, height), offset) = window(header);
-    // Allocate all memory in advance, so that an error is returned if there is not enough.
+    // Allocate all memory in advance, so that a lack of memory results in an error.
     let room = RefCell::new(try_vec(width * height, Vec3::ZERO)?);
     let is_grey = red == green;
     let channels = read().no_deep_data().largest_resolution_level().specific_channels();
@@ -271,8 +276,8 @@ mod tests {
     #[test]
     fn a_crop_lies_where_its_windows_say() {
         use ::exr::prelude::{IntegerBounds, Layer as ExrLayer, LayerAttributes, SpecificChannels};
-        // Pixels (3, 2) and (4, 2) are stored; the display window starts at (1, 1) and has 5 x 4 or
-        // only 2 x 2 pixels.
+        // The pixels (3, 2) and (4, 2) are stored; the display window starts at (1, 1) and has 5 x
+        // 4 or only 2 x 2 pixels.
         let read = |shown: (usize, usize)| {
             let channels = SpecificChannels::rgb(|at: Vec2<usize>| (at.0 as f32 + 1.0, 0.0_f32, 0.5_f32));
             let attributes = LayerAttributes { layer_position: Vec2(3, 2), ..LayerAttributes::named("a") };
@@ -288,7 +293,7 @@ mod tests {
         let lit: Vec<(usize, f32)> =
             whole.pixels.iter().enumerate().filter(|(_, p)| p.z > 0.0).map(|(i, p)| (i, p.x)).collect();
         assert_eq!(lit, [(5 + 2, 1.0), (5 + 3, 2.0)]);
-        // Pixels outside the display window are dropped.
+        // Pixels outside the display window are discarded.
         assert!(read((2, 2)).pixels.iter().all(|pixel| *pixel == Vec3::ZERO));
     }
 

@@ -1,6 +1,7 @@
-//! Radiance HDR: three 8-bit mantissas and a shared exponent, run-length encoded.
+//! Radiance HDR format, with three 8-bit mantissas and a shared exponent per pixel, compressed by
+//! run-length encoding.
 //!
-//! Source: Ward, *Real Pixels*, Graphics Gems II, and Radiance's `color.c`.
+//! Sources: Ward, *Real Pixels*, Graphics Gems II, and Radiance's `color.c`.
 
 use super::{Depth, Format, ImageError, RowFormat, RowLayout, codec, rows};
 use ::image::codecs::hdr::HdrDecoder;
@@ -21,16 +22,17 @@ pub const FORMAT: Format = Format {
     rows: Some(&ROWS),
 };
 
-/// Widths for which rows are compressed. Rows of other widths are written pixel by pixel.
+/// Widths at which rows are compressed. Rows of any other width are written pixel by pixel.
 const PACKED_WIDTHS: std::ops::Range<u32> = 8..0x8000;
-/// Maximum length of a run, and of a sequence of literals.
+/// Maximum length of a run, and maximum length of a sequence of literal bytes.
 const RUN_LIMIT: usize = 127;
 const LITERAL_LIMIT: usize = 128;
 /// Minimum length of a run that saves space.
 const MIN_RUN: usize = 4;
 
 fn decoder(bytes: &[u8]) -> Result<HdrDecoder<&[u8]>, ImageError> {
-    // The strict decoder accepts only one of the two signatures; both were checked before.
+    // The strict decoder accepts only one of the two signatures, both of which have already been
+    // checked.
     HdrDecoder::new_nonstrict(bytes).map_err(|error| ImageError::malformed(NAME, error))
 }
 
@@ -54,16 +56,16 @@ static ROWS: RowFormat = RowFormat {
     png: false,
 };
 
-/// Converts a colour to mantissas and a shared exponent: channel = mantissa / 256 * 2^(exponent -
-/// 128), where the largest mantissa is at least 128.
+/// Converts a colour to mantissas and a shared exponent, where channel = mantissa / 256 *
+/// 2^(exponent - 128) and the largest mantissa is at least 128.
 ///
 /// Negative values and NaN become 0. Values that are too large, including infinity, become the
 /// largest value that can be represented.
 fn rgbe(pixel: Vec3) -> [u8; 4] {
     let channels = pixel.to_array().map(|value| f64::from(value.clamp(0.0, f32::MAX).max(0.0)));
     let greatest = channels.into_iter().fold(0.0, f64::max);
-    // greatest = fraction * 2^exponent with the fraction in 0.5..1, from the bits of an `f64`, in
-    // which no `f32` is subnormal.
+    // The code computes greatest = fraction * 2^exponent, with the fraction in 0.5..1, from the
+    // bits of an `f64`, in which no `f32` value is subnormal.
     let mut exponent = (greatest.to_bits() >> 52) as i32 - 1022;
     if greatest == 0.0 || exponent < -126 {
         return [0; 4];
@@ -72,7 +74,7 @@ fn rgbe(pixel: Vec3) -> [u8; 4] {
         let scale = f64::from_bits(((8 - exponent + 1023) as u64) << 52);
         channels.map(|value| (value * scale).round())
     };
-    // A mantissa that rounds up to 256 belongs to the next exponent.
+    // If a mantissa rounds up to 256, the next exponent must be used.
     if mantissas(exponent).contains(&256.0) {
         exponent += 1;
     }
@@ -80,8 +82,8 @@ fn rgbe(pixel: Vec3) -> [u8; 4] {
     [r, g, b, (exponent.min(127) + 128) as u8]
 }
 
-/// Appends run-length encoded bytes: a length above 128 precedes one byte to repeat; other lengths
-/// precede that many literal bytes.
+/// Appends bytes in run-length encoding: a length above 128 is followed by one byte to be repeated,
+/// and any other length is followed by that many literal bytes.
 fn pack(bytes: &[u8], out: &mut Vec<u8>) {
     let run_at = |at: usize| bytes[at..].iter().take(RUN_LIMIT).take_while(|&&byte| byte == bytes[at]).count();
     let mut at = 0;
@@ -92,7 +94,7 @@ fn pack(bytes: &[u8], out: &mut Vec<u8>) {
             at += run;
             continue;
         }
-        // Literals end where the next run begins.
+        // A sequence of literal bytes ends where the next run begins.
         let limit = bytes.len().min(at + LITERAL_LIMIT);
         let end = (at + 1..limit).find(|&next| run_at(next) >= MIN_RUN).unwrap_or(limit);
         out.push((end - at) as u8);

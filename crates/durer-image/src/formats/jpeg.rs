@@ -1,26 +1,26 @@
-//! JPEG: 8 bits per channel, for photographs and textures. Writing is not supported, since the
-//! format is lossy.
+//! JPEG format, with 8 bits per channel, for photographs and textures. Writing is not supported,
+//! because the format is lossy.
 
 use super::{Depth, Format, ImageError, ImageHeader, codec};
 use ::image::ImageFormat;
 
 const NAME: &str = "JPEG";
 
-/// Frame header of a JPEG file: width, height, and the horizontal and vertical sampling factors of
-/// its components.
+/// Frame header of a JPEG file: the width, the height, and the horizontal and vertical sampling
+/// factors of each component.
 struct Frame {
     size: [u64; 2],
     factors: Vec<[u64; 2]>,
 }
 
-/// Finds the frame header.
+/// Finds the frame header in a file.
 ///
 /// Source: ITU-T T.81, *Digital Compression and Coding of Continuous-Tone Still Images*, annex
 /// B.2.2.
 fn frame(bytes: &[u8]) -> Option<Frame> {
     let mut rest = bytes.get(2..)?;
     loop {
-        // Bytes before a marker are skipped, as decoders do.
+        // Bytes before a marker are skipped, as they are by other decoders.
         let at = rest.windows(2).position(|pair| pair[0] == 0xff && !matches!(pair[1], 0 | 0xff))?;
         let marker = rest[at + 1];
         rest = &rest[at + 2..];
@@ -29,7 +29,8 @@ fn frame(bytes: &[u8]) -> Option<Frame> {
         }
         let length = usize::from(u16::from_be_bytes(*rest.first_chunk()?));
         let segment = rest.get(2..length)?;
-        // Start of frame, with any coding. Three markers in this range have other meanings.
+        // Markers in this range start a frame, whatever its coding is. Three of the markers have
+        // other meanings.
         if matches!(marker, 0xc0..=0xcf) && !matches!(marker, 0xc4 | 0xc8 | 0xcc) {
             let &[_, h1, h0, w1, w0, count, ref components @ ..] = segment else { return None };
             let factors = components.chunks_exact(3).take(count.into());
@@ -40,9 +41,9 @@ fn frame(bytes: &[u8]) -> Option<Frame> {
     }
 }
 
-/// Memory in bytes that the decoder needs in addition to the pixels: 16-bit coefficients of all
-/// components until the last scan, and rows of blocks while components are upsampled to full size.
-/// Components are padded to full blocks at the largest sampling factors.
+/// Number of bytes of memory that the decoder needs in addition to the pixels: for the 16-bit
+/// coefficients of all components until the last scan, and for rows of blocks while components are
+/// upsampled to full size. Components are padded to full blocks at the largest sampling factors.
 fn decoding_bytes(Frame { size, factors }: Frame) -> u64 {
     let [across, down] = [0, 1].map(|axis| factors.iter().map(|factors| factors[axis]).max().unwrap_or(1));
     let (columns, rows) = (size[0].div_ceil(8 * across), size[1].div_ceil(8 * down));
@@ -82,10 +83,10 @@ mod tests {
             factors.iter().for_each(|factor| bytes.extend([1, *factor, 0]));
             frame(&bytes).map(decoding_bytes)
         };
-        // 4096 x 16 pixels: coefficients of 1.5 components, and some rows.
+        // For 4096 x 16 pixels, the decoder needs the coefficients of 1.5 components and some rows.
         let usual = head(0xc2, [16, 16], &[0x22, 0x11, 0x11]).unwrap();
         assert!((3 * 65536..3 * 65536 + 1_800_000).contains(&usual), "{usual}");
-        // One row of blocks of 32 x 32 pixels, for a picture of one row.
+        // A picture with one row of pixels needs one row of blocks with 32 x 32 pixels.
         let flat = head(0xc2, [16, 1], &[0x44, 0x44, 0x44]).unwrap();
         assert!(flat > 3 * 2 * 4096 * 32, "{flat}");
         assert_eq!(head(0xc4, [16, 1], &[0x11]), None);

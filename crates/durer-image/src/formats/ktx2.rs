@@ -1,5 +1,5 @@
-//! Khronos texture containers (KTX 2.0), uncompressed or compressed with zlib. Read only, and only
-//! the largest mip level is read.
+//! Khronos texture containers (KTX 2.0), which may be uncompressed or compressed with zlib. The
+//! format can be read but not written, and only the largest mip level is read.
 //!
 //! Source: *KTX File Format Specification*, version 2.0, Khronos Group.
 
@@ -23,16 +23,16 @@ pub const FORMAT: Format = Format {
     rows: None,
 };
 
-/// Number type of the channels of a KTX2 texture.
+/// Number type of the channels in a KTX2 texture.
 #[derive(Clone, Copy, PartialEq)]
 enum ChannelType {
-    /// Unsigned 8-bit, 0 to 255.
+    /// Unsigned 8-bit integer, from 0 to 255.
     Eight,
-    /// Unsigned 16-bit, 0 to 65535.
+    /// Unsigned 16-bit integer, from 0 to 65535.
     Sixteen,
-    /// Half-precision float.
+    /// Half-precision floating-point number.
     Half,
-    /// Single-precision float.
+    /// Single-precision floating-point number.
     Single,
 }
 
@@ -46,8 +46,8 @@ impl ChannelType {
     }
 }
 
-/// Supported Vulkan formats: number of the format, number of channels, channel type, and true if
-/// blue comes first.
+/// Supported Vulkan formats, each with its number, its number of channels, the type of its
+/// channels, and a flag that is true if blue comes first.
 const KINDS: [(u32, usize, ChannelType, bool); 22] = [
     (9, 1, ChannelType::Eight, false),
     (15, 1, ChannelType::Eight, false),
@@ -73,17 +73,17 @@ const KINDS: [(u32, usize, ChannelType, bool); 22] = [
     (109, 4, ChannelType::Single, false),
 ];
 
-/// A KTX2 texture: its header, and the data of its largest mip level.
+/// A KTX2 texture with its header and the data of its largest mip level.
 struct Texture<'a> {
     width: u64,
     height: u64,
     channels: usize,
     number: ChannelType,
     blue_first: bool,
-    /// Data of the largest mip level. `packed` is true if it is compressed with zlib.
+    /// Data of the largest mip level. `packed` is true if the data is compressed with zlib.
     level: &'a [u8],
     packed: bool,
-    /// Source of red, green, blue, and opacity: `r`, `g`, `b`, `a`, `0` or `1`.
+    /// Source of red, green, blue, and opacity, each of which is `r`, `g`, `b`, `a`, `0`, or `1`.
     swizzle: [u8; 4],
     /// True if the bottom row comes first.
     bottom_up: bool,
@@ -108,7 +108,7 @@ fn long(bytes: &[u8], at: usize) -> Result<u64, ImageError> {
     Ok(word(bytes, at + 4)? << 32 | word(bytes, at)?)
 }
 
-/// Returns a slice of the file, or an error if the file is too short.
+/// Returns a part of the file, or an error if the file is too short.
 fn part(bytes: &[u8], start: u64, length: u64) -> Result<&[u8], ImageError> {
     let end = start.checked_add(length).filter(|&end| end <= bytes.len() as u64);
     let end = end.ok_or_else(|| malformed("it is truncated"))?;
@@ -161,8 +161,8 @@ fn open(bytes: &[u8]) -> Result<Texture<'_>, ImageError> {
     })
 }
 
-/// Finds the value of a key. An entry consists of a length, the key, a zero byte, and the value,
-/// padded to a multiple of four bytes.
+/// Finds the value that belongs to a key. An entry consists of a length, the key, a zero byte, and
+/// the value; it is padded to a multiple of four bytes.
 fn value<'a>(mut entries: &'a [u8], key: &[u8]) -> Option<&'a [u8]> {
     loop {
         let length = word(entries, 0).ok()? as usize;
@@ -178,7 +178,7 @@ fn head(bytes: &[u8]) -> Result<ImageHeader, ImageError> {
     let texture = open(bytes)?;
     let is_eight_bit = texture.number == ChannelType::Eight;
     let unpacked = if texture.packed { texture.pixel_size() as u64 } else { 0 };
-    // The picture and its opacity.
+    // Returns the picture and the opacity of its pixels.
     let bytes_per_pixel = unpacked + if is_eight_bit { 4 } else { 16 };
     Ok(ImageHeader { width: texture.width, height: texture.height, is_eight_bit, bytes_per_pixel, extra_bytes: 0 })
 }
@@ -192,7 +192,7 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
         false => texture.level,
         true => {
             let mut all = Vec::new();
-            // Stop at the size of the picture, as a guard against decompression bombs.
+            // Stop at the size of the picture, to protect against decompression bombs.
             let mut decoder = flate2::read::ZlibDecoder::new(texture.level).take((count * size) as u64);
             decoder.read_to_end(&mut all).map_err(|error| ImageError::malformed(NAME, error))?;
             unpacked = all;
@@ -237,7 +237,7 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
 }
 
 impl Texture<'_> {
-    /// Red, green, blue, and opacity of a pixel.
+    /// Returns the red, green, blue, and opacity of a pixel.
     fn swizzled<N: Copy>(&self, pixel: &[u8], number: impl Fn(&[u8]) -> N, zero: N, one: N) -> [N; 4] {
         let channel = |i: usize| {
             let i = if self.blue_first && i < 3 { 2 - i } else { i };
@@ -254,7 +254,8 @@ impl Texture<'_> {
     }
 }
 
-/// Converts a half-precision number: a sign, five bits of exponent, and ten of mantissa.
+/// Converts a half-precision number, which has a sign bit, five exponent bits, and ten mantissa
+/// bits.
 fn half(bits: u16) -> f32 {
     let (sign, exponent, mantissa) = (u32::from(bits >> 15) << 31, u32::from(bits >> 10 & 31), u32::from(bits & 1023));
     let size = match exponent {
@@ -272,7 +273,7 @@ mod tests {
     use crate::{Encoded, read, read8};
     use std::io::Write;
 
-    /// A file with one mip level and some key-value entries.
+    /// Creates a file with one mip level and some key-value entries.
     fn file(kind: u32, size: [u32; 2], scheme: u32, entries: &[(&str, &str)], pixels: &[u8]) -> Vec<u8> {
         let mut values = Vec::new();
         for (key, value) in entries {
@@ -302,7 +303,8 @@ mod tests {
     fn every_kind_of_pixel_is_read() {
         let white = 0x3c00u16.to_le_bytes();
         for &(kind, channels, number, blue_first) in &KINDS {
-            // Red and blue differ. Channels beyond the third are ignored.
+            // The test pixels have different values for red and blue. All channels after the third
+            // are ignored.
             let one: Vec<u8> = match number {
                 ChannelType::Eight => vec![255],
                 ChannelType::Sixteen => vec![255, 255],

@@ -1,4 +1,5 @@
-//! Portable float map: red, green, and blue as 32-bit floats, little-endian, bottom row first.
+//! Portable float map (PFM): red, green, and blue as little-endian 32-bit floating-point numbers,
+//! with the bottom row first.
 
 use super::limits::try_vec;
 use super::{Depth, Format, Image, ImageError, ImageHeader, Raster, RowFormat, rows};
@@ -26,7 +27,7 @@ static ROWS: RowFormat = RowFormat {
     png: false,
 };
 
-/// A PFM file: its parsed header, and the bytes of its samples.
+/// A PFM file, with its header parsed and the bytes of its samples.
 struct PfmFile<'a> {
     width: u32,
     height: u32,
@@ -57,7 +58,7 @@ fn head(bytes: &[u8]) -> Result<ImageHeader, ImageError> {
 
 fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     let PfmFile { width, height, channels, little_endian, samples } = open(bytes)?;
-    // The declared size is accepted only if all samples are present.
+    // The size in the header is accepted only if the file contains all the samples.
     let count = width as usize * height as usize;
     let (samples, _) = samples.as_chunks::<4>();
     let samples =
@@ -74,8 +75,8 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     Ok(Raster::Float(Image { width, height, pixels }, Vec::new()))
 }
 
-/// Reads the next word of the header, and skips exactly one whitespace character after it, since
-/// samples may follow.
+/// Reads the next word of the header and skips exactly one whitespace character after it, because
+/// the samples may start there.
 fn next_word<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     let text = rest.trim_ascii_start();
     let end = text.iter().position(u8::is_ascii_whitespace)?;
@@ -104,7 +105,7 @@ mod tests {
 
     #[test]
     fn big_endian_grey_is_read() {
-        // The first byte of the samples looks like whitespace, but is part of a sample.
+        // The first byte of the samples looks like whitespace but is part of a sample.
         let mut bytes = b"Pf 2 1 1.0\n".to_vec();
         let first = f32::from_be_bytes([0x0a, 0x20, 0, 0]);
         bytes.extend(first.to_be_bytes());

@@ -1,4 +1,5 @@
-//! Portable Network Graphics: 8 bits per channel, lossless, with alpha for layers with coverage.
+//! Portable Network Graphics format, with 8 bits per channel, lossless compression, and alpha for
+//! layers with coverage.
 
 use super::{Depth, Format, ImageError, ImageHeader, Raster, RowFormat, RowLayout, RowWriter, codec, rows};
 use ::image::ImageFormat;
@@ -22,7 +23,7 @@ pub const FORMAT: Format = Format {
     rows: Some(&ROWS),
 };
 
-/// Writes a PNG file row by row, and compresses the rows as they arrive.
+/// Writes a PNG file row by row and compresses the rows as they arrive.
 pub(super) fn write_compressed<T, E: From<io::Error>>(
     format: &'static RowFormat,
     strip: RowLayout,
@@ -42,14 +43,14 @@ pub(super) fn write_compressed<T, E: From<io::Error>>(
     Ok(made)
 }
 
-/// Reads the size and pixel type from the first chunk. The decoder finds errors in the other
-/// chunks.
+/// Reads the size and the pixel type from the first chunk. Errors in the other chunks are found by
+/// the decoder.
 fn head(bytes: &[u8]) -> Result<ImageHeader, ImageError> {
     let first = chunks(bytes).next().filter(|chunk| chunk[4..8] == *b"IHDR").and_then(|chunk| chunk.get(8..18));
     let Some([w @ .., depth, color]) = first else { return Err(ImageError::malformed(NAME, "its header is missing")) };
     let side = |four: &[u8]| four.iter().fold(0, |side, &byte| side << 8 | u64::from(byte));
     let (width, height) = (side(&w[..4]), side(&w[4..]));
-    // Channels of grey, true colour, palette, grey with alpha, and colour with alpha.
+    // Number of channels for grey, true colour, palette, grey with alpha, and colour with alpha.
     let channels = [1, 3, 3, 3, 2, 3, 4][usize::from(*color).min(6)];
     let transparent = chunks(bytes).any(|chunk| chunk[4..8] == *b"tRNS");
     let (stored, is_eight_bit) = (channels + u64::from(transparent), *depth != 16);
@@ -57,7 +58,7 @@ fn head(bytes: &[u8]) -> Result<ImageHeader, ImageError> {
         (true, 3) => 3,
         (true, 2 | 4) => stored + 4,
         (true, _) => stored + 3,
-        // The pixels and their opacity, with four bytes per value.
+        // The decoder needs memory for the pixels and their opacity, with four bytes per value.
         (false, _) => 2 * stored + 16,
     };
     Ok(ImageHeader { width, height, is_eight_bit, bytes_per_pixel, extra_bytes: bytes.len() as u64 })
@@ -79,9 +80,10 @@ fn chunks(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     })
 }
 
-/// Removes the chunks that do not affect the pixels: animations, dates, profiles, and texts. A few
-/// bytes of profiles and texts could decompress to gigabytes. Critical chunks begin with an
-/// upper-case letter. Source: PNG specification, third edition, 5.3 and 5.4.
+/// Removes the chunks that do not affect the pixels, such as animations, dates, profiles, and
+/// texts. Otherwise, a few bytes of profiles or texts could be decompressed to gigabytes. The names
+/// of critical chunks begin with an upper-case letter. Source: PNG specification, third edition,
+/// sections 5.3 and 5.4.
 fn without_ancillary_chunks(bytes: &[u8]) -> Cow<'_, [u8]> {
     let needed = |chunk: &&[u8]| chunk[4].is_ascii_uppercase() || chunk[4..8] == *b"tRNS";
     match chunks(bytes).all(|chunk| needed(&chunk)) {

@@ -1,4 +1,4 @@
-//! Netpbm: written as binary P6, read as any of P1 to P7.
+//! Netpbm formats, which are written as binary P6 and read in any of the variants P1 to P7.
 
 use super::{Depth, Format, RowFormat, RowLayout, codec, rows};
 use ::image::ImageFormat;
@@ -12,8 +12,8 @@ pub const FORMAT: Format = Format {
     supports_layers: false,
     max_side: u32::MAX,
     has_signature: |bytes| matches!(bytes, [b'P', b'1'..=b'7', b' ' | b'\t'..=b'\r' | b'#', ..]),
-    // The decoder scales samples from the file's maximum value to 255, or to 65535 if the maximum
-    // exceeds 255.
+    // The decoder scales samples so that the maximum value of the file becomes 255, or 65535 if
+    // that maximum exceeds 255.
     head: |bytes| Ok(codec::head(&codec::decoder(NAME, ImageFormat::Pnm, bytes)?)),
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Pnm, bytes)?),
     encode: |layers, options, out| rows::encode(&ROWS, layers, options, out),
@@ -24,7 +24,7 @@ static ROWS: RowFormat = RowFormat {
     bottom_up: false,
     head: |strip| Ok(format!("P6\n{} {}\n255\n", strip.width, strip.height).into_bytes()),
     row: |strip, _, pixels, coverage, out| {
-        // The format has no alpha.
+        // The format does not support alpha.
         RowLayout { alpha: false, ..*strip }.eight_bit(pixels, coverage, |[r, g, b, _]| out.extend([r, g, b]));
     },
     png: false,

@@ -1,4 +1,4 @@
-//! Row-by-row writing, for pictures of any size.
+//! Row-by-row writing of pictures of any size.
 
 use super::{Display, Format, Image, ImageError, Layer, WriteOptions};
 use durer_bvh::math::Vec3;
@@ -8,16 +8,16 @@ use std::io::{self, Write};
 /// Number of rows that are encoded in parallel before they are written.
 const AT_ONCE: usize = 32;
 
-/// Functions of a [`Format`] for writing pictures row by row.
+/// Functions of a [`Format`] that write pictures row by row.
 #[derive(Debug)]
 pub struct RowFormat {
     /// True if the bottom row comes first.
     pub bottom_up: bool,
     /// Creates the header of the file.
     pub(super) head: fn(&RowLayout) -> Result<Vec<u8>, ImageError>,
-    /// Appends the bytes of a row, given its number in the file.
+    /// Appends the bytes of the row that has the given number in the file.
     pub(super) row: fn(&RowLayout, u32, &[Vec3], &[f32], &mut Vec<u8>),
-    /// True if the rows form a PNG, whose encoder writes the header, too.
+    /// True if the rows form a PNG file, whose encoder also writes the header.
     #[cfg_attr(not(feature = "codecs"), allow(dead_code))]
     pub(super) png: bool,
 }
@@ -29,22 +29,22 @@ pub struct RowLayout {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// True if alpha is stored, in formats that support it.
+    /// True if alpha is stored in formats that support it.
     pub alpha: bool,
-    /// Conversion of colours to 8-bit values.
+    /// Conversion of linear colours to 8-bit values.
     pub display: Display,
 }
 
 impl RowLayout {
-    /// Creates the properties for writing a layer with these options.
+    /// Creates the properties needed to write a layer with these options.
     pub(super) fn of(layer: &Layer, options: &WriteOptions) -> Self {
         let alpha = layer.coverage.is_some();
         let Image { width, height, .. } = *layer.image;
         RowLayout { width, height, alpha, display: super::display(layer, options) }
     }
 
-    /// Calls `offer` with the 8-bit red, green, blue, and opacity of each pixel in a row. With
-    /// alpha, colours are not premultiplied (straight alpha).
+    /// Calls `offer` with the 8-bit red, green, blue, and opacity values of each pixel in a row. If
+    /// there is alpha, the colours are not premultiplied (straight alpha).
     #[cfg(feature = "codecs")]
     pub(super) fn eight_bit(&self, pixels: &[Vec3], coverage: &[f32], mut offer: impl FnMut([u8; 4])) {
         for (i, &pixel) in pixels.iter().enumerate() {
@@ -59,7 +59,7 @@ impl RowLayout {
     }
 }
 
-/// Writer to which [`Format::write_rows`] lets a closure pass the rows of a picture.
+/// Writer that takes the rows of a picture from the closure passed to [`Format::write_rows`].
 pub struct RowWriter<'w> {
     format: &'static RowFormat,
     strip: RowLayout,
@@ -69,12 +69,12 @@ pub struct RowWriter<'w> {
 }
 
 impl Format {
-    /// Writes a picture row by row: `rows` passes the rows to a [`RowWriter`], bottom row first if
-    /// [`RowFormat::bottom_up`] is set.
+    /// Writes a picture row by row. `rows` passes the rows to a [`RowWriter`], starting with the
+    /// bottom row if [`RowFormat::bottom_up`] is set.
     ///
     /// # Errors
-    /// Errors of `rows` and `out`, and [`ImageError::Unsupported`] if the format cannot be written
-    /// row by row or cannot hold this size.
+    /// Returns the errors of `rows` and `out`, and [`ImageError::Unsupported`] if the format cannot
+    /// be written row by row or cannot hold a picture of this size.
     pub fn write_rows<T, E: From<ImageError> + From<io::Error>>(
         &self,
         strip: RowLayout,
@@ -88,7 +88,7 @@ impl Format {
     }
 }
 
-/// Writes rows, compressed if the format requires it.
+/// Writes rows, which are compressed if the format requires it.
 fn write_compressed<T, E: From<io::Error>>(
     format: &'static RowFormat,
     strip: RowLayout,
@@ -103,21 +103,21 @@ fn write_compressed<T, E: From<io::Error>>(
 }
 
 impl<'w> RowWriter<'w> {
-    /// Creates a writer that begins at the first row.
+    /// Creates a writer that starts at the first row.
     pub(super) fn new(format: &'static RowFormat, strip: RowLayout, out: &'w mut dyn Write) -> Self {
         RowWriter { format, strip, next: 0, out }
     }
 
-    /// Writes the next rows. `pixels` are ordered from top to bottom, regardless of the order in
-    /// the file. `coverage` is the coverage of each pixel, or empty if all pixels are fully
+    /// Writes the next rows. `pixels` are ordered from top to bottom, whatever the order in the
+    /// file is. `coverage` contains the coverage of each pixel; it is empty if all pixels are fully
     /// covered.
     ///
     /// # Errors
-    /// Errors of the file.
+    /// Returns the errors of the file.
     pub fn rows(&mut self, pixels: &[Vec3], coverage: &[f32]) -> io::Result<()> {
         let (format, strip, width) = (self.format, &self.strip, self.strip.width as usize);
         let count = (pixels.len() / width) as u32;
-        // Rows in the order of the file.
+        // The rows are in the order in which the file stores them.
         let row = |i: u32| {
             let y = if format.bottom_up { count - 1 - i } else { i } as usize;
             let range = y * width..(y + 1) * width;
@@ -135,7 +135,7 @@ impl<'w> RowWriter<'w> {
     }
 }
 
-/// Encodes a picture in memory row by row.
+/// Encodes a picture that is in memory row by row.
 pub(super) fn encode(
     format: &'static RowFormat,
     layers: &[Layer],
@@ -147,7 +147,7 @@ pub(super) fn encode(
         out.extend((format.head)(&strip)?);
         let coverage = layer.coverage.as_deref().unwrap_or_default();
         let written = write_compressed(format, strip, out, |rows| rows.rows(&layer.image.pixels, coverage));
-        // Writing to memory cannot fail.
+        // Writing to memory never fails.
         debug_assert!(written.is_ok());
     }
     Ok(())

@@ -1,5 +1,5 @@
-//! Truevision Targa: uncompressed 24-bit true colour, bottom row first, as the programs of the
-//! course write it. Layers with coverage have 32 bits per pixel, including alpha.
+//! Truevision Targa format, as the programs of the course write it: uncompressed 24-bit true colour
+//! with the bottom row first. Layers with coverage have 32 bits per pixel, including alpha.
 
 use super::{Depth, Format, ImageError, ImageHeader, RowFormat, codec, rows};
 use ::image::ImageFormat;
@@ -12,11 +12,11 @@ pub const FORMAT: Format = Format {
     depth: Depth::EightBit,
     supports_layers: false,
     max_side: 65535,
-    // The format has no signature and is recognised only by its extension.
+    // The format has no signature, so it is recognised only by its extension.
     has_signature: |_| false,
     head: |bytes| {
         let head = codec::head(&codec::decoder(NAME, ImageFormat::Tga, bytes)?);
-        // For palettes and 16-bit pixels, the decoder needs memory for a copy.
+        // For palettes and 16-bit pixels, the decoder needs memory for a copy of the pixels.
         Ok(ImageHeader { bytes_per_pixel: head.bytes_per_pixel + 2, ..head })
     },
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Tga, bytes)?),
@@ -24,7 +24,7 @@ pub const FORMAT: Format = Format {
     rows: Some(&ROWS),
 };
 
-/// Image type: uncompressed true colour.
+/// The image type is uncompressed true colour.
 const TRUE_COLOR: u8 = 2;
 
 static ROWS: RowFormat = RowFormat {
@@ -42,7 +42,7 @@ static ROWS: RowFormat = RowFormat {
         };
         let ([w0, w1], [h0, h1]) = (side(strip.width)?.to_le_bytes(), side(strip.height)?.to_le_bytes());
         let (bits, alpha_bits) = if strip.alpha { (32, 8) } else { (24, 0) };
-        // No image ID, no palette, and the origin at the lower left.
+        // There is no image ID and no palette, and the origin is at the lower left.
         Ok(vec![0, 0, TRUE_COLOR, 0, 0, 0, 0, 0, 0, 0, 0, 0, w0, w1, h0, h1, bits, alpha_bits])
     },
     row: |strip, _, pixels, coverage, out| {
@@ -74,7 +74,7 @@ mod tests {
         let layer = Layer::color("", image).with_coverage(vec![0.0, 0.5]);
         FORMAT.write(&[layer], &WriteOptions::default(), &mut out).unwrap();
         assert_eq!(out[..18], [0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2, 0, 32, 8]);
-        // Straight alpha: the colour of the half-covered pixel is full red.
+        // Alpha is straight, so the colour of the pixel that is half covered is full red.
         assert_eq!(out[18..], [0, 0, 255, 128, 0, 0, 0, 0]);
     }
 

@@ -1,4 +1,4 @@
-//! WebP, lossy and lossless: read only.
+//! WebP format, lossy and lossless, which can be read but not written.
 
 use super::{Depth, Format, ImageError, ImageHeader, codec};
 use ::image::ImageFormat;

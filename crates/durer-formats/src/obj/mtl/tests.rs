@@ -5,7 +5,7 @@ use durer_scene::scene::Material;
 
 const FACES: &str = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
 
-/// Reads a material with some statements; returns it with the diagnostics.
+/// Reads a material that has the given statements, and returns it with the diagnostics.
 fn read(statements: &str) -> (PrincipledMaterial, Vec<String>) {
     let folder = folder(&[("m.mtl", format!("newmtl a\n{statements}\n").as_bytes())]);
     let (scene, messages) = read_in(folder.path(), "m.obj", FACES);
@@ -25,12 +25,13 @@ fn of(statements: &str) -> PrincipledMaterial {
 fn specular_weight_follows_ks_in_physical_materials_too() {
     let weight = |statements: &str| of(statements).specular_weight;
     assert_eq!((weight("Ks 0 0 0\nillum 1"), weight("Ks 0.5 0.5 0.5\nillum 2"), weight("illum 2")), (0.0, 0.5, 0.0));
-    // 0.5 is the default of Disney and of Blender: the reflectance that follows from the index
-    // alone.
+    // 0.5 is the default value in Disney's model and in Blender: it stands for the reflectance that
+    // follows from the index of refraction alone.
     assert_eq!((weight("Pr 0.5\nKs 0 0 0\nillum 1"), weight("Pr 0.5\nKs 0 0 0")), (0.0, 0.0));
     assert_eq!((weight("Pr 0.5\nKs 0.5 0.5 0.5\nillum 2"), weight("Pr 0.5\nKs 1 1 1")), (1.0, 2.0));
     assert_eq!((weight("Pr 0.5"), weight("Pr 0.5\nillum 1")), (1.0, 0.0));
-    // Metals have no specular weight. A partial metal gets a different index instead.
+    // The specular weight does not apply to metals. A material that is partly metal gets a
+    // different index of refraction instead.
     let metal = of("Pr 0.5\nPm 1\nKs 0 0 0\nillum 1");
     assert_eq!((metal.specular_weight, metal.base_metalness), (1.0, 1.0));
     let half = of("Pr 0.5\nPm 0.5\nKs 0 0 0\nillum 1");
@@ -40,24 +41,25 @@ fn specular_weight_follows_ks_in_physical_materials_too() {
 
 #[test]
 fn colours_may_be_in_xyz() {
-    // The D65 white point at half luminance.
+    // The white point of D65 at half its luminance.
     let grey = of("Kd xyz 0.475235 0.5 0.544525").base_color;
     assert!((grey - 0.5).abs().max_element() < 1e-3, "{grey}");
 }
 
 #[test]
 fn tf_is_the_transmission_of_physical_materials() {
-    // As written by Blender.
+    // Blender writes materials in this form.
     let glass = of("Kd 0.25 1 1\nKs 0.5 0.5 0.5\nNi 1.5\nd 1\nillum 2\nPr 0\nPm 0\nTf 1 1 1");
     assert_eq!((glass.transmission_weight, glass.transmission_color), (1.0, Vec3::new(0.5, 1.0, 1.0)));
     let tinted = of("Kd 1 1 1\nPr 0\nTf 0.125 0.5 0.5\nd 0.75\nillum 9");
     assert_eq!((tinted.transmission_weight, tinted.transmission_color), (0.5, Vec3::new(0.5, 1.0, 1.0)));
     assert_eq!((tinted.opacity, of("Pr 0\nTf 0 0 0\nillum 4").transmission_weight), (0.75, 0.0));
-    // Without statements for physically based rendering, the illumination model makes glass. The
-    // filter is its colour after entering and leaving together.
+    // If there are no statements for physically based rendering, the illumination model determines
+    // that this is glass. The filter is the combined colour after light has entered and left the
+    // glass.
     let glass = of("Tf 0.25 1 1\nillum 4\nNi 1.25");
     assert_eq!((glass.transmission_weight, glass.transmission_color), (1.0, Vec3::new(0.5, 1.0, 1.0)));
-    // Maya and 3ds Max write `Tf` with every material.
+    // Maya and 3ds Max write `Tf` for every material.
     assert_eq!(of("Tf 1 1 1\nillum 2\nd 0.5").transmission_weight, 0.0);
     assert_eq!(of("Tf 0 0 0\nillum 2\nd 1").transmission_weight, 0.0);
     let (layers, messages) = read("illum 2\nd 0.5\nTf 1 0 0");

@@ -1,12 +1,12 @@
-//! Colour spaces of FLIP.
+//! Colour spaces that FLIP uses.
 
 use durer_bvh::math::Vec3;
 
-/// XYZ of white, the sum of red, green, and blue.
+/// XYZ coordinates of white, which is the sum of red, green, and blue.
 pub const WHITE: Vec3 = Vec3::new(0.950_428_55, 1.0, 1.088_900_4);
 
-/// Converts linear Rec. 709 to CIE XYZ by the matrix of IEC 61966-2-1, computed as exact fractions
-/// from the primaries.
+/// Converts linear Rec. 709 to CIE XYZ with the matrix of IEC 61966-2-1, computed in exact
+/// fractions from the primaries.
 #[inline(always)]
 pub fn xyz_from_rgb(rgb: Vec3) -> Vec3 {
     const X: Vec3 = row(10_135_552.0, 8_788_810.0, 4_435_075.0, 24_577_794.0);
@@ -19,7 +19,7 @@ const fn row(r: f64, g: f64, b: f64, divisor: f64) -> Vec3 {
     Vec3::new((r / divisor) as f32, (g / divisor) as f32, (b / divisor) as f32)
 }
 
-/// Converts CIE XYZ to linear Rec. 709: the inverse of [`xyz_from_rgb`].
+/// Converts CIE XYZ to linear Rec. 709; this is the inverse of [`xyz_from_rgb`].
 #[inline(always)]
 pub fn rgb_from_xyz(xyz: Vec3) -> Vec3 {
     const R: Vec3 = Vec3::new(3.241_003_3, -1.537_399, -0.498_615_86);
@@ -28,8 +28,8 @@ pub fn rgb_from_xyz(xyz: Vec3) -> Vec3 {
     Vec3::new(R.dot(xyz), G.dot(xyz), B.dot(xyz))
 }
 
-/// Converts XYZ, relative to white, to L*a*b* with the Hunt effect: a* and b* are scaled by the
-/// lightness.
+/// Converts XYZ values, relative to white, to L*a*b* with the Hunt effect, which scales a* and b*
+/// by the lightness.
 #[inline(always)]
 pub fn hunt_lab(relative: Vec3) -> Vec3 {
     let f = |t: f32| {
@@ -42,8 +42,8 @@ pub fn hunt_lab(relative: Vec3) -> Vec3 {
     Vec3::new(lightness, 0.01 * lightness * 500.0 * (x - y), 0.01 * lightness * 200.0 * (y - z))
 }
 
-/// HyAB distance of two L*a*b* colours: the difference of lightness plus the Euclidean distance in
-/// a* and b*.
+/// Returns the HyAB distance of two L*a*b* colours, which is the difference in lightness plus the
+/// Euclidean distance in a* and b*.
 ///
 /// Source: Abasi, Amani Tehran and Fairchild, *Distance metrics for very large color differences*,
 /// 2020.
@@ -53,9 +53,9 @@ pub fn hyab(a: Vec3, b: Vec3) -> f32 {
     d.x.abs() + (d.y * d.y + d.z * d.z).sqrt()
 }
 
-/// Cube root of a positive number, with an error of about two units in the last place. A third of
-/// the exponent is the initial value for two iterations of Halley's method. Unlike library
-/// functions, compilers can vectorise it.
+/// Returns the cube root of a positive number, with an error of about two units in the last place.
+/// Dividing the exponent by three gives the initial value for two iterations of Halley's method.
+/// Unlike a library function, this code can be vectorised by compilers.
 #[inline(always)]
 fn cube_root(x: f32) -> f32 {
     let mut root = f32::from_bits(x.to_bits() / 3 + 0x2a51_37a0);

@@ -1,16 +1,16 @@
 //! Detection of subpixel shifts at edges.
 //!
-//! If a picture f is shifted by s, it changes by about -s f'. Least squares over all edges give s
-//! even without antialiasing, since a shift by s then changes a share s of the edge pixels. Source:
-//! Lucas and Kanade, *An Iterative Image Registration Technique*, 1981.
+//! If a picture f is shifted by s, its values change by about -s f'. Fitting s to all edges by
+//! least squares works even without antialiasing, because a shift by s then changes a share s of
+//! the edge pixels. Source: Lucas and Kanade, *An Iterative Image Registration Technique*, 1981.
 
 use super::sample::{Sample, View};
 use durer_bvh::math::Vec3;
 
-/// Smallest shift in pixels that can be distinguished from chance.
+/// Smallest shift, in pixels, that can be distinguished from chance.
 const LEAST: f64 = 0.2;
 
-/// Explains differences at edges by a shift of the edges, if possible.
+/// Explains differences at edges by a shift of the edges, if that is possible.
 pub fn cause(reference: &View, at_edges: &[Sample]) -> Option<String> {
     let [right, stretch_x, down, stretch_y] = flow(reference, at_edges)?;
     let moved = |amount: f64| amount.abs() > LEAST;
@@ -25,7 +25,7 @@ pub fn cause(reference: &View, at_edges: &[Sample]) -> Option<String> {
              i, (i + 0.5) / n"
         ));
     }
-    // Other stretches are due to a different camera, and the pictures alone do not show why.
+    // Other stretches come from a different camera, and the pictures alone do not show the reason.
     if is_stretched {
         return None;
     }
@@ -38,8 +38,9 @@ pub fn cause(reference: &View, at_edges: &[Sample]) -> Option<String> {
     (!ways.is_empty()).then(|| format!("it is shifted by about {}: {half}", ways.join(" and ")))
 }
 
-/// Estimates the shift of edges in pixels: to the right in the middle of the picture, the
-/// additional shift to the right at the right border, and the same two values downwards.
+/// Estimates how far edges are shifted, in pixels. Returns the shift to the right in the middle of
+/// the picture, the additional shift to the right at the right border, and the same two values for
+/// the downward direction.
 fn flow(reference: &View, at_edges: &[Sample]) -> Option<[f64; 4]> {
     let mut matrix = [[0.0; 5]; 4];
     let (half_width, half_height) = (reference.width as f64 / 2.0, reference.height as f64 / 2.0);
@@ -62,11 +63,12 @@ fn flow(reference: &View, at_edges: &[Sample]) -> Option<[f64; 4]> {
     solve(matrix)
 }
 
-/// Gaussian elimination; `None` if the solution is not unique.
+/// Solves linear equations by Gaussian elimination; returns `None` if the solution is not unique.
 fn solve(mut rows: [[f64; 5]; 4]) -> Option<[f64; 4]> {
     let largest = (0..4).map(|i| rows[i][i]).fold(0.0, f64::max);
     for i in 0..4 {
-        // The matrix is symmetric and positive semidefinite, so pivots on the diagonal suffice.
+        // The matrix is symmetric and positive semidefinite, so pivots on the diagonal are
+        // sufficient.
         if rows[i][i] <= 1e-6 * largest {
             return None;
         }

@@ -1,27 +1,29 @@
-//! Detection of mistakes in parts of a picture: the location of the difference indicates its cause.
+//! Detection of mistakes that affect parts of a picture, where the location of the difference
+//! indicates the cause.
 
 use super::sample::{Sample, View};
 use super::{Finding, MIN_EXPLAINED_PART, bytes, difference, flow};
 use crate::compare::picture::Scale;
 use durer_bvh::math::Vec3;
 
-/// Detector of one mistake in a part of the picture, given the reference, the picture, and samples
-/// of both.
+/// Function that detects one mistake in a part of the picture, given the reference, the picture,
+/// and samples of both.
 type Detector = fn(&View, &View, &[Sample]) -> Option<Finding>;
 /// Function that converts a colour to the normal that it encodes.
 type Decode = fn(Vec3) -> Vec3;
 
-/// Minimum visible difference: slightly more than 1/255.
+/// Minimum difference that counts as visible, which is slightly more than 1/255.
 const VISIBLE: f32 = 1.5 / 255.0;
-/// Minimum difference between neighbours at an edge.
+/// Minimum difference between neighbouring pixels that counts as an edge.
 const EDGE: f32 = 0.08;
 /// Minimum share of the difference at edges that mixtures of neighbouring colours must explain.
 const MIXED: f64 = 0.95;
-/// Maximum ratio of squared differences between neighbours in an antialiased picture to those in
-/// the other one. For edges at random positions within pixels, two thirds are expected.
+/// Maximum ratio between the squared differences of neighbouring pixels in an antialiased picture
+/// and those in the other picture. If edges lie at random positions within pixels, the expected
+/// ratio is two thirds.
 const SMOOTHER: f64 = 0.85;
 
-/// Detects a picture of a single colour.
+/// Detects that one of the pictures has a single colour.
 pub fn blank(reference: &View, test: &View) -> Option<Finding> {
     let one_color = |picture: &View| picture.pixels.iter().all(|&pixel| pixel == picture.pixels[0]);
     let what = |color: Vec3| {
@@ -42,27 +44,28 @@ pub fn finding(reference: &View, test: &View, samples: &[Sample]) -> Option<Find
     all.iter().find_map(|part| part(reference, test, samples).filter(|finding| finding.explained >= MIN_EXPLAINED_PART))
 }
 
-/// Finds samples whose reference colours encode unit vectors, as absolute values or mapped from
-/// [-1, 1] to [0, 1]. Returns the decoding and the samples.
+/// Finds samples whose colours in the reference encode unit vectors, either as absolute values or
+/// mapped from [-1, 1] to [0, 1]. Returns the decoding function and the samples.
 fn unit_vectors(samples: &[Sample]) -> Option<(Decode, Vec<&Sample>)> {
     let decodings: [Decode; 2] = [|color| color, |color| 2.0 * color - 1.0];
     decodings.into_iter().find_map(|decode| {
         let unit: Vec<&Sample> =
             samples.iter().filter(|s| (decode(s.reference).length() - 1.0).abs() < 0.015).collect();
-        // Other samples are background. Pure red, green, or blue could be unit vectors by chance,
-        // so require other colours too.
+        // All other samples are treated as background. Pure red, green, or blue could be unit
+        // vectors by chance, so other colours are required as well.
         let objects = samples.iter().filter(|s| s.reference != Vec3::ZERO).count();
         let mixed = unit.iter().filter(|s| s.reference.max_element() < 0.98).count();
         (3 * unit.len() > objects && 4 * mixed > unit.len() && !unit.is_empty()).then_some((decode, unit))
     })
 }
 
-/// Detects normals whose negative components are clamped instead of made positive.
+/// Detects normals whose negative components were clamped instead of being made positive.
 fn clamped_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     let (_, unit) = unit_vectors(samples)?;
     let cut = |s: &Sample| Vec3::from(std::array::from_fn(|c| if s.test[c] == 0.0 { 0.0 } else { s.reference[c] }));
     let rest: f64 = samples.iter().map(|s| f64::from((s.test - cut(s)).length_squared())).sum();
-    // A black pixel can have any cause, but a single missing component is evidence.
+    // A black pixel can have any cause, but a single missing component is evidence for this
+    // mistake.
     let some = |s: &&&Sample| cut(s) != s.reference && s.test != Vec3::ZERO;
     let explained = 1.0 - rest / difference(samples);
     let words = "components of its normals that should be positive are 0: negative values are clamped (take absolute values \
@@ -74,7 +77,7 @@ fn clamped_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     })
 }
 
-/// Detects normals with the right direction but a length other than 1.
+/// Detects normals that have the right direction but not a length of 1.
 fn unnormalized_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     let (decode, unit) = unit_vectors(samples)?;
     let encode = |vector: Vec3| if decode(Vec3::ZERO) == Vec3::ZERO { vector } else { 0.5 * vector + 0.5 };
@@ -90,7 +93,7 @@ fn unnormalized_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Findin
     (20 * wrong > unit.len()).then(|| Finding { kind: "normals-not-normalised", description: words.into(), explained })
 }
 
-/// Detects differences only where the reference is saturated.
+/// Detects differences that occur only where the reference is saturated.
 fn saturated(reference: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     let (mut full, mut there, mut total) = (0, 0.0, 0.0);
     for sample in samples.iter().filter(|_| reference.scale == Scale::Display) {
@@ -105,7 +108,7 @@ fn saturated(reference: &View, _: &View, samples: &[Sample]) -> Option<Finding> 
     }
     let words = "it differs only where channels of the reference are saturated (255): values above 1 wrap around \
                  instead of being clamped";
-    // A value that wraps around can become any value, including black.
+    // A value that wraps around can end up anywhere, including at black.
     let wrapped = |s: &&Sample| (0..3).any(|c| s.reference[c] >= 0.998 && s.test[c] < 0.5);
     let some = samples.iter().filter(wrapped).count();
     (full > 0 && full < 2 * samples.len() && some * 12 > full).then(|| Finding {
@@ -123,13 +126,13 @@ fn at_edge(picture: &View, s: &Sample) -> bool {
     (high - low).max_element() > EDGE
 }
 
-/// Detects differences that occur only at edges, from different sample positions or different
-/// filtering.
+/// Detects differences that occur only at edges and come from different sample positions or
+/// different filtering.
 fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     let at_edges: Vec<Sample> = samples.iter().filter(|s| at_edge(reference, s) || at_edge(test, s)).copied().collect();
     let share = at_edges.len() as f64 / samples.len() as f64;
     let explained = difference(&at_edges) / difference(samples);
-    // Smoothing splits one large step between neighbours into several small ones.
+    // Smoothing divides one large step between neighbouring pixels into several small ones.
     let roughness = |picture: &View| -> f64 {
         let steps = |s: &Sample| {
             let here = picture.at(s.x, s.y);
@@ -139,8 +142,8 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
         at_edges.iter().map(steps).sum()
     };
     let (own, others) = (roughness(test), roughness(reference));
-    // If edges are sampled differently, brighter and darker pixels roughly balance. If an edge has
-    // moved, they may not.
+    // If edges are only sampled differently, brighter and darker pixels roughly balance. If an edge
+    // has moved, they may not balance.
     let (sum, all) = at_edges.iter().fold((0.0, 0.0), |(sum, all), s| {
         let by = (s.test - s.reference).element_sum();
         (sum + by, all + by.abs())
@@ -165,8 +168,8 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     })
 }
 
-/// Share of the squared difference in pixels whose colours lie between those of their neighbours.
-/// Different sample positions give such colours, but different shading does not.
+/// Returns the share of the squared difference in pixels whose colours lie between those of their
+/// neighbours. Different sample positions cause such colours, but different shading does not.
 fn mixed(reference: &View, test: &View, at_edges: &[Sample]) -> f64 {
     let between = |value: Vec3, picture: &View, s: &Sample| {
         let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| picture.at(s.x + dx, s.y + dy)));
@@ -178,7 +181,7 @@ fn mixed(reference: &View, test: &View, at_edges: &[Sample]) -> f64 {
 }
 
 /// Returns true if the areas on both sides of the differing edges are equal in both pictures.
-/// Objects that are so thin that all their pixels are at edges are ignored.
+/// Objects that are so thin that all of their pixels lie at edges are ignored.
 fn has_equal_sides(reference: &View, test: &View, at_edges: &[Sample]) -> bool {
     let differing: Vec<&Sample> = at_edges.iter().filter(is_visible).collect();
     let sides = |s: &&&Sample| {
@@ -192,7 +195,8 @@ fn has_equal_sides(reference: &View, test: &View, at_edges: &[Sample]) -> bool {
     differing.iter().filter(sides).count() * 8 > differing.len()
 }
 
-/// Number of a pixel's eight neighbours whose difference is unlike that of the pixel.
+/// Returns how many of the eight neighbours of a pixel have a difference that is unlike the
+/// difference of the pixel itself.
 fn dissimilar_neighbours(reference: &View, test: &View, s: &Sample) -> usize {
     let own = s.test - s.reference;
     let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (s.x + dx, s.y + dy)));
@@ -207,10 +211,10 @@ fn brighter(s: &Sample) -> bool {
     (s.test - s.reference).element_sum() > 0.0
 }
 
-/// Detects isolated pixels that are all darker or all brighter.
+/// Detects isolated pixels that are all darker or all brighter than in the reference.
 fn speckles(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     let visible: Vec<&Sample> = samples.iter().filter(is_visible).collect();
-    // Ignore isolated pixels at edges, which differ if an edge has moved.
+    // Ignore isolated pixels at edges, because they differ if an edge has moved.
     let alone =
         visible.iter().filter(|s| dissimilar_neighbours(reference, test, s) >= 7 && !at_edge(reference, s)).count();
     let share = visible.len() as f64 / samples.len() as f64;
@@ -229,15 +233,15 @@ fn speckles(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding
     (2 * alone > visible.len() && share < 0.5).then_some(Finding { kind, description: words, explained })
 }
 
-/// Detects differences without a pattern.
+/// Detects differences that have no pattern.
 fn noise(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     let visible: Vec<&Sample> = samples.iter().filter(is_visible).collect();
     let alone: usize = visible.iter().map(|s| dissimilar_neighbours(reference, test, s)).sum();
     let explained = difference(&visible.iter().copied().copied().collect::<Vec<_>>()) / difference(samples);
     let words = "it differs from pixel to pixel without a pattern: noise, from too few samples or other random \
                  numbers";
-    // Edges of a fine pattern that have moved look like noise, but noise also occurs away from
-    // edges.
+    // When the edges of a fine pattern move, the difference looks like noise, but real noise also
+    // occurs away from edges.
     let smooth = visible.iter().filter(|s| !at_edge(reference, s)).count();
     (alone > 5 * visible.len() && 10 * visible.len() > samples.len() && 2 * smooth > visible.len()).then(|| Finding {
         kind: "noise",
@@ -246,7 +250,7 @@ fn noise(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     })
 }
 
-/// Detects parts that are darker or brighter while the rest is equal.
+/// Detects parts of the picture that are darker or brighter while the rest is equal.
 fn shaded(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     let total = difference(samples);
     let (bright, dark): (Vec<Sample>, Vec<Sample>) = samples.iter().filter(is_visible).copied().partition(brighter);
@@ -256,7 +260,7 @@ fn shaded(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     if part.is_empty() || explained < MIN_EXPLAINED_PART {
         return None;
     }
-    // Fit one factor to the whole part.
+    // Fit a single factor to the whole part.
     let (sum, squares) = part.iter().fold((0.0, 0.0), |(sum, squares), s| {
         (sum + f64::from(s.test.dot(s.reference)), squares + f64::from(s.reference.length_squared()))
     });
@@ -268,12 +272,12 @@ fn shaded(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
         false if fits && factor < 0.02 => ("black-parts", "black"),
         false => ("darker-parts", "darker"),
     };
-    // Differences in shadows, lights, highlights, and missing rays all look like this.
+    // Differences in shadows, lights, and highlights look like this, and so do missing rays.
     let cause = "the pictures alone do not show the cause; pass `--scene` to try common mistakes";
     let by = if fits && kind != "black-parts" { format!(" by a factor of {factor:.3}") } else { String::new() };
     let share = part.len() as f64 / samples.len() as f64;
-    // If nearly everything differs and no factor fits, this is not a difference in a part of the
-    // picture.
+    // If nearly everything differs and no factor fits, the difference is not confined to a part of
+    // the picture.
     if share > 0.75 && !fits {
         return None;
     }

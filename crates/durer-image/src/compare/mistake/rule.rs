@@ -1,11 +1,11 @@
-//! Rules: mistakes that affect every pixel of a picture.
+//! Rules, which are mistakes that affect every pixel of a picture.
 
 use super::sample::{Sample, View};
 use crate::compare::picture::{Scale, linear_to_srgb, srgb_to_linear};
 use durer_bvh::math::{Vec3, fp};
 
-/// Rotation or reflection of a picture by a common mistake: an optional transposition, and
-/// mirroring of columns and rows.
+/// Rotation or reflection of a picture that a common mistake causes, composed of an optional
+/// transposition and optional mirroring of columns and rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Orientation {
     pub transpose: bool,
@@ -33,7 +33,7 @@ impl Orientation {
         self.transpose
     }
 
-    /// Pixel of the reference that moves to a position.
+    /// Returns the position in the reference of the pixel that moves to a given position.
     fn source(self, picture: &View, x: isize, y: isize) -> (isize, isize) {
         let x = if self.flip_x { picture.width as isize - 1 - x } else { x };
         let y = if self.flip_y { picture.height as isize - 1 - y } else { y };
@@ -41,50 +41,50 @@ impl Orientation {
     }
 }
 
-/// A common mistake that affects every pixel, as a rule that computes the wrong picture from the
-/// reference.
+/// A common mistake that affects every pixel, expressed as a rule that computes the wrong picture
+/// from the reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rule {
     Reoriented(Orientation),
-    /// Shift in pixels to the right and down.
+    /// Shift in pixels to the right and downwards.
     Shifted(isize, isize),
-    /// Source channel of the reference for each channel.
+    /// Channel of the reference that each channel is taken from.
     Channels([usize; 3]),
     Grey,
     /// Flags for the channels in which black and white are exchanged.
     Inverted([bool; 3]),
-    /// Inverts every channel, except in black pixels.
+    /// Inverts every channel except in black pixels.
     InvertedExceptBlack,
     GammaTwice,
     GammaMissing,
     Power(f32),
-    /// Factor on the stored values.
+    /// Factor by which the stored values are multiplied.
     Factor(f32),
-    /// Factor on the linear light of the values.
+    /// Factor by which the linear light is multiplied.
     LightFactor(f32),
     Factors(Vec3),
     Added(f32),
     AddedEach(Vec3),
-    /// Factor and offset.
+    /// Factor and offset of the values.
     Affine(f32, f32),
     Recolored(Vec3, Vec3),
     Blurred,
 }
 
 impl Rule {
-    /// Difference at a pixel that this rule leaves.
+    /// Returns the difference that remains at a pixel after this rule is applied.
     pub fn residual(&self, reference: &View, sample: &Sample) -> Vec3 {
         sample.test - self.pixel(reference, sample.x, sample.y)
     }
 
-    /// Applies the rule to the reference.
+    /// Applies the rule to all pixels of the reference.
     pub fn apply(&self, reference: &View) -> Vec<Vec3> {
         let width = reference.width as isize;
         (0..reference.pixels.len() as isize).map(|i| self.pixel(reference, i % width, i / width)).collect()
     }
 
-    /// Returns true if the rule determines the value of a pixel. After a shift, pixels that come
-    /// from outside the reference are undetermined.
+    /// Returns true if the rule determines the value of a pixel. After a shift, the pixels that
+    /// come from outside the reference are not determined.
     pub fn determines(&self, picture: &View, x: isize, y: isize) -> bool {
         match *self {
             Rule::Shifted(dx, dy) => {
@@ -94,7 +94,7 @@ impl Rule {
         }
     }
 
-    /// Applies the rule to a pixel of the reference.
+    /// Applies the rule to one pixel of the reference.
     fn pixel(&self, reference: &View, x: isize, y: isize) -> Vec3 {
         let value = reference.at(x, y);
         let scale = reference.scale;
@@ -103,7 +103,7 @@ impl Rule {
                 let (x, y) = orientation.source(reference, x, y);
                 reference.at(x, y)
             }
-            // Pixels that come from outside the reference keep their value.
+            // Pixels that come from outside the reference keep their values.
             Rule::Shifted(dx, dy) if self.determines(reference, x, y) => reference.at(x - dx, y - dy),
             Rule::Shifted(..) => value,
             Rule::Channels(order) => order.map(|channel| value[channel]).into(),
@@ -145,7 +145,7 @@ impl Rule {
         matches!(self, Affine(..) | Power(_) | Factor(_) | LightFactor(_) | Factors(_) | Added(_) | AddedEach(_))
     }
 
-    /// Keyword of the rule.
+    /// Keyword that identifies the rule.
     pub fn kind(&self) -> &'static str {
         match self {
             Rule::Reoriented(orientation) => match (orientation.transpose, orientation.flip_x, orientation.flip_y) {
@@ -170,12 +170,12 @@ impl Rule {
     }
 }
 
-/// Returns true if two colours are equal except for rounding.
+/// Returns true if two colours are equal apart from rounding.
 pub fn same_color(a: Vec3, b: Vec3) -> bool {
     (a - b).abs().max_element() <= 1e-4
 }
 
-/// Returns true if a value is at an end of the scale, where it may have been clamped.
+/// Returns true if a value is at either end of the scale, where it may have been clamped.
 pub fn is_clamped(scale: Scale, value: f32) -> bool {
     value <= 0.0 || scale == Scale::Display && value >= 0.998
 }

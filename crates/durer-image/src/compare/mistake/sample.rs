@@ -1,4 +1,4 @@
-//! Samples of two pictures for the detection of mistakes.
+//! Samples of two pictures, from which mistakes are detected.
 
 use crate::compare::picture::{Pair, Scale};
 use durer_bvh::math::Vec3;
@@ -6,7 +6,7 @@ use durer_bvh::math::Vec3;
 /// Maximum number of pixels that are sampled.
 const MOST: usize = 100_000;
 
-/// Borrowed pixels of a picture with their size and scale, for the detection of mistakes.
+/// Borrowed pixels of a picture with its size and scale, used to detect mistakes.
 #[derive(Clone, Copy)]
 pub struct View<'p> {
     pub width: usize,
@@ -20,20 +20,21 @@ impl<'p> View<'p> {
         View { width: pair.width, height: pair.height, scale: pair.scale, pixels }
     }
 
-    /// Pixel at a position, clamped to the edge.
+    /// Returns the pixel at a position, which is clamped to the edges of the picture.
     pub fn at(&self, x: isize, y: isize) -> Vec3 {
         let (x, y) = (x.clamp(0, self.width as isize - 1), y.clamp(0, self.height as isize - 1));
         self.pixels[y as usize * self.width + x as usize]
     }
 
-    /// Mean of a pixel and its eight neighbours with weights 1, 2, 1 along each axis.
+    /// Returns the mean of a pixel and its eight neighbours, with weights of 1, 2, and 1 along each
+    /// axis.
     pub fn blurred(&self, x: isize, y: isize) -> Vec3 {
         let row = |y| self.at(x - 1, y) + 2.0 * self.at(x, y) + self.at(x + 1, y);
         (row(y - 1) + 2.0 * row(y) + row(y + 1)) / 16.0
     }
 }
 
-/// Position of a pixel, and its values in the reference and in the other picture.
+/// Position of a pixel, with its values in the reference and in the other picture.
 #[derive(Clone, Copy)]
 pub struct Sample {
     pub x: isize,
@@ -48,8 +49,8 @@ pub fn samples(reference: &View, test: &View) -> Vec<Sample> {
     let pixels = reference.pixels.len();
     let count = pixels.min(MOST);
     let place = |i: usize| {
-        // Choose one pixel from each of `count` equal intervals, at an offset from multiples of the
-        // golden ratio.
+        // Choose one pixel from each of `count` equal intervals; its offset comes from multiples of
+        // the golden ratio.
         let part = if pixels > MOST { (i as f64 * 0.618_033_988_749_895).fract() } else { 0.0 };
         (((i as f64 + part) * pixels as f64 / count as f64) as usize).min(pixels - 1)
     };

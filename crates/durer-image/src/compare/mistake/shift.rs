@@ -1,14 +1,14 @@
-//! Detection of shifts by whole pixels, from coarse to fine.
+//! Detection of shifts by whole pixels, which searches from coarse to fine resolutions.
 
 use super::sample::View;
 use durer_bvh::math::Vec3;
 
-/// Maximum width and height of the coarsest level in pixels.
+/// Maximum width and height, in pixels, of the coarsest resolution.
 const SMALLEST: usize = 48;
-/// Approximate maximum number of pixels that are compared for a shift.
+/// Approximate maximum number of pixels that are compared for each shift.
 const PLACES: usize = 20_000;
 
-/// A greyscale picture at one resolution of the search for shifts.
+/// A greyscale picture at one of the resolutions at which shifts are searched for.
 struct Grey {
     width: usize,
     height: usize,
@@ -21,7 +21,7 @@ impl Grey {
         Grey { width: picture.width, height: picture.height, values }
     }
 
-    /// Half-size version from means of two by two pixels.
+    /// Returns a picture of half the size, in which each pixel is the mean of two by two pixels.
     fn half(&self) -> Grey {
         let (width, height) = (self.width / 2, self.height / 2);
         let at = |x: usize, y: usize| self.values[y * self.width + x];
@@ -30,8 +30,8 @@ impl Grey {
         Grey { width, height, values }
     }
 
-    /// Mean squared difference between this picture, shifted by (`dx`, `dy`), and another one, over
-    /// their common area.
+    /// Returns the mean squared difference between this picture, shifted by (`dx`, `dy`), and
+    /// another one, over the area that they share.
     fn difference(&self, shifted: &Grey, (dx, dy): (isize, isize)) -> f64 {
         let step = (self.values.len() as f64 / PLACES as f64).sqrt().ceil().max(1.0) as usize;
         let range = |d: isize, size: usize| d.max(0) as usize..(size as isize + d.min(0)).max(0) as usize;
@@ -49,8 +49,8 @@ impl Grey {
     }
 }
 
-/// Most likely shift of the picture in pixels to the right and down, up to a quarter of its size;
-/// `None` if it is zero.
+/// Returns the most likely shift of the picture to the right and downwards, in pixels and up to a
+/// quarter of its size, or `None` if there is no shift.
 pub fn shift(reference: &View, test: &View) -> Option<(isize, isize)> {
     let mut levels = vec![(Grey::of(reference), Grey::of(test))];
     while let Some((a, b)) = levels.last()
@@ -62,7 +62,7 @@ pub fn shift(reference: &View, test: &View) -> Option<(isize, isize)> {
     let best = |(a, b): &(Grey, Grey), middle: (isize, isize), (rx, ry): (isize, isize)| {
         let around = |m: isize, r: isize| m - r..=m + r;
         let shifts = around(middle.1, ry).flat_map(|dy| around(middle.0, rx).map(move |dx| (dx, dy)));
-        // If several shifts are equally good, choose the smallest.
+        // If several shifts are equally good, choose the smallest one.
         let cost = |s: (isize, isize)| (a.difference(b, s), s.0.abs() + s.1.abs());
         shifts.min_by(|&s, &t| {
             let ((s, s_size), (t, t_size)) = (cost(s), cost(t));

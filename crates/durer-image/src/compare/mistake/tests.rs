@@ -1,4 +1,4 @@
-//! Tests that deliberate mistakes in pictures are detected.
+//! Tests that mistakes made on purpose in pictures are detected.
 
 use super::*;
 use crate::compare::picture::{Picture, Scale, linear_to_srgb, srgb_to_linear};
@@ -7,10 +7,10 @@ use durer_bvh::math::fp;
 
 const SIDE: usize = 96;
 
-/// Function that returns the colour of the pixel in a column and row.
+/// Function that returns the colour of the pixel at a column and row.
 type Paint = dyn Fn(usize, usize) -> Vec3;
 
-/// A picture with values in 255ths, as in files.
+/// Creates a picture whose values are multiples of 1/255, as in files.
 fn picture(paint: &Paint) -> Picture {
     let paint = |i: usize| paint(i % SIDE, i / SIDE);
     let round = |value: f32| decode_linear((value.clamp(0.0, 1.0) * 255.0).round() as u8);
@@ -18,7 +18,7 @@ fn picture(paint: &Paint) -> Picture {
     Picture { image: Image::from_pixels(SIDE as u32, SIDE as u32, pixels).unwrap(), scale: Scale::Display }
 }
 
-/// A shaded ball and a smaller one in front of a dark background, without symmetry.
+/// Draws a shaded ball and a smaller one in front of a dark background, without any symmetry.
 fn scene(x: usize, y: usize) -> Vec3 {
     let ball = |cx: f32, cy: f32, radius: f32, color: Vec3| {
         let (dx, dy) = ((x as f32 - cx) / radius, (y as f32 - cy) / radius);
@@ -30,7 +30,7 @@ fn scene(x: usize, y: usize) -> Vec3 {
         .unwrap_or(Vec3::new(0.1, 0.05, 0.2))
 }
 
-/// Absolute values of a ball's normals.
+/// Returns the absolute values of the normals of a ball.
 fn normals(x: usize, y: usize) -> Vec3 {
     let (dx, dy) = ((x as f32 - 50.0) / 40.0, (y as f32 - 45.0) / 40.0);
     let squared = 1.0 - dx * dx - dy * dy;
@@ -41,7 +41,8 @@ fn findings(reference: &Paint, test: &Paint) -> Vec<Finding> {
     explain(&Pair::new(&picture(reference), &picture(test), Transfer::Srgb).unwrap())
 }
 
-/// Checks the kind of the first finding, which must explain more than nine tenths.
+/// Checks the kind of the first finding, which must explain more than nine tenths of the
+/// difference.
 #[track_caller]
 fn finds(kind: &str, words: &str, reference: &Paint, test: &Paint) {
     let found = findings(reference, test);
@@ -130,7 +131,7 @@ fn parts_of_a_picture() {
         &scene,
     );
     finds("black-parts", "black", &scene, &move |x, y| if within(x, y) { Vec3::ZERO } else { scene(x, y) });
-    // About one pixel in ten, at irregular positions.
+    // About one pixel in ten is changed, at irregular positions.
     let speckle = |x: usize, y: usize| (x * 7919 + y * 104_729 + x * y * 31) % 31 < 3;
     finds("dark-speckles", "acne", &scene, &move |x, y| scene(x, y) * if speckle(x, y) { 0.2 } else { 1.0 });
     finds("not-clamped", "wrap", &|x, y| scene(x, y) * 2.0, &|x, y| {
@@ -144,7 +145,7 @@ fn parts_of_a_picture() {
     });
 }
 
-/// Discs sampled at different subpixel positions.
+/// Draws discs that are sampled at different subpixel positions.
 #[test]
 fn shifted_samples() {
     let disc = |x: f32, y: f32| {
@@ -175,17 +176,17 @@ fn two_mistakes_behind_each_other() {
 
 #[test]
 fn what_is_no_usual_mistake_is_none() {
-    // An unrelated picture.
+    // A picture that is not related to the reference.
     let other = |x: usize, y: usize| Vec3::new(((x * x + 3 * y) % 97) as f32, ((y * y + x) % 89) as f32, 40.0) / 100.0;
     let found = findings(&scene, &other);
     assert!(found.iter().all(|finding| finding.explained < 0.9), "{found:?}");
-    // Noise is not mistaken for anything with a cause.
+    // Noise is not mistaken for a difference with another cause.
     let noise = |x: usize, y: usize| ((x * 7919 + y * 104_729 + x * x * 31 + y * y * 17) % 255) as f32 / 255.0 - 0.5;
     let found = findings(&scene, &move |x, y| scene(x, y) + 0.1 * noise(x, y));
     assert!(found.iter().all(|f| f.kind == "noise"), "{found:?}");
 }
 
-/// A nearly black picture could be made from any reference by moving and darkening it.
+/// A nearly black picture could be made from any reference by shifting and darkening it.
 #[test]
 fn a_nearly_uniform_picture_is_not_made_from_the_reference() {
     let dark = |x: usize, y: usize| if x + 2 * y > 240 { Vec3::splat(0.012) } else { Vec3::ZERO };

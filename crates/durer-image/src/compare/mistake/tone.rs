@@ -1,4 +1,4 @@
-//! Rules for brightness and colour, with parameters fitted to the samples by least squares.
+//! Rules for brightness and colour, whose parameters are fitted to the samples by least squares.
 
 use super::rule::{Rule, is_clamped, same_color};
 use super::sample::Sample;
@@ -6,7 +6,8 @@ use crate::compare::picture::Scale;
 use durer_bvh::math::{Vec3, fp};
 use std::collections::BTreeMap;
 
-/// Values of one channel in both pictures, without those that are clamped in either picture.
+/// Returns the values of one channel in both pictures, except those that are clamped in either
+/// picture.
 fn values(scale: Scale, samples: &[Sample], channel: usize) -> impl Iterator<Item = (f64, f64)> {
     samples
         .iter()
@@ -44,7 +45,7 @@ impl Sums {
         if self.count > 0.0 { ((self.b - self.a) / self.count) as f32 } else { 0.0 }
     }
 
-    /// Slope and intercept.
+    /// Returns the slope and the intercept of the fitted line.
     fn line(&self) -> Option<(f64, f64)> {
         let spread = self.count * self.aa - self.a * self.a;
         let slope = (self.count * self.ab - self.a * self.b) / spread;
@@ -52,7 +53,7 @@ impl Sums {
     }
 }
 
-/// Rules with fitted parameters: first those with one parameter, then those with more.
+/// Returns rules with fitted parameters: first those with one parameter, then those with more.
 pub fn fitted(scale: Scale, samples: &[Sample]) -> Vec<Rule> {
     let each: [Sums; 3] = std::array::from_fn(|channel| Sums::of(values(scale, samples, channel)));
     let all = Sums::of((0..3).flat_map(|channel| values(scale, samples, channel)));
@@ -66,7 +67,7 @@ pub fn fitted(scale: Scale, samples: &[Sample]) -> Vec<Rule> {
         let sums = Sums::of((0..3).flat_map(|channel| values(scale, &light, channel)));
         rules.push(Rule::LightFactor(sums.factor()));
     }
-    // An exponent is the slope of a line through the origin in log-log space.
+    // In log-log space, an exponent is the slope of a line through the origin.
     let logarithms = (0..3).flat_map(|channel| values(scale, samples, channel));
     let ln = |value: f64| f64::from(fp::ln(value as f32));
     rules.push(Rule::Power(Sums::of(logarithms.map(|(a, b)| (ln(a), ln(b)))).factor()));
@@ -79,13 +80,13 @@ pub fn fitted(scale: Scale, samples: &[Sample]) -> Vec<Rule> {
     rules
 }
 
-/// Finds the colour that most often differs, such as the background, and its most frequent
-/// replacement.
+/// Finds the colour that differs most often, such as the background, and the colour that replaces
+/// it most often.
 fn recolored(samples: &[Sample]) -> Option<Rule> {
     let differing = || samples.iter().filter(|s| !same_color(s.reference, s.test));
     let from = most_frequent(differing().map(|s| s.reference))?;
     let to = most_frequent(differing().filter(|s| same_color(s.reference, from)).map(|s| s.test))?;
-    // If the new colour occurs in the reference, the cause is different lighting, not the
+    // If the new colour occurs in the reference, the cause is different lighting rather than the
     // background.
     let known = samples.iter().filter(|s| same_color(s.reference, to)).count();
     (100 * known < samples.len()).then_some(Rule::Recolored(from, to))

@@ -1,4 +1,4 @@
-//! Descriptions of rules.
+//! Text descriptions of rules.
 
 use super::bytes;
 use super::rule::Rule;
