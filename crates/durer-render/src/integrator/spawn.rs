@@ -1,10 +1,10 @@
 //! Secondary rays, which are offset so that they do not hit the surface from which they start.
 //!
 //! A ray never starts behind an adjacent wall. The position of a surface point is known in double
-//! precision in world space and up to a few rounding errors in object space, where coordinates are
-//! as large as the object ([`Shape::centered`] removes larger offsets). The points on each shape
-//! are kept away from the shape's own edges by more than that error. A point moved along the normal
-//! by twice the error is therefore still in front of the adjacent face.
+//! precision in world space, and to within a few rounding errors in object space, where coordinates
+//! are as large as the object ([`Shape::centered`] removes larger offsets). The points on each
+//! shape are kept away from the shape's own edges by more than that error. A point moved along the
+//! normal by twice the error is therefore still in front of the adjacent face.
 //!
 //! [`Shape::centered`]: durer_scene::shape::Shape::centered
 

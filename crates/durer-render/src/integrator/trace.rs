@@ -54,7 +54,7 @@ pub trait TraceListener: TraversalCounter {
 pub struct NodeId(u32);
 
 impl NodeId {
-    /// Placeholder for no node, returned by listeners that store nothing.
+    /// Value that means no node, returned by listeners that store nothing.
     pub const NONE: NodeId = NodeId(u32::MAX);
     /// Parent of the root term.
     pub const ROOT: NodeId = NodeId(u32::MAX - 1);
@@ -219,7 +219,7 @@ impl TraceNode {
     }
 }
 
-/// Origin of a ray in a trace, which is the camera or a kind of scattering.
+/// Source of a ray in a trace, which is the camera or a kind of scattering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RayKind {
@@ -238,7 +238,7 @@ pub enum RayKind {
 pub struct RayRecord {
     /// Origin.
     pub origin: Vec3,
-    /// Direction. In the space of a scaled object, it is not of unit length.
+    /// Direction. In the space of a scaled object, the direction is not of unit length.
     pub dir: Vec3,
     /// Minimum value of `t` for hits.
     pub t_min: f32,
@@ -345,7 +345,7 @@ pub struct Shadow {
 pub enum TermKind {
     /// Radiance along a ray.
     Ray {
-        /// Origin of the ray.
+        /// Source of the ray: the camera or a kind of scattering.
         from: RayKind,
         /// The ray.
         ray: RayRecord,

@@ -22,7 +22,7 @@ pub struct Contents {
     pub frame: CameraBasis,
     /// Colour of rays that hit nothing.
     pub background: Color,
-    /// True if paths see a black background because the scene defines none.
+    /// True if paths see a black background because the scene does not define a background.
     pub is_black_for_paths: bool,
     /// Ambient light.
     pub ambient: Color,
@@ -34,7 +34,7 @@ pub struct Contents {
     pub objects: Vec<Object>,
     /// Rules for the camera and pixel positions.
     pub camera_rules: CameraRules,
-    /// Ray intersection rules of an official program, if its arithmetic is active.
+    /// Ray intersection rules of an official program, if that program's arithmetic is in use.
     pub hits: Option<HitRules>,
     /// Rules for shading and for the Whitted integrator.
     pub shading: ShadingRules,
@@ -120,7 +120,7 @@ impl World {
         self.contents.background
     }
 
-    /// Returns true if paths see a black background because the scene defines none.
+    /// Returns true if paths see a black background because the scene does not define a background.
     pub fn is_dark(&self) -> bool {
         self.contents.is_black_for_paths
     }
@@ -150,7 +150,8 @@ impl World {
         self.contents.camera_rules
     }
 
-    /// Returns the ray intersection rules of an official program, if its arithmetic is active.
+    /// Returns the ray intersection rules of an official program, if that program's arithmetic is
+    /// in use.
     pub fn hit_rules(&self) -> Option<HitRules> {
         self.contents.hits
     }

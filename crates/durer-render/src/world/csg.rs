@@ -45,8 +45,8 @@ pub struct Csg {
     leaves: Vec<SolidPart>,
     /// Operations; the first one is the root.
     joins: Vec<OperationNode>,
-    /// Operand count of each operation for a point outside all parts, which is its number of
-    /// subtracted operands.
+    /// Number of true operands of each operation at a point outside all parts, which is the number
+    /// of its subtracted operands.
     start: Vec<u32>,
     /// Indices of the unbounded parts.
     unbounded: Vec<u32>,
@@ -322,7 +322,7 @@ impl Csg {
         // root.
         let pad = GRAZING as f32 * reach / ray.dir().abs().max_element();
         // Move the ray origin back, because traversal is faster for rays that start at their
-        // origin. The rounding error of the new origin is a thousandth of this distance.
+        // origin. The rounding error of the new origin is a thousandth of the distance moved.
         let Ray { origin, dir, t_min, t_max } = ray.rounded;
         let wide = Ray { origin: origin - pad * dir, dir, t_min, t_max: t_max + 2.0 * pad };
         let shrink = shrink && self.joins[0].op == BoolOp::Union;
@@ -376,7 +376,7 @@ impl Csg {
             let t = f32::MIN_POSITIVE;
             ray.rounded.contains(t).then_some((ShapeHit { t, ..crossing }, part))
         };
-        // Last crossing behind the origin that leads to the side opposite to the known one.
+        // Last crossing behind the origin that leads to the wrong side of the surface.
         let mut behind: Option<(ShapeHit, u32)> = None;
         let mut known = inside;
         let (apart, speed) = self.coincidence_bound(ray, events);
@@ -553,7 +553,8 @@ fn order(a: &SurfaceCrossing, b: &SurfaceCrossing) -> std::cmp::Ordering {
     a.t.total_cmp(&b.t).then(a.leaf.cmp(&b.leaf)).then(a.part.cmp(&b.part))
 }
 
-/// Returns twice the rounding error of an object's coordinates, in world space plus object space.
+/// Returns twice the sum of the rounding errors of an object's coordinates in world space and in
+/// object space.
 fn tolerance_of(object: &Object) -> f32 {
     let (Some(world), Some(local)) = (object.bounds(), object.local_bounds()) else { return 0.0 };
     let reach = |b: Aabb| b.min.abs().max(b.max.abs());

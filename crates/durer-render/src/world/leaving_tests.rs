@@ -165,8 +165,8 @@ fn rays_leave_a_floor_in_a_coordinate_plane() {
         let floor = Triangle { vertex0: corner(-1.0, -1.0), vertex1: corner(1.0, -1.0), vertex2: corner(0.0, 1.0) };
         let ray = Ray::new(Vec3::Y, 0.1 * random.point() - Vec3::Y);
         let surface = floor.surface(DVec3::ZERO, &floor.intersect(&ray).unwrap());
-        // All coordinates of the point are exactly representable on the floor, so no offset is
-        // needed, even for rays at a flat angle.
+        // The point lies exactly on the floor, so no offset is needed, even for rays at a flat
+        // angle.
         let dir = random.direction() * Vec3::new(1.0, [1.0, 0.1, 1e-3][round % 3], 1.0);
         let away = spawn_ray(&surface, dir, f32::INFINITY, None);
         assert_eq!(floor.intersect(&away.rounded), None, "{floor:?} {away:?}");

@@ -104,7 +104,7 @@ impl Principled {
 pub struct Emission {
     /// Radiance before any texture is applied.
     pub radiance: Color,
-    /// True if a texture or vertex colours change the radiance.
+    /// True if the radiance is multiplied by a texture or by vertex colours.
     pub textured: bool,
     /// True if both sides emit light, false if only the side to which the normal points does.
     pub two_sided: bool,

@@ -63,7 +63,7 @@ pub struct World {
     /// Copy of all objects in a form for batches of rays, if there are few objects.
     pub(crate) small_world: Option<SmallWorld>,
     /// Indices of the other objects outside the acceleration structure, which are the unbounded
-    /// ones, or all of them if a tree would not be faster for so few.
+    /// objects, or all objects if there are too few for a tree to be faster.
     pub(crate) outside_accel: Vec<u32>,
     pub(crate) accel: Accel,
     /// Copies of the spheres in the BVH, in the order of its leaves, which save a lookup. Objects
@@ -116,7 +116,7 @@ impl Hit {
 
 impl World {
     /// Creates a world without an acceleration structure. `source` is the hash of the sources from
-    /// which it was compiled.
+    /// which the world was compiled.
     pub(crate) fn new(contents: Contents, assets: Assets, source: Digest) -> Self {
         let mut world = World {
             contents,

@@ -80,8 +80,8 @@ impl MeshTree {
         *self.closed.get_or_init(|| self.mesh.open_edge().is_none())
     }
 
-    /// Calls `offer` for each crossing of a line with the mesh, with the index of the triangle, in
-    /// no particular order.
+    /// Calls `offer` for each point where a line crosses the mesh, in no particular order, and
+    /// passes the index of the crossed triangle.
     ///
     /// Coordinates are computed relative to the point of the line that is nearest to the mesh.
     /// Rounding errors therefore depend only on the size of the mesh's own coordinates.
@@ -135,8 +135,8 @@ impl Object {
         if let Geometry::Primitive(shape) = &self.geometry { shape.axis() } else { None }
     }
 
-    /// Calls `offer` for each crossing of a ray's line with the object, with the index of the part,
-    /// in no particular order.
+    /// Calls `offer` for each point where a ray's line crosses the object, in no particular order,
+    /// and passes the index of the crossed part.
     pub(super) fn crossings<T: TraversalCounter>(
         &self,
         axis: Option<&Axis>,
@@ -196,8 +196,8 @@ impl Object {
         rules: &ShadingRules,
         surface: &mut SurfacePoint,
     ) {
-        // Each arm writes directly into the result, because a shared temporary value would have to
-        // be copied.
+        // Each match arm writes directly into the result, because a shared temporary value would
+        // have to be copied.
         match &self.geometry {
             Geometry::Primitive(Primitive::Sphere(sphere)) => *surface = sphere.surface(point, crossing),
             Geometry::Primitive(Primitive::Plane(plane)) => *surface = plane.surface(point, crossing),
@@ -430,8 +430,8 @@ impl Object {
         }
     }
 
-    /// Returns an upper bound on the distance between the true surface and hits on it that is
-    /// caused by rounding of coordinates.
+    /// Returns an upper bound on the distance between the true surface and computed hits that can
+    /// result from rounded coordinates.
     pub(super) fn rounding_error(&self) -> f32 {
         let reach = self.local_bounds().map_or(Vec3::ZERO, |b| b.min.abs().max(b.max.abs()));
         let error = match &self.to_world {

@@ -37,11 +37,11 @@ pub enum CsgTree {
     },
 }
 
-/// Maximum number of pairs of pieces to compare when a solid is divided. If there were more pairs,
+/// Maximum number of pairs of pieces to compare when a solid is divided. If there are more pairs,
 /// the solid is not divided.
 const MAX_PAIRS: usize = 1 << 22;
 
-/// Maximum number of copies of parts that the division of a solid may need. If more copies were
+/// Maximum number of copies of parts that the division of a solid may need. If more copies are
 /// needed, the solid is not divided.
 const MAX_COPIES: usize = 1 << 18;
 

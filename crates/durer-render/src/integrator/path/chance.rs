@@ -8,8 +8,8 @@ use durer_scene::math::Color;
 use std::f32::consts::PI;
 
 impl Path<'_> {
-    /// Returns the maximum contribution to one irradiance sample of light that samples find only
-    /// rarely. `brightness` maps a colour to a number.
+    /// Returns the largest contribution that light found only rarely by samples can make to one
+    /// irradiance sample. `brightness` maps a colour to a number.
     ///
     /// Such light comes from emitters that light sampling does not choose, which are emitters with
     /// a texture or partial opacity, solids, and infinite shapes. If some material mirrors or

@@ -27,7 +27,7 @@ struct LightLiSample {
     value: Spectrum,
     /// Density per steradian with which BSDF sampling chooses the direction.
     bsdf_pdf: f32,
-    /// Density per steradian of the light sample; for lights without extent, a probability.
+    /// Density of the light sample per steradian, or its probability if the light has no extent.
     pdf: f32,
     /// Density per steradian of all candidates together, before one of them is selected. MIS
     /// weights use this density.
@@ -45,7 +45,8 @@ impl Path<'_> {
         self.world.emitters().choose(self.world, &vertex.receiver, vertex.random(Dimension::Choices).y)
     }
 
-    /// Samples a point on the chosen light and adds the light from there that the vertex scatters.
+    /// Samples a point on the chosen light and adds the light from that point that the vertex
+    /// scatters.
     pub(super) fn add_direct<T: TraceListener>(
         &self,
         choice: &LightChoice,

@@ -4,10 +4,10 @@
 //! below. No stage calls another bounce, so a wavefront renderer could run each stage over an array
 //! of states.
 //!
-//! 1. `Path::propagate` moves the ray to its next vertex, through media and past surfaces without
-//!    effect.
+//! 1. `Path::propagate` moves the ray to its next vertex, through media and past surfaces that have
+//!    no effect.
 //! 2. `Path::add_background` and `Path::add_emission` add the light at the end of the ray, with an
-//!    MIS weight against light sampling at the previous vertex.
+//!    MIS weight that accounts for light sampling at the previous vertex.
 //! 3. `Path::choose_light` and `Path::add_direct` sample a point on a light and trace its shadow
 //!    ray.
 //! 4. `Path::add_caustic` adds the light of photons.
@@ -125,8 +125,8 @@ impl<'w> Path<'w> {
         Path { world, settings, options, photons: None, cone: None, cancel: None }
     }
 
-    /// Returns the irradiance at a point, on the side of a unit normal, which is pi times the
-    /// radiance of a white matte surface there. `id` selects the random numbers.
+    /// Returns the irradiance at a point, on the side to which a unit normal points. It is pi times
+    /// the radiance of a white matte surface there. `id` selects the random numbers.
     pub fn irradiance<T: TraceListener>(&self, point: DVec3, normal: Vec3, id: SampleId, listener: &mut T) -> Color {
         self.irradiance_on(&SurfacePoint::around(point, normal), normal, id, listener)
     }

@@ -1,4 +1,5 @@
-//! Propagation of a path's ray to its next vertex, through media and past surfaces without effect.
+//! Propagation of a path's ray to its next vertex, through media and past surfaces that have no
+//! effect.
 
 use super::Path;
 use super::state::{PathState, SampleContext};

@@ -95,9 +95,9 @@ impl Path<'_> {
         true
     }
 
-    /// At a dispersive surface, ends all wavelengths except the hero wavelength, because each would
-    /// be refracted in another direction. The weight of the hero wavelength is multiplied by four
-    /// to make up for the others.
+    /// At a dispersive surface, ends all wavelengths except the hero wavelength, because each
+    /// wavelength is refracted in a different direction. The weight of the hero wavelength is
+    /// multiplied by four to make up for the others.
     pub(super) fn select_hero<T: TraceListener>(
         &self,
         at: &SurfaceInteraction,

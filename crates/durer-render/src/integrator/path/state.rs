@@ -65,8 +65,8 @@ pub(super) struct PathState {
     /// Objects that contain the ray. The last object fills the space around the ray.
     pub(super) media: MediumStack,
     /// Last vertex that sampled lights, needed for the MIS weights of lights hit by the ray. It is
-    /// `None` if no light sample competes, which is the case after the camera and after delta
-    /// lobes.
+    /// `None` if no light sample competes, which is the case for rays from the camera and after
+    /// delta lobes.
     pub(super) prev_vertex: Option<PrevVertex>,
     /// True if photons are sent to the last surface that scattered the path.
     pub(super) prev_is_photon_target: bool,

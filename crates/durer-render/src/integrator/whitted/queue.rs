@@ -16,7 +16,7 @@ pub(super) struct Segment {
     pub(super) t_min: f32,
     /// Objects that contain the ray.
     pub(super) media: MediumStack,
-    /// Maximum depth of secondary rays that start from this one.
+    /// Maximum depth of secondary rays that start from this ray.
     pub(super) bounces: u32,
     /// Weight of the ray in the pixel; see [`super::RenderSettings::min_weight`].
     pub(super) weight: f32,

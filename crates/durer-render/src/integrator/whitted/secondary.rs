@@ -170,9 +170,9 @@ impl Whitted<'_> {
         }
     }
 
-    /// Returns the weight of a ray after it is multiplied by a colour, which counts by its largest
-    /// component or, in the course's programs, by its length. For a grey colour, the length is
-    /// greater than the fraction of the light that is left.
+    /// Returns the weight of a ray after multiplying it by a colour's largest component or, in the
+    /// course's programs, by the colour's length. For a grey colour, the length is greater than the
+    /// fraction of the light that is left.
     pub fn weight_after(&self, before: f32, weight: Color) -> f32 {
         let by_length = self.world.shading_rules().weight_by_length;
         before * if by_length { weight.length() } else { weight.max_element() }

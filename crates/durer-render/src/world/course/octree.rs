@@ -33,8 +33,8 @@ pub(super) struct Octree {
 /// Cell of an [`Octree`], which is either divided or holds a range of triangles.
 #[derive(Clone, Debug)]
 enum Cell {
-    /// Index of the first of eight children. In the offset of a child from the first one, the bits
-    /// 4, 2 and 1 are set if the child is in the upper half along x, y and z.
+    /// Index of the first of eight children. In the offset of a child from the first child, the
+    /// bits 4, 2 and 1 are set if the child is in the upper half along x, y and z respectively.
     Divided(u32),
     /// Range of the cell's triangles in [`Octree::triangles`].
     Whole(Range<u32>),

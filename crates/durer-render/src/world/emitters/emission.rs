@@ -171,7 +171,7 @@ impl PhotonEmitter {
     }
 
     /// Samples a direction from a point towards a target. The result includes the density of the
-    /// direction per steradian, summed over all targets.
+    /// direction per steradian, averaged over all targets.
     fn sample_cone(&self, point: DVec3, target: usize, u: Vec2) -> Option<(Vec3, f32)> {
         let cone = |target: &PhotonTarget| {
             let to = (target.center.as_dvec3() - point).as_vec3();
@@ -192,7 +192,7 @@ impl PhotonEmitter {
     }
 
     /// Samples a ray in a given direction that passes through a target. The ray starts in front of
-    /// all objects. The result includes the density of the ray per unit area, summed over all
+    /// all objects. The result includes the density of the ray per unit area, averaged over all
     /// targets.
     fn sample_parallel(&self, dir: Vec3, target: usize, u: Vec2) -> (Ray64, f32) {
         let frame = Frame::around(dir);

@@ -218,7 +218,7 @@ pub struct LightSample {
     /// cause.
     pub error: f32,
     /// Absolute value of the cosine between the light's normal and the direction, greater than
-    /// zero. It is 1 if there is no normal.
+    /// zero. The cosine is 1 if there is no normal.
     pub cosine: f32,
     /// Radiance. For a light without extent, the irradiance of a surface that faces the light.
     pub radiance: Color,

@@ -172,8 +172,8 @@ impl Node {
             let least = subtract_angles((cosine, sine(cosine)), (self.cos_normals[i], sine(self.cos_normals[i])));
             let (cos_least, _) = subtract_angles(least, bounds);
             // On the axis of a uniform disc, the mean of 1 / distance^2 times both cosines is 1 /
-            // (d^2 + r^2). A square whose corners lie on the circle of that radius has 0.64 times
-            // the area of the disc.
+            // (d^2 + r^2). A square whose corners lie on a circle has 0.64 times the area of the
+            // disc inside the circle.
             let spread2 = largest(0.64 * radius2, f32::MIN_POSITIVE);
             let mut importance = power.abs() * blend_cosines(least.0, cos_least) / (distance2 + spread2);
             let mut across = least.0;
@@ -330,9 +330,9 @@ impl BuildNode {
 const BUCKETS: usize = 12;
 
 impl LightTree {
-    /// Builds a tree over all emitters that have power. The result includes the indices of these
-    /// emitters in the tree's order; the other functions identify an emitter by its position in
-    /// that order.
+    /// Builds a tree over all emitters whose power is greater than zero. The result includes the
+    /// indices of these emitters in the tree's order; the other functions identify an emitter by
+    /// its position in that order.
     pub fn new(emitters: &[LightBounds]) -> (Self, Vec<u32>) {
         let (halves, order) = build_binary(emitters);
         let mut tree = LightTree { leaves: vec![(0, 0); order.len()], ..LightTree::default() };

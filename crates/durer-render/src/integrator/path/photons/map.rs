@@ -188,8 +188,8 @@ fn ball(square: f32, distance: f32) -> f32 {
     15.0 / (8.0 * PI * square * square.sqrt()) * (1.0 - distance / square)
 }
 
-/// Returns the coordinates of the grid cell that contains a point, after the point was shifted by a
-/// number of cells.
+/// Returns the coordinates of the grid cell that contains a point, after the point was shifted by
+/// `shift` cells along each axis.
 fn place(point: Vec3, radius: f32, shift: f64) -> glam::I64Vec3 {
     (point.as_dvec3() / (2.0 * f64::from(radius)) + DVec3::splat(shift)).floor().as_i64vec3()
 }

@@ -57,7 +57,7 @@ fn photons_and_paths_agree_if_both_find_the_light() {
 fn fog_and_rough_glass_scatter_equal_light_with_and_without_photons() {
     // All light comes from inside a glass sphere. Photons account for the light that delta lobes
     // send to surfaces, and paths account for the light that fog or rough glass scatters
-    // afterwards. No light must be lost or counted twice.
+    // afterwards. No light may be lost or counted twice.
     let emitter = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 6 }";
     let rough = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0.4 }";
     let objects = "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.6 } \
