@@ -249,8 +249,8 @@ impl SpecularBlend {
     }
 }
 
-/// Returns the fraction of the light that is reflected, by Schlick's approximation R0 + (1 - R0) (1
-/// - c)^5.
+/// Returns the reflected fraction of the light, by Schlick's approximation
+/// R0 + (1 - R0) (1 - c)^5.
 ///
 /// In this formula, c is the cosine on the side with the lower index of refraction. R0 is computed
 /// from the indices `before` and `there`, so it is 0 if they are equal. Source: Schlick, *An
