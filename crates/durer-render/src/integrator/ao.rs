@@ -1,7 +1,7 @@
 //! Ambient occlusion integrator: renders the unoccluded fraction of the hemisphere above a surface.
 //!
-//! Directions are cosine-weighted. Source: Zhukov, Iones and Kronin, *An Ambient Light Illumination
-//! Model*, EGWR 1998.
+//! Directions are sampled in proportion to their cosine with the normal. Source: Zhukov, Iones and
+//! Kronin, *An Ambient Light Illumination Model*, EGWR 1998.
 
 use super::spawn::spawn_ray;
 use super::trace::{HitRecord, NodeId, RayKind, TermKind, TraceListener};
@@ -36,13 +36,13 @@ impl IntegratorOptions for AoParameters {
 pub struct AmbientOcclusion<'w> {
     /// World to render.
     pub world: &'w World,
-    /// Maximum distance of occluders, in world units; infinite for no limit.
+    /// Maximum distance of occluders, in world units; infinite if there is no limit.
     pub radius: f32,
 }
 
 impl Integrate for AmbientOcclusion<'_> {
-    /// Traces one random direction from the camera ray's hit. Returns 0 if it is occluded and 1 if
-    /// it is not, or if the camera ray hits nothing.
+    /// Traces a ray in one random direction from the point hit by the camera ray. Returns 0 if that
+    /// ray is occluded, and 1 if it is not or if the camera ray hits nothing.
     fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, listener: &mut T) -> Color {
         let node = listener.begin(NodeId::ROOT, || TermKind::Ray {
             from: RayKind::Camera,

@@ -1,28 +1,30 @@
-//! Tracking of the objects that a ray is inside, such as nested glass, for refraction.
+//! Tracking of the objects that contain a ray, such as nested glass, for refraction.
 
 use crate::world::{SurfaceInteraction, World};
 use durer_scene::math::Vec3;
 use smallvec::SmallVec;
 
-/// Refractive indices and media on both sides of a surface that a ray may pass.
+/// Indices of refraction and media on both sides of a surface that a ray may pass through.
 pub struct MediumTransition {
     /// Index of refraction in front of the surface.
     pub ior_front: f32,
     /// Index of refraction behind the surface.
     pub ior_behind: f32,
-    /// Media of a ray behind the surface.
+    /// Objects that contain the ray behind the surface.
     pub behind: MediumStack,
-    /// True if the surface is inside an object that displaces it, so that it has no effect.
+    /// True if the surface has no effect because it is inside an object that displaces its own
+    /// object.
     pub displaced: bool,
 }
 
 impl MediumTransition {
-    /// Returns the index of refraction behind the surface divided by that in front of it.
+    /// Returns the ratio of the index of refraction behind the surface to that in front of it.
     pub(crate) fn eta(&self) -> f32 {
         self.ior_behind / self.ior_front
     }
 
-    /// Returns the transition without surrounding media: the index is `ior` inside and 1 outside.
+    /// Returns the transition without surrounding media, where the index is `ior` inside the object
+    /// and 1 outside.
     pub(crate) fn without_surroundings(self, ior: f32, leaving: bool) -> MediumTransition {
         let (ior_front, ior_behind) = if leaving { (ior, 1.0) } else { (1.0, ior) };
         MediumTransition { ior_front, ior_behind, displaced: false, ..self }
@@ -35,14 +37,14 @@ impl Default for MediumTransition {
     }
 }
 
-/// Object with an index of refraction that contains the ray, an entry of [`MediumStack`].
+/// Object with an index of refraction that contains the ray; an entry of a [`MediumStack`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MediumEntry {
     /// Index of the object.
     pub object: u32,
     /// Index of refraction.
     pub ior: f32,
-    /// Half the surface area of the object's bounds. `None` for an open surface, which has no
+    /// Half the surface area of the object's bounds. It is `None` for an open surface, which has no
     /// inside.
     pub size: Option<f32>,
 }
@@ -52,9 +54,9 @@ impl MediumEntry {
         MediumEntry { object, ior, size: world.half_area(object) }
     }
 
-    /// Returns true if this object displaces `other` where they overlap. If both are closed, the
-    /// smaller one does: ice displaces water, whatever the ray's direction. Otherwise it is the one
-    /// that the ray entered later.
+    /// Returns true if this object displaces `other` where they overlap. If both objects are
+    /// closed, the smaller one displaces the larger: ice displaces water, whatever the ray's
+    /// direction. Otherwise, the object that the ray entered later displaces the other.
     fn displaces(&self, other: &MediumEntry, met_later: bool) -> bool {
         match (self.size, other.size) {
             (Some(a), Some(b)) if a != b => a < b,
@@ -64,27 +66,29 @@ impl MediumEntry {
     }
 }
 
-/// Stack of the objects that contain a ray. The last one fills the space; an empty stack is air.
+/// Stack of the objects that contain a ray. The last object fills the space around the ray; an
+/// empty stack means air.
 ///
-/// Source of the idea: Charles M. Schmidt and Brian Budge, *Simple Nested Dielectrics in Ray Traced
-/// Images*, Journal of Graphics Tools 7(2), 2002. There, explicit priorities define the order.
+/// The idea comes from Charles M. Schmidt and Brian Budge, *Simple Nested Dielectrics in Ray Traced
+/// Images*, Journal of Graphics Tools 7(2), 2002. In that article, explicit priorities define the
+/// order.
 #[derive(Debug, Default, PartialEq)]
 pub struct MediumStack(SmallVec<[MediumEntry; 2]>);
 
 impl Clone for MediumStack {
-    // This is faster than cloning element by element.
+    // Copying the slice is faster than cloning element by element.
     fn clone(&self) -> Self {
         MediumStack(SmallVec::from_slice(&self.0))
     }
 }
 
 impl MediumStack {
-    /// Returns the objects that contain a point.
+    /// Returns a stack of the objects that contain a point.
     pub fn around(world: &World, point: Vec3) -> Self {
         MediumStack::within(world, world.bodies_around(point))
     }
 
-    /// Builds the stack from objects and their indices of refraction.
+    /// Builds a stack from objects and their indices of refraction.
     fn within(world: &World, bodies: impl Iterator<Item = (u32, f32)>) -> Self {
         bodies.fold(MediumStack::default(), |media, (object, ior)| {
             media.with_object(MediumEntry::new(world, object, ior))
@@ -106,22 +110,22 @@ impl MediumStack {
         self.0.is_empty()
     }
 
-    /// Returns the index of refraction of the space around the ray; 1 in air.
+    /// Returns the index of refraction of the space around the ray, which is 1 in air.
     pub fn ior(&self) -> f32 {
         self.0.last().map_or(1.0, |medium| medium.ior)
     }
 
-    /// Returns true if the ray is inside this object.
+    /// Returns true if the ray is inside the given object.
     pub fn contains(&self, object: u32) -> bool {
         self.0.iter().any(|medium| medium.object == object)
     }
 
-    /// Returns the object that fills the space around the ray; `None` in air.
+    /// Returns the object that fills the space around the ray, or `None` in air.
     pub fn object(&self) -> Option<u32> {
         self.0.last().map(|medium| medium.object)
     }
 
-    /// Returns the stack after entering an object.
+    /// Returns the stack after the ray enters an object.
     pub fn with_object(&self, medium: MediumEntry) -> Self {
         if self.is_air() {
             return MediumStack::single(medium);
@@ -132,7 +136,7 @@ impl MediumStack {
         MediumStack(inside)
     }
 
-    /// Returns the stack after leaving an object.
+    /// Returns the stack after the ray leaves an object.
     pub fn without_object(&self, object: u32) -> Self {
         if let [only] = &self.0[..] {
             return if only.object == object { MediumStack::default() } else { MediumStack::single(*only) };
@@ -144,8 +148,8 @@ impl MediumStack {
         MediumStack(inside)
     }
 
-    /// Returns the transition of a ray through the surface it hit, with nested and overlapping
-    /// glass, as in Dürer's own dialect.
+    /// Returns the transition of a ray through the surface that it hit, taking nested and
+    /// overlapping glass into account, as in Dürer's own dialect.
     pub(crate) fn nested_transition(
         &self,
         world: &World,
@@ -156,8 +160,8 @@ impl MediumStack {
         self.transition_into(world, (at.hit.object, at.ray.rounded.origin), ior, leaving)
     }
 
-    /// Returns the transition through an object's surface for a ray from `start`. See
-    /// [`MediumStack::nested_transition`].
+    /// Returns the transition through the surface of an object for a ray that starts at `start`.
+    /// See [`MediumStack::nested_transition`].
     pub(crate) fn transition_into(
         &self,
         world: &World,
@@ -176,11 +180,11 @@ impl MediumStack {
         } else if entry.size.is_none() {
             self.with_object(entry)
         } else if world.objects()[object as usize].contains(start) {
-            // The ray leaves an object that it never entered, so it started inside.
+            // The ray leaves an object that it never entered, so it must have started inside.
             let others = world.glass_around(start).filter(|&(other, _)| other != object);
             MediumStack::within(world, others.chain([(object, ior)]))
         } else {
-            // The normals are inverted: the surface is the wall of a cavity in the surrounding
+            // The normals are inverted, so the surface is the wall of a cavity in the surrounding
             // medium.
             let behind = self.object().map_or(MediumStack::default(), |around| self.without_object(around));
             return MediumTransition {

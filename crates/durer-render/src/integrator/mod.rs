@@ -1,5 +1,5 @@
-//! Integrators, which estimate the radiance along camera rays: Whitted ray tracing, path tracing,
-//! photon mapping and ambient occlusion. [`IntegratorKind`] lists them.
+//! Integrators, which estimate the radiance along camera rays by Whitted ray tracing, path tracing,
+//! photon mapping or ambient occlusion. All integrators are listed in [`IntegratorKind`].
 
 pub mod ao;
 pub mod media;
@@ -20,8 +20,8 @@ use std::sync::atomic::AtomicBool;
 pub use trace::{NodeId, TraceListener, TraceNode, TraceRecorder, Tree};
 pub use whitted::{RenderSettings, Whitted, WhittedParameters, refract};
 
-/// Options of one kind of integrator, which create it for a world. The command line gets the
-/// integrator's name and its options from [`Describe`].
+/// Options of one kind of integrator, from which the integrator is created for a world. The command
+/// line gets the integrator's name and its options from [`Describe`].
 pub trait IntegratorOptions: Describe + Copy {
     /// Integrator that these options create.
     type Integrator<'w>: Integrate;
@@ -29,7 +29,7 @@ pub trait IntegratorOptions: Describe + Copy {
     /// True if the radiance depends on random numbers, so that each pixel needs many samples.
     const IS_STOCHASTIC: bool = true;
 
-    /// True if the integrator has work to do before the samples of a pass: see
+    /// True if the integrator has work to do before the samples of a pass are taken; see
     /// [`Integrate::prepare`].
     const PREPARES: bool = false;
 
@@ -49,22 +49,23 @@ pub struct IntegratorContext<'w> {
     pub world: &'w World,
     /// Settings common to all integrators, such as the maximum depth.
     pub settings: RenderSettings,
-    /// Footprint of a camera sample, for texture filtering. `None` if there are no pixels.
+    /// Footprint of a camera sample, for texture filtering. It is `None` if there are no pixels.
     pub cone: Option<RayCone>,
     /// Seed for random numbers that do not belong to a sample, such as those of photons.
     pub seed: u64,
-    /// Cancellation flag. Once it is set, no more rays are traced and results are meaningless.
+    /// Cancellation flag. Once the flag is set, no more rays are traced, and results are
+    /// meaningless.
     pub cancel: Option<&'w AtomicBool>,
 }
 
-/// Integrator: computes the radiance along camera rays.
+/// Integrator, which computes the radiance along camera rays.
 pub trait Integrate {
     /// Returns the radiance along a camera ray. `id` selects the random numbers.
     fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, listener: &mut T) -> Color;
 
-    /// Computes the radiance of a batch of neighbouring camera rays. Results are the same as for
-    /// one ray at a time. `begin` is called with the index of each ray before it is shaded and
-    /// returns its sample.
+    /// Computes the radiance of a batch of neighbouring camera rays. The results are the same as if
+    /// the rays were traced one at a time. Before a ray is shaded, `begin` is called with its index
+    /// and returns its sample.
     fn radiances<T: TraceListener>(
         &self,
         rays: &[Ray64],
@@ -75,7 +76,7 @@ pub trait Integrate {
         one_by_one(self, rays, begin, listener, colors);
     }
 
-    /// Prepares the samples with this index, on all threads, before they are taken.
+    /// Prepares all samples with the given index before they are taken, using all threads.
     fn prepare(&self, _sample: u32) {}
 }
 
@@ -106,7 +107,8 @@ macro_rules! delegate {
                 match self { $(IntegratorKind::$variant(it) => of(it),)+ }
             }
 
-            /// Returns true if the integrator has work to do before the samples of a pass.
+            /// Returns true if the integrator has work to do before the samples of a pass are
+            /// taken.
             pub fn prepares(self) -> bool {
                 fn of<P: IntegratorOptions>(_: P) -> bool { P::PREPARES }
                 match self { $(IntegratorKind::$variant(it) => of(it),)+ }

@@ -1,10 +1,10 @@
-//! Secondary rays, offset so that they do not hit the surface from which they start.
+//! Secondary rays, which are offset so that they do not hit the surface from which they start.
 //!
-//! A ray never starts behind an adjacent wall. A surface point is known in double precision in
-//! world space, and up to a few roundings in object space, where coordinates are as large as the
-//! object ([`Shape::centered`] removes larger offsets). A shape keeps its points away from its own
-//! edges by more than that error. A point moved along the normal by twice the error is therefore
-//! still in front of the adjacent face.
+//! A ray never starts behind an adjacent wall. The position of a surface point is known in double
+//! precision in world space, and to within a few rounding errors in object space, where coordinates
+//! are as large as the object ([`Shape::centered`] removes larger offsets). The points on each
+//! shape are kept away from the shape's own edges by more than that error. A point moved along the
+//! normal by twice the error is therefore still in front of the adjacent face.
 //!
 //! [`Shape::centered`]: durer_scene::shape::Shape::centered
 
@@ -15,9 +15,9 @@ use glam::DVec3;
 
 /// Creates a secondary ray that starts at a surface.
 ///
-/// With an `epsilon`, as in the course, the ray starts on the surface and ignores hits closer than
-/// `epsilon`. Without one, the origin is offset from the surface by a bound on the point's rounding
-/// error, and all hits count.
+/// If there is an `epsilon`, as in the course, the ray starts on the surface and ignores hits
+/// closer than `epsilon`. If there is none, the origin is offset from the surface by a bound on the
+/// point's rounding error, and all hits count.
 #[inline(always)]
 pub fn spawn_ray(surface: &SurfacePoint, dir: Vec3, t_max: f32, epsilon: Option<Epsilon>) -> Ray64 {
     match epsilon {
@@ -30,10 +30,10 @@ pub fn spawn_ray(surface: &SurfacePoint, dir: Vec3, t_max: f32, epsilon: Option<
     offset_ray(surface, Vec3::ZERO, dir, t_max, dir.dot(surface.n_geo) < 0.0)
 }
 
-/// Creates a shadow ray to a light at some distance, like [`spawn_ray`]. Without an `epsilon`, it
-/// starts on the curved surface that a triangle with vertex normals approximates, on the side
-/// facing the light. If the triangle itself faces away, it blocks the ray, so no light leaks in
-/// along the terminator.
+/// Creates a shadow ray to a light at a given distance; see [`spawn_ray`]. Without an `epsilon`,
+/// the ray starts on the curved surface that a triangle with vertex normals approximates, on the
+/// side that faces the light. If the triangle itself faces away from the light, it blocks the ray,
+/// so no light leaks through along the terminator.
 #[inline(always)]
 pub fn to_light(surface: &SurfacePoint, dir: Vec3, distance: f32, epsilon: Option<Epsilon>) -> Ray64 {
     match epsilon {
@@ -42,9 +42,10 @@ pub fn to_light(surface: &SurfacePoint, dir: Vec3, distance: f32, epsilon: Optio
     }
 }
 
-/// Creates a shadow ray to a point on an area light, on the light's geometric side. From a curved
-/// surface, the ray is aimed again at the point. A parallel ray would miss it and could end behind
-/// an inclined light.
+/// Creates a shadow ray to a point on an area light, starting on the side of the geometric normal
+/// that faces the light. If the ray starts on a curved surface, it is aimed at the point again. A
+/// ray parallel to the original direction would miss the point and could end behind an inclined
+/// light.
 pub fn to_point(surface: &SurfacePoint, dir: Vec3, distance: f32) -> Ray64 {
     let ray = from_curved_surface(surface, dir, distance, dir.dot(surface.n_geo) < 0.0);
     if surface.shadow_offsets == [Vec3::ZERO; 2] || !distance.is_finite() {
@@ -55,8 +56,8 @@ pub fn to_point(surface: &SurfacePoint, dir: Vec3, distance: f32) -> Ray64 {
     Ray64::new(ray.origin(), (offset / length).as_vec3(), 0.0, length as f32 * (1.0 - gamma(4))).on_side(ray.side)
 }
 
-/// Creates a ray from the curved surface, on the side of its normals or, if `behind`, the other
-/// side.
+/// Creates a ray that starts on the curved surface, on the side of the surface's normals or, if
+/// `behind`, on the other side.
 #[inline(always)]
 fn from_curved_surface(surface: &SurfacePoint, dir: Vec3, distance: f32, behind: bool) -> Ray64 {
     let [front, back] = surface.shadow_offsets;
@@ -65,7 +66,7 @@ fn from_curved_surface(surface: &SurfacePoint, dir: Vec3, distance: f32, behind:
 }
 
 /// Creates a ray from a point lifted off the surface, on the side of the geometric normal or, if
-/// `behind`, the other side.
+/// `behind`, on the other side.
 #[inline(always)]
 fn offset_ray(surface: &SurfacePoint, lift: Vec3, dir: Vec3, t_max: f32, behind: bool) -> Ray64 {
     let side = if behind { -surface.n_geo } else { surface.n_geo };
@@ -73,18 +74,19 @@ fn offset_ray(surface: &SurfacePoint, lift: Vec3, dir: Vec3, t_max: f32, behind:
     surface.solid.map_or(ray, |solid| ray.on_side(StartSide::of(solid, behind)))
 }
 
-/// Returns a surface point, lifted, and then offset along a unit normal by more than its rounding
-/// error.
+/// Returns a surface point after lifting it and then moving it along a unit normal by more than its
+/// rounding error.
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 6.8.6.
 #[inline(always)]
 fn offset_ray_origin(surface: &SurfacePoint, lift: Vec3, side: Vec3) -> DVec3 {
-    // Twice the error bound, because the next intersection also rounds.
+    // Use twice the error bound, because the next intersection also rounds.
     let offset = 2.0 * side.abs().dot(surface.error + gamma(1) * lift.abs()) * side;
     surface.point() + lift.as_dvec3() + offset.as_dvec3()
 }
 
-/// Returns an upper bound on the distance between a flat surface and the origin of a ray from it.
+/// Returns an upper bound on the distance between a flat surface and the origin of a ray that
+/// starts there.
 pub fn offset_bound(surface: &SurfacePoint) -> f32 {
     2.0 * surface.error.element_sum()
 }

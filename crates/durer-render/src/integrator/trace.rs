@@ -1,15 +1,16 @@
-//! Trace of a camera ray: a tree of all terms that contribute to its colour.
+//! Trace of a camera ray, which is a tree of all terms that contribute to the ray's colour.
 //!
-//! An integrator reports each term to a [`TraceListener`] twice: when the term begins, with its
-//! parent node, and when its value is known. Nodes are addressed by index, so terms of several rays
-//! can be in progress at once and end in any order. Listeners that only count ignore the reports at
-//! no cost; a [`TraceRecorder`] stores them. In every node,
+//! An integrator reports each term to a [`TraceListener`] twice: when the term begins, together
+//! with its parent node, and when its value is known. Nodes are addressed by index, so terms of
+//! several rays can be in progress at the same time and end in any order. Listeners that only count
+//! rays ignore the reports at no cost, whereas a [`TraceRecorder`] stores them. In every node, the
+//! following formula holds:
 //!
-//! value = scale · (sum of the children's factor · value, in order).
+//! value = scale · (sum of factor · value over the children, in order).
 //!
-//! The terms of a tree add up to the picture's colour bit for bit, since they are summed in the
-//! integrator's order: see [`Tree::sum`]. In spectral mode, terms are radiances at the sample's
-//! wavelengths, and [`Tree::sum`] is the colour of their sum.
+//! The terms of a tree add up to exactly the same bits as the picture's colour, since they are
+//! summed in the integrator's order: see [`Tree::sum`]. In spectral mode, terms are radiances at
+//! the wavelengths of the sample, and [`Tree::sum`] is the colour of their sum.
 
 use crate::world::emitters::LightId;
 use crate::world::{HighlightModel, SurfaceInteraction, World};
@@ -18,19 +19,20 @@ use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3};
 use durer_scene::spectrum::{Lanes, Spectrum};
 use serde::Serialize;
 
-/// Receiver of the terms of light that an integrator reports, to count rays or explain a pixel.
-/// Only listeners that store terms call the closures.
+/// Receiver of the terms of light that an integrator reports, used to count rays or to explain the
+/// colour of a pixel. The closures are called only by listeners that store terms.
 pub trait TraceListener: TraversalCounter {
-    /// True if terms that contribute nothing should also be reported.
+    /// True if the integrator should also report terms that contribute nothing.
     const LISTENS: bool = false;
 
     /// Sets the meaning of the lanes of all terms; the default is RGB.
     fn lanes(&mut self, _lanes: &Lanes) {}
-    /// Adds a term below `parent` and returns its node. Siblings are ordered by when they begin.
+    /// Adds a term below `parent` and returns its node. Siblings are ordered by the time at which
+    /// they begin.
     fn begin(&mut self, _parent: NodeId, _kind: impl FnOnce() -> TermKind) -> NodeId {
         NodeId::NONE
     }
-    /// Records the hit of a ray term.
+    /// Records the hit of a term that is a ray.
     fn hit(&mut self, _node: NodeId, _hit: impl FnOnce() -> HitRecord) {}
     /// Records the result of a term; see the fields of [`TraceNode`].
     fn end(
@@ -41,18 +43,18 @@ pub trait TraceListener: TraversalCounter {
         _value: impl Into<TermValue>,
     ) {
     }
-    /// Records, for a node of a path, the transmittance `scale` of the media before it and its
-    /// throughput. The throughput is the product of all factors since the camera, by which the
+    /// Records the transmittance `scale` of the media before a node of a path, and the node's
+    /// throughput. The throughput is the product of all factors since the camera by which the
     /// node's value, or the values of its terms, contribute to the pixel.
     fn weigh(&mut self, _node: NodeId, _scale: impl Into<TermValue>, _throughput: impl Into<TermValue>) {}
 }
 
-/// Index of a node in a trace, in the order in which terms began.
+/// Index of a node in a trace, numbered in the order in which terms began.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NodeId(u32);
 
 impl NodeId {
-    /// No node; returned by listeners that store nothing.
+    /// Value that means no node, returned by listeners that store nothing.
     pub const NONE: NodeId = NodeId(u32::MAX);
     /// Parent of the root term.
     pub const ROOT: NodeId = NodeId(u32::MAX - 1);
@@ -62,7 +64,8 @@ impl TraceListener for () {}
 impl TraceListener for RayCount {}
 impl TraceListener for TraversalStats {}
 
-/// Value in a trace: an RGB colour, or radiances at four wavelengths in spectral mode.
+/// Value in a trace, which is an RGB colour or, in spectral mode, the radiances at four
+/// wavelengths.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum TermValue {
@@ -79,7 +82,7 @@ impl From<Color> for TermValue {
 }
 
 impl TermValue {
-    /// Converts the lanes of a path to a value.
+    /// Converts the lanes of a path's spectrum to a value.
     pub fn of(lanes: &Lanes, light: Spectrum) -> Self {
         match lanes {
             Lanes::Rgb => TermValue::Color(light.truncate()),
@@ -87,7 +90,7 @@ impl TermValue {
         }
     }
 
-    /// Returns the value as the lanes of a path.
+    /// Returns the value as the lanes of a path's spectrum.
     pub fn spectrum(self) -> Spectrum {
         match self {
             TermValue::Color(color) => color.extend(color.y),
@@ -132,13 +135,13 @@ impl std::ops::Add for TermValue {
     }
 }
 
-/// Trace of a camera ray: the tree of all terms that contribute to its colour.
+/// Trace of a camera ray, which is the tree of all terms that contribute to its colour.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tree {
     /// The root term.
     #[serde(flatten)]
     pub root: TraceNode,
-    /// Meaning of the lanes; written to JSON only in spectral mode.
+    /// Meaning of the lanes, written to JSON only in spectral mode.
     #[serde(rename = "waves", skip_serializing_if = "Lanes::is_rgb")]
     pub lanes: Lanes,
 }
@@ -149,18 +152,19 @@ impl Tree {
         self.lanes.color(light.spectrum())
     }
 
-    /// Computes the ray's colour from the terms. It equals the pixel's colour bit for bit.
+    /// Computes the ray's colour from the terms. The result equals the pixel's colour bit for bit.
     ///
-    /// For a path, adds throughput · value of each light source in the order in which the path
-    /// finds them; see [`TraceNode::path_contribution`]. The values of rays in such a tree have
-    /// rounding errors. Other integrators report no throughput; for them, sums the terms of each
-    /// node, see [`TraceNode::sum`].
+    /// For a path, the function adds throughput · value of each light source in the order in which
+    /// the path finds them; see [`TraceNode::path_contribution`]. In such a tree, the values of
+    /// rays have rounding errors. Other integrators report no throughput; in their trees, the terms
+    /// of each node are summed; see [`TraceNode::sum`].
     pub fn sum(&self) -> Color {
         self.color(self.root.path_contribution().unwrap_or_else(|| self.root.sum()))
     }
 }
 
-/// Node of a trace: one term of the light along a ray, with its value and the terms it consists of.
+/// Node of a trace, which is one term of the light along a ray, with its value and the terms that
+/// the value consists of.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TraceNode {
     /// Kind of the term.
@@ -172,23 +176,24 @@ pub struct TraceNode {
     pub scale: TermValue,
     /// Value of the term.
     pub value: TermValue,
-    /// For paths, the factor by which the values of `terms` contribute to the pixel, or for a light
-    /// source, its own value.
+    /// For paths, the factor by which the values of `terms` contribute to the pixel or, if the node
+    /// is a light source, the factor of its own value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub throughput: Option<TermValue>,
-    /// Terms that are summed, in order of addition. Empty if `kind` tells how the value is
-    /// computed.
+    /// Terms whose sum gives the value, in order of addition. The list is empty if `kind` explains
+    /// how the value is computed.
     pub terms: Vec<TraceNode>,
 }
 
 impl TraceNode {
-    /// Returns a path node's contribution to the pixel: throughput · value, summed in order over
-    /// the light sources below. `None` for integrators that report no throughput.
+    /// Returns the contribution of a path node to the pixel, which is the sum of throughput · value
+    /// over the light sources below the node, in order. Returns `None` for integrators that report
+    /// no throughput.
     pub fn path_contribution(&self) -> Option<TermValue> {
         self.throughput.map(|_| self.add_sources(TermValue::Color(Color::ZERO)))
     }
 
-    /// Adds throughput · value of each light source below to `sum`, in order.
+    /// Adds throughput · value of each light source below the node to `sum`, in order.
     fn add_sources(&self, sum: TermValue) -> TermValue {
         match (&self.kind, self.throughput) {
             (TermKind::Ray { .. } | TermKind::Dispersion { .. }, _) => {
@@ -204,7 +209,7 @@ impl TraceNode {
         self.factor * self.value
     }
 
-    /// Sums the terms again. Returns `value` if there are none.
+    /// Computes the sum of the terms again. Returns `value` if there are no terms.
     pub fn sum(&self) -> TermValue {
         if self.terms.is_empty() {
             return self.value;
@@ -214,7 +219,7 @@ impl TraceNode {
     }
 }
 
-/// How a ray in a trace came about: from the camera or by a kind of scattering.
+/// Source of a ray in a trace, which is the camera or a kind of scattering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RayKind {
@@ -224,20 +229,20 @@ pub enum RayKind {
     Reflected,
     /// A transmission through glass.
     Transmitted,
-    /// A lobe that scatters into many directions.
+    /// A scattering lobe that covers many directions.
     Scattered,
 }
 
-/// Ray in a trace, in single precision and serializable.
+/// Ray in a trace, which has single precision and is serializable.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RayRecord {
     /// Origin.
     pub origin: Vec3,
-    /// Direction. In the space of a scaled object, not of unit length.
+    /// Direction. In the space of a scaled object, the direction is not of unit length.
     pub dir: Vec3,
-    /// Minimum `t` of hits.
+    /// Minimum value of `t` for hits.
     pub t_min: f32,
-    /// Maximum `t` of hits; `null` in JSON if infinite.
+    /// Maximum value of `t` for hits; `null` in JSON if it is infinite.
     pub t_max: f32,
 }
 
@@ -253,14 +258,14 @@ impl From<&Ray> for RayRecord {
     }
 }
 
-/// Hit of a ray in a trace, with the surface attributes there.
+/// Hit of a ray in a trace, with the attributes of the surface at that point.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HitRecord {
     /// Index of the object in the world.
     pub object: u32,
-    /// Index of the triangle in a mesh, else 0.
+    /// Index of the triangle in a mesh; 0 for other shapes.
     pub part: u32,
-    /// Distance along the ray.
+    /// Distance of the hit along the ray.
     pub t: f32,
     /// Hit point.
     pub position: Vec3,
@@ -268,7 +273,7 @@ pub struct HitRecord {
     pub n_geo: Vec3,
     /// Unit shading normal of the surface.
     pub n_shade: Vec3,
-    /// Normal used for lighting: `n_shade`, flipped if the back is shaded.
+    /// Normal used for lighting, which is `n_shade`, flipped if the back is shaded.
     pub n: Vec3,
     /// True if the ray hits the back of the surface.
     pub from_behind: bool,
@@ -278,7 +283,7 @@ pub struct HitRecord {
     pub uv: Option<Vec2>,
     /// Barycentric coordinates; 0 for shapes other than triangles.
     pub barycentric: Vec3,
-    /// The ray in object space, if there is a transform.
+    /// The ray in object space, if the object has a transform.
     pub local: Option<RayRecord>,
     /// Index of the material.
     pub material: u32,
@@ -307,39 +312,40 @@ impl HitRecord {
     }
 }
 
-/// Record in a trace of how the direction of a ray was sampled at a path vertex.
+/// Record in a trace that explains how the direction of a ray was sampled at a path vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Bounce {
     /// Lobe that was sampled.
     pub lobe: &'static str,
     /// Probability of choosing this lobe.
     pub probability: f32,
-    /// Density per solid angle over all lobes; 0 for a delta lobe.
+    /// Density of the direction per solid angle, over all lobes; 0 for a delta lobe.
     pub pdf: f32,
-    /// Survival probability of Russian roulette.
+    /// Survival probability used for Russian roulette.
     pub survival: f32,
     /// Number of directions that the path follows from the vertex.
     pub directions: u32,
 }
 
-/// Shadow ray in a trace, from a surface to a light, and what it hits.
+/// Shadow ray in a trace, from a surface to a light, with the object that it hits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Shadow {
     /// The shadow ray.
     pub ray: RayRecord,
-    /// Index of the first object that the ray hits and the `t` of the hit; `None` if there is none.
+    /// Index of the first object that the ray hits and the `t` of that hit; `None` if the ray hits
+    /// nothing.
     pub blocker: Option<(u32, f32)>,
     /// Fraction of the light that arrives.
     pub share: TermValue,
 }
 
-/// Kind of a term in a trace, with the data that explains its value.
+/// Kind of a term in a trace, with data that explains its value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum TermKind {
     /// Radiance along a ray.
     Ray {
-        /// How the ray came about.
+        /// Source of the ray: the camera or a kind of scattering.
         from: RayKind,
         /// The ray.
         ray: RayRecord,
@@ -347,28 +353,28 @@ pub enum TermKind {
         weight: f32,
         /// Hit of the ray.
         hit: Option<Box<HitRecord>>,
-        /// How its direction was sampled; `None` if it was not random.
+        /// Record of how the ray's direction was sampled; `None` if the direction was not random.
         #[serde(skip_serializing_if = "Option::is_none")]
         bounce: Option<Bounce>,
     },
-    /// Light that a surface emits. The factor is its MIS weight.
+    /// Light that a surface emits. The factor of this term is the MIS weight.
     Emission {
         /// MIS weight.
         mis: f32,
     },
-    /// Radiance of a light that was sampled. The factor is BSDF · MIS weight · visibility / (choice
-    /// · pdf).
+    /// Radiance of a light that was chosen by light sampling. The factor of this term is BSDF · MIS
+    /// weight · visibility / (choice · pdf).
     Direct {
         /// The light.
         light: LightId,
         /// Unit direction to the light.
         to_light: Vec3,
-        /// Distance; `null` in JSON for lights at infinity.
+        /// Distance to the light; `null` in JSON for lights at infinity.
         distance: f32,
         /// Probability of choosing this light.
         choice: f32,
-        /// Density of the direction per steradian; the effective density if it was selected from
-        /// several. 0 for a light without extent, whose density counts as 1.
+        /// Density of the direction per steradian, or the effective density if the direction was
+        /// selected from several. It is 0 for a light without extent, whose density counts as 1.
         pdf: f32,
         /// BSDF times cosine.
         bsdf: TermValue,
@@ -377,52 +383,52 @@ pub enum TermKind {
         /// The shadow ray; `None` if shadows are off.
         shadow: Option<Shadow>,
     },
-    /// Light that mirrors and glass focus here, estimated from nearby photons. The value is the
-    /// estimate.
+    /// Light that mirrors and glass focus at this point, estimated from nearby photons. The value
+    /// of this term is the estimate.
     Photons {
         /// Search radius.
         radius: f32,
-        /// Number of photons.
+        /// Number of photons that contributed.
         photons: usize,
     },
-    /// Dispersion by glass. Only the hero wavelength continues, and the factor makes up for the
-    /// other three.
+    /// Dispersion by glass. Only the hero wavelength continues, and the factor of this term makes
+    /// up for the other three wavelengths.
     #[serde(rename = "one_wavelength")]
     Dispersion {
         /// Wavelength in nanometres.
         nm: f32,
     },
-    /// Background or sky, which rays see that hit nothing.
+    /// Background or sky, as seen by rays that hit nothing.
     Sky,
-    /// Ambient light. The value is the surface colour, the factor share · ambient light.
+    /// Ambient light. The value is the surface colour, and the factor is share · ambient light.
     Ambient {
-        /// Share of the material at this point.
+        /// Share of the material in the mixture at this point.
         share: f32,
     },
-    /// Light of one light source. The scale is the arriving light, which is multiplied by diffuse +
-    /// highlight; the factor is share · visibility.
+    /// Light from one light source. The scale is the arriving light, by which diffuse + highlight is
+    /// multiplied, and the factor is share · visibility.
     Light {
         /// Index of the light in the scene.
         light: usize,
         /// Unit direction to the light.
         to_light: Vec3,
-        /// Distance; `null` in JSON for lights at infinity.
+        /// Distance to the light; `null` in JSON for lights at infinity.
         distance: f32,
-        /// Share of the material at this point.
+        /// Share of the material in the mixture at this point.
         share: f32,
         /// The shadow ray; `None` if shadows are off.
         shadow: Option<Shadow>,
     },
-    /// Diffuse term. The factor is max(0, N·L), the value the surface colour.
+    /// Diffuse term. The factor is max(0, N·L), and the value is the surface colour.
     Diffuse {
         /// N·L.
         cosine: f32,
     },
-    /// Highlight. The factor is max(0, base)^exponent, the value the specular colour.
+    /// Highlight. The factor is max(0, base)^exponent, and the value is the specular colour.
     Highlight {
-        /// Name of the base: `N·H` or `R·L`.
+        /// Name of the base, which is `N·H` or `R·L`.
         model: &'static str,
-        /// Value of N·H or R·L.
+        /// Value of the base.
         base: f32,
         /// Exponent.
         exponent: f32,
@@ -433,9 +439,9 @@ pub enum TermKind {
         here: f32,
         /// Index of refraction behind the surface.
         there: f32,
-        /// Fraction reflected, if Fresnel's equations split the light.
+        /// Fraction of the light that is reflected, if Fresnel's equations split the light.
         fresnel: Option<f32>,
-        /// True for total internal reflection.
+        /// True if there is total internal reflection.
         total: bool,
     },
     /// A ray that is not traced because its weight is too small.
@@ -444,7 +450,7 @@ pub enum TermKind {
         /// Weight of the ray.
         weight: f32,
     },
-    /// Reflected and transmitted light that the maximum depth cuts off.
+    /// Reflected and transmitted light that is missing because of the maximum depth.
     #[serde(rename = "spent")]
     DepthLimit,
 }
@@ -468,14 +474,14 @@ pub struct TraceRecorder {
 }
 
 impl TraceRecorder {
-    /// Builds the tree; `None` if no term was reported.
+    /// Builds the tree, or returns `None` if no term was reported.
     pub fn into_tree(mut self) -> Option<Tree> {
         let mut root = None;
-        // Parents precede their children. Going backwards, each node is complete when it is
-        // reached, with its children in reverse order.
+        // Parents precede their children. In a backward pass, each node is complete when it is
+        // reached, except that its children are in reverse order.
         while let Some((parent, mut node)) = self.nodes.pop() {
             node.terms.reverse();
-            // The radiance along the rays of a path is known only once all its terms are.
+            // The radiance along the rays of a path is known only after all its terms are known.
             if node.throughput.is_some() && !node.terms.is_empty() {
                 node.value = node.sum();
             }

@@ -1,11 +1,11 @@
-//! Whitted ray tracing: direct light, and one reflected and one transmitted ray per hit.
+//! Whitted ray tracing, with direct light and one reflected and one transmitted ray per hit.
 //!
-//! Rays pass through the stages of `Whitted::trace` in batches, even if there is only one ray.
+//! Rays pass through the stages of `Whitted::trace` in batches, even if a batch has only one ray.
 //! Secondary rays wait in a `Queue`, so there is no recursion. The terms of each sum are added in a
-//! fixed order, whatever the batches.
+//! fixed order that does not depend on the batches.
 //!
 //! Source: Turner Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23(6), 1980,
-//! with the terms of the course's assignments.
+//! with the terms used in the assignments of the course.
 
 use super::media::MediumTransition;
 use super::trace::{HitRecord, NodeId, RayKind, TermKind, TraceListener};
@@ -24,11 +24,11 @@ use smallvec::SmallVec;
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// Light transport settings of a render, used by all integrators: depth, shadows and secondary
-/// rays.
+/// Light transport settings of a render, such as depth, shadows and secondary rays, which all
+/// integrators use.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RenderSettings {
-    /// Maximum depth of secondary rays; 0 gives direct light only.
+    /// Maximum depth of secondary rays; 0 means direct light only.
     pub bounces: u32,
     /// True if objects cast shadows.
     pub shadows: bool,
@@ -40,14 +40,14 @@ pub struct RenderSettings {
     pub reflection: bool,
     /// True if transmitted rays are traced.
     pub refraction: bool,
-    /// Minimum weight of a ray in the pixel. The weight is the largest component of the throughput;
-    /// in the course's programs, it is the length.
+    /// Minimum weight with which a ray must contribute to the pixel in order to be traced. The
+    /// weight is the largest component of the throughput or, in the course's programs, its length.
     #[serde(rename = "least_weight")]
     pub min_weight: f32,
 }
 
 impl RenderSettings {
-    /// Greatest maximum depth that a render job can have.
+    /// Largest value allowed for the maximum depth of a render job.
     pub const MAX_BOUNCES: u32 = 256;
 }
 
@@ -73,10 +73,11 @@ impl IntegratorOptions for WhittedParameters {
 pub struct Whitted<'w> {
     /// World to render.
     pub world: &'w World,
-    /// Depth, shadows and secondary rays.
+    /// Settings for depth, shadows and secondary rays.
     pub settings: RenderSettings,
-    /// Cancellation flag. Once it is set, no more rays are traced and results are meaningless. It
-    /// is needed because a single pixel that shows many mirrors can take a long time.
+    /// Cancellation flag. Once the flag is set, no more rays are traced, and results are
+    /// meaningless. The flag is needed because a single pixel that shows many mirrors can take a
+    /// long time.
     pub cancel: Option<&'w AtomicBool>,
 }
 
@@ -85,16 +86,16 @@ struct ShadedMaterial<'w> {
     part: WeightedMaterial<'w>,
     /// Diffuse colour, computed once for all lights.
     diffuse: Color,
-    /// Terms of the light that is being added.
+    /// Lighting terms of the light that is currently being added.
     direct: LightTerms,
 }
 
-/// Surface point that the Whitted integrator shades, one per hit of a batch.
+/// Surface point that the Whitted integrator shades, one for each hit in a batch.
 struct ShadingPoint {
-    /// Index of the segment that hit the point.
+    /// Index of the segment whose ray hit the point.
     segment: u32,
     at: SurfaceInteraction,
-    /// Refraction through the surface.
+    /// Transition of refracted rays through the surface.
     transition: MediumTransition,
     /// Normal used for lighting.
     n: Vec3,
@@ -104,7 +105,7 @@ struct ShadingPoint {
     first_part: usize,
     /// Number of the point's materials.
     parts: usize,
-    /// Radiance towards the ray's origin.
+    /// Radiance emitted or scattered towards the ray's origin.
     color: Color,
 }
 
@@ -179,9 +180,9 @@ impl<'w> Whitted<'w> {
         color[0]
     }
 
-    /// Traces camera rays and their secondary rays in batches. For each batch, finds the first
-    /// hits, lights them and spawns secondary rays. `begin` is called with the index of the camera
-    /// ray that is worked on.
+    /// Traces camera rays and their secondary rays in batches. For each batch, the function finds
+    /// the first hits, lights them and spawns secondary rays. `begin` is called with the index of
+    /// the camera ray that is being processed.
     fn trace<T: TraceListener>(&self, rays: &[Ray64], begin: impl Fn(usize), listener: &mut T, colors: &mut [Color]) {
         SCRATCH.with_borrow_mut(|Scratch { queue, points, rays: batch_rays }| {
             queue.clear();
@@ -215,8 +216,8 @@ impl<'w> Whitted<'w> {
         });
     }
 
-    /// Intersects a batch of rays and collects the points to shade; returns their number. Finishes
-    /// rays that hit nothing, and queues rays again that hit an ignored surface.
+    /// Intersects a batch of rays, collects the points to shade, and returns their number. Rays
+    /// that hit nothing are finished, and rays that hit an ignored surface are queued again.
     fn hit<T: TraceListener>(
         &self,
         batch: &[u32],
@@ -264,7 +265,7 @@ impl<'w> Whitted<'w> {
                 ShadedMaterial { part, diffuse, direct: LightTerms::default() }
             };
             match &self.world.materials()[point.at.material as usize] {
-                // Fast path: most points have one material.
+                // Fast path: most points have a single material.
                 Material::Phong(phong) => parts.push(lit(WeightedMaterial { phong, share: 1.0 })),
                 Material::Mix(..) => parts.extend(self.world.materials_at(&point.at).into_iter().map(lit)),
             }
@@ -274,8 +275,8 @@ impl<'w> Whitted<'w> {
         count
     }
 
-    /// Computes the direct light that points scatter towards the rays' origins: first the ambient
-    /// light, then the lights one by one.
+    /// Computes the direct light that points scatter towards the rays' origins, starting with the
+    /// ambient light and then adding the lights one by one.
     fn shade<T: TraceListener>(
         &self,
         points: &mut [ShadingPoint],
@@ -298,7 +299,8 @@ impl<'w> Whitted<'w> {
                 point.color += ambient * reflectance;
             }
         }
-        // Points that the light may reach: their index, and the light as seen from there.
+        // List the points that the light may reach, by index, together with the light as seen from
+        // each point.
         let mut lit = [(0, LightLiSample { to_light: Vec3::ZERO, distance: 0.0, color: Color::ZERO }); MAX_BATCH];
         for number in 0..self.world.lights().len() {
             let mut count = 0;
@@ -310,8 +312,9 @@ impl<'w> Whitted<'w> {
                     *direct = LightTerms::of(part.phong, *diffuse, point.n, ray.dir(), &light_sample);
                     dark &= direct.is_dark(part.phong);
                 }
-                // Only listeners need the visibility of a light that adds nothing. The exception is
-                // an infinite light: times 0 it is NaN, as in the official programs.
+                // If a light adds nothing, only listeners need its visibility. The exception is a
+                // light of infinite intensity, which gives NaN when multiplied by 0, as in the
+                // official programs.
                 let adds_nothing = dark && light_sample.color.is_finite() || light_sample.color == Color::ZERO;
                 if adds_nothing && !T::LISTENS {
                     continue;
@@ -371,7 +374,7 @@ impl<'w> Whitted<'w> {
         bounces > 0 && !self.cancel.is_some_and(|cancel| cancel.load(Relaxed))
     }
 
-    /// Determines the shaded side of a surface.
+    /// Determines which side of a surface is shaded.
     #[inline]
     fn side(&self, at: &SurfaceInteraction) -> Side {
         let (rules, shade_back, n_shade) = (self.world.shading_rules(), self.settings.shade_back, at.surface.n_shade);
@@ -389,8 +392,8 @@ impl<'w> Whitted<'w> {
         at.ray.dir().dot(if shaded { at.surface.n_shade } else { at.surface.n_geo }) > 0.0
     }
 
-    /// Returns the albedo: the diffuse colour at a hit, averaged over its materials by their
-    /// shares.
+    /// Returns the albedo, which is the diffuse colour at a hit, averaged over the materials
+    /// according to their shares.
     pub fn albedo(&self, at: &SurfaceInteraction) -> Color {
         let parts = self.world.materials_at(at);
         parts.iter().map(|part| part.share * self.world.diffuse_color(part.phong, &at.surface)).sum()

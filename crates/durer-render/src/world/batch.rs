@@ -1,4 +1,5 @@
-//! Intersection of batches of coherent rays. The results are the same as for single rays.
+//! Intersection of batches of coherent rays. Tracing a batch gives the same results as tracing its
+//! rays one by one.
 
 use super::{Geometry, Hit, Object, World};
 use durer_bvh::{PackHit, PrimitivePacks, TraversalCounter, TriangleHit};
@@ -9,7 +10,7 @@ use std::array::from_fn;
 /// Maximum number of rays in a batch.
 pub(crate) const MAX_BATCH: usize = 64;
 
-/// Objects of a world with few of them, prepared for the intersection of batches of rays.
+/// Objects of a small world, prepared for the intersection of batches of rays.
 #[derive(Clone, Debug)]
 pub(crate) struct SmallWorld {
     /// Simple shapes, packed for intersection with eight rays at once.
@@ -18,14 +19,15 @@ pub(crate) struct SmallWorld {
     pub(crate) others: Vec<u32>,
 }
 
-/// Number of rays below which each is traced alone.
+/// Number of rays below which each ray is traced on its own.
 const MIN_BATCH: usize = 3;
 
 /// Ray that hits nothing, for unused slots of a batch.
 const NOWHERE: Ray = Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::X) };
 
 impl World {
-    /// Computes the first hits of up to [`MAX_BATCH`] rays. Changes the rays temporarily.
+    /// Computes the first hits of up to [`MAX_BATCH`] rays. The rays are modified during the call
+    /// and restored at the end.
     pub(crate) fn first_hits<T: TraversalCounter>(
         &self,
         rays: &mut [Ray64],
@@ -39,7 +41,7 @@ impl World {
         self.closest_batch(rays, hits);
     }
 
-    /// Computes whether up to [`MAX_BATCH`] rays are occluded.
+    /// Determines which of up to [`MAX_BATCH`] rays are occluded.
     pub(crate) fn any_hits<T: TraversalCounter>(&self, rays: &[Ray64], blocked: &mut [bool], counter: &mut T) {
         if T::COUNTS_WORK || rays.len() < MIN_BATCH || self.small_world.is_none() {
             return blocked.iter_mut().zip(rays).for_each(|(hit, ray)| *hit = self.occluded_along(ray, counter));
@@ -48,7 +50,7 @@ impl World {
         self.occluded_batch(rays, blocked);
     }
 
-    /// Computes the first hits of up to [`MAX_BATCH`] rays. The results equal those of
+    /// Computes the first hits of up to [`MAX_BATCH`] rays. Returns the same results as
     /// [`World::closest`].
     pub(crate) fn closest_batch(&self, rays: &[Ray64], hits: &mut [Option<Hit>]) {
         let Some(small_world) = &self.small_world else {
@@ -67,8 +69,8 @@ impl World {
             if let Geometry::Mesh(tree) = &object.geometry {
                 let mut triangle_hits = [const { None::<TriangleHit> }; MAX_BATCH];
                 let mut local = local_rays(object, rays.iter());
-                // Ties are broken by the order of hits, so a ray must be able to reach the `t` of
-                // its current hit.
+                // Ties are resolved by comparing hits, so a ray must still reach the `t` of its
+                // current hit.
                 for (local, hit) in local.iter_mut().zip(&*hits) {
                     local.t_max = hit.map_or(local.t_max, |hit| hit.t.next_up());
                 }
@@ -85,7 +87,7 @@ impl World {
         }
     }
 
-    /// Computes whether up to [`MAX_BATCH`] rays are occluded. The results equal those of
+    /// Determines which of up to [`MAX_BATCH`] rays are occluded. Returns the same results as
     /// [`World::occluded`].
     pub(crate) fn occluded_batch(&self, rays: &[Ray64], blocked: &mut [bool]) {
         let Some(small_world) = &self.small_world else {
@@ -116,7 +118,7 @@ impl World {
         }
     }
 
-    /// Converts a hit of packed shapes.
+    /// Converts a hit on packed shapes to a world hit.
     #[inline]
     fn hit_of_pack(&self, PackHit { t, number }: PackHit, ray: &Ray64) -> Hit {
         let ShapeHit { t, uv } = self.objects()[number as usize].crossing_at(t, ray);
@@ -125,7 +127,7 @@ impl World {
 }
 
 impl SmallWorld {
-    /// Calls `take` for each ray with its first hit on a simple shape.
+    /// Calls `take` for each ray that hits a simple shape, with the first such hit.
     fn intersect(&self, rays: &[Ray64], mut take: impl FnMut(usize, Option<PackHit>)) {
         if self.simple.is_empty() {
             return (0..rays.len()).for_each(|i| take(i, None));

@@ -1,4 +1,4 @@
-//! Contents of a world, which can be edited, and the hash that identifies them.
+//! Editable contents of a world and the hash that identifies them.
 
 use super::{DisplayRules, Geometry, HitRules, Material, Object, ShadingRules, World};
 use durer_scene::camera::{Camera, CameraBasis, CameraRules};
@@ -13,7 +13,7 @@ use std::fmt::Write;
 use std::sync::Arc;
 
 /// Contents of a world that come from the scene file: camera, lights, materials, objects and rules.
-/// They can be [edited](World::edit).
+/// The contents can be [edited](World::edit).
 #[derive(Clone, Debug)]
 pub struct Contents {
     /// Camera.
@@ -22,7 +22,7 @@ pub struct Contents {
     pub frame: CameraBasis,
     /// Colour of rays that hit nothing.
     pub background: Color,
-    /// True if paths see a black background because the scene defines none.
+    /// True if paths see a black background because the scene does not define a background.
     pub is_black_for_paths: bool,
     /// Ambient light.
     pub ambient: Color,
@@ -34,40 +34,41 @@ pub struct Contents {
     pub objects: Vec<Object>,
     /// Rules for the camera and pixel positions.
     pub camera_rules: CameraRules,
-    /// Ray intersection rules of an official program, if its arithmetic is active.
+    /// Ray intersection rules of an official program, if that program's arithmetic is in use.
     pub hits: Option<HitRules>,
     /// Rules for shading and for the Whitted integrator.
     pub shading: ShadingRules,
     /// Rules for displaying AOVs as pictures.
     pub display: DisplayRules,
-    /// Dialect rules from which the other rules were derived. Not used for rendering, but for
-    /// checks, lessons and the student's tracer.
+    /// Dialect rules from which the other rules were derived. They are not used for rendering, only
+    /// for checks, lessons and the student's tracer.
     pub(crate) rules: DialectRules,
 }
 
-/// Contents of a world that come from other files than the scene file, such as textures and
-/// environment maps.
+/// Contents of a world that do not come from the scene file but from other files, such as textures
+/// and environment maps.
 #[derive(Clone, Debug, Default)]
 pub struct Assets {
     /// Cube map that replaces the background colour.
     pub cube_map: Option<CubeMap>,
     /// Environment map, which replaces the background colour and the cube map.
     pub environment: Option<Environment>,
-    /// Medium outside of all objects, if there is fog.
+    /// Medium that fills the space outside all objects, if there is fog.
     pub fog: Option<Medium>,
-    /// Measured intensity profile of each light, if it has one, by index. Can be shorter than the
-    /// list of lights.
+    /// Measured intensity profiles of the lights, by light index; `None` for lights without one.
+    /// The list can be shorter than the list of lights.
     pub profiles: Vec<Option<Arc<PhotometricProfile>>>,
-    /// Measured spectrum of each light, if it has one, by index. Can be shorter than the list of
-    /// lights.
+    /// Measured spectra of the lights, by light index; `None` for lights without one. The list can
+    /// be shorter than the list of lights.
     pub illuminants: Vec<Option<Arc<Curve>>>,
     /// Textures, by index.
     pub textures: Vec<Texture>,
 }
 
 impl World {
-    /// Returns the contents for editing. This changes the world's [hash](World::digest). Data
-    /// computed from objects, such as the acceleration structure, does not change.
+    /// Returns the contents so that they can be edited. Editing changes the world's
+    /// [hash](World::digest). Data that was computed from the objects, such as the acceleration
+    /// structure, is not updated.
     pub fn edit(&mut self) -> &mut Contents {
         self.edited = true;
         self.half_areas.clear();
@@ -84,7 +85,7 @@ impl World {
     }
 
     /// Returns a hash that identifies the contents. For an unedited world, it is the hash of its
-    /// sources: the scene, the files and the rules.
+    /// sources: the scene file, the files it refers to and the rules.
     pub fn digest(&self) -> Digest {
         if !self.edited {
             return self.source;
@@ -119,7 +120,7 @@ impl World {
         self.contents.background
     }
 
-    /// Returns true if paths see a black background because the scene defines none.
+    /// Returns true if paths see a black background because the scene does not define a background.
     pub fn is_dark(&self) -> bool {
         self.contents.is_black_for_paths
     }
@@ -149,7 +150,8 @@ impl World {
         self.contents.camera_rules
     }
 
-    /// Returns the ray intersection rules of an official program, if its arithmetic is active.
+    /// Returns the ray intersection rules of an official program, if that program's arithmetic is
+    /// in use.
     pub fn hit_rules(&self) -> Option<HitRules> {
         self.contents.hits
     }
@@ -180,19 +182,19 @@ impl World {
         self.assets.environment.as_ref()
     }
 
-    /// Returns the medium outside of all objects, if there is fog.
+    /// Returns the medium that fills the space outside all objects, if there is fog.
     pub fn fog(&self) -> Option<&Medium> {
         self.assets.fog.as_ref()
     }
 
-    /// Returns the measured intensity profile of each light, if it has one, by index. Can be
+    /// Returns the measured intensity profiles of the lights, by light index. The list can be
     /// shorter than the list of lights.
     pub fn profiles(&self) -> &[Option<Arc<PhotometricProfile>>] {
         &self.assets.profiles
     }
 
-    /// Returns the measured spectrum of each light, if it has one, by index. Can be shorter than
-    /// the list of lights.
+    /// Returns the measured spectra of the lights, by light index. The list can be shorter than the
+    /// list of lights.
     pub fn illuminants(&self) -> &[Option<Arc<Curve>>] {
         &self.assets.illuminants
     }

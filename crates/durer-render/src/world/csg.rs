@@ -1,23 +1,26 @@
 //! Intersection of rays with solids composed of several parts (constructive solid geometry).
 //!
-//! All intersections of the ray's line with the parts' surfaces are collected and sorted. Along the
-//! line, each one toggles the inside bit of its part, and with it the counts of the operations
-//! above. Where the bit of the whole solid changes, the line enters or leaves the solid. Source:
-//! Roth, *Ray Casting for Modeling Solids*, Computer Graphics and Image Processing 18, 1982. The
-//! counts are an addition, so that an operation with many parts is not slower.
+//! All intersections of the line along the ray with the surfaces of the parts are collected and
+//! sorted. Each intersection along the line toggles the inside bit of one part, which updates the
+//! operand counts of the operations above it. The line enters or leaves the solid where the bit of
+//! the whole solid changes. Source: Roth, *Ray Casting for Modeling Solids*, Computer Graphics and
+//! Image Processing 18, 1982. The operand counts are an addition to Roth's method that keeps
+//! operations with many parts fast.
 //!
-//! Coincident faces: crossings of different parts count as one if the faces are nearly parallel and
-//! their distance is at most what single precision can resolve there, about 2^-19 of the
-//! coordinates. All their bits toggle together, so that two faces in the same plane do not leave or
-//! create a thin skin. If the solid's bit changes, the visible surface is that of the first part in
-//! the file that could have caused the change, alone or as the last of the group.
+//! Coincident faces need special treatment: crossings of different parts count as one if the faces
+//! are nearly parallel and no farther apart than single precision can resolve, which is about 2^-19
+//! of the coordinates. The bits of all these parts toggle together, so that two faces in the same
+//! plane do not leave or create a thin skin. If the solid's bit changes, the visible surface is
+//! that of the first part in the file that could have caused the change, either alone or as the
+//! last part of the group.
 //!
 //! Faces that meet at an angle, as at an edge, count as one only within the rounding error of the
-//! crossings, which is proportional to the size of the parts, not to their distance. A larger
-//! tolerance would lose corners near the edge and let light leak in.
+//! crossings, which is proportional to the size of the parts rather than to their distance. A
+//! larger tolerance would lose corners near the edge and let light leak through.
 //!
-//! In the result, `part` is the index of a triangle or shape among those of all parts, with two
-//! flag bits: [`INVERTED`] if the surface is inverted, and [`ENTERS`] if the ray enters the solid.
+//! In the result, `part` is the index of a triangle or shape, counted over all parts, combined with
+//! two flag bits: [`INVERTED`] if the surface is inverted, and [`ENTERS`] if the ray enters the
+//! solid.
 
 use super::solid::{BoolOp, CsgTree};
 use super::{Geometry, Object, ShadingRules};
@@ -27,22 +30,23 @@ use durer_scene::shape::{Axis, Shape, ShapeHit, SurfacePoint};
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// Flag in a hit's part: the surface is inverted, as that of a subtracted part.
+/// Flag in the `part` of a hit: the surface is inverted because it belongs to a subtracted part.
 pub const INVERTED: u32 = 1 << 31;
-/// Flag in a hit's part: the ray enters the solid.
+/// Flag in the `part` of a hit: the ray enters the solid.
 pub const ENTERS: u32 = 1 << 30;
 
-/// Maximum number of bounded parts without a BVH over them.
+/// Maximum number of bounded parts for which no BVH is built.
 const MAX_LINEAR_PARTS: usize = 8;
 
-/// Solid composed of several parts by boolean operations, prepared for ray intersection.
+/// Solid composed of several parts with boolean operations, prepared for ray intersection.
 #[derive(Debug)]
 pub struct Csg {
-    /// Parts, in the order of the file.
+    /// Parts of the solid, in file order.
     leaves: Vec<SolidPart>,
     /// Operations; the first one is the root.
     joins: Vec<OperationNode>,
-    /// Count of each operation outside of all parts: the number of its subtracted operands.
+    /// Number of true operands of each operation at a point outside all parts, which is the number
+    /// of its subtracted operands.
     start: Vec<u32>,
     /// Indices of the unbounded parts.
     unbounded: Vec<u32>,
@@ -51,7 +55,7 @@ pub struct Csg {
     /// BVH over the bounded parts, if there are more than [`MAX_LINEAR_PARTS`].
     bvh: Option<Bvh>,
     bounds: Option<Aabb>,
-    /// Largest tolerance for two parts to coincide, in world units.
+    /// Largest distance at which two parts can count as coincident, in world units.
     tolerance: f32,
 }
 
@@ -62,11 +66,11 @@ struct SolidPart {
     /// Axis of the part's shape, computed once.
     axis: Option<Axis>,
     edge: ParentLink,
-    /// Index of the part's first triangle or shape among those of all parts.
+    /// Index of the part's first triangle or shape, counted over all parts.
     first: u32,
     /// Minimum tolerance for the position of the part's surface, in world units.
     tolerance: f32,
-    /// Bound on the rounding error of a crossing.
+    /// Upper bound on the rounding error of a crossing.
     rounding: f32,
 }
 
@@ -75,7 +79,7 @@ struct SolidPart {
 struct ParentLink {
     /// Index of the parent operation.
     join: u32,
-    /// True for a subtracted operand, which holds where the point is outside of it.
+    /// True for a subtracted operand, which counts as true at points outside it.
     is_subtracted: bool,
 }
 
@@ -85,12 +89,12 @@ struct OperationNode {
     op: BoolOp,
     /// Number of operands.
     edges: u32,
-    /// Link to the operation above; `None` for the root.
+    /// Link to the operation above this one; `None` for the root.
     edge: Option<ParentLink>,
 }
 
 impl OperationNode {
-    /// Returns whether a point is inside the result, if it is inside `holding` operands.
+    /// Returns true if a point is inside the result, given that `holding` operands are true there.
     fn value(&self, holding: u32) -> bool {
         match self.op {
             BoolOp::Union => holding > 0,
@@ -100,7 +104,7 @@ impl OperationNode {
     }
 }
 
-/// Crossing of a ray's line with the surface of a part of a solid.
+/// Intersection of the line along a ray with the surface of one part of a solid.
 #[derive(Clone, Copy, Debug)]
 struct SurfaceCrossing {
     t: f64,
@@ -116,15 +120,15 @@ struct Scratch {
     state: State,
 }
 
-/// State of a walk along a ray's line through a solid: which parts contain the current point.
+/// State of a walk through a solid along a line, recording which parts contain the current point.
 #[derive(Default)]
 struct State {
-    /// For each operation, the number of its operands that hold.
+    /// For each operation, the number of its operands that are true.
     counts: Vec<u32>,
     /// For each part, true if it contains the point.
     inside: Vec<bool>,
-    /// For each part, the id of the last group of coincident crossings that contained one of this
-    /// part. Ids are never reused.
+    /// For each part, the id of the last group of coincident crossings that contained a crossing of
+    /// this part. Group ids are never reused.
     groups: Vec<u64>,
     last_group: u64,
 }
@@ -136,7 +140,7 @@ impl State {
         self.counts.extend_from_slice(start);
         self.inside.clear();
         self.inside.resize(parts, false);
-        // Old entries from other rays and solids differ from all future group ids.
+        // Entries left over from other rays and solids differ from all future group ids.
         self.groups.resize(self.groups.len().max(parts), 0);
     }
 }
@@ -146,7 +150,7 @@ thread_local! {
 }
 
 impl Csg {
-    /// Maximum total number of triangles and shapes in all parts.
+    /// Maximum number of triangles and shapes in all parts together.
     pub const MAX_PARTS: u64 = ENTERS as u64 - 1;
 
     /// Prepares a solid for ray intersection.
@@ -162,15 +166,15 @@ impl Csg {
             bounds,
             tolerance: 0.0,
         };
-        // A single part becomes an operation with one operand.
+        // Turn a single part into an operation with one operand.
         let solid = match solid {
             CsgTree::Operand(_) => CsgTree::Operation { op: BoolOp::Union, parts: vec![solid], subtracted: Vec::new() },
             join => join,
         };
         csg.add(solid, None);
         csg.tolerance = csg.leaves.iter().map(|leaf| 2.0 * leaf.tolerance).fold(0.0, f32::max);
-        // Outside the solid's bounds, parts do not matter, except that they can coincide with parts
-        // that do.
+        // Parts outside the solid's bounds do not matter, except that they can coincide with parts
+        // inside.
         let margin = GRAZING as f32 * csg.tolerance;
         let matters = bounds.map(|whole| Aabb { min: whole.min - margin, max: whole.max + margin });
         let mut boxes = Vec::new();
@@ -201,7 +205,7 @@ impl Csg {
             (CsgTree::Operation { op, parts, subtracted }, edge) => {
                 let join = self.joins.len() as u32;
                 self.joins.push(OperationNode { op, edges: (parts.len() + subtracted.len()) as u32, edge });
-                // Outside of all parts, only subtracted operands hold.
+                // At a point outside all parts, only subtracted operands are true.
                 self.start.push(subtracted.len() as u32);
                 parts.into_iter().for_each(|part| self.add(part, Some(ParentLink { join, is_subtracted: false })));
                 subtracted.into_iter().for_each(|part| self.add(part, Some(ParentLink { join, is_subtracted: true })));
@@ -219,7 +223,7 @@ impl Csg {
         self.leaves.iter().map(|leaf| &*leaf.object)
     }
 
-    /// Returns the object that a hit's part belongs to.
+    /// Returns the object to which the `part` of a hit belongs.
     pub fn part(&self, part: u32) -> &Object {
         &self.leaves[self.leaf_of(part)].object
     }
@@ -238,10 +242,11 @@ impl Csg {
             + self.bvh.as_ref().map_or(0, Bvh::memory_usage)
     }
 
-    /// Returns the index of the leaf that a hit's part belongs to.
+    /// Returns the index of the leaf to which the `part` of a hit belongs.
     fn leaf_of(&self, part: u32) -> usize {
         let number = part & !(INVERTED | ENTERS);
-        // Fast path: if only shapes come before it, the index of the part is that of the leaf.
+        // Fast path: if all parts before this one are shapes, its index is also the index of its
+        // leaf.
         let begins = |place: usize| self.leaves.get(place).is_some_and(|leaf| leaf.first == number);
         if begins(number as usize) && !begins(number as usize + 1) {
             return number as usize;
@@ -249,12 +254,14 @@ impl Csg {
         self.leaves.partition_point(|leaf| leaf.first <= number).saturating_sub(1)
     }
 
-    /// Computes the surface at a hit in world space. Its normals point out of the solid.
+    /// Computes the surface at a hit in world space. The normals of the surface point out of the
+    /// solid.
     pub fn surface(&self, ray: &Ray64, crossing: &ShapeHit, part: u32, rules: &ShadingRules) -> SurfacePoint {
         let (leaf, number) = (&self.leaves[self.leaf_of(part)], self.triangle(part));
         let point = leaf.object.local_line(ray).at(f64::from(crossing.t));
         let surface = leaf.object.surface(ray, point, crossing, number, rules);
-        // The mesh itself may be inverted, so use the direction in which the ray crosses it.
+        // Use the direction in which the ray crosses the surface, because the mesh itself may be
+        // inverted.
         let turned = match leaf.object.geometry {
             Geometry::Mesh(_) => (surface.n_geo.dot(ray.dir()) < 0.0) != (part & ENTERS != 0),
             _ => part & INVERTED != 0,
@@ -266,8 +273,8 @@ impl Csg {
         SurfacePoint { n_geo: -surface.n_geo, n_shade: -surface.n_shade, shadow_offsets: [back, front], ..surface }
     }
 
-    /// Returns the first hit in the ray's interval and its part. For a ray that leaves the solid's
-    /// own surface, `inside` tells whether it starts inside.
+    /// Returns the first hit in the ray's interval and its part. If the ray starts on the solid's
+    /// own surface, `inside` is true if it starts on the inner side.
     pub(super) fn closest<T: TraversalCounter>(
         &self,
         ray: &Ray64,
@@ -280,7 +287,8 @@ impl Csg {
         SCRATCH.with_borrow_mut(|scratch| {
             let complete = self.collect(ray, true, scratch, counter);
             let found = self.sweep(ray, inside, scratch);
-            // If the ray starts inside a union, its exit can be beyond the entry into another part.
+            // If the ray starts inside a union, it can enter another part before it leaves the
+            // union.
             if complete < f32::INFINITY && found.is_none_or(|(crossing, _)| crossing.t > complete) {
                 self.collect(ray, false, scratch, counter);
                 return self.sweep(ray, inside, scratch);
@@ -291,9 +299,9 @@ impl Csg {
 
     /// Collects the crossings of all parts that can matter up to the first hit.
     ///
-    /// A ray from outside a union enters it where it first enters a part. With `shrink`, parts
-    /// beyond such an entry can therefore be omitted. Returns the `t` up to which the crossings are
-    /// complete, or infinity.
+    /// A ray that starts outside a union enters it where it first enters a part. If `shrink` is
+    /// true, parts beyond that point are therefore omitted. Returns the `t` up to which all
+    /// crossings were collected, or infinity.
     fn collect<T: TraversalCounter>(&self, ray: &Ray64, shrink: bool, scratch: &mut Scratch, counter: &mut T) -> f32 {
         let Scratch { events, .. } = scratch;
         events.clear();
@@ -308,13 +316,13 @@ impl Csg {
             events.sort_unstable_by(order);
             return f32::INFINITY;
         };
-        // Crossings just outside the interval, within the tolerance, matter too.
+        // Crossings within the tolerance outside the interval matter too.
         let reach = self.tolerance + 4.0 * f32::EPSILON * ray.rounded.origin.abs().max_element();
-        // The largest component is a lower bound on the direction's length that needs no square
+        // The largest component is a lower bound on the length of the direction and needs no square
         // root.
         let pad = GRAZING as f32 * reach / ray.dir().abs().max_element();
-        // Move the origin back, because traversal is faster for rays that start at their origin.
-        // The rounding error of the new origin is a thousandth of the pad.
+        // Move the ray origin back, because traversal is faster for rays that start at their
+        // origin. The rounding error of the new origin is a thousandth of the distance moved.
         let Ray { origin, dir, t_min, t_max } = ray.rounded;
         let wide = Ray { origin: origin - pad * dir, dir, t_min, t_max: t_max + 2.0 * pad };
         let shrink = shrink && self.joins[0].op == BoolOp::Union;
@@ -326,7 +334,7 @@ impl Csg {
                 return t_max;
             }
             let own = &mut events[from..];
-            // Do not sort one or two events: that would stall on memory that was just written.
+            // Sorting one or two crossings would stall on memory that was just written.
             if own.len() > 2 {
                 own.sort_unstable_by(order);
             }
@@ -343,13 +351,14 @@ impl Csg {
         complete
     }
 
-    /// Walks along the sorted crossings to the first one in the interval at which the solid's bit
+    /// Walks through the sorted crossings to the first one in the interval at which the solid's bit
     /// changes.
     ///
-    /// For a ray that leaves the solid's own surface, the starting side is known. If the crossings
-    /// disagree, the ray starts closer to an edge than single precision can resolve, and some face
-    /// is on the wrong side of the origin. If the ray should hit that face, it does so at once; if
-    /// the face should be behind the origin, it is ignored.
+    /// If the ray starts on the solid's own surface, it is known on which side it starts. If the
+    /// crossings contradict this, the ray starts closer to an edge than single precision can
+    /// resolve, and some face is on the wrong side of the origin. If that face should be in front
+    /// of the origin, the ray hits it at once; if the face should be behind the origin, it is
+    /// ignored.
     fn sweep(&self, ray: &Ray64, inside: Option<bool>, scratch: &mut Scratch) -> Option<(ShapeHit, u32)> {
         let Scratch { events, state } = scratch;
         if events.is_empty() {
@@ -367,7 +376,7 @@ impl Csg {
             let t = f32::MIN_POSITIVE;
             ray.rounded.contains(t).then_some((ShapeHit { t, ..crossing }, part))
         };
-        // Last crossing behind the origin that leads to the opposite side.
+        // Last crossing behind the origin that leads to the wrong side of the surface.
         let mut behind: Option<(ShapeHit, u32)> = None;
         let mut known = inside;
         let (apart, speed) = self.coincidence_bound(ray, events);
@@ -409,7 +418,7 @@ impl Csg {
         behind.filter(|_| known.is_some_and(|inside| inside != whole)).and_then(at_once)
     }
 
-    /// Returns the hit at a crossing. `whole` is the solid's bit after it.
+    /// Returns the hit at a crossing. `whole` is the solid's bit after the crossing.
     fn change(&self, event: &SurfaceCrossing, state: &State, whole: bool) -> (ShapeHit, u32) {
         let turned = state.inside[event.leaf as usize] != whole;
         let bits = if turned { INVERTED } else { 0 } | if whole { ENTERS } else { 0 };
@@ -417,8 +426,8 @@ impl Csg {
         (ShapeHit { t: event.t as f32, uv: event.uv }, part)
     }
 
-    /// Returns true if a part in its current state makes the solid larger: the point is inside it,
-    /// or outside of a subtracted part.
+    /// Returns true if a part, in its current state, makes the solid larger: either the point is
+    /// inside the part, or the part is subtracted and the point is outside it.
     fn adds(&self, leaf: u32, state: &State) -> bool {
         let mut adds = state.inside[leaf as usize];
         let mut edge = Some(self.leaves[leaf as usize].edge);
@@ -450,18 +459,18 @@ impl Csg {
         }
     }
 
-    /// Returns an upper bound on the distance of coincident crossings (see [`Csg::coincide`]) and a
-    /// lower bound on the length of the ray's direction.
+    /// Returns an upper bound on the distance between coincident crossings (see [`Csg::coincide`])
+    /// and a lower bound on the length of the ray's direction.
     fn coincidence_bound(&self, ray: &Ray64, events: &[SurfaceCrossing]) -> (f64, f64) {
         let (line, speed) = (ray.line(), f64::from(ray.dir().abs().max_element()));
         let farthest = events.first().map_or(0.0, |e| e.t.abs()) + events.last().map_or(0.0, |e| e.t.abs());
         let reach = line.origin.abs().max_element() + farthest * speed;
-        // The factor 1.001 allows for different rounding there.
+        // The factor 1.001 allows for the different rounding in `coincide`.
         (1.001 * GRAZING * (f64::from(self.tolerance) + 4.0 * f64::from(f32::EPSILON) * reach), speed)
     }
 
-    /// Returns the end of the group of crossings that coincide with the first one, each of a
-    /// different part. See the start of this file.
+    /// Returns the end of a group of coincident crossings, all of which belong to different parts.
+    /// The comment at the start of this file explains coincident faces.
     fn coincident(&self, ray: &Ray64, events: &[SurfaceCrossing], from: usize, state: &mut State) -> usize {
         state.last_group += 1;
         let State { groups, last_group: group, .. } = state;
@@ -477,7 +486,7 @@ impl Csg {
         to
     }
 
-    /// Returns true if two crossings coincide: see the start of this file.
+    /// Returns true if two crossings coincide, as explained at the start of this file.
     fn coincide(&self, ray: &Ray64, a: &SurfaceCrossing, b: &SurfaceCrossing) -> bool {
         let line = ray.line();
         let speed = line.dir.length();
@@ -494,23 +503,25 @@ impl Csg {
             let at = object.local_line(ray).at(event.t);
             object.surface(ray, at, &crossing, event.part, &ShadingRules::default()).n_geo.as_dvec3()
         });
-        // A grazing ray covers more distance between two faces than their distance.
+        // A grazing ray travels farther from one face to the other than the distance between the
+        // faces.
         let cosine = m.dot(line.dir).abs().max(n.dot(line.dir).abs()) / speed;
         m.dot(n).abs() >= MIN_COPLANAR_COSINE && gap * cosine <= tolerance
     }
 
-    /// Returns the crossing with the visible surface, from a group that together changed the
-    /// solid's bit.
+    /// Returns the crossing whose surface is visible, from a group of crossings that together
+    /// changed the solid's bit.
     fn choose<'e>(&self, events: &'e [SurfaceCrossing], state: &mut State) -> &'e SurfaceCrossing {
         let mut could: Vec<&SurfaceCrossing> = Vec::new();
-        // Crossings without which the change would not happen.
+        // Find the crossings without which the change would not happen.
         for event in events {
             if self.toggle(event.leaf, state) {
                 could.push(event);
             }
             self.toggle(event.leaf, state);
         }
-        // Crossings that cause the change alone: undo all of them, and then redo each one.
+        // Find the crossings that cause the change alone: undo all crossings, then try each one on
+        // its own.
         for event in events {
             self.toggle(event.leaf, state);
         }
@@ -530,19 +541,20 @@ impl Csg {
     }
 }
 
-/// Reciprocal sine of the flattest angle for which the tolerance is sufficient.
+/// Reciprocal of the sine of the flattest angle at which the tolerance is sufficient.
 const GRAZING: f64 = 1000.0;
 
-/// Cosine of the largest angle between coincident faces, 3.6 degrees. This is how much rounding of
-/// vertices at 10^6 can rotate faces of size 1 that should be in the same plane.
+/// Cosine of the largest angle between coincident faces, which is 3.6 degrees. Rounding of vertices
+/// at 10^6 can rotate faces of size 1 that should be in the same plane by this angle.
 const MIN_COPLANAR_COSINE: f64 = 0.998;
 
-/// Compares crossings by position on the line, then by part.
+/// Compares crossings by their position on the line, then by their part.
 fn order(a: &SurfaceCrossing, b: &SurfaceCrossing) -> std::cmp::Ordering {
     a.t.total_cmp(&b.t).then(a.leaf.cmp(&b.leaf)).then(a.part.cmp(&b.part))
 }
 
-/// Returns the rounding error of an object's coordinates in world and in object space, times two.
+/// Returns twice the sum of the rounding errors of an object's coordinates in world space and in
+/// object space.
 fn tolerance_of(object: &Object) -> f32 {
     let (Some(world), Some(local)) = (object.bounds(), object.local_bounds()) else { return 0.0 };
     let reach = |b: Aabb| b.min.abs().max(b.max.abs());

@@ -5,23 +5,24 @@ use durer_bvh::TraversalCounter;
 use durer_scene::math::{Ray, Ray64, StartSide, Vec2, Vec3};
 use durer_scene::shape::{ShapeHit, SurfacePoint};
 
-/// Surface point hit by a ray, in world space, with everything that shading needs.
+/// Surface point hit by a ray, in world space, with all data needed for shading.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceInteraction {
-    /// Surface at the hit, in world space.
+    /// Surface properties at the hit, in world space.
     pub surface: SurfacePoint,
     /// Ray that hit the surface.
     pub ray: Ray64,
-    /// Distance, object and part that were hit.
+    /// Distance of the hit, and the object and part that were hit.
     pub hit: Hit,
     /// Index of the material.
     pub material: u32,
-    /// Width of a camera sample's footprint at the hit, perpendicular to the ray; 0 if unknown.
+    /// Width of the camera sample's footprint at the hit, measured perpendicular to the ray; 0 if
+    /// unknown.
     pub width: f32,
 }
 
 impl SurfaceInteraction {
-    /// Placeholder to be overwritten.
+    /// Placeholder that will be overwritten.
     pub(crate) const NOWHERE: SurfaceInteraction = SurfaceInteraction {
         surface: SurfacePoint::ZERO,
         ray: Ray64 {
@@ -34,7 +35,8 @@ impl SurfaceInteraction {
         width: 0.0,
     };
 
-    /// Returns true if the ray hits the back, which is opposite to the geometric normal.
+    /// Returns true if the ray hits the back of the surface, which is opposite to the geometric
+    /// normal.
     pub fn inside(&self) -> bool {
         self.ray.dir().dot(self.surface.n_geo) > 0.0
     }
@@ -47,13 +49,13 @@ impl World {
         self.closest(ray, counter).map(|hit| self.interaction(ray, hit))
     }
 
-    /// Computes the surface interaction at a hit. In official programs, the point is computed from
-    /// the rounded ray.
+    /// Computes the surface interaction at a hit. With the arithmetic of an official program, the
+    /// point is computed from the rounded ray.
     pub fn interaction(&self, ray: impl Into<Ray64>, hit: Hit) -> SurfaceInteraction {
         self.interaction_along(&ray.into(), hit)
     }
 
-    /// Computes the surface interaction at a hit without a second copy of the ray. See
+    /// Computes the surface interaction at a hit without copying the ray again. See
     /// [`World::interaction`].
     #[inline]
     pub(crate) fn interaction_along(&self, ray: &Ray64, hit: Hit) -> SurfaceInteraction {
@@ -62,7 +64,7 @@ impl World {
         at
     }
 
-    /// Writes the surface interaction at a hit into `at`, which avoids a copy. See
+    /// Writes the surface interaction at a hit into `at` to avoid a copy. See
     /// [`World::interaction`].
     #[inline]
     pub(crate) fn intersect_into(&self, ray: &Ray64, hit: Hit, at: &mut SurfaceInteraction) {

@@ -1,4 +1,4 @@
-//! Tests that rays that start at a surface do not hit it there.
+//! Tests that rays starting at a surface do not hit it again at their origin.
 
 use crate::compile::{AccelKind, testing};
 use crate::integrator::spawn::spawn_ray;
@@ -9,9 +9,10 @@ use durer_scene::shape::testing::{distance, near_edge, samples, surface_point, t
 use durer_scene::shape::{Primitive, Shape, SurfacePoint, Triangle};
 use glam::{DAffine3, DVec3};
 
-/// Shoots a ray from a random point around the only object of a world towards it.
+/// Shoots a ray from a random point in the neighbourhood of the only object of a world towards that
+/// object.
 fn hit(world: &World, shape: &Primitive, affine: &DAffine3, random: &mut Random) -> Option<(Ray, Hit)> {
-    // Choose both ends in object space, so that thin objects are hit too.
+    // Choose both end points in object space, so that thin objects are hit too.
     let (local, _) = surface_point(shape, random, 1.0, 1.0)?;
     let origin = affine.transform_point3(local.origin.as_dvec3()).as_vec3();
     let target = affine.transform_point3(local.at(1.0).as_dvec3()).as_vec3();
@@ -19,8 +20,8 @@ fn hit(world: &World, shape: &Primitive, affine: &DAffine3, random: &mut Random)
     world.closest(&ray, &mut ()).map(|hit| (ray, hit))
 }
 
-/// Returns true if a ray hits another side of the same closed shape: an exit if the ray starts
-/// inside, or an entry if it starts outside a shape that is not convex.
+/// Returns true if a ray hits another side of the same closed shape, which is an exit if the ray
+/// starts inside, or an entry if it starts outside a shape that is not convex.
 fn is_other_side(shape: &Primitive, world: &World, start: &SurfacePoint, ray: &Ray64, hit: &Hit) -> bool {
     let bent = matches!(shape, Primitive::Torus(_) | Primitive::Quadric(_));
     let (from_inside, goes_out) = (ray.dir().dot(start.n_geo) < 0.0, world.interaction(ray, *hit).inside());
@@ -31,15 +32,15 @@ fn is_other_side(shape: &Primitive, world: &World, start: &SurfacePoint, ray: &R
 fn rays_do_not_hit_the_surface_that_they_leave() {
     let mut random = Random(5);
     let mut counts = [0; 11];
-    // Pairs of the transform's stretch and the object's distance.
+    // Each pair consists of the transform's stretch factor and the object's distance.
     for (stretch, distance) in [(1.0, 0.0), (1.0, 100.0), (10.0, 0.0), (10.0, 1e4), (100.0, 1e3), (1.0, 1e4)] {
         for round in 0..rounds(600) {
             let mut affine = random.affine(stretch, distance);
-            // Scale by a millionth to a million.
+            // Scale by factors from a millionth to a million.
             let scale = [1.0, 1e-6, 1e6, 1e-3, 1e3][round % 5];
             affine = DAffine3::from_scale(DVec3::splat(scale)) * affine;
             if round % 4 == 0 {
-                // On an axis, the other coordinates of a point are small and therefore more
+                // If a point lies on an axis, its other coordinates are small and therefore more
                 // precise.
                 affine.translation *= glam::DVec3::X;
             }
@@ -48,25 +49,25 @@ fn rays_do_not_hit_the_surface_that_they_leave() {
                 for _ in 0..10 {
                     let Some((ray, first)) = hit(&world, &shape, &affine, &mut random) else { continue };
                     let surface = world.interaction(ray, first).surface;
-                    // The tip of a stretched sphere can be too sharp for the resolution of
-                    // coordinates. An ellipsoid's smallest radius of curvature is its smallest half
-                    // axis squared, divided by the largest.
+                    // The tip of a stretched sphere can be too sharp for the precision of
+                    // coordinates. An ellipsoid's smallest radius of curvature is the square of its
+                    // smallest half axis divided by its largest half axis.
                     let off = surface.error.length() / scale as f32;
                     let tip = surface.curvature.recip() / (stretch * stretch * stretch);
                     if tip < 10.0 * off {
                         continue;
                     }
-                    // If a point is closer to an edge than its error, it may be on either side of
-                    // the edge.
+                    // If a point is closer to an edge than the error of its position, it may be on
+                    // either side of the edge.
                     let at = affine.inverse().transform_point3(surface.point());
                     if near_edge(&shape, at, f64::from(10.0 * stretch * off)) {
                         continue;
                     }
                     for _ in 0..40 {
                         let dir = random.between(0.01, 100.0) * random.direction();
-                        // A ray that is parallel to the surface within the rounding of its
-                        // direction is on neither side. A shear amplifies the rounding by the ratio
-                        // of its factors.
+                        // A ray that is parallel to the surface, within the rounding error of its
+                        // direction, is on neither side. A shear amplifies rounding errors by the
+                        // ratio of its factors.
                         let in_it = 2.0 * f32::EPSILON * stretch * stretch;
                         if dir.normalize().dot(surface.n_geo).abs() < in_it {
                             continue;
@@ -89,7 +90,7 @@ fn rays_do_not_hit_the_surface_that_they_leave() {
 fn rays_start_close_enough_to_hit_a_plane_a_thousandth_away() {
     let mut random = Random(6);
     for round in 0..20_000 {
-        // A thousandth is 16 to 32 times the rounding error of numbers up to 500.
+        // One thousandth is 16 to 32 times the rounding error of numbers up to 500.
         let affine = random.affine(2.0, [0.0, 1.0, 100.0, 300.0][round % 4]);
         let shape = samples(&mut random, 1.0, 1.0).swap_remove(round % 11);
         let world = testing::shapes(&[(shape.clone(), affine)], AccelKind::None);
@@ -115,8 +116,8 @@ fn normals_follow_mirrored_and_sheared_surfaces() {
             let world = testing::shapes(&[(shape.clone(), affine)], AccelKind::Bvh);
             let Some((ray, first)) = hit(&world, &shape, &affine, &mut random) else { continue };
             let surface = world.interaction(ray, first).surface;
-            // Signed distance from the surface in world space: the point's distance from the shape
-            // after the inverse transform.
+            // Returns the signed distance from the surface in world space, computed from the
+            // distance between the inversely transformed point and the shape.
             let inverse = affine.inverse();
             let field = |p: DVec3| distance(&shape, inverse.transform_point3(p));
             let p = surface.point();
@@ -130,10 +131,11 @@ fn normals_follow_mirrored_and_sheared_surfaces() {
             let gradient = DVec3::new(difference(DVec3::X), difference(DVec3::Y), difference(DVec3::Z));
             assert!(field(p).abs() <= f64::from(bound) * gradient.length() * 1.01, "{shape:?} {affine:?}");
             // The matrix is rounded to single precision and stretches some axes up to 25 times more
-            // than others. A point on a small sphere is precise to 1e-6 of the radius.
+            // than others. The position of a point on a small sphere is precise to 1e-6 of the
+            // radius.
             let n = surface.n_geo.as_dvec3();
             assert!((gradient.normalize() - n).length() < 1e-4, "{shape:?} {affine:?} {surface:?} {gradient}");
-            // A hit has the same t in both spaces.
+            // A hit has the same `t` in both spaces.
             let far = (ray.at(first.t).as_dvec3() - p).length();
             assert!(far < 1e-4 * (ray.origin.length() + surface.position.length()) as f64, "{far}");
         }
@@ -163,8 +165,8 @@ fn rays_leave_a_floor_in_a_coordinate_plane() {
         let floor = Triangle { vertex0: corner(-1.0, -1.0), vertex1: corner(1.0, -1.0), vertex2: corner(0.0, 1.0) };
         let ray = Ray::new(Vec3::Y, 0.1 * random.point() - Vec3::Y);
         let surface = floor.surface(DVec3::ZERO, &floor.intersect(&ray).unwrap());
-        // All coordinates of the point are exactly on the floor, so no offset is needed, even for
-        // flat rays.
+        // The point lies exactly on the floor, so no offset is needed, even for rays at a flat
+        // angle.
         let dir = random.direction() * Vec3::new(1.0, [1.0, 0.1, 1e-3][round % 3], 1.0);
         let away = spawn_ray(&surface, dir, f32::INFINITY, None);
         assert_eq!(floor.intersect(&away.rounded), None, "{floor:?} {away:?}");

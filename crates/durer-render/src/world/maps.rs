@@ -11,8 +11,8 @@ use durer_scene::texture::{Channel, Mapping, Texture};
 use std::borrow::Cow;
 
 impl World {
-    /// Returns the parameters of a principled material at a hit, changed by textures and vertex
-    /// colours. Without texture coordinates, textures are ignored.
+    /// Returns the parameters of a principled material at a hit after textures and vertex colours
+    /// were applied. If there are no texture coordinates, textures are ignored.
     pub fn parameters_at<'a>(&self, principled: &'a Principled, at: &SurfaceInteraction) -> Cow<'a, Parameters> {
         let [r, g, b, _] = at.surface.color;
         if principled.maps.parameters.is_empty() && [r, g, b] == [1.0; 3] {
@@ -20,7 +20,7 @@ impl World {
         }
         let mut here = principled.parameters;
         here.base_color *= Vec3::new(r, g, b);
-        // A texture that changes several parameters is looked up once.
+        // If a texture changes several parameters, it is looked up only once.
         let mut last: Option<(u32, [f32; 4])> = None;
         for map in &principled.maps.parameters {
             let known = last.filter(|(number, _)| *number == map.texture).map(|(_, texel)| texel);
@@ -39,23 +39,23 @@ impl World {
         Cow::Owned(if principled.maps.parameters.is_empty() { here } else { here.clamped() })
     }
 
-    /// Returns the value of a texture of numbers at a hit, from 0 to 1. 1 if there are no texture
-    /// coordinates.
+    /// Returns the value, from 0 to 1, of a numeric texture at a hit. The value is 1 if there are
+    /// no texture coordinates.
     pub(super) fn number_at(&self, map: u32, at: &SurfaceInteraction) -> f32 {
         let Some(texel) = self.texel(Some(map), at) else { return 1.0 };
         let mapping = self.textures()[map as usize].mapping().copied().unwrap_or_default();
         mapping.map_to_range(mapping.channel.unwrap_or(Channel::Red).of(texel)).clamp(0.0, 1.0)
     }
 
-    /// Returns the factor by which texture and vertex colours multiply the emission.
+    /// Returns the factor by which textures and vertex colours multiply the emission.
     pub(super) fn emission_at(&self, principled: &Principled, at: &SurfaceInteraction) -> Color {
         let picture = self.texel(principled.maps.emission, at).map_or(Color::ONE, |[r, g, b, _]| Color::new(r, g, b));
         let [r, g, b, _] = at.surface.color;
         if principled.definition.emission_vertex_colors == Switch::On { picture * Color::new(r, g, b) } else { picture }
     }
 
-    /// Returns the opacity at a hit: the product of parameter, vertex colours and textures, or 0 or
-    /// 1 with a cutoff.
+    /// Returns the opacity at a hit, which is the product of the parameter, the vertex colours and
+    /// the textures, or 0 or 1 if there is a cutoff.
     pub(super) fn opacity_at(&self, principled: &Principled, at: &SurfaceInteraction) -> f32 {
         let alpha = self.texel(principled.maps.base_color, at).map_or(1.0, |texel| texel[3]);
         let share = principled.maps.opacity.and_then(|map| {
@@ -82,16 +82,16 @@ impl World {
             || principled.maps.base_color.is_some_and(|map| self.textures()[map as usize].has_alpha())
     }
 
-    /// Returns the texel of a texture at a hit, filtered over the sample's footprint.
+    /// Returns the colour of a texture at a hit, filtered over the sample's footprint.
     fn texel(&self, map: Option<u32>, at: &SurfaceInteraction) -> Option<[f32; 4]> {
         let texture = &self.textures()[map? as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
         Some(texture.texel(&mapping, self.coordinates(texture, at)?, self.footprint_texels(texture, &mapping, at)))
     }
 
-    /// Returns the width of the sample's footprint in texels, across its narrow direction. At
-    /// grazing angles the footprint is longer in the other direction, which supersampling takes
-    /// care of.
+    /// Returns the width of the sample's footprint in texels, measured across its narrow direction.
+    /// At grazing angles the footprint is longer in the other direction, which is left to
+    /// supersampling.
     fn footprint_texels(&self, texture: &Texture, mapping: &Mapping, at: &SurfaceInteraction) -> f32 {
         if at.width <= 0.0 || !texture.has_levels() {
             return 0.0;
@@ -100,7 +100,8 @@ impl World {
         texture.texels_in(mapping, at.width / u.cross(v).length().sqrt())
     }
 
-    /// Returns the texture coordinates at a hit that a texture uses, first or second set.
+    /// Returns the texture coordinates at a hit from the set that a texture uses, which is the
+    /// first or the second.
     fn coordinates(&self, texture: &Texture, at: &SurfaceInteraction) -> Option<Vec2> {
         let SurfaceInteraction { hit, surface, .. } = at;
         match (texture.mapping().is_some_and(|mapping| mapping.second), &self.objects()[hit.object as usize].geometry) {
@@ -110,25 +111,25 @@ impl World {
         }
     }
 
-    /// Returns the shading normal after the bump map and then the normal map; `None` if there is
-    /// neither.
+    /// Returns the shading normal after the bump map and then the normal map were applied, or
+    /// `None` if there is neither.
     pub(super) fn mapped_normal(&self, maps: &MaterialTextures, at: &SurfaceInteraction) -> Option<Vec3> {
         let bumped = maps.bump.and_then(|map| self.bumped(map, maps.bump_height, at));
         let normal = bumped.unwrap_or(at.surface.n_shade);
         maps.normal.and_then(|map| self.normal_mapped(map, at, normal)).or(bumped)
     }
 
-    /// Applies a normal map. In it, x is along increasing u and y along increasing v, upwards in
-    /// the picture.
+    /// Applies a normal map. In the map, x points along increasing u, and y along increasing v,
+    /// which is upwards in the picture.
     fn normal_mapped(&self, map: u32, at: &SurfaceInteraction, normal: Vec3) -> Option<Vec3> {
         let texture = &self.textures()[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
         let object = &self.objects()[at.hit.object as usize];
-        // Do not filter: averaged normals would make the surface look smoother than it is.
+        // Do not filter the map: averaged normals would make the surface look too smooth.
         let [r, g, b, _] = texture.texel(&mapping, self.coordinates(texture, at)?, 0.0);
         let grow = match &object.geometry {
             Geometry::Mesh(tree) => {
-                // Tangents in the file are relative to the normal in object space.
+                // Tangents in the file are given relative to the normal in object space.
                 let local_normal = object.to_world.as_ref().map_or(normal, |to_world| to_world.inverse_normal(normal));
                 let grow = tree.mesh.tangents(at.hit.part, at.surface.barycentric, local_normal, mapping.second)?;
                 grow.map(|v| object.to_world.as_ref().map_or(v, |to_world| to_world.vector(v)))
@@ -137,7 +138,7 @@ impl World {
         };
         let [u, v] = mapping.directions(grow);
         let tangent = u.reject_from_normalized(normal).try_normalize()?;
-        // Perpendicular to normal and tangent, on the side of increasing v.
+        // Compute the vector perpendicular to normal and tangent, on the side of increasing v.
         let across = normal.cross(tangent);
         let bitangent = if across.dot(v) < 0.0 { -across } else { across };
         let signed = |x: f32| 2.0 * x - 1.0;
@@ -147,8 +148,8 @@ impl World {
 
     /// Applies a bump map.
     ///
-    /// Source: James Blinn, *Simulation of Wrinkled Surfaces*, SIGGRAPH 1978; with the gradient of
-    /// the height along the surface.
+    /// Source: James Blinn, *Simulation of Wrinkled Surfaces*, SIGGRAPH 1978; here, the gradient of
+    /// the height is taken along the surface.
     fn bumped(&self, map: u32, height: f32, at: &SurfaceInteraction) -> Option<Vec3> {
         let texture = &self.textures()[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
@@ -157,8 +158,8 @@ impl World {
         (at.surface.n_shade - slope.x * u - slope.y * v).try_normalize()
     }
 
-    /// Returns the derivatives of the world-space position with respect to the texture coordinates:
-    /// from the file for a mesh, by finite differences for other shapes.
+    /// Returns the derivatives of the world-space position with respect to the texture coordinates,
+    /// which come from the file for a mesh and from finite differences for other shapes.
     fn derivatives(&self, at: &SurfaceInteraction, second: bool) -> Option<[Vec3; 2]> {
         let SurfaceInteraction { hit, surface, .. } = at;
         let object = &self.objects()[hit.object as usize];
@@ -174,7 +175,7 @@ impl World {
         let size = shape.bounds().map_or(1.0_f32.max(point.length()), |bounds| bounds.size().max_element());
         let step = 1e-3 * size;
         let here = surface.uv.get()?;
-        // Texture coordinates of a nearby point, which a ray against the normal hits.
+        // Find the texture coordinates of a nearby point by tracing a ray against the normal.
         let beside = |dir: Vec3| {
             let mut ray = Ray::new(point + step * (dir + normal), -normal);
             ray.t_max = 2.0 * step;
@@ -194,9 +195,9 @@ impl World {
         dual([along_a.x * a + along_b.x * b, along_a.y * a + along_b.y * b])
     }
 
-    /// Returns the world-space direction of increasing u at a hit: from the texture coordinates of
-    /// a mesh, around the axis of a round shape, or along the first edge of a rectangle. Otherwise
-    /// a horizontal direction.
+    /// Returns the world-space direction of increasing u at a hit, which follows the texture
+    /// coordinates of a mesh, runs around the axis of a round shape, or follows the first edge of a
+    /// rectangle. For all other shapes, a horizontal direction is returned.
     pub(super) fn tangent(&self, at: &SurfaceInteraction) -> Vec3 {
         let SurfaceInteraction { hit, surface, .. } = at;
         let object = &self.objects()[hit.object as usize];
@@ -214,8 +215,8 @@ impl World {
     }
 }
 
-/// Returns the dual basis of two vectors in their plane. It converts derivatives to gradients and
-/// back.
+/// Returns the dual basis of two vectors, in the plane of the vectors. The dual basis converts
+/// derivatives to gradients and back.
 fn dual([u, v]: [Vec3; 2]) -> Option<[Vec3; 2]> {
     let normal = u.cross(v);
     let duals = [v.cross(normal), normal.cross(u)].map(|dual| dual / normal.length_squared());

@@ -12,24 +12,26 @@ use durer_scene::texture::Channel;
 use smallvec::SmallVec;
 use std::sync::Arc;
 
-/// Compiled material of a world: parameters for shading, or a pattern that mixes two materials.
+/// Compiled material of a world, which is either a set of shading parameters or a pattern that
+/// mixes two materials.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Material {
-    /// A material with parameters; [`Phong::principled`] extends it for path tracing.
+    /// A material given by parameters; [`Phong::principled`] adds those for path tracing.
     Phong(Phong),
-    /// A mix of two other materials. The matrix transforms world space to pattern space. The
-    /// optional texture, by its index, multiplies the share of the first material.
+    /// A mix of two other materials. The matrix transforms points from world space to pattern
+    /// space. The texture, if there is one, is given by its index and multiplies the share of the
+    /// first material.
     Mix(PatternMaterial, glam::DAffine3, Option<u32>),
 }
 
-/// Formula of a Phong material's highlight: Blinn's or Phong's.
+/// Formula of a Phong material's highlight, due to Blinn or to Phong.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HighlightModel {
-    /// max(0, N·H)^exponent where N·L > 0.
+    /// Highlight of max(0, N·H)^exponent where N·L > 0.
     Blinn,
     /// max(0, R·L)^exponent.
     Phong {
-        /// True if surfaces that face away from the light have highlights too.
+        /// True if surfaces that face away from the light also have highlights.
         behind: bool,
     },
 }
@@ -37,57 +39,58 @@ pub enum HighlightModel {
 /// Textures of a principled material, by their indices in [`super::World::textures`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MaterialTextures {
-    /// Base colour. Its alpha multiplies the opacity.
+    /// Base colour texture. Its alpha channel multiplies the opacity.
     pub base_color: Option<u32>,
-    /// Multiplies the emission colour.
+    /// Texture that multiplies the emission colour.
     pub emission: Option<u32>,
-    /// Multiplies the opacity.
+    /// Texture that multiplies the opacity.
     pub opacity: Option<u32>,
-    /// Normal map in tangent space.
+    /// Normal map, in tangent space.
     pub normal: Option<u32>,
     /// Bump map.
     pub bump: Option<u32>,
-    /// Height difference between bump values 1 and 0, in world units.
+    /// Difference in height between bump values 1 and 0, in world units.
     pub bump_height: f32,
-    /// Textures of other parameters.
+    /// Textures of all other parameters.
     pub parameters: Vec<ParameterTexture>,
 }
 
-/// Texture of one parameter of a principled material, such as its roughness.
+/// Texture of a single parameter of a principled material, such as its roughness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterTexture {
-    /// Row in [`TEXTURE_FIELDS`](durer_scene::material::parameters::TEXTURE_FIELDS), which tells
+    /// Row in [`TEXTURE_FIELDS`](durer_scene::material::parameters::TEXTURE_FIELDS) that identifies
     /// the parameter.
     pub row: usize,
     /// Index of the texture.
     pub texture: u32,
-    /// Channel to use for a number; `None` for that of the texture's mapping, or else red.
+    /// Channel to use for a number; if `None`, the channel of the texture's mapping is used, or red
+    /// if that has none.
     pub channel: Option<Channel>,
 }
 
-/// Principled material for path tracing, with its textures, spectra and tables loaded.
+/// Principled material for path tracing, with all textures, spectra and tables loaded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Principled {
     /// Material as written in the scene.
     pub definition: PrincipledMaterial,
     /// Textures.
     pub maps: MaterialTextures,
-    /// Parameters before textures are applied.
+    /// Parameters before any textures are applied.
     pub parameters: Parameters,
     /// Precomputed reflectances of the material's interfaces.
     pub tables: Tables,
-    /// Spectrum of the light that the material emits, if it was given.
+    /// Spectrum of the light that the material emits, if the scene specifies one.
     pub illuminant: Option<Arc<Curve>>,
     /// Interior medium, if it absorbs or scatters.
     pub medium: Option<Medium>,
     /// True if the surface has no effect when the indices of refraction on both sides are equal, as
-    /// for smoke.
+    /// is the case for smoke.
     pub interface: bool,
 }
 
 impl Principled {
-    /// Returns true if some layer reflects or refracts light in a single direction. Ignores
-    /// roughness textures.
+    /// Returns true if some layer of the material reflects or refracts light into a single
+    /// direction. Roughness textures are ignored.
     pub fn has_delta_lobes(&self) -> bool {
         let m = &self.definition;
         let smooth = |roughness: f32| Ggx::new(roughness, 0.0).is_smooth();
@@ -96,30 +99,31 @@ impl Principled {
     }
 }
 
-/// Light that the surfaces of a principled material emit.
+/// Light emitted by the surfaces of a principled material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emission {
-    /// Radiance before a texture is applied.
+    /// Radiance before any texture is applied.
     pub radiance: Color,
-    /// True if a texture or vertex colours multiply the radiance.
+    /// True if the radiance is multiplied by a texture or by vertex colours.
     pub textured: bool,
-    /// True if both sides emit, false if only the side of the normal does.
+    /// True if both sides emit light, false if only the side to which the normal points does.
     pub two_sided: bool,
 }
 
-/// Phong material after the dialect's rules were applied; for principled materials and hair, an
-/// approximation for the Whitted integrator.
+/// Phong material after the dialect's rules were applied; for principled materials and hair, it is
+/// an approximation for the Whitted integrator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Phong {
-    /// Diffuse reflectance before texture and noise.
+    /// Diffuse reflectance before texture and noise are applied.
     pub diffuse: Color,
     /// Index of the texture that replaces the diffuse colour, or multiplies it if `tinted`.
     pub texture: Option<u32>,
-    /// True if texture and vertex colours multiply the diffuse colour, as in principled materials.
+    /// True if textures and vertex colours multiply the diffuse colour, as in principled materials.
     pub tinted: bool,
     /// Noise that replaces the diffuse colour.
     pub noise: Option<ColorNoise>,
-    /// Ambient reflectance; `None` if it equals the diffuse colour, texture or noise.
+    /// Ambient reflectance; `None` if it equals the diffuse reflectance, including texture and
+    /// noise.
     pub ambient: Option<Color>,
     /// Colour, exponent and formula of the highlight, if there is one.
     pub highlight: Option<(Color, f32, HighlightModel)>,
@@ -129,18 +133,18 @@ pub struct Phong {
     pub transparent: Color,
     /// Index of refraction.
     pub ior: f32,
-    /// True if Fresnel's equations split the light between the two rays.
+    /// True if the light is split between the two rays according to Fresnel's equations.
     pub fresnel: bool,
     /// Principled material, which path tracing uses instead of this one.
     pub principled: Option<Arc<Principled>>,
     /// Hair fibre, which path tracing uses instead of this material.
     pub fibre: Option<Arc<Fibre>>,
-    /// Emission, which only path tracing renders.
+    /// Emission, which is rendered only by path tracing.
     pub emission: Option<Emission>,
 }
 
 impl Phong {
-    /// Returns true if paths can enter objects of this material.
+    /// Returns true if paths can enter objects made of this material.
     pub fn is_entered(&self) -> bool {
         match &self.principled {
             Some(own) => {
@@ -152,16 +156,16 @@ impl Phong {
     }
 }
 
-/// One of the materials at a surface point, with its share of the point.
+/// One of the materials at a surface point, with its share in the mixture.
 #[derive(Clone, Copy, Debug)]
 pub struct WeightedMaterial<'w> {
     /// The material.
     pub phong: &'w Phong,
-    /// Share of the material; the shares at a point sum to 1.
+    /// Share of the material; the shares of all materials at a point sum to 1.
     pub share: f32,
 }
 
-/// Materials at a surface point, usually a single one.
+/// Materials at a surface point, of which there is usually only one.
 pub type MaterialMix<'w> = SmallVec<[WeightedMaterial<'w>; 2]>;
 
 impl Default for Phong {

@@ -6,8 +6,8 @@ use durer_scene::shape::MeshData;
 use durer_scene::shape::mesh::NO_INDEX;
 
 impl World {
-    /// Merges all meshes into one mesh in world space. Also returns the number of objects that were
-    /// left out because they are not meshes.
+    /// Merges all meshes into one mesh in world space. The result includes the number of objects
+    /// that were left out because they are not meshes.
     pub fn merged_mesh(&self) -> (MeshData, usize) {
         let (mut all, mut left_out) = (MeshData::default(), 0);
         for object in self.objects() {
@@ -21,7 +21,7 @@ impl World {
             let bases = [&all.positions.len(), &all.uvs.len(), &all.normals.len()].map(|count| *count as u32);
             all.flat |= data.flat;
             let before = all.triangles.len();
-            // A reflection turns triangles inside out, so swap two of their corners.
+            // A reflection turns triangles inside out, so two of their corners are swapped.
             let mirrors = object.to_world.as_ref().is_some_and(|to_world| to_world.flips_handedness());
             let turned = |list: &[[u32; 3]], base: u32| -> Vec<[u32; 3]> {
                 let moved = |i: u32| if i == NO_INDEX { i } else { i + base };

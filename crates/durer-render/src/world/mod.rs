@@ -1,4 +1,5 @@
-//! World: the compiled scene, with indices instead of names, for queries from many threads.
+//! World: the compiled scene, which uses indices instead of names and can be queried from many
+//! threads.
 
 mod batch;
 mod contents;
@@ -36,44 +37,44 @@ pub use rules::{DisplayRules, Epsilon, ShadingRules};
 pub use shading::Shading;
 use std::sync::OnceLock;
 
-/// Scene after compilation, with acceleration structure and light sampler. All rendering uses it.
+/// Scene after compilation, with its acceleration structure and light sampler. All rendering uses a
+/// [`World`].
 #[derive(Clone, Debug)]
 pub struct World {
     contents: Contents,
     assets: Assets,
-    /// Hash of the sources that the world was compiled from.
+    /// Hash of the sources from which the world was compiled.
     source: Digest,
-    /// True if the contents were edited since.
+    /// True if the contents were edited since compilation.
     edited: bool,
     emitters: LightSampler,
     has_cutouts: bool,
     hides_backs: bool,
     has_interfaces: bool,
-    /// True if light passes straight through some thin sheet.
+    /// True if some thin sheet lets light pass straight through.
     has_sheets: bool,
-    /// Indices of objects with an interior medium, in which a camera could be.
+    /// Indices of the objects with an interior medium in which a camera could be placed.
     bodies: Vec<u32>,
-    /// [`Object::half_area`] of each object, computed at first use. Empty if light enters no
-    /// object.
+    /// [`Object::half_area`] of each object, computed at first use. The list is empty if light does
+    /// not enter any object.
     half_areas: Vec<OnceLock<Option<f32>>>,
     /// Simple shapes outside the acceleration structure, tested eight at a time.
     pub(crate) packs: PrimitivePacks,
     /// Copy of all objects in a form for batches of rays, if there are few objects.
     pub(crate) small_world: Option<SmallWorld>,
-    /// Other objects outside the acceleration structure: unbounded ones, or all if there are too
-    /// few for a tree to be faster.
+    /// Indices of the other objects outside the acceleration structure, which are the unbounded
+    /// objects, or all objects if there are too few for a tree to be faster.
     pub(crate) outside_accel: Vec<u32>,
     pub(crate) accel: Accel,
-    /// Copies of the spheres in the BVH, in the order of its leaves, to save a lookup. Other
-    /// objects have radius
-    /// 0. Empty if there are no spheres.
+    /// Copies of the spheres in the BVH, in the order of its leaves, which save a lookup. Objects
+    /// other than spheres have radius 0. The list is empty if there are no spheres.
     pub(crate) spheres: Vec<Sphere>,
 }
 
 /// Acceleration structure over the bounded objects of a world.
 #[derive(Clone, Debug)]
 pub enum Accel {
-    /// A BVH over the objects. Meshes have their own BVHs.
+    /// A BVH over the objects. Each mesh has its own BVH.
     Bvh(Bvh),
     /// A uniform grid over the parts of all objects.
     Grid {
@@ -81,16 +82,17 @@ pub enum Accel {
         grid: Grid,
         /// Object and part of each item in the grid.
         parts: Vec<(u32, u32)>,
-        /// Object and part of the few items that extend far beyond the grid. Every ray tests them.
+        /// Object and part of the few items that extend far beyond the grid. Every ray tests these
+        /// items.
         wide: Vec<(u32, u32)>,
     },
-    /// No structure: every ray tests all objects.
+    /// No acceleration structure, so that every ray tests all objects.
     None,
-    /// Tests every object, as an official program does.
+    /// Structure that tests every object in the same way as an official program.
     Course(CourseAccel),
 }
 
-/// First intersection of a ray with a world: distance, object and part.
+/// First intersection of a ray with a world, given by its distance, object and part.
 ///
 /// Hits are ordered by `t`, then object, then part. Therefore all acceleration structures return
 /// the same hit.
@@ -102,7 +104,7 @@ pub struct Hit {
     pub uv: Vec2,
     /// Index of the object.
     pub object: u32,
-    /// Index of the triangle in a mesh; for a solid see [`csg`]; otherwise 0.
+    /// Index of the triangle in a mesh; see [`csg`] for solids; 0 for other shapes.
     pub part: u32,
 }
 
@@ -113,8 +115,8 @@ impl Hit {
 }
 
 impl World {
-    /// Creates a world without an acceleration structure. `source` is the hash of what it was
-    /// compiled from.
+    /// Creates a world without an acceleration structure. `source` is the hash of the sources from
+    /// which the world was compiled.
     pub(crate) fn new(contents: Contents, assets: Assets, source: Digest) -> Self {
         let mut world = World {
             contents,
@@ -144,7 +146,7 @@ impl World {
         world
     }
 
-    /// Returns the luminous efficacy of each colour channel, if light is in watts.
+    /// Returns the luminous efficacy of each colour channel, if light is measured in watts.
     pub fn lumens(&self) -> Option<Vec3> {
         self.contents.display.lumens
     }
@@ -159,17 +161,18 @@ impl World {
         self.has_cutouts
     }
 
-    /// Returns true if the backs of some surfaces are invisible to cameras.
+    /// Returns true if the backs of some surfaces are invisible to the camera.
     pub fn hides_backs(&self) -> bool {
         self.hides_backs
     }
 
-    /// Returns true if some surface only bounds a medium, so that light passes unrefracted.
+    /// Returns true if some surface is only the boundary of a medium, so that light passes through
+    /// it unrefracted.
     pub fn has_interfaces(&self) -> bool {
         self.has_interfaces
     }
 
-    /// Returns true if light can pass straight through some thin sheet, such as a pane.
+    /// Returns true if light can pass straight through some thin sheet, such as a window pane.
     pub fn has_sheets(&self) -> bool {
         self.has_sheets
     }
@@ -184,8 +187,8 @@ impl World {
         self.closest_along(&mut ray.into(), counter)
     }
 
-    /// Returns the first hit in the ray's interval. Shortens the ray and restores it at the end,
-    /// which avoids a slow copy.
+    /// Returns the first hit in the ray's interval. The ray is shortened during the call and
+    /// restored at the end, which avoids a slow copy.
     #[inline]
     pub(crate) fn closest_along<T: TraversalCounter>(&self, ray: &mut Ray64, counter: &mut T) -> Option<Hit> {
         counter.ray();
@@ -198,8 +201,8 @@ impl World {
         best
     }
 
-    /// Returns true if a ray is traced. The official programs also trace a ray with NaN, which hits
-    /// spheres at distance 10000.
+    /// Returns true if a ray should be traced. The official programs also trace rays that contain
+    /// NaN, which hit spheres at distance 10000.
     #[inline]
     fn accepts(&self, ray: &Ray) -> bool {
         durer_bvh::internal::is_valid(ray) || matches!(self.accel, Accel::Course(_))
@@ -207,7 +210,8 @@ impl World {
 
     fn nearest<T: TraversalCounter>(&self, ray: &mut Ray64, counter: &mut T) -> Option<Hit> {
         let mut best: Option<Hit> = None;
-        // Ties are broken by the order of hits, so another hit at the current `t` can still win.
+        // Ties are resolved by comparing hits, so another hit at the current `t` can still replace
+        // the best one.
         let offer = |best: &mut Option<Hit>, ray: &mut Ray64, object: u32, found: Option<(ShapeHit, u32)>| {
             if let Some((ShapeHit { t, uv }, part)) = found {
                 let hit = Hit { t, uv, object, part };
@@ -261,7 +265,7 @@ impl World {
         best
     }
 
-    /// Returns the object of a BVH item and its first hit in the ray's interval.
+    /// Returns the object of a BVH item and the first hit on it in the ray's interval.
     #[inline(always)]
     fn closest_of<T: TraversalCounter>(
         &self,
@@ -279,12 +283,13 @@ impl World {
         (number, self.objects()[number as usize].closest(number, ray, any, counter))
     }
 
-    /// Returns true if the ray hits anything in its interval. Stops at the first hit found.
+    /// Returns true if the ray hits anything in its interval. The search stops at the first hit
+    /// found.
     pub fn occluded<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> bool {
         self.occluded_along(&ray.into(), counter)
     }
 
-    /// Computes occlusion without copying the ray. See [`World::occluded`].
+    /// Tests a ray for occlusion without copying it. See [`World::occluded`].
     pub(crate) fn occluded_along<T: TraversalCounter>(&self, ray: &Ray64, counter: &mut T) -> bool {
         counter.ray();
         let outer = &ray.rounded;
@@ -335,26 +340,26 @@ impl World {
     }
 
     /// Iterates over the closed objects that contain a point and that paths can enter, with their
-    /// indices of refraction. Empty if no object absorbs or scatters.
+    /// indices of refraction. The iterator is empty if no object absorbs or scatters light.
     pub fn bodies_around(&self, point: Vec3) -> impl Iterator<Item = (u32, f32)> {
         self.around(point, self.bodies.iter().copied(), Phong::is_entered)
     }
 
-    /// Returns [`Object::half_area`] of an object, which is cached.
+    /// Returns [`Object::half_area`] of an object from a cache.
     pub(crate) fn half_area(&self, object: u32) -> Option<f32> {
         let find = || self.objects()[object as usize].half_area();
         self.half_areas.get(object as usize).map_or_else(find, |area| *area.get_or_init(find))
     }
 
-    /// Returns an empty cache of [`Object::half_area`].
+    /// Returns an empty cache for [`Object::half_area`].
     fn empty_half_areas(&self) -> Vec<OnceLock<Option<f32>>> {
         let enters = |material: &Material| matches!(material, Material::Phong(phong) if phong.is_entered());
         let wanted = if self.materials().iter().any(enters) { self.objects().len() } else { 0 };
         vec![OnceLock::new(); wanted]
     }
 
-    /// Iterates over the closed objects among some candidates that contain a point, if their
-    /// material is `wanted`.
+    /// Iterates over those of the given candidates that are closed, contain a point and have a
+    /// material that is `wanted`.
     fn around(
         &self,
         point: Vec3,
@@ -378,8 +383,8 @@ impl World {
         }
     }
 
-    /// Iterates over all hits in the ray's interval, in the order of distance. Of several hits at
-    /// the same `t`, only the first is included.
+    /// Iterates over all hits in the ray's interval, in order of distance. If several hits have the
+    /// same `t`, only the first one is included.
     pub fn all_hits(&self, ray: impl Into<Ray64>) -> impl Iterator<Item = Hit> {
         let mut rest = ray.into();
         std::iter::from_fn(move || {
@@ -389,14 +394,14 @@ impl World {
         })
     }
 
-    /// Iterates over the objects that the ray hits in its interval, with the first hit of each, in
-    /// the order of the objects.
+    /// Iterates over the objects that the ray hits in its interval, in scene order, with the first
+    /// hit on each.
     pub fn hits_of_each(&self, ray: impl Into<Ray64>) -> impl Iterator<Item = Hit> {
         let ray = ray.into();
         (0..self.objects().len() as u32).filter_map(move |object| self.hit_of(object, &ray))
     }
 
-    /// Returns the first hit on one object, ignoring all others.
+    /// Returns the first hit on one object, as if there were no others.
     pub fn hit_of(&self, object: u32, ray: &Ray64) -> Option<Hit> {
         let sound = durer_bvh::internal::is_valid(&ray.rounded);
         let (crossing, part) =
@@ -404,11 +409,12 @@ impl World {
         Some(Hit { t: crossing.t, uv: crossing.uv, object, part })
     }
 
-    /// Returns the light from a light of the scene at a point, without occlusion.
+    /// Returns the light that arrives at a point from one of the scene's lights, ignoring
+    /// occlusion.
     #[inline(always)]
     pub fn illuminate(&self, light: usize, point: DVec3) -> LightLiSample {
         let LightLiSample { to_light, distance, color } = match &self.lights()[light] {
-            // Fast path: most lights are point lights. This keeps the result in registers.
+            // Fast path: most lights are point lights. This path keeps the result in registers.
             Light::Point(emitter) => emitter.illuminate(point),
             emitter => emitter.illuminate(point),
         };
@@ -428,7 +434,7 @@ impl World {
         self.cube_map().map_or(self.background(), |map| map.at(direction))
     }
 
-    /// Returns the materials of a surface point with their shares.
+    /// Returns the materials at a surface point, with their shares.
     #[inline]
     pub fn materials_at(&self, at: &SurfaceInteraction) -> MaterialMix<'_> {
         let mut parts = MaterialMix::new();
@@ -440,7 +446,7 @@ impl World {
         parts
     }
 
-    /// Adds the materials of a possibly nested mixture, with their shares.
+    /// Adds the materials of a mixture, which may be nested, with their shares.
     fn mix<'w>(&'w self, material: u32, at: &SurfaceInteraction, share: f32, parts: &mut MaterialMix<'w>) {
         match &self.materials()[material as usize] {
             Material::Phong(phong) => parts.push(WeightedMaterial { phong, share }),

@@ -9,24 +9,25 @@ use durer_scene::shape::{Axis, Mesh, Primitive, Shape, ShapeHit, Sphere, Surface
 use glam::{DAffine3, DVec3};
 use std::sync::{Arc, OnceLock};
 
-/// Object of a world: geometry with a transform and a material.
+/// Object of a world, with geometry, a transform and a material.
 #[derive(Clone, Debug)]
 pub struct Object {
     /// Geometry, in object space.
     pub geometry: Geometry,
     /// Transform from object to world space; `None` for the identity.
     pub to_world: Option<Affine>,
-    /// Enclosing transforms as an official program multiplies them, outermost first. Empty if its
-    /// arithmetic is not active. If a transform is singular, `to_world` is `None`.
+    /// Enclosing transforms, multiplied as an official program does, outermost first. The list is
+    /// empty if the arithmetic of an official program is not active. If a transform is singular,
+    /// `to_world` is `None`.
     pub matrices: Vec<Matrix>,
-    /// Vector by which the geometry was moved to the origin for precision; [`Object::to_world`]
-    /// moves it back.
+    /// Vector by which the geometry was moved to the origin to improve precision;
+    /// [`Object::to_world`] moves it back.
     pub center: Vec3,
-    /// Index of the material. The parts of a solid have their own materials instead.
+    /// Index of the material. The parts of a solid have materials of their own instead.
     pub material: u32,
-    /// Length of the surface normals: 1 except with [`ShadingRules::raw_normals`].
+    /// Length of the surface normals, which is 1 except with [`ShadingRules::raw_normals`].
     pub normal_length: f32,
-    /// Span of the object's definition in the scene file.
+    /// Source span of the object's definition in the scene file.
     pub span: durer_diag::Span,
 }
 
@@ -35,13 +36,13 @@ pub struct Object {
 pub enum Geometry {
     /// A shape such as a sphere or a box.
     Primitive(Primitive),
-    /// A mesh. All objects that use the mesh share it.
+    /// A mesh, which is shared by all objects that use it.
     Mesh(Arc<MeshTree>),
-    /// A CSG solid of closed shapes and meshes. Its parts are in world space.
+    /// A CSG solid made of closed shapes and meshes. The parts of the solid are in world space.
     Solid(Arc<Csg>),
 }
 
-/// Triangle mesh with its own BVH, shared by all objects that use the mesh.
+/// Triangle mesh with its own BVH, shared by all objects that use it.
 #[derive(Debug)]
 pub struct MeshTree {
     /// The mesh.
@@ -59,30 +60,31 @@ impl MeshTree {
         MeshTree { mesh, bvh, closed: OnceLock::new() }
     }
 
-    /// Makes rays miss triangles that they hit edge-on; see `TriangleBvh::least_volume`.
+    /// Makes rays miss triangles that they would hit edge-on; see `TriangleBvh::least_volume`.
     pub fn least_volume(self, least_volume: f64) -> Self {
         MeshTree { bvh: self.bvh.min_volume(least_volume), ..self }
     }
 
-    /// Returns a copy of the mesh and BVH with other normals.
+    /// Returns a copy of the mesh and its BVH with other normals.
     pub fn with_normals(&self, rule: MeshNormals) -> Self {
         MeshTree { mesh: self.mesh.with_normals(rule), bvh: self.bvh.clone(), closed: self.closed.clone() }
     }
 
-    /// Returns the memory used by mesh and BVH, in bytes.
+    /// Returns the memory used by the mesh and its BVH, in bytes.
     pub fn bytes(&self) -> usize {
         self.mesh.bytes() + self.bvh.memory_usage()
     }
 
-    /// Returns true if the mesh is closed, so that it has an inside.
+    /// Returns true if the mesh is closed and therefore has an inside.
     pub fn is_closed(&self) -> bool {
         *self.closed.get_or_init(|| self.mesh.open_edge().is_none())
     }
 
-    /// Calls `offer` with each crossing of a line and the index of its triangle, in any order.
+    /// Calls `offer` for each point where a line crosses the mesh, in no particular order, and
+    /// passes the index of the crossed triangle.
     ///
-    /// Coordinates are computed relative to the line's point nearest to the mesh. Only the size of
-    /// the mesh's own coordinates therefore affects rounding errors.
+    /// Coordinates are computed relative to the point of the line that is nearest to the mesh.
+    /// Rounding errors therefore depend only on the size of the mesh's own coordinates.
     pub(super) fn crossings<T: TraversalCounter>(
         &self,
         line: &Line,
@@ -97,7 +99,8 @@ impl MeshTree {
         }
     }
 
-    /// Returns the first hit in the ray's interval. With `any`, stops at the first hit found.
+    /// Returns the first hit in the ray's interval. With `any`, the search stops at the first hit
+    /// found.
     #[inline]
     fn closest<T: TraversalCounter>(&self, ray: &Ray, any: bool, counter: &mut T) -> Option<(ShapeHit, u32)> {
         if any {
@@ -115,14 +118,14 @@ impl Object {
         self.to_world.as_ref().map_or_else(|| ray.rounded, |to_world| to_world.inverse_ray(ray))
     }
 
-    /// Returns the ray in the coordinates of the object's definition, if the object has a
+    /// Returns the ray in the coordinates in which the object was defined, if the object has a
     /// transform.
     pub fn own_ray(&self, ray: &Ray64) -> Option<Ray> {
         let local = self.to_world.as_ref()?.inverse_ray(ray);
         Some(Ray { origin: local.origin + self.center, ..local })
     }
 
-    /// Returns the line of a ray in object space.
+    /// Returns the line of a ray, transformed to object space.
     pub(super) fn local_line(&self, ray: &Ray64) -> Line {
         self.to_world.as_ref().map_or(ray.line(), |to_world| to_world.inverse_line(ray))
     }
@@ -132,7 +135,8 @@ impl Object {
         if let Geometry::Primitive(shape) = &self.geometry { shape.axis() } else { None }
     }
 
-    /// Calls `offer` with each crossing of a ray's line and the index of its part, in any order.
+    /// Calls `offer` for each point where a ray's line crosses the object, in no particular order,
+    /// and passes the index of the crossed part.
     pub(super) fn crossings<T: TraversalCounter>(
         &self,
         axis: Option<&Axis>,
@@ -147,14 +151,14 @@ impl Object {
                 shape.crossings_about(axis, &line, &mut |t, uv| offer(t, uv, 0));
             }
             Geometry::Mesh(tree) => tree.crossings(&line, counter, offer),
-            // Solids in solids have been flattened.
+            // Solids nested in solids have already been flattened.
             Geometry::Solid(_) => {}
         }
     }
 
     /// Replaces the object's transform.
     pub fn set_transform(&mut self, place: DAffine3) {
-        // First undo the move of the geometry to the origin.
+        // First undo the translation that moved the geometry to the origin.
         let centered = place * DAffine3::from_translation(self.center.as_dvec3());
         self.to_world = Affine::new(centered).filter(|affine| !affine.is_identity());
         if !self.matrices.is_empty() {
@@ -167,7 +171,7 @@ impl Object {
         self.to_world.as_ref().map_or(p, |to_world| to_world.point(p))
     }
 
-    /// Computes the surface in world space, at a hit close to a point in object space.
+    /// Computes the surface in world space at a hit near a given point in object space.
     pub(super) fn surface(
         &self,
         ray: &Ray64,
@@ -182,7 +186,7 @@ impl Object {
         surface
     }
 
-    /// Computes the surface in object space or, for a solid, in world space.
+    /// Computes the surface at a hit in object space or, for a solid, in world space.
     pub(super) fn local_surface(
         &self,
         ray: &Ray64,
@@ -192,7 +196,8 @@ impl Object {
         rules: &ShadingRules,
         surface: &mut SurfacePoint,
     ) {
-        // Each arm writes directly into the result, because a common temporary would be copied.
+        // Each match arm writes directly into the result, because a shared temporary value would
+        // have to be copied.
         match &self.geometry {
             Geometry::Primitive(Primitive::Sphere(sphere)) => *surface = sphere.surface(point, crossing),
             Geometry::Primitive(Primitive::Plane(plane)) => *surface = plane.surface(point, crossing),
@@ -241,7 +246,8 @@ impl Object {
             let point = to_world.point64(surface.position);
             surface.position = point.as_vec3();
             surface.rounding_error = (point - surface.position.as_dvec3()).as_vec3();
-            // A curved surface also deviates from its tangent plane, by the square of the error.
+            // A curved surface also deviates from its tangent plane, by an amount that grows with
+            // the square of the error.
             surface.error = error + to_world.error_bound(surface.bulge(to_world.inverse_error_bound(error)));
             surface.n_geo = to_world.normal(surface.n_geo);
             surface.n_shade = shading(to_world, surface.n_shade);
@@ -252,7 +258,7 @@ impl Object {
     }
 
     /// Returns the object's first hit in the ray's interval. `number` is the object's index. With
-    /// `any`, can return another hit.
+    /// `any`, the result may be a hit other than the first.
     #[inline]
     pub(super) fn closest<T: TraversalCounter>(
         &self,
@@ -279,7 +285,7 @@ impl Object {
         }
     }
 
-    /// Intersects a single part of the object. A solid is intersected as one part.
+    /// Intersects a single part of the object. A solid counts as a single part.
     pub(super) fn part<T: TraversalCounter>(
         &self,
         (number, part): (u32, u32),
@@ -290,7 +296,7 @@ impl Object {
         let local = self.local_ray(ray);
         let crossing = match &self.geometry {
             Geometry::Primitive(shape) => shape.intersect(&local),
-            // The BVH rejects such rays, which cannot hit anything.
+            // The BVH rejects invalid rays, which cannot hit anything.
             Geometry::Mesh(_) if !durer_bvh::internal::is_valid(&local) => None,
             Geometry::Mesh(tree) => tree
                 .bvh
@@ -302,8 +308,9 @@ impl Object {
         crossing.map(|crossing| (crossing, part))
     }
 
-    /// Returns the cost of intersecting the object, relative to a sphere, if it is a simple shape
-    /// that can be packed with others. `None` for others and for transformed objects.
+    /// Returns the cost of intersecting the object, relative to the cost of a sphere, if the object
+    /// is a simple shape that can be packed with others. Returns `None` for other shapes and for
+    /// transformed objects.
     pub(crate) fn packing_cost(&self) -> Option<usize> {
         use Primitive::{Cuboid, Disc, Plane, Rectangle, Sphere};
         match &self.geometry {
@@ -313,17 +320,17 @@ impl Object {
         }
     }
 
-    /// Returns [`Object::packing_cost`] for packs that are tested with a single ray. Excludes
-    /// boxes: they need six divisions each, so a tree is faster for them.
+    /// Returns [`Object::packing_cost`] for packs that are tested with a single ray. Boxes are
+    /// excluded because they need six divisions each, so a tree is faster for them.
     pub(crate) fn single_ray_packing_cost(&self) -> Option<usize> {
         self.packing_cost().filter(|_| !matches!(&self.geometry, Geometry::Primitive(Primitive::Cuboid(_))))
     }
 
-    /// Returns the hit on a packed shape, given its distance.
+    /// Returns the hit on a packed shape at a given distance.
     #[inline]
     pub(super) fn crossing_at(&self, t: f32, ray: &Ray64) -> ShapeHit {
         match &self.geometry {
-            // Only hits on these shapes have surface coordinates.
+            // Only hits on rectangles and boxes have surface coordinates.
             Geometry::Primitive(shape @ (Primitive::Rectangle(_) | Primitive::Cuboid(_))) => {
                 shape.intersect(&ray.rounded).unwrap_or(ShapeHit { t, uv: Vec2::ZERO })
             }
@@ -331,7 +338,8 @@ impl Object {
         }
     }
 
-    /// Returns the sphere if the object is an untransformed one, otherwise a sphere with radius 0.
+    /// Returns the object's sphere if it is an untransformed sphere, otherwise a sphere with radius
+    /// 0.
     pub(crate) fn sphere(&self) -> Sphere {
         match &self.geometry {
             Geometry::Primitive(Primitive::Sphere(sphere)) if self.to_world.is_none() => sphere.clone(),
@@ -339,7 +347,7 @@ impl Object {
         }
     }
 
-    /// Adds a [simple](Object::simple) object to packs. `number` identifies it in hits.
+    /// Adds a [simple](Object::simple) object to packs. `number` identifies the object in hits.
     pub(crate) fn add_to(&self, packs: &mut PrimitivePacks, number: u32) {
         match &self.geometry {
             Geometry::Primitive(Primitive::Plane(plane)) => packs.push_plane(number, plane.normal, plane.offset),
@@ -362,8 +370,8 @@ impl Object {
         }
     }
 
-    /// Returns half the surface area of the object's bounds; infinite for unbounded objects, `None`
-    /// for open ones.
+    /// Returns half the surface area of the object's bounds, which is infinite for unbounded
+    /// objects, or `None` if the object is open.
     pub fn half_area(&self) -> Option<f32> {
         self.is_closed().then(|| self.bounds().map_or(f32::INFINITY, |bounds| bounds.half_area()))
     }
@@ -377,7 +385,7 @@ impl Object {
             let local = self.to_world.as_ref().map_or(point, |to_world| to_world.inverse_point(point));
             return shape.inside(local.as_dvec3()) == Some(true);
         }
-        // A line from an inside point crosses a closed surface an odd number of times.
+        // A line that starts inside crosses a closed surface an odd number of times.
         let mut ray = Ray64::from(Ray::new(point, Vec3::new(0.48, 0.6, 0.64)));
         let next =
             |ray: &mut Ray64| self.closest(0, ray, false, &mut ()).map(|(crossing, _)| ray.rounded.t_min = crossing.t);
@@ -414,16 +422,16 @@ impl Object {
             Geometry::Mesh(tree) => {
                 let corners = tree.mesh.corners(part);
                 let Some(to_world) = &self.to_world else { return Some(Aabb::around(corners)) };
-                // This is tighter than transforming the bounds of the triangle. The empty box at
-                // each vertex adds padding for rounding errors.
+                // These bounds are tighter than the transformed bounds of the triangle. The empty
+                // box around each vertex adds padding for rounding errors.
                 let images = corners.map(|c| to_world.bounds(Aabb { min: c, max: c }));
                 Some(images.into_iter().fold(Aabb::EMPTY, Aabb::union))
             }
         }
     }
 
-    /// Returns a bound on the distance between the true surface and hits on it, due to rounding of
-    /// coordinates.
+    /// Returns an upper bound on the distance between the true surface and computed hits that can
+    /// result from rounded coordinates.
     pub(super) fn rounding_error(&self) -> f32 {
         let reach = self.local_bounds().map_or(Vec3::ZERO, |b| b.min.abs().max(b.max.abs()));
         let error = match &self.to_world {
@@ -433,8 +441,8 @@ impl Object {
         error.max_element()
     }
 
-    /// Returns false if the object certainly does not overlap a world-space box. The box must
-    /// overlap its bounds.
+    /// Returns false if the object certainly does not overlap a box in world space. The box must
+    /// overlap the object's bounds.
     pub fn overlaps(&self, cell: &Aabb) -> bool {
         match (&self.geometry, &self.to_world) {
             (Geometry::Primitive(shape), None) => shape.overlaps(cell),

@@ -1,4 +1,4 @@
-//! Tests that packs of simple shapes return the same hits as single shapes.
+//! Tests that packed simple shapes return the same hits as single shapes.
 
 use durer_bvh::PrimitivePacks;
 use durer_scene::math::random::{Random, rounds};
@@ -9,8 +9,9 @@ fn vector(random: &mut Random, size: f32) -> Vec3 {
     Vec3::new(random.between(-size, size), random.between(-size, size), random.between(-size, size))
 }
 
-/// Traces 10^5 rays through sets of up to 20 shapes of each kind, with duplicates, and with rays
-/// along faces or edges. Distances and indices must be bit-identical, also for eight rays at once.
+/// Traces 10^5 rays through sets of up to 20 shapes of each kind, including duplicates, and
+/// includes rays along faces and edges. Distances and indices must be bit-identical, including when
+/// eight rays are traced at once.
 #[test]
 fn packs_return_the_hits_of_single_shapes() {
     let mut random = Random(8);

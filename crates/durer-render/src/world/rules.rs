@@ -1,86 +1,89 @@
-//! Rules for shading and display, which the dialect determines when a scene is compiled.
+//! Rules for shading and display, which the dialect selects when a scene is compiled.
 
 use durer_scene::dialect::{DepthPicture, NormalsPicture};
 use durer_scene::math::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// How an official program prevents secondary rays from hitting the surface that they start from.
+/// Method by which an official program prevents secondary rays from hitting the surface that they
+/// start from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Epsilon {
-    /// Only hits beyond this `t` count.
+    /// Counts only hits beyond this `t`.
     MinT(f32),
-    /// The origin is moved along the direction by this multiple of it.
+    /// Moves the origin by the direction multiplied by this factor.
     OffsetOrigin(f32),
 }
 
-/// Rules for intersection and for shading in the Whitted integrator, which the dialect determines.
-/// The default rules are Dürer's own, without the bugs of the official programs.
+/// Rules for intersection, and for shading in the Whitted integrator, which the dialect selects.
+/// The default rules are those of Dürer itself, without the bugs of the official programs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShadingRules {
-    /// How secondary rays avoid the surface they start from. `None`: the origin is offset by the
-    /// error bound of the surface point, and all hits count.
+    /// Method by which secondary rays avoid the surface that they start from. If `None`, the origin
+    /// is offset by the error bound of the surface point, and all hits count.
     pub epsilon: Option<Epsilon>,
-    /// Hit points are computed from the rounded ray, without an error bound.
+    /// True if hit points are computed from the rounded ray, without an error bound.
     pub points_on_ray: bool,
-    /// A ray has a single index of refraction, with air behind glass. If false, glass can be
-    /// nested.
+    /// True if a ray has a single index of refraction, with air behind glass. If false, glass can
+    /// be nested.
     pub one_medium: bool,
-    /// The weight of a ray is multiplied by the length of a colour. If false, by its largest
-    /// component.
+    /// True if the weight of a ray is multiplied by the length of a colour vector. If false, the
+    /// weight is multiplied by the largest component of the colour.
     pub weight_by_length: bool,
-    /// The shading normal decides which side of a surface is seen. If false, the geometric normal
-    /// does.
+    /// True if the shading normal decides which side of a surface is seen. If false, the geometric
+    /// normal decides this.
     pub shaded_sides: bool,
-    /// Surfaces seen from behind are black, unless both sides are shaded.
+    /// True if surfaces seen from behind are black, unless both sides are shaded.
     pub black_backs: bool,
-    /// Surfaces with a NaN normal are black.
+    /// True if surfaces with a NaN normal are black.
     pub spoiled_normals: bool,
-    /// Lighting normalizes shading normals first.
+    /// True if shading normals are normalized before lighting is computed.
     pub unit_light: bool,
-    /// Shading normals can have any length, so reflected directions must be normalized.
+    /// True if shading normals can have any length, so that reflected directions must be
+    /// normalized.
     pub raw_normals: bool,
-    /// Refraction does not normalize such normals.
+    /// True if refraction does not normalize shading normals.
     pub raw_refraction: bool,
-    /// Reflected directions are not normalized.
+    /// True if reflected directions are not normalized.
     pub long_mirrors: bool,
-    /// R0 is computed as if the index of refraction on the ray's side were 1.
+    /// True if R0 is computed as if the index of refraction on the ray's side were 1.
     pub exit_r0: bool,
-    /// Only surfaces whose front faces the shadow ray cast shadows.
+    /// True if only surfaces whose front faces the shadow ray cast shadows.
     pub shadow_fronts: bool,
-    /// A ray that leaves glass that it did not enter is assumed to start in air.
+    /// True if a ray that leaves glass that it never entered is assumed to have started in air.
     pub air_at_eye: bool,
-    /// Shapes other than meshes have no texture coordinates.
+    /// True if only meshes have texture coordinates.
     pub mesh_textures: bool,
-    /// Shading normals are transformed by the matrix itself instead of its inverse transpose.
+    /// True if shading normals are transformed by the matrix itself instead of its inverse
+    /// transpose.
     pub moved_normals: bool,
-    /// The rings of wood are cones, as in the program of 2004.
+    /// True if the rings of wood are cones, as in the program of 2004.
     pub conic_rings: bool,
-    /// On a texture, ambient light uses the texel of the previous pixel. Implemented in
-    /// `render::stale`, not in the integrators.
+    /// True if ambient light on a texture uses the texel of the previous pixel. This rule is
+    /// implemented in `render::stale` rather than in the integrators.
     pub stale_texels: bool,
 }
 
-/// Rules for displaying AOVs as pictures, which the dialect determines.
+/// Rules for displaying AOVs as pictures, which the dialect selects.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DisplayRules {
-    /// How normals are converted to colours.
+    /// Method of converting normals to colours.
     pub normals: NormalsPicture,
-    /// How depths are converted to greys.
+    /// Method of converting depths to greys.
     pub depth: DepthPicture,
-    /// A depth range set by the user is truncated to integers.
+    /// True if a depth range set by the user is truncated to integers.
     #[serde(default)]
     pub whole_depths: bool,
-    /// The background of a depth picture is black, even if far objects are white.
+    /// True if the background of a depth picture is black even though distant objects are white.
     #[serde(default)]
     pub black_sky: bool,
-    /// At misses, a picture of normals shows the previous hit's normal. Rows are processed from the
-    /// bottom up.
+    /// True if a picture of normals shows the normal of the previous hit where a ray hits nothing.
+    /// In this mode, rows are processed from the bottom up.
     #[serde(default)]
     pub stale_normals: bool,
-    /// Depths are clamped to the range set by the user before they are converted to greys.
+    /// True if depths are clamped to the range set by the user before they are converted to greys.
     #[serde(default)]
     pub clamped_depths: bool,
-    /// Luminous efficacy of each colour channel in lumens per watt, if light is in watts.
+    /// Luminous efficacy of each colour channel in lumens per watt, if light is measured in watts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lumens: Option<Vec3>,
 }

@@ -1,4 +1,4 @@
-//! BSDFs and emission at surface points, for path tracing.
+//! BSDFs and emission at surface points, used for path tracing.
 
 use super::{Geometry, Material, Object, Phong, SurfaceInteraction, WeightedMaterial, World};
 use crate::world::HighlightModel;
@@ -16,24 +16,24 @@ use durer_scene::medium::Medium;
 use durer_scene::shape::SurfacePoint;
 use durer_scene::spectrum::{Curve, Lanes, Spectrum};
 
-/// BSDF at a surface point with its shading frame and the direction it is seen from, for path
-/// tracing.
+/// BSDF at a surface point, with its shading frame and the direction from which it is seen, for
+/// path tracing.
 #[derive(Clone, Debug)]
 pub struct Shading<'w> {
     /// Shading frame whose z axis is the shading normal on the visible side.
     pub frame: Frame,
     /// Geometric normal on the visible side.
     pub n_geo: Vec3,
-    /// Unit direction to the ray's origin, in the shading frame.
+    /// Unit direction to the ray's origin, in coordinates of the shading frame.
     pub wo: Vec3,
-    /// BSDF of all materials at the point.
+    /// Combined BSDF of all materials at the point.
     pub bsdf: Bsdf<'w>,
 }
 
 impl Shading<'_> {
-    /// Returns BSDF · cosine for a world-space direction, and its density per steradian. The value
-    /// is zero if `wi` is above only one of the shading and the geometric surface, since shading
-    /// normals are approximate.
+    /// Returns BSDF · cosine for a direction in world space, and the density of the direction per
+    /// steradian. The value is zero if `wi` is above the shading surface but below the geometric
+    /// surface, or vice versa, since shading normals are approximate.
     pub fn eval(&self, wi: Vec3) -> (Spectrum, f32) {
         let local = self.frame.to_local(wi);
         let (value, pdf) = self.bsdf.eval(self.wo, local);
@@ -42,13 +42,13 @@ impl Shading<'_> {
     }
 }
 
-/// Bends a shading normal towards the geometric normal until the mirror direction points outwards.
-/// Interpolated and mapped normals can face away from the ray's origin; the geometric normal
-/// cannot.
+/// Bends a shading normal towards the geometric normal until the mirrored direction points
+/// outwards. Interpolated and mapped normals can face away from the ray's origin; the geometric
+/// normal cannot.
 ///
-/// In the plane of the geometric normal and `n`, let the view direction be (x, z) and the bent
-/// normal at angle a from the geometric one. The mirror direction then has the height x sin 2a + z
-/// cos 2a above the surface, which should be at least `least`.
+/// In the plane of the geometric normal and `n`, let the view direction be (x, z), and let a be the
+/// angle between the geometric and the bent normal. The mirrored direction then has the height x
+/// sin 2a + z cos 2a above the surface, which should be at least `least`.
 fn bend_normal(n: Vec3, n_geo: Vec3, wo: Vec3) -> Vec3 {
     let (cosine, z) = (n.dot(n_geo), wo.dot(n_geo).max(1e-6));
     let least = (0.9 * z).min(0.01);
@@ -56,7 +56,7 @@ fn bend_normal(n: Vec3, n_geo: Vec3, wo: Vec3) -> Vec3 {
         return n;
     }
     let across = n - cosine * n_geo;
-    // A difference that is due to rounding has no meaningful direction.
+    // A difference that is only due to rounding has no meaningful direction.
     if across.length_squared() < 1e-8 {
         return n_geo;
     }
@@ -68,9 +68,9 @@ fn bend_normal(n: Vec3, n_geo: Vec3, wo: Vec3) -> Vec3 {
 }
 
 impl World {
-    /// Returns the diffuse colour at a surface point: noise, or else texture, or else the
-    /// material's colour. For `tinted` materials, the product of colour, texture and vertex
-    /// colours.
+    /// Returns the diffuse colour at a surface point, which comes from the noise if there is any,
+    /// else from the texture, or else from the material. For `tinted` materials, it is the product
+    /// of the material's colour, the texture and the vertex colours.
     #[inline]
     pub fn diffuse_color(&self, phong: &Phong, surface: &SurfacePoint) -> Color {
         let texture = phong.texture.and_then(|i| Some(self.textures()[i as usize].at(surface.uv.get()?)));
@@ -82,12 +82,13 @@ impl World {
         noise.or(texture).unwrap_or(phong.diffuse)
     }
 
-    /// Computes the BSDF at a hit, for light towards the ray's origin. `eta` is the index of
-    /// refraction behind the surface divided by that in front of it.
+    /// Computes the BSDF at a hit for light that leaves towards the ray's origin. `eta` is the
+    /// ratio of the index of refraction behind the surface to that in front of it.
     pub fn shading(&self, at: &SurfaceInteraction, eta: f32, lanes: &Lanes) -> Shading<'_> {
         let (dir, surface, inside) = (at.ray.dir(), &at.surface, at.inside());
         let parts = self.materials_at(at);
-        // In a mixture, the first material with a normal or bump map determines the normal for all.
+        // In a mixture, the first material with a normal or bump map determines the normal of all
+        // materials.
         let mut mapped = parts.iter().filter_map(|part| part.phong.principled.as_ref());
         let mapped = mapped.find(|principled| principled.maps.normal.is_some() || principled.maps.bump.is_some());
         let n_shade = mapped.and_then(|principled| self.mapped_normal(&principled.maps, at)).unwrap_or(surface.n_shade);
@@ -124,10 +125,10 @@ impl World {
         shading
     }
 
-    /// Returns the shading frame for a normal. For anisotropic materials, the tangent is the
-    /// direction of u rotated by the material's angle.
+    /// Returns the shading frame around a normal. For anisotropic materials, the tangent is the
+    /// direction of increasing u, rotated by the material's angle.
     fn frame(&self, parts: &[WeightedMaterial], at: &SurfaceInteraction, n: Vec3) -> Frame {
-        // A texture cannot change an anisotropy of 0.
+        // An anisotropy of 0 cannot be changed by a texture.
         if parts.iter().any(|part| part.phong.fibre.is_some()) {
             return Frame::along(n, self.tangent(at));
         }
@@ -140,8 +141,8 @@ impl World {
         Frame::along(n, cos as f32 * frame.tangent + sin as f32 * frame.bitangent)
     }
 
-    /// Returns the emission of a material, times its opacity, if it is uniform so that light
-    /// sampling can use it.
+    /// Returns the emission of a material, multiplied by its opacity, if both are uniform so that
+    /// light sampling can use them.
     pub(super) fn emission_of(&self, material: u32) -> Option<Emission> {
         let Material::Phong(phong) = self.materials().get(material as usize)? else { return None };
         let emission = phong.emission.as_ref().filter(|emission| !emission.textured)?;
@@ -168,7 +169,7 @@ impl World {
         parts.iter().filter_map(|part| of_phong(part.phong).map(|light| part.share * light)).sum()
     }
 
-    /// Returns the measured emission spectrum of a light or emissive surface, if it has one.
+    /// Returns the measured emission spectrum of a light or emissive surface, if there is one.
     pub fn illuminant(&self, light: LightId) -> Option<&Curve> {
         match light {
             LightId::Light(number) => self.illuminants().get(number as usize)?.as_deref(),
@@ -177,7 +178,7 @@ impl World {
         }
     }
 
-    /// Returns the measured emission spectrum of a material, if it has one.
+    /// Returns the measured emission spectrum of a material, if there is one.
     pub fn material_illuminant(&self, material: u32) -> Option<&Curve> {
         match &self.materials()[material as usize] {
             Material::Phong(phong) => phong.principled.as_ref()?.illuminant.as_deref(),
@@ -185,18 +186,18 @@ impl World {
         }
     }
 
-    /// Returns true if a material can emit light. False for mixtures.
+    /// Returns true if a material can emit light. The result is false for mixtures.
     pub fn may_emit(&self, material: u32) -> bool {
         matches!(&self.materials()[material as usize], Material::Phong(phong) if phong.emission.is_some())
     }
 
-    /// Returns whether an emissive material emits on both sides. `None` if light sampling cannot
-    /// use it.
+    /// Returns true if an emissive material emits on both sides, false if it emits only on the side
+    /// to which the normal points. Returns `None` if light sampling cannot use the material.
     pub fn emits_on_both_sides(&self, material: u32) -> Option<bool> {
         self.emission_of(material).map(|emission| emission.two_sided)
     }
 
-    /// Returns true if a surface may emit. This is a fast test that excludes most materials.
+    /// Returns true if a surface may emit light. This is a fast test that excludes most materials.
     fn has_emission(&self, at: &SurfaceInteraction) -> bool {
         match &self.materials()[at.material as usize] {
             Material::Phong(phong) => phong.emission.is_some(),
@@ -204,8 +205,9 @@ impl World {
         }
     }
 
-    /// Returns the index of refraction behind a surface that light can enter. In a mixture, it is
-    /// that of the material with the largest share. `None` if light cannot enter.
+    /// Returns the index of refraction behind a surface that light can enter. In a mixture, the
+    /// result is the index of the material with the largest share. Returns `None` if light cannot
+    /// enter.
     pub fn refraction_index(&self, at: &SurfaceInteraction, lanes: &Lanes) -> Option<f32> {
         let of = |phong: &Phong| {
             let ior =
@@ -223,8 +225,8 @@ impl World {
         most.1
     }
 
-    /// Returns true if the glass that was hit uses its index of refraction relative to air,
-    /// whatever medium surrounds it.
+    /// Returns true if the glass that was hit uses its index of refraction relative to air, no
+    /// matter which medium surrounds it.
     pub fn ignores_surroundings(&self, at: &SurfaceInteraction) -> bool {
         let of_phong = |phong: &Phong| {
             let principled = phong.principled.as_ref();
@@ -236,7 +238,8 @@ impl World {
     /// Returns the opacity at a hit, from 0 to 1.
     pub fn opacity(&self, at: &SurfaceInteraction) -> f32 {
         let of_phong = |phong: &Phong| match (&phong.fibre, &phong.principled) {
-            // The hair model computes all scattering inside the fibre at the entry point.
+            // The hair model computes all scattering inside the fibre at the point where light
+            // enters.
             (Some(_), _) => f32::from(u8::from(!at.inside())),
             (None, Some(principled)) => self.opacity_at(principled, at),
             (None, None) => 1.0,
@@ -244,13 +247,13 @@ impl World {
         self.materials_at(at).iter().map(|part| part.share * of_phong(part.phong)).sum()
     }
 
-    /// Returns true if a hit is on a hidden back, which is invisible to cameras and to lights
-    /// without extent. `dir` is the direction of view.
+    /// Returns true if a hit is on a hidden back, which is invisible to the camera and to lights
+    /// without extent. `dir` is the viewing direction.
     pub fn is_hidden(&self, dir: Vec3, at: &SurfaceInteraction) -> bool {
         dir.dot(at.surface.n_geo) > 0.0 && self.materials_at(at).iter().all(|part| hides_backs(part.phong))
     }
 
-    /// Returns true if the backs of some material are hidden.
+    /// Returns true if the backs of some material's surfaces are hidden.
     pub(crate) fn finds_hidden_backs(&self) -> bool {
         self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if hides_backs(phong)))
     }
@@ -268,7 +271,7 @@ impl World {
             || self.objects().iter().any(clear)
     }
 
-    /// Returns the medium inside an object or, for `None`, that of the air.
+    /// Returns the medium inside an object or, if the object is `None`, the medium of the air.
     pub fn medium(&self, object: Option<u32>) -> Option<&Medium> {
         let Some(object) = object else { return self.fog() };
         match &self.materials()[self.objects()[object as usize].material as usize] {
@@ -277,8 +280,9 @@ impl World {
         }
     }
 
-    /// Returns true if light reaches a medium without refraction, so that its points can be lit
-    /// directly. This holds for the air and for objects that only bound a medium.
+    /// Returns true if light reaches a medium without refraction, so that points in the medium can
+    /// be lit directly. This is the case for the air and for objects that are only the boundary of
+    /// a medium.
     pub fn is_directly_lit(&self, object: Option<u32>) -> bool {
         object.is_none_or(|object| self.is_interface_material(self.objects()[object as usize].material))
     }
@@ -289,18 +293,19 @@ impl World {
         self.has_interfaces() && self.is_interface_material(at.material)
     }
 
-    /// Returns true if a material only bounds a medium.
+    /// Returns true if a material is only the boundary of a medium.
     fn is_interface_material(&self, material: u32) -> bool {
         matches!(&self.materials()[material as usize],
             Material::Phong(phong) if phong.principled.as_ref().is_some_and(|principled| principled.interface))
     }
 
-    /// Returns true if some material only bounds a medium.
+    /// Returns true if some material is only the boundary of a medium.
     pub(crate) fn finds_interfaces(&self) -> bool {
         (0..self.materials().len() as u32).any(|material| self.is_interface_material(material))
     }
 
-    /// Returns the objects that paths can enter. Empty if no interior absorbs or scatters.
+    /// Returns the indices of the objects that paths can enter. The list is empty if no interior
+    /// absorbs or scatters light.
     pub(crate) fn finds_bodies(&self) -> Vec<u32> {
         let of = |number: u32| match &self.materials()[number as usize] {
             Material::Phong(phong) => Some(phong),
@@ -314,7 +319,7 @@ impl World {
         (0..).zip(self.objects()).filter(|(_, object)| enters(object)).map(|(number, _)| number).collect()
     }
 
-    /// Returns true if some material is a thin sheet that transmits light straight through.
+    /// Returns true if some material is a thin sheet that lets light pass straight through.
     pub(crate) fn finds_sheets(&self) -> bool {
         let is_sheet = |m: &PrincipledMaterial| m.walls == Walls::Thin && m.transmission_weight > 0.0;
         let of_phong =
@@ -335,15 +340,15 @@ impl World {
         }
     }
 
-    /// Returns true if the surface that was hit disperses light.
+    /// Returns true if the surface that was hit causes dispersion.
     pub fn disperses(&self, at: &SurfaceInteraction) -> bool {
         let of = |phong: &Phong| phong.principled.as_ref().is_some_and(|principled| principled.definition.disperses());
         self.may_enter(at) && self.materials_at(at).iter().any(|part| of(part.phong))
     }
 }
 
-/// Adds the lobes of a Phong material, in physical units: a matte lobe with `diffuseColor` over pi,
-/// Blinn's or Phong's highlight, and delta lobes for mirror and glass. Scales all lobes down if
+/// Adds the lobes of a Phong material in physical units: a matte lobe of `diffuseColor` / pi,
+/// Blinn's or Phong's highlight, and delta lobes for mirror and glass. All lobes are scaled down if
 /// they would reflect more light than arrives.
 fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, view: View) {
     let View { lanes, wo, normal, eta, .. } = view;
@@ -355,7 +360,7 @@ fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, view: Vie
         true => fresnel::dielectric(wo.z, eta),
         false => 1.0,
     };
-    // Without Fresnel reflection, both rays have full weight.
+    // Without Fresnel reflection, both rays have their full weight.
     let passing = if phong.fresnel { 1.0 - reflected } else { 1.0 };
     let (mirror, through) = (reflected * reflective, passing * transparent);
     let all = color + Blinn::bound(exponent) * strength + mirror + through;
@@ -372,7 +377,7 @@ fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, view: Vie
     }
 }
 
-/// Returns true if the backs of a material are invisible to cameras.
+/// Returns true if the backs of a material's surfaces are invisible to the camera.
 fn hides_backs(phong: &Phong) -> bool {
     phong.principled.as_ref().is_some_and(|principled| principled.definition.backs == Backs::Hidden)
 }

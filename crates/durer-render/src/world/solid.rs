@@ -1,48 +1,51 @@
-//! CSG solids as trees of boolean operations on closed shapes, and their division into disjoint
-//! pieces by the bounds of their parts.
+//! CSG solids as trees of boolean operations on closed shapes, and the division of such solids into
+//! disjoint pieces according to the bounds of their parts.
 //!
 //! Parts with disjoint bounds do not affect each other. A union of many separate parts can
 //! therefore be divided into many objects, which the world's acceleration structure handles like
-//! any others, and a subtraction affects only the parts that it touches.
+//! all other objects, and a subtraction affects only the parts that it touches.
 
 use super::Object;
 use durer_scene::math::Aabb;
 use std::sync::Arc;
 
-/// Boolean operation of a CSG solid, by how many of its parts must contain a point.
+/// Boolean operation of a CSG solid, defined by the number of parts that must contain a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoolOp {
-    /// At least one part.
+    /// A point must be in at least one part.
     Union,
-    /// All parts, and none of the subtracted ones.
+    /// A point must be in all parts and in none of the subtracted ones.
     Intersection,
-    /// An odd number of parts.
+    /// A point must be in an odd number of parts.
     Xor,
 }
 
-/// CSG solid before it is prepared for rendering: a closed shape, or a boolean operation on solids.
+/// CSG solid before it is prepared for rendering, which is a closed shape or a boolean operation on
+/// solids.
 #[derive(Clone, Debug)]
 pub enum CsgTree {
     /// A closed shape or mesh, with its transform to world space.
     Operand(Arc<Object>),
     /// A boolean operation.
     Operation {
-        /// Which points belong to the result.
+        /// Operation that decides which points belong to the result.
         op: BoolOp,
-        /// Operands, in the order of the file.
+        /// Operands, in file order.
         parts: Vec<CsgTree>,
-        /// Subtracted operands; only for [`BoolOp::Intersection`].
+        /// Subtracted operands, which exist only for [`BoolOp::Intersection`].
         subtracted: Vec<CsgTree>,
     },
 }
 
-/// Maximum number of pairs of pieces to compare. With more, solids are not divided.
+/// Maximum number of pairs of pieces to compare when a solid is divided. If there are more pairs,
+/// the solid is not divided.
 const MAX_PAIRS: usize = 1 << 22;
 
-/// Maximum number of copies of parts that division may need. With more, solids are not divided.
+/// Maximum number of copies of parts that the division of a solid may need. If more copies are
+/// needed, the solid is not divided.
 const MAX_COPIES: usize = 1 << 18;
 
-/// Solid with its bounds, which are `None` if it is unbounded.
+/// Solid together with its bounds, which are `None` if it is unbounded.
 type Piece = (CsgTree, Option<Aabb>);
 
 impl CsgTree {
@@ -51,13 +54,13 @@ impl CsgTree {
         CsgTree::join(BoolOp::Union, parts)
     }
 
-    /// Returns the solid of all points that are in an odd number of solids.
+    /// Returns the solid that contains the points that are in an odd number of the given solids.
     pub fn xor(parts: Vec<CsgTree>) -> CsgTree {
         CsgTree::join(BoolOp::Xor, parts)
     }
 
-    /// Returns the intersection of `parts` minus all solids in `cut`. Flattens nested intersections
-    /// and subtractions.
+    /// Returns the intersection of `parts` minus all solids in `cut`. Nested intersections and
+    /// subtractions are flattened.
     pub fn intersection(parts: Vec<CsgTree>, cut: Vec<CsgTree>) -> CsgTree {
         let (mut flat, mut flat_cut) = (Vec::new(), Vec::new());
         for part in parts {
@@ -81,7 +84,7 @@ impl CsgTree {
         }
     }
 
-    /// Creates an operation and flattens operands with the same operation.
+    /// Creates an operation, and flattens operands that use the same operation.
     fn join(rule: BoolOp, parts: Vec<CsgTree>) -> CsgTree {
         let mut flat = Vec::with_capacity(parts.len());
         for part in parts {
@@ -97,7 +100,8 @@ impl CsgTree {
         }
     }
 
-    /// Returns the bounds, as tight as the operation allows. `None` if the solid is unbounded.
+    /// Returns the bounds, as tight as the operation allows. Returns `None` if the solid is
+    /// unbounded.
     pub fn bounds(&self) -> Option<Aabb> {
         match self {
             CsgTree::Operand(object) => object.bounds(),
@@ -132,7 +136,7 @@ impl CsgTree {
             CsgTree::Operand(_) => vec![boxed(self)],
             CsgTree::Operation { op: BoolOp::Intersection, parts, subtracted } => intersected(parts, subtracted),
             CsgTree::Operation { op, parts, .. } => {
-                // Keep the index of the part with each of its pieces.
+                // Store the index of the part with each of its pieces.
                 let pieces: Vec<(usize, Piece)> = parts
                     .into_iter()
                     .enumerate()
@@ -156,7 +160,7 @@ fn boxed(solid: CsgTree) -> Piece {
     (solid, bounds)
 }
 
-/// Combines pieces of several parts into one solid. Pieces of the same part are disjoint.
+/// Combines pieces of several parts into one solid. Pieces of the same part do not overlap.
 fn rejoined(op: BoolOp, cluster: Vec<(usize, CsgTree)>) -> CsgTree {
     let mut parts: Vec<(usize, Vec<CsgTree>)> = Vec::new();
     for (part, solid) in cluster {
@@ -168,12 +172,12 @@ fn rejoined(op: BoolOp, cluster: Vec<(usize, CsgTree)>) -> CsgTree {
     CsgTree::join(op, parts.into_iter().map(|(_, pieces)| CsgTree::union(pieces)).collect())
 }
 
-/// Intersects each piece of the first part with the pieces of the other parts that it touches, and
-/// subtracts the pieces of `cut`.
+/// Intersects each piece of the first part with those pieces of the other parts that it touches,
+/// and subtracts the pieces of `cut`.
 fn intersected(parts: Vec<CsgTree>, subtracted: Vec<CsgTree>) -> Vec<Piece> {
     let mut parts = parts.into_iter();
     let first = parts.next().map_or(Vec::new(), CsgTree::boxed_pieces);
-    // Build the operations at the end, because adding part by part would take quadratic time.
+    // Build the operations at the end, because adding one part at a time would take quadratic time.
     let mut found: Vec<(Vec<CsgTree>, Option<Aabb>)> =
         first.into_iter().map(|(solid, bounds)| (vec![solid], bounds)).collect();
     let whole = |pieces: Vec<Piece>| CsgTree::union(pieces.into_iter().map(|piece| piece.0).collect());
@@ -206,17 +210,17 @@ fn intersected(parts: Vec<CsgTree>, subtracted: Vec<CsgTree>) -> Vec<Piece> {
     found.into_iter().zip(near).map(cut_off).collect()
 }
 
-/// Returns copies of some pieces.
+/// Returns copies of the pieces with the given indices.
 fn copies(pieces: &[Piece], which: &[usize]) -> Vec<CsgTree> {
     which.iter().map(|&i| pieces[i].0.clone()).collect()
 }
 
-/// Intersects two boxes. `None` stands for all space.
+/// Intersects two boxes. `None` stands for the whole space.
 fn common(a: Option<Aabb>, b: Option<Aabb>) -> Option<Aabb> {
     a.zip(b).map(|(a, b)| Aabb { min: a.min.max(b.min), max: a.max.min(b.max) }).or(a).or(b)
 }
 
-/// Returns, for each box, the indices of the pieces that touch it. `None` if there are too many.
+/// Returns the indices of the pieces that touch each box. Returns `None` if there are too many.
 fn touching(boxes: &[Option<Aabb>], others: &[Piece]) -> Option<Vec<Vec<usize>>> {
     if boxes.len() * others.len() > MAX_PAIRS {
         return None;
@@ -231,7 +235,8 @@ fn touching(boxes: &[Option<Aabb>], others: &[Piece]) -> Option<Vec<Vec<usize>>>
     boxes.iter().map(near).collect()
 }
 
-/// Returns true if two boxes touch, within single precision. `None` stands for all space.
+/// Returns true if two boxes touch each other to within single precision. `None` stands for the
+/// whole space.
 fn touch(a: Option<Aabb>, b: Option<Aabb>) -> bool {
     let (Some(a), Some(b)) = (a, b) else { return true };
     let reach = |b: &Aabb| b.min.abs().max(b.max.abs()).max_element();
@@ -239,10 +244,11 @@ fn touch(a: Option<Aabb>, b: Option<Aabb>) -> bool {
     (a.min - pad).cmple(b.max).all() && (b.min - pad).cmple(a.max).all()
 }
 
-/// Returns, for each box, the index of its cluster. Boxes are in the same cluster if they touch
-/// directly or through others. Clusters are numbered by their first boxes.
+/// Returns the index of the cluster to which each box belongs. Boxes belong to the same cluster if
+/// they touch each other directly or through other boxes. Clusters are numbered in the order of
+/// their first boxes.
 fn clusters_of(boxes: &[Option<Aabb>]) -> Vec<usize> {
-    // Union-find forest. The root of a cluster is its first box.
+    // Union-find forest. The root of each cluster in the forest is the cluster's first box.
     let mut parents: Vec<usize> = (0..boxes.len()).collect();
     fn root(parents: &mut [usize], mut i: usize) -> usize {
         while parents[i] != i {
@@ -251,7 +257,7 @@ fn clusters_of(boxes: &[Option<Aabb>]) -> Vec<usize> {
         }
         i
     }
-    // Sweep along x: only active boxes can touch the next one. Unbounded boxes stay active.
+    // Sweep along x: only active boxes can touch the next one. Unbounded boxes always stay active.
     let mut order: Vec<usize> = (0..boxes.len()).collect();
     let begin = |i: usize| boxes[i].map_or(f32::NEG_INFINITY, |b| b.min.x);
     order.sort_by(|&a, &b| begin(a).total_cmp(&begin(b)).then(a.cmp(&b)));

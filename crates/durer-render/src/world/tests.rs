@@ -8,7 +8,8 @@ use durer_scene::math::random::{Random, rounds};
 use std::fmt::Write;
 use std::path::Path;
 
-/// Returns an OBJ file of a sphere with 12 * 4^n triangles: a subdivided cube, projected outwards.
+/// Returns an OBJ file of a sphere with 12 * 4^n triangles, made from a subdivided cube whose
+/// vertices are projected outwards.
 fn ball_file(cuts: usize) -> String {
     let mut text = String::new();
     let n = 1usize << cuts;
@@ -63,8 +64,8 @@ fn scene(random: &mut Random, size: f32) -> String {
                     || format!("Sphere {{ center {} radius {:?} }}", words(size * random.point()), size * 0.2);
                 format!("Merge {{ {} }}", (0..30).map(|_| ball()).collect::<String>())
             }
-            // An axis-aligned triangle at integer coordinates, like a floor. Rays can lie in the
-            // faces of its box.
+            // Use an axis-aligned triangle at integer coordinates, like a floor. Rays can lie in
+            // the faces of the triangle's bounding box.
             _ => "Triangle { vertex0 -2 0 -2 vertex1 2 0 -2 vertex2 -2 0 2 }".into(),
         };
         let object = match random.below(3) {
@@ -89,7 +90,7 @@ fn scene(random: &mut Random, size: f32) -> String {
     text + "Sphere { center 0 0 0 radius 1 }" + &"}\n".repeat(nested + 1)
 }
 
-/// Returns a ray of one of many kinds: random, towards corners, along axes, in faces of boxes,
+/// Returns a ray of one of several kinds: random, towards corners, along axes, in faces of boxes,
 /// orthographic, or from far away.
 fn ray(world: &World, random: &mut Random, size: f32) -> Ray {
     let object = &world.objects()[random.below(world.objects().len())];
@@ -148,7 +149,7 @@ fn all_structures_return_the_same_hit() {
                 assert_eq!(world.occluded(&ray, &mut ()), expected.is_some(), "{kind:?} {ray:?}");
             }
             hits += usize::from(expected.is_some());
-            // Count ties, where another object is hit at the same t.
+            // Count ties, where another object is hit at the same `t`.
             ties += expected.map_or(0, |hit| {
                 let other = |i: &usize| *i != hit.object as usize;
                 let same = |i: usize| {
@@ -199,8 +200,8 @@ fn transforms_apply_last_to_first_and_preserve_t() {
         Group { Transform { Translate 10 0 0 ZRotate 90 Scale 2 1 1
         Transform { Translate 1 0 0 Sphere { center 0 0 0 radius 1 } } } }";
     let world = testing::read(text);
-    // The sphere at 1 is stretched to 2, rotated to +y, and moved to (10, 2, 0). Its half axes are
-    // 1, 2 and 1.
+    // The sphere at 1 is stretched to 2, rotated to +y, and moved to (10, 2, 0). The half axes of
+    // the sphere are then 1, 2 and 1.
     let hit =
         |origin: [f32; 3], dir: [f32; 3]| world.closest(&Ray::new(origin.into(), dir.into()), &mut ()).map(|h| h.t);
     assert_eq!(hit([10.0, -5.0, 0.0], [0.0, 1.0, 0.0]), Some(5.0));
@@ -237,7 +238,8 @@ fn edited_world_has_the_digest_of_its_contents() {
 }
 
 /// Traces batches of coherent, random and invalid rays through simple shapes, solids and meshes,
-/// some of them rotated or distant. The hits must equal those of single rays and of brute force.
+/// some of which are rotated or distant. The hits must equal those of single rays and of a
+/// brute-force search.
 #[test]
 fn batches_of_rays_match_single_rays() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Caustics: light from photons near a path vertex.
+//! Caustics, computed from the photons near a path vertex.
 
 use super::Path;
 use super::photons::DensityEstimate;

@@ -1,4 +1,4 @@
-//! Upper bound on light that samples rarely find, used for error estimates.
+//! Upper bound on the light that samples find only rarely, used for error estimates.
 
 use super::{DirectSampling, Path};
 use crate::world::emitters::emitter_of;
@@ -8,13 +8,13 @@ use durer_scene::math::Color;
 use std::f32::consts::PI;
 
 impl Path<'_> {
-    /// Returns the maximum contribution of one irradiance sample from light that samples rarely
-    /// find. `brightness` maps colours to numbers.
+    /// Returns the largest contribution that light found only rarely by samples can make to one
+    /// irradiance sample. `brightness` maps a colour to a number.
     ///
-    /// Such light comes from emitters that light sampling does not choose: those with a texture or
-    /// partial opacity, solids, and infinite shapes. If something mirrors or refracts and no
-    /// photons are sent, it comes from all emissive surfaces. With light sampling alone, it also
-    /// comes from the dimmest part of the environment.
+    /// Such light comes from emitters that light sampling does not choose, which are emitters with
+    /// a texture or partial opacity, solids, and infinite shapes. If some material mirrors or
+    /// refracts light and no photons are sent, it comes from all emissive surfaces. If only light
+    /// sampling is used, it also comes from the dimmest part of the environment.
     pub fn max_rare_contribution(&self, brightness: impl Fn(Color) -> f32) -> f32 {
         let shows = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
         let mut phongs = self.world.materials().iter().filter_map(|material| match material {
@@ -34,11 +34,12 @@ impl Path<'_> {
             }
             DirectSampling::Both | DirectSampling::Bsdf => 0.0,
         };
-        // Directions are sampled in proportion to their cosine, so a hit counts pi times.
+        // Directions are sampled in proportion to their cosine, so the radiance of a hit is
+        // multiplied by pi.
         sky.max(PI * brightest)
     }
 
-    /// Returns the maximum brightness that a material emits.
+    /// Returns the maximum brightness of the light that a material emits.
     fn brightest(&self, material: u32, brightness: &impl Fn(Color) -> f32) -> f32 {
         match &self.world.materials()[material as usize] {
             Material::Phong(phong) => phong.emission.as_ref().map_or(0.0, |emission| brightness(emission.radiance)),

@@ -1,8 +1,9 @@
-//! Direct light at a path vertex: a point sampled on a light, its MIS weight and its shadow ray.
+//! Direct light at a path vertex, from a point sampled on a light, with its MIS weight and shadow
+//! ray.
 //!
-//! Paths find lights in two ways, by sampling a point on a light and by sampling a direction from
-//! the BSDF. The power heuristic weights the lights that both can find. Source: Veach, *Robust
-//! Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9.
+//! Paths find lights in two ways: by sampling a point on a light and by sampling a direction from
+//! the BSDF. Lights that can be found in both ways are weighted by the power heuristic. Source:
+//! Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9.
 
 use super::Path;
 use super::radiance::{Contribution, PathOutput};
@@ -18,17 +19,18 @@ use durer_scene::math::{Color, Ray64, Vec2};
 use durer_scene::medium::Segment;
 use durer_scene::spectrum::Spectrum;
 
-/// Point sampled on a light, with the BSDF value and densities for its direction from a path
-/// vertex.
+/// Point sampled on a light, with the BSDF value and the densities for the direction from a path
+/// vertex to that point.
 struct LightLiSample {
     light: LightSample,
     /// BSDF times cosine at the vertex.
     value: Spectrum,
-    /// Density per steradian with which BSDF sampling chooses this direction.
+    /// Density per steradian with which BSDF sampling chooses the direction.
     bsdf_pdf: f32,
-    /// Density per steradian of the light sample; a probability for lights without extent.
+    /// Density of the light sample per steradian, or its probability if the light has no extent.
     pdf: f32,
-    /// Density per steradian of all candidates, before one is selected. MIS weights use this one.
+    /// Density per steradian of all candidates together, before one of them is selected. MIS
+    /// weights use this density.
     candidate_pdf: f32,
 }
 
@@ -38,12 +40,13 @@ struct LightLiSample {
 const R2_STEP: Vec2 = Vec2::new(0.754_877_7, 0.569_840_3);
 
 impl Path<'_> {
-    /// Chooses one light for a vertex at random; `None` if no light can reach it.
+    /// Chooses one light for a vertex at random, or `None` if no light can reach it.
     pub(super) fn choose_light(&self, vertex: &Vertex) -> Option<LightChoice> {
         self.world.emitters().choose(self.world, &vertex.receiver, vertex.random(Dimension::Choices).y)
     }
 
-    /// Samples a point on the chosen light and adds the light that the vertex scatters from there.
+    /// Samples a point on the chosen light and adds the light from that point that the vertex
+    /// scatters.
     pub(super) fn add_direct<T: TraceListener>(
         &self,
         choice: &LightChoice,
@@ -65,8 +68,8 @@ impl Path<'_> {
             return;
         }
         let (visibility, sheets) = self.visibility(&light, vertex, state, context, output.listener);
-        // Each sheet costs a path one bounce. With too few bounces left, BSDF sampling never hits
-        // the light.
+        // A path needs one bounce for each thin sheet. If too few bounces are left, BSDF sampling
+        // never hits the light.
         let mis = weight_of(if state.depth + sheets > self.max_depth() { 0.0 } else { bsdf_pdf });
         let contribution = Contribution {
             factor: value * (mis / pdf) * visibility,
@@ -103,8 +106,8 @@ impl Path<'_> {
         Some(LightLiSample { light, value, bsdf_pdf, pdf, candidate_pdf: pdf })
     }
 
-    /// Samples several directions towards the environment and selects one in proportion to its
-    /// unoccluded, MIS-weighted contribution.
+    /// Samples several directions towards the environment and selects one with a probability
+    /// proportional to its MIS-weighted contribution, ignoring occlusion.
     ///
     /// Source: Talbot, Cline and Egbert, *Importance Resampling for Global Illumination*, EGSR
     /// 2005.
@@ -142,8 +145,8 @@ impl Path<'_> {
         Some(LightLiSample { light, value, bsdf_pdf, pdf, candidate_pdf })
     }
 
-    /// Returns the fraction of a light that reaches a vertex, by lane, and the number of sheets in
-    /// between.
+    /// Returns the fraction of the light from a light source that reaches a vertex, by lane, and
+    /// the number of thin sheets in between.
     fn visibility<T: TraceListener>(
         &self,
         light: &LightSample,
@@ -157,7 +160,7 @@ impl Path<'_> {
         }
         let media = vertex.kind.media_behind(light.wi).unwrap_or(&state.media);
         let mut ray = vertex.kind.shadow_ray(light);
-        // Surfaces closer than rounding errors are skipped, such as another point on the same
+        // Skip surfaces that are closer than the rounding errors, such as another point on the same
         // sphere.
         if ray.rounded.t_max <= ray.rounded.t_min {
             return (Spectrum::ZERO, 0);
@@ -171,7 +174,8 @@ impl Path<'_> {
             }
             None => Spectrum::ONE,
         };
-        // A BSDF sample can hit a light on both sides, so light samples must reach both sides too.
+        // A BSDF sample can hit a light from both sides, so light samples must reach both sides
+        // too.
         let hides_backs = self.world.hides_backs() && light.pdf == 0.0;
         if !self.world.has_cutouts() && !self.world.has_interfaces() && !self.world.has_sheets() {
             match self.world.occluded(&ray, listener) {
@@ -181,7 +185,7 @@ impl Path<'_> {
             }
         }
         let mut media = media.clone();
-        // After 64 layers the light counts as occluded.
+        // After 64 layers, the light counts as occluded.
         for _ in 0..64 {
             let Some(hit) = self.world.closest(&ray, listener) else {
                 return (left * pass(&media, &ray, ray.rounded.t_max), sheets);
@@ -206,7 +210,7 @@ impl Path<'_> {
     }
 
     /// Returns the fraction of light that passes straight through an open surface, such as a pane.
-    /// If photons are sent to the surface, they account for that light instead.
+    /// If photons are sent to the surface, they account for this light instead.
     fn straight_transmittance(&self, at: &SurfaceInteraction, context: &SampleContext) -> Spectrum {
         let opacity = self.world.opacity(at);
         let around = Spectrum::splat(1.0 - opacity);
@@ -216,8 +220,8 @@ impl Path<'_> {
         around + opacity * self.world.shading(at, 1.0, &context.lanes).bsdf.straight_transmittance()
     }
 
-    /// Returns true if this lobe transmits light as [`Path::straight_transmittance`] does. Light
-    /// samples at the previous vertex then already include the lights behind the surface.
+    /// Returns true if the given lobe transmits light as in [`Path::straight_transmittance`]. If
+    /// so, light samples at the previous vertex already include the lights behind the surface.
     pub(super) fn sees_through(&self, vertex: &Vertex, lobe: usize, state: &PathState) -> bool {
         self.world.has_sheets() && !state.prev_is_photon_target && vertex.kind.transmits_straight(lobe)
     }
@@ -227,7 +231,7 @@ impl Path<'_> {
         self.photons.as_ref().is_some_and(|photons| photons.reaches(at.hit.object))
     }
 
-    /// Returns the shadow ray of a light sample for the trace.
+    /// Returns a record of a light sample's shadow ray for the trace.
     fn shadow(&self, vertex: &VertexKind, light: &LightSample, share: TermValue) -> Shadow {
         let ray = vertex.shadow_ray(light);
         let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
@@ -236,8 +240,8 @@ impl Path<'_> {
 }
 
 impl DirectSampling {
-    /// Returns the MIS weight of a light sample with density `light` in whose direction BSDF
-    /// sampling has density `bsdf`.
+    /// Returns the MIS weight of a light sample with density `light`, given the density `bsdf` of
+    /// its direction in BSDF sampling.
     fn of_light(self, light: f32, bsdf: f32) -> f32 {
         match self {
             DirectSampling::Both => power_heuristic(light, bsdf),
@@ -247,8 +251,8 @@ impl DirectSampling {
         }
     }
 
-    /// Returns the MIS weight of a light that a BSDF sample with density `bsdf` hit, where light
-    /// sampling has density `light`.
+    /// Returns the MIS weight of a light hit by a BSDF sample with density `bsdf`, given the
+    /// density `light` of the hit point in light sampling.
     pub(super) fn of_direction(self, bsdf: f32, light: f32) -> f32 {
         match self {
             DirectSampling::Both => power_heuristic(bsdf, light),
@@ -258,8 +262,8 @@ impl DirectSampling {
     }
 }
 
-/// Returns the MIS weight of a strategy with density `a` against one with density `b`, by the power
-/// heuristic.
+/// Returns the MIS weight, according to the power heuristic, of a strategy with density `a` when
+/// the other strategy has density `b`.
 fn power_heuristic(a: f32, b: f32) -> f32 {
     if b == 0.0 {
         return 1.0;

@@ -1,4 +1,4 @@
-//! Light at the end of a path's ray: background, suns and emissive surfaces.
+//! Light at the end of a path's ray, from the background, suns and emissive surfaces.
 
 use super::Path;
 use super::radiance::{Contribution, PathOutput};
@@ -9,7 +9,7 @@ use durer_scene::math::Color;
 use durer_scene::spectrum::Spectrum;
 
 impl Path<'_> {
-    /// Adds the background and the suns in the direction of a ray that left the scene.
+    /// Adds the light of the background and the suns in the direction of a ray that left the scene.
     pub(super) fn add_background<T: TraceListener>(
         &self,
         state: &PathState,
@@ -20,8 +20,8 @@ impl Path<'_> {
         let dir = state.ray.dir();
         let (sky, pdf) = emitters.sky(self.world, dir);
         let mut light = context.lanes.light(sky);
-        // Suns are visible to the camera, also through delta lobes. Other vertices sample them as
-        // lights.
+        // Suns are visible to the camera, either directly or through delta lobes. Other path
+        // vertices sample suns as lights.
         if state.camera_distance.is_some() {
             let suns = emitters.suns(dir);
             light += suns
@@ -36,7 +36,7 @@ impl Path<'_> {
         self.add(contribution, || TermKind::Sky, state, context, output);
     }
 
-    /// Adds the light that a surface emits where a ray hit it.
+    /// Adds the light that a surface emits at the point hit by a ray.
     pub(super) fn add_emission<T: TraceListener>(
         &self,
         at: &SurfaceInteraction,
@@ -55,9 +55,9 @@ impl Path<'_> {
         self.add(contribution, || TermKind::Emission { mis }, state, context, output);
     }
 
-    /// Returns the MIS weight of a light that a BSDF sample hit. `is_sampled` is true if photons
-    /// are sent from the light. `light_pdf` returns the density per steradian with which light
-    /// sampling finds it.
+    /// Returns the MIS weight of a light hit by a BSDF sample. `is_sampled` is true if photons are
+    /// sent from the light. `light_pdf` returns the density per steradian with which light sampling
+    /// finds the light.
     fn hit_weight(&self, state: &PathState, is_sampled: bool, light_pdf: impl Fn(&PrevVertex) -> f32) -> f32 {
         match &state.prev_vertex {
             Some(prev) => self.options.direct.of_direction(prev.pdf, light_pdf(prev)),

@@ -1,13 +1,13 @@
 //! Path tracer with next-event estimation, multiple importance sampling and Russian roulette.
 //!
-//! As in pbrt and Mitsuba, a path is a loop over a `PathState`. Each bounce runs the stages below.
-//! No stage calls another bounce, so a wavefront renderer could run each one over an array of
-//! states.
+//! As in pbrt and Mitsuba, a path is a loop over a `PathState`. Each bounce runs the stages listed
+//! below. No stage calls another bounce, so a wavefront renderer could run each stage over an array
+//! of states.
 //!
-//! 1. `Path::propagate` moves the ray to its next vertex, through media and past surfaces without
-//!    effect.
+//! 1. `Path::propagate` moves the ray to its next vertex, through media and past surfaces that have
+//!    no effect.
 //! 2. `Path::add_background` and `Path::add_emission` add the light at the end of the ray, with an
-//!    MIS weight against light sampling at the previous vertex.
+//!    MIS weight that accounts for light sampling at the previous vertex.
 //! 3. `Path::choose_light` and `Path::add_direct` sample a point on a light and trace its shadow
 //!    ray.
 //! 4. `Path::add_caustic` adds the light of photons.
@@ -15,8 +15,8 @@
 //!    there is an environment, the first glossy vertex follows several directions, which wait on
 //!    the `PathStack`.
 //!
-//! The radiance of a camera ray is the sum of throughput · light over all terms, in the order in
-//! which they are found.
+//! The radiance of a camera ray is the sum of throughput · light over all terms, added in the order
+//! in which they are found.
 //!
 //! Sources: Kajiya, *The Rendering Equation*, SIGGRAPH 1986; Veach, *Robust Monte Carlo Methods for
 //! Light Transport Simulation*, 1997, chapters 9 and 10.
@@ -48,22 +48,25 @@ use vertex::{SPLIT_DIRECTIONS, VertexKind};
 pub struct Path<'w> {
     /// World to render.
     pub world: &'w World,
-    /// Maximum depth, and whether objects cast shadows.
+    /// Common settings: the maximum depth, and whether objects cast shadows.
     pub settings: RenderSettings,
-    /// Light sampling strategy, colour mode and clamp.
+    /// Options for path tracing: light sampling strategy, colour mode and clamp.
     pub options: PathOptions,
-    /// Photons for caustics. If `None`, paths find caustics only by chance.
+    /// Photon tracer for caustics. If `None`, paths find caustics only by chance.
     pub photons: Option<Arc<PhotonTracer>>,
-    /// Footprint of a camera sample; `None` if no texture is filtered.
+    /// Footprint of a camera sample, or `None` if no texture is filtered.
     pub cone: Option<RayCone>,
-    /// Cancellation flag. Once it is set, no more rays are traced and results are meaningless.
+    /// Cancellation flag. Once the flag is set, no more rays are traced, and results are
+    /// meaningless.
     pub cancel: Option<&'w AtomicBool>,
 }
 
-/// Stack of the branches of one camera path: the one being traced and those still to trace.
+/// Stack of the branches of one camera path, with the branch being traced and those that are still
+/// to be traced.
 struct PathStack {
     active: PathState,
-    /// Branches that start at the first glossy vertex; the next one is last.
+    /// Branches that start at the first glossy vertex and are still to be traced, of which the last
+    /// is traced next.
     pending: SmallVec<[PathState; SPLIT_DIRECTIONS as usize]>,
 }
 
@@ -85,7 +88,8 @@ impl Integrate for Path<'_> {
         context.lanes.color(self.trace(state, hit, &context, listener))
     }
 
-    /// Traces a batch of camera rays. Their first hits are computed together.
+    /// Traces a batch of camera rays. The first hits of all rays in the batch are computed
+    /// together.
     fn radiances<T: TraceListener>(
         &self,
         rays: &[Ray64],
@@ -121,14 +125,14 @@ impl<'w> Path<'w> {
         Path { world, settings, options, photons: None, cone: None, cancel: None }
     }
 
-    /// Returns the irradiance at a point on the side of a unit normal: pi times the radiance of a
-    /// white matte surface. `id` selects the random numbers.
+    /// Returns the irradiance at a point, on the side to which a unit normal points. It is pi times
+    /// the radiance of a white matte surface there. `id` selects the random numbers.
     pub fn irradiance<T: TraceListener>(&self, point: DVec3, normal: Vec3, id: SampleId, listener: &mut T) -> Color {
         self.irradiance_on(&SurfacePoint::around(point, normal), normal, id, listener)
     }
 
-    /// Returns the irradiance at a surface point on the side of a unit shading normal. See
-    /// [`Path::irradiance`].
+    /// Returns the irradiance at a surface point, on the side to which a unit shading normal
+    /// points. See [`Path::irradiance`].
     pub fn irradiance_on<T: TraceListener>(
         &self,
         surface: &SurfacePoint,
@@ -152,7 +156,7 @@ impl<'w> Path<'w> {
         std::f32::consts::PI * context.lanes.color(output.radiance)
     }
 
-    /// Returns the data shared by all branches of a camera path.
+    /// Returns the data that all branches of a camera path share.
     fn context(&self, id: SampleId) -> SampleContext {
         match &self.photons {
             Some(photons) => {
@@ -163,7 +167,7 @@ impl<'w> Path<'w> {
         }
     }
 
-    /// Returns the state of a path that starts with a ray from any point.
+    /// Returns the state of a path that starts with a ray from an arbitrary point.
     fn start(&self, ray: Ray64, id: SampleId) -> PathState {
         let media = MediumStack::around(self.world, ray.origin().as_vec3());
         PathState::new(ray, id, media)
@@ -174,7 +178,8 @@ impl<'w> Path<'w> {
         self.settings.bounces
     }
 
-    /// Returns the radiance along the ray of a state, by lane. `hit` is its first hit.
+    /// Returns the radiance along the ray of a path state, by lane. `hit` is the first hit of that
+    /// ray.
     fn trace<T: TraceListener>(
         &self,
         active: PathState,
@@ -187,7 +192,7 @@ impl<'w> Path<'w> {
         output.radiance
     }
 
-    /// Traces all branches to their end, one bounce at a time, depth first.
+    /// Traces all branches to their ends, one bounce at a time, depth first.
     fn trace_branches<T: TraceListener>(
         &self,
         hit: Option<Hit>,
@@ -203,8 +208,8 @@ impl<'w> Path<'w> {
         }
     }
 
-    /// Returns the first hit of the active branch's ray. If that branch has ended, continues with a
-    /// pending one, or returns `None` if there is none.
+    /// Returns the first hit of the active branch's ray. If that branch has ended, the function
+    /// continues with a pending branch, or returns `None` if there is none.
     fn intersect_next<T: TraceListener>(
         &self,
         goes_on: bool,
@@ -217,8 +222,8 @@ impl<'w> Path<'w> {
         Some(self.world.closest_along(&mut stack.active.ray, listener))
     }
 
-    /// Runs one bounce: moves the ray to its next vertex, adds the light there, and turns the
-    /// active state into that of the next ray. Returns false if the active branch has ended.
+    /// Runs one bounce, which moves the ray to its next vertex, adds the light there, and turns the
+    /// active state into the state of the next ray. Returns false if the active branch has ended.
     fn bounce<T: TraceListener>(
         &self,
         hit: Option<Hit>,
@@ -270,8 +275,8 @@ impl<'w> Path<'w> {
         }
         let vertex = self.vertex(kind, state);
         let is_broad = kind.is_broad();
-        // If there are many lights, the chosen one is rarely in the CPU cache. Sample the direction
-        // while it is being fetched.
+        // If there are many lights, the data of the chosen one is rarely in the CPU cache. Sample
+        // the direction while that data is being fetched.
         let light = if is_broad { self.choose_light(&vertex) } else { None };
         let sample = if vertex.directions == 1 { vertex.sample_bsdf() } else { None };
         if let Some(light) = light {

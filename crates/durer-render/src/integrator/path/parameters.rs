@@ -50,7 +50,8 @@ pub struct PhotonParameters {
     pub count: u32,
     /// Search radius for photons in the first sample, in world units.
     pub radius: Option<f32>,
-    /// Removes the bias to second order at the cost of more noise; see [`PhotonTracer::corrected`].
+    /// True to remove the bias to second order, which increases noise; see
+    /// [`PhotonTracer::corrected`].
     pub corrected: bool,
 }
 
@@ -119,35 +120,39 @@ impl IntegratorOptions for PhotonParameters {
     }
 }
 
-/// Strategy for sampling direct light from emitters with extent: light sampling, BSDF sampling or
-/// both. All except [`DirectSampling::Center`] have the same mean and differ only in noise.
+/// Strategy for sampling direct light from emitters with an extent, which is light sampling, BSDF
+/// sampling or both. All strategies except [`DirectSampling::Center`] have the same mean and differ
+/// only in noise.
 ///
 /// Source: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DirectSampling {
-    /// Light and BSDF sampling, combined by the power heuristic.
+    /// Light sampling and BSDF sampling, combined by the power heuristic.
     #[default]
     Both,
-    /// Light sampling alone. BSDF samples count only for emitters that light sampling never finds.
+    /// Light sampling alone. BSDF samples count only if they hit emitters that light sampling never
+    /// finds.
     Lights,
-    /// BSDF sampling alone. Light samples count only for lights that BSDF sampling cannot hit.
+    /// BSDF sampling alone. Light samples count only if they sample lights that BSDF sampling
+    /// cannot hit.
     Bsdf,
-    /// [`DirectSampling::Lights`] with a fixed point on each emitter: the centre of a sphere, disc
-    /// or rectangle. Shadows become hard. Biased; for teaching only.
+    /// Light sampling as in [`DirectSampling::Lights`], but with a fixed point on each emitter,
+    /// which is the centre of a sphere, disc or rectangle. With this strategy, shadows become hard.
+    /// The results are biased, so it is for teaching only.
     #[serde(rename = "middle")]
     Center,
 }
 
 impl DirectSampling {
-    /// Strategies that users can choose.
+    /// Strategies that the user can choose.
     pub const CHOICES: [DirectSampling; 3] = [DirectSampling::Both, DirectSampling::Lights, DirectSampling::Bsdf];
 
     /// Names of [`DirectSampling::CHOICES`].
     const NAMES: [&str; 3] =
         [DirectSampling::CHOICES[0].name(), DirectSampling::CHOICES[1].name(), DirectSampling::CHOICES[2].name()];
 
-    /// Returns the strategy's name in options.
+    /// Returns the name of the strategy, as used in options.
     pub const fn name(self) -> &'static str {
         match self {
             DirectSampling::Both => "both",

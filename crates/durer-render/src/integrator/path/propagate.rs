@@ -1,4 +1,5 @@
-//! Propagation of a path's ray to its next vertex, through media and past surfaces without effect.
+//! Propagation of a path's ray to its next vertex, through media and past surfaces that have no
+//! effect.
 
 use super::Path;
 use super::state::{PathState, SampleContext};
@@ -11,27 +12,28 @@ use durer_scene::spectrum::{Lanes, Spectrum};
 use glam::DVec3;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Next event along a path's ray: a surface hit, scattering in a medium, or the end of the path.
+/// Next event along a path's ray, which is a surface hit, scattering in a medium, or the end of the
+/// path.
 pub(super) enum PathEvent {
-    /// The path ended inside a medium, by Russian roulette or after too many scatterings.
+    /// The path ended inside a medium, either by Russian roulette or after scattering too often.
     Absorbed,
     /// The ray left the scene.
     Escaped,
-    /// The ray scattered at a point in an open medium, in which lights are visible. The vector is
-    /// the ray's unit direction.
+    /// The ray was scattered at a point in an open medium, in which lights are visible. The vector
+    /// is the unit direction of the ray.
     Medium(DVec3, Vec3, HenyeyGreenstein),
-    /// The ray hit a surface. The transition is `None` if light cannot enter or leave the object
-    /// there.
+    /// The ray hit a surface. The transition is `None` if light cannot enter or leave the object at
+    /// that point.
     Surface(Option<MediumTransition>),
 }
 
-/// Maximum number of scatterings inside one object before the path ends.
+/// Maximum number of scattering events inside one object before the path ends.
 const MAX_WALK: u32 = 10_000;
 
 impl Path<'_> {
-    /// Follows the ray of a state from its first hit to the next vertex. Updates the state's ray,
-    /// throughput, media and camera distance. Writes the surface that was hit into `at`, which is
-    /// reused because copies are slow.
+    /// Follows the ray of a path state from its first hit to the next vertex. The ray, throughput,
+    /// media and camera distance of the state are updated. The surface that was hit is written to
+    /// `at`, which is reused because copies are slow.
     pub(super) fn propagate<T: TraceListener>(
         &self,
         hit: Option<Hit>,
@@ -45,7 +47,7 @@ impl Path<'_> {
         event
     }
 
-    /// Implements [`Path::propagate`], and also returns the transmittance.
+    /// Implements [`Path::propagate`] and also returns the transmittance.
     #[inline(always)]
     fn propagate_inner<T: TraceListener>(
         &self,
@@ -56,7 +58,7 @@ impl Path<'_> {
         listener: &mut T,
     ) -> (PathEvent, Spectrum) {
         let lanes = &context.lanes;
-        // Ray that starts at the last scattering and skips the surfaces passed since.
+        // Ray that starts at the last scattering event and skips the surfaces passed since then.
         let mut rest = state.ray;
         let mut transmittance = Spectrum::ONE;
         let (mut traversed, mut layers, mut scatterings) = (0.0, 0, 0);
@@ -75,14 +77,14 @@ impl Path<'_> {
                         DistanceSample::Scattered(distance, left) => {
                             transmittance *= left;
                             state.throughput = before * transmittance;
-                            // Stay in front of the surface that encloses the medium.
+                            // Stay in front of the surface around the medium.
                             let distance = distance.min(length * (1.0 - gamma(16)));
                             let point = segment.origin + f64::from(distance) * segment.dir.as_dvec3();
                             if self.world.is_directly_lit(state.media.object()) {
                                 return (PathEvent::Medium(point, segment.dir, medium.phase), transmittance);
                             }
                             // Lights are not visible from inside this object, so continue the
-                            // random walk until it leaves.
+                            // random walk until it leaves the object.
                             scatterings += 1;
                             let survival = match scatterings {
                                 0..16 => 1.0,
@@ -157,7 +159,7 @@ impl Path<'_> {
         })
     }
 
-    /// Returns true if a surface has no effect on the ray except for a change of medium.
+    /// Returns true if a surface has no effect on the ray, apart from a change of medium.
     pub(super) fn has_no_effect(&self, at: &SurfaceInteraction, transition: &MediumTransition) -> bool {
         transition.displaced || transition.ior_front == transition.ior_behind && self.world.is_interface(at)
     }

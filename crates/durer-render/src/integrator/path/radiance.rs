@@ -1,30 +1,31 @@
-//! Summation of the light that a path finds.
+//! Summation of the light that a path finds along its way.
 
 use super::Path;
 use super::state::{PathState, SampleContext};
 use crate::integrator::trace::{TermKind, TraceListener};
 use durer_scene::spectrum::Spectrum;
 
-/// Output of tracing a path: the sum of the radiance found so far, and the trace listener.
+/// Output of tracing a path, with the sum of the radiance found so far and the trace listener.
 pub(super) struct PathOutput<'t, T> {
     /// Sum of throughput · light over all terms so far, by lane.
     pub(super) radiance: Spectrum,
-    /// Counts rays and can record each term.
+    /// Listener that counts rays and can record each term.
     pub(super) listener: &'t mut T,
 }
 
 /// Light found at a path vertex, to be added to the camera ray's radiance.
 pub(super) struct Contribution {
-    /// Factor at the vertex: MIS weight · BSDF · cosine / pdf · visibility.
+    /// Factor at the vertex, which is MIS weight · BSDF · cosine / pdf · visibility.
     pub(super) factor: Spectrum,
     /// Radiance of the light source.
     pub(super) light: Spectrum,
-    /// Number of scattering events between the source and the camera.
+    /// Number of scattering events between the light source and the camera.
     pub(super) scatterings: u32,
 }
 
 impl Path<'_> {
-    /// Adds throughput · factor · light, clamped, to the radiance of the camera ray.
+    /// Adds throughput · factor · light to the radiance of the camera ray, after clamping the
+    /// product.
     #[inline(always)]
     pub(super) fn add<T: TraceListener>(
         &self,

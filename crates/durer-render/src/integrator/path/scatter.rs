@@ -1,4 +1,4 @@
-//! Scattering at a path vertex: direction sampling, Russian roulette and the next ray.
+//! Scattering at a path vertex, with direction sampling, Russian roulette and the next ray.
 
 use super::state::{Dimension, PathState, PrevVertex, SampleContext};
 use super::vertex::{BsdfSample, Vertex};
@@ -11,8 +11,8 @@ use durer_scene::spectrum::Spectrum;
 const MAX_SURVIVAL: f32 = 0.95;
 
 impl Path<'_> {
-    /// Continues the path in the sampled direction, or in several if the vertex splits; these
-    /// become pending branches. Returns true if the active branch continues.
+    /// Continues the path in the sampled direction or, if the vertex splits, in several directions,
+    /// which become pending branches. Returns true if the active branch continues afterwards.
     pub(super) fn scatter<T: TraceListener>(
         &self,
         vertex: &Vertex,
@@ -38,8 +38,8 @@ impl Path<'_> {
         false
     }
 
-    /// Turns a state into that of the ray in a sampled direction. Returns false if Russian roulette
-    /// ends the path, which leaves the state undefined.
+    /// Turns the state of a path into that of the ray that leaves in a sampled direction. Returns
+    /// false if Russian roulette ends the path, in which case the state is undefined.
     fn spawn<T: TraceListener>(
         &self,
         vertex: &Vertex,
@@ -58,7 +58,8 @@ impl Path<'_> {
         }
         let is_delta = sample.pdf == 0.0;
         if is_delta {
-            // Light samples do not compete with a delta lobe, unless they see through the surface.
+            // Light samples do not compete with a delta lobe, unless the lobe transmits light
+            // straight through the surface.
             state.prev_vertex = state.prev_vertex.filter(|_| self.sees_through(vertex, sample.lobe, state));
             state.is_caustic |= state.had_rough_bounce;
         } else {
@@ -94,8 +95,9 @@ impl Path<'_> {
         true
     }
 
-    /// At a dispersive surface, ends all wavelengths but the hero, because they would refract in
-    /// other directions. The hero's weight is multiplied by four to make up for them.
+    /// At a dispersive surface, ends all wavelengths except the hero wavelength, because each
+    /// wavelength is refracted in a different direction. The weight of the hero wavelength is
+    /// multiplied by four to make up for the others.
     pub(super) fn select_hero<T: TraceListener>(
         &self,
         at: &SurfaceInteraction,

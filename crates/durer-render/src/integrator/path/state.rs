@@ -9,25 +9,27 @@ use durer_scene::sampler::SampleId;
 use durer_scene::spectrum::{Lanes, Spectrum};
 use std::sync::Arc;
 
-/// Index of a pair of random numbers at a path vertex, by purpose.
+/// Index of a pair of random numbers at a path vertex, named after the use of the pair.
 #[derive(Clone, Copy)]
 pub(super) enum Dimension {
-    /// x selects the BSDF lobe, y the light.
+    /// The x component selects the BSDF lobe, and y selects the light.
     Choices,
     /// Direction within the lobe.
     Direction,
     /// Point on the light.
     LightPoint,
-    /// x is for Russian roulette, y selects one of several candidate directions to the environment.
+    /// The x component is for Russian roulette, and y selects one of several candidate directions
+    /// to the environment.
     Survival,
 }
 
-/// Number of pairs of random numbers per vertex.
+/// Number of pairs of random numbers at each vertex.
 pub(super) const DIMENSIONS: usize = 4;
 
-/// Data shared by all branches of a camera path: the meaning of spectrum lanes, and the photons.
+/// Data shared by all branches of a camera path, which is the meaning of the spectrum lanes and the
+/// photon map.
 pub(super) struct SampleContext {
-    /// Meaning of the four lanes of a spectrum: RGB, or wavelengths.
+    /// Meaning of the four lanes of a spectrum, which are RGB or wavelengths.
     pub(super) lanes: Lanes,
     /// Photon map of the sample; `None` without photon mapping.
     pub(super) photons: Option<Arc<PhotonMap>>,
@@ -42,52 +44,54 @@ impl SampleContext {
 
 /// State of a path, or of one of its branches, between two stages of a bounce.
 ///
-/// It holds no references, so states can be stored in an array. Only the list of media allocates
-/// memory, and only if more than two objects overlap.
+/// The state holds no references, so states can be stored in an array. Only the list of media
+/// allocates memory, and only if more than two objects overlap.
 #[derive(Clone, Debug)]
 pub(super) struct PathState {
     /// Ray to the next vertex, in world space. The direction of a camera ray can have any length.
     pub(super) ray: Ray64,
-    /// Product of BSDF · cosine / pdf, 1 / survival probability and transmittance since the camera,
-    /// by lane; at least 0. Russian roulette and media depend on it.
+    /// Product of BSDF · cosine / pdf, 1 / survival probability, and transmittance since the
+    /// camera, by lane; at least 0. It affects Russian roulette and the sampling of media.
     pub(super) throughput: Spectrum,
-    /// Share of the pixel that this branch represents: 1 / (number of branches). Separate from
-    /// `throughput`, so that Russian roulette does not end branches sooner than unsplit paths.
+    /// Share of the pixel that this branch represents, which is 1 / (number of branches). It is
+    /// separate from `throughput` so that Russian roulette does not end branches sooner than paths
+    /// that were not split.
     pub(super) pixel_share: f32,
-    /// Number of scattering events since the camera. Vertices deeper than `max_depth` scatter no
-    /// light.
+    /// Number of scattering events since the camera. Vertices at a depth greater than `max_depth`
+    /// scatter no light.
     pub(super) depth: u32,
-    /// Random numbers of the path; each branch has its own.
+    /// Random numbers of the path, which are different for each branch.
     pub(super) sample: SampleId,
-    /// Objects that contain the ray. The last one fills the space.
+    /// Objects that contain the ray. The last object fills the space around the ray.
     pub(super) media: MediumStack,
-    /// Last vertex that sampled lights, for the MIS weight of lights that the ray hits. `None` if
-    /// no light sample competes: after the camera and after delta lobes.
+    /// Last vertex that sampled lights, needed for the MIS weights of lights hit by the ray. It is
+    /// `None` if no light sample competes, which is the case for rays from the camera and after
+    /// delta lobes.
     pub(super) prev_vertex: Option<PrevVertex>,
     /// True if photons are sent to the last surface that scattered the path.
     pub(super) prev_is_photon_target: bool,
     /// True after scattering from a lobe that is not a delta lobe.
     pub(super) had_rough_bounce: bool,
-    /// True if delta lobes follow a rough bounce. Photons then account for the lights that the path
-    /// hits.
+    /// True if delta lobes follow a rough bounce. In this case, photons account for the lights that
+    /// the path hits.
     pub(super) is_caustic: bool,
-    /// True after dispersion, when only the hero wavelength in lane 0 is left.
+    /// True after dispersion, when only the hero wavelength (in lane 0) is left.
     pub(super) monochromatic: bool,
-    /// Length of the path from the camera in world units. `None` after the first scattering from a
-    /// lobe that is not a delta lobe.
+    /// Length of the path from the camera, in world units. It is `None` after the first scattering
+    /// from a lobe that is not a delta lobe.
     pub(super) camera_distance: Option<f32>,
-    /// Trace node to which the next terms belong.
+    /// Trace node to which the next terms are added.
     pub(super) node: NodeId,
 }
 
-/// Vertex where lights were sampled, kept for the MIS weight of lights that the next ray hits.
+/// Vertex at which lights were sampled, kept for the MIS weights of lights hit by the next ray.
 /// Source: Veach 1997, chapter 9.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PrevVertex {
     /// Point and normal for which lights were sampled, in world space.
     pub(super) receiver: Receiver,
-    /// Density of the sampled direction per steradian, times the number of directions; greater than
-    /// 0.
+    /// Density of the sampled direction per steradian, multiplied by the number of directions;
+    /// greater than 0.
     pub(super) pdf: f32,
     /// Number of candidate directions to the environment; at least 1.
     pub(super) tries: f32,
@@ -113,13 +117,13 @@ impl PathState {
         }
     }
 
-    /// Returns the random numbers of the next vertex; see [`Dimension`].
+    /// Returns the random numbers for the next vertex; see [`Dimension`].
     pub(super) fn vertex_sample(&self) -> SampleId {
         self.sample.with_first_dimension(self.depth * DIMENSIONS as u32)
     }
 
-    /// Returns branch `number` of `count` at a vertex that splits. Branches continue the pixel's
-    /// sample sequence, so that all of them are stratified together.
+    /// Returns branch `number` of `count` at a vertex that splits. The branches continue the
+    /// pixel's sample sequence, so that all of them are stratified together.
     pub(super) fn branch(&self, number: u32, count: u32) -> Self {
         let sample = self.sample.with_sample(self.sample.sample.wrapping_mul(count).wrapping_add(number));
         PathState { sample, pixel_share: self.pixel_share / count as f32, ..self.clone() }

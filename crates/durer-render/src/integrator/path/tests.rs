@@ -1,4 +1,4 @@
-//! Tests of path tracing against closed forms, with their sources or derivations.
+//! Tests of path tracing against closed-form solutions, with their sources or derivations.
 
 use super::*;
 use crate::compile::AccelKind;
@@ -16,7 +16,7 @@ mod sheets;
 mod sides;
 mod terms;
 
-/// Returns the mean of many samples along a ray and its standard error.
+/// Returns the mean of many samples along a ray, and the standard error of the mean.
 fn light(world: &World, ray: Ray, bounces: u32, samples: u32) -> (f64, f64) {
     let settings = RenderSettings { bounces, ..Job::default().settings };
     let path = Path::new(world, settings, PathOptions::default());
@@ -30,8 +30,8 @@ fn light(world: &World, ray: Ray, bounces: u32, samples: u32) -> (f64, f64) {
     (sum / n, ((squares / n - (sum / n) * (sum / n)).max(0.0) / n).sqrt())
 }
 
-/// Returns mean and variance of each colour channel over many samples along a ray, for both
-/// strategies combined, light sampling, and BSDF sampling.
+/// Returns the mean and variance of each colour channel over many samples along a ray, for both
+/// strategies combined, for light sampling, and for BSDF sampling.
 fn by_ways(world: &World, ray: Ray, settings: RenderSettings, color: ColorMode) -> [[(f64, f64); 3]; 3] {
     [DirectSampling::Both, DirectSampling::Lights, DirectSampling::Bsdf].map(|direct| {
         let path = Path::new(world, settings, PathOptions { color, direct, ..PathOptions::default() });
@@ -49,8 +49,8 @@ fn by_ways(world: &World, ray: Ray, settings: RenderSettings, color: ColorMode) 
     })
 }
 
-/// Asserts that the radiance along a ray is right within three standard errors plus one part in a
-/// thousand.
+/// Asserts that the radiance along a ray has the expected value to within three standard errors
+/// plus one part in a thousand.
 fn assert_light(name: &str, world: &World, ray: Ray, bounces: u32, expected: f64) {
     let (mean, error) = light(world, ray, bounces, 1 << 15);
     assert!((mean - expected).abs() <= 3.0 * error + 0.001 * expected, "{name}: {mean} ± {error}, expected {expected}");
@@ -65,7 +65,7 @@ fn scene(materials: &str, lights: &str, group: &str) -> World {
 
 const MATTE: &str = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 }";
 
-/// Builds a matte floor at y = 0 with albedo 0.5, and an emitter.
+/// Builds a scene with an emitter and a matte floor at y = 0 with albedo 0.5.
 fn over_floor(lights: &str, emissive: &str) -> World {
     let materials = format!("{MATTE} PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }}");
     let floor = "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1";
@@ -77,14 +77,15 @@ fn to_origin() -> Ray {
     Ray::new(Vec3::new(2.0, 2.0, 0.0), Vec3::new(-1.0, -1.0, 0.0).normalize())
 }
 
-/// Returns the radiance of a floor with albedo 0.5 and irradiance E: 0.5 E / pi.
+/// Returns the radiance of a floor with albedo 0.5 and irradiance E, which is 0.5 E / pi.
 fn shown(irradiance: f64) -> f64 {
     0.5 * irradiance / std::f64::consts::PI
 }
 
 #[test]
 fn closed_furnace_sums_a_geometric_series() {
-    // L = Le (1 - rho^n) / (1 - rho), where n counts the scattering events and the emission itself.
+    // The radiance is L = Le (1 - rho^n) / (1 - rho), where n counts the scattering events and the
+    // emission itself.
     for form in ["Sphere { center 0 0 0 radius 2 }", "Box { min -2 -2 -2 max 2 2 2 }"] {
         let material = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 emissionLuminance 0.5 walls thin }";
         let world = scene(material, "", &format!("MaterialIndex 0 {form}"));
@@ -96,7 +97,8 @@ fn closed_furnace_sums_a_geometric_series() {
     }
 }
 
-/// Distant objects keep their precision, whether only the area light is distant or the floor too.
+/// Tests that distant objects keep their precision, both if only the area light is distant and if
+/// the floor is distant too.
 #[test]
 fn distant_area_lights_are_as_accurate_as_near_ones() {
     let words = |p: Vec3| format!("{} {} {}", p.x, p.y, p.z);
@@ -134,7 +136,8 @@ fn distant_area_lights_are_as_accurate_as_near_ones() {
 
 #[test]
 fn suns_are_visible_directly_and_in_mirrors_and_light_the_floor() {
-    // A disc of radiance L gives a surface that faces it the irradiance pi c = 2 pi (1 - cos) L.
+    // A disc of radiance L causes the irradiance pi c = 2 pi (1 - cos) L on a surface that faces
+    // it.
     let half: f64 = 2.0;
     let radiance = 0.5 / (1.0 - durer_scene::math::fp::sin_cos_degrees(half).1);
     let mirror = "PrincipledMaterial { baseMetalness 1 baseColor 1 1 1 specularRoughness 0 }";
@@ -156,11 +159,12 @@ fn suns_are_visible_directly_and_in_mirrors_and_light_the_floor() {
         ("mirror", ray(10.0, 5.0, 1.0, -1.0), radiance),
         ("mirror, beside", ray(10.0, 5.0, 2.1, -1.0), 0.0),
         ("pane", ray(20.0, 0.5, 0.0, 1.0), radiance * 0.96 / 1.04),
-        // A matte floor shows half of it, counted once by light samples and paths together.
+        // A matte floor reflects half of the irradiance, which light samples and paths together
+        // must count exactly once.
         ("floor", ray(0.0, 1.0, 10.0, -1.0), 0.5),
         ("floor below the pane", ray(20.0, 0.5, 0.0, -1.0), 0.5 * 0.96 / 1.04),
     ] {
-        // Without bounces, light does not go back and forth between floor and pane.
+        // Without bounces, light is not reflected back and forth between floor and pane.
         let bounces = if name.contains("below") { 0 } else { 3 };
         let (mean, error) = light(&world, ray, bounces, 4096);
         assert!(
@@ -173,18 +177,20 @@ fn suns_are_visible_directly_and_in_mirrors_and_light_the_floor() {
 #[test]
 fn area_lights_emit_by_their_view_factors() {
     use std::f64::consts::PI;
-    // For a sphere of radiance L and radius r at distance d above the point, E = pi L (r/d)^2.
+    // For a sphere of radiance L and radius r whose centre is at distance d above the point, E = pi
+    // L (r/d)^2.
     let sphere = over_floor("", "Sphere { center 0 3 0 radius 0.5 }");
     assert_light("sphere", &sphere, to_origin(), 0, shown(PI * 3.0 * (0.5 / 3.0) * (0.5 / 3.0)));
-    // For a disc that faces down on the axis, E = pi L r^2 / (r^2 + d^2).
+    // For a disc that faces downwards and has its axis through the point, E = pi L r^2 / (r^2 +
+    // d^2).
     let disc = over_floor("", "Disc { center 0 2 0 normal 0 -1 0 radius 1.5 }");
     assert_light("disc", &disc, to_origin(), 0, shown(PI * 3.0 * 2.25 / (2.25 + 4.0)));
     let ring = over_floor("", "Disc { center 0 2 0 normal 0 -1 0 radius 1.5 innerRadius 0.75 }");
     let hole = 0.5625 / (0.5625 + 4.0);
     assert_light("ring", &ring, to_origin(), 0, shown(PI * 3.0 * (2.25 / (2.25 + 4.0) - hole)));
-    // For a parallel rectangle with a corner above the point, Howell's C-11 with x = a/d and y =
-    // b/d gives 2 pi F = x / sqrt(1 + x^2) atan(y / sqrt(1 + x^2)) + y / sqrt(1 + y^2) atan(x /
-    // sqrt(1 + y^2)).
+    // For a parallel rectangle with one corner above the point, Howell's configuration C-11 with x
+    // = a/d and y = b/d gives 2 pi F = x / sqrt(1 + x^2) atan(y / sqrt(1 + x^2)) + y / sqrt(1 +
+    // y^2) atan(x / sqrt(1 + y^2)).
     let factor = |x: f64, y: f64| {
         let (p, q) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
         (x / p * libm::atan(y / p) + y / q * libm::atan(x / q)) / (2.0 * PI)
@@ -194,18 +200,18 @@ fn area_lights_emit_by_their_view_factors() {
     let triangles =
         "Triangle { vertex0 0 2 0 vertex1 3 2 0 vertex2 3 2 1 } Triangle { vertex0 0 2 0 vertex1 3 2 1 vertex2 0 2 1 }";
     assert_light("triangles", &over_floor("", triangles), to_origin(), 0, shown(PI * 3.0 * factor(1.5, 0.5)));
-    // The same rectangle after a transform.
+    // Build the same rectangle with a transform.
     let moved =
         "Transform { Translate 0 2 0 YRotate 90 Scale 1 1 3 Rectangle { corner 0 0 0 edge0 0 0 1 edge1 -1 0 0 } }";
     assert_light("moved rectangle", &over_floor("", moved), to_origin(), 0, shown(PI * 3.0 * factor(1.5, 0.5)));
-    // The back emits nothing.
+    // The back of the rectangle emits nothing.
     let away = over_floor("", "Rectangle { corner 0 2 0 edge0 0 0 1 edge1 3 0 0 }");
     assert_light("from behind", &away, to_origin(), 0, 0.0);
 }
 
 #[test]
 fn partially_opaque_emitters_emit_in_part() {
-    // The irradiance of a sphere of radius r at height h is pi L (r / h)^2.
+    // A sphere of radius r at height h causes the irradiance pi L (r / h)^2.
     let whole = std::f64::consts::PI * 3.0 * 0.25 * 0.25;
     for (opacity, share) in [("1", 1.0), ("0.5", 0.5), ("0.25", 0.25)] {
         let light =
@@ -217,15 +223,15 @@ fn partially_opaque_emitters_emit_in_part() {
 
 #[test]
 fn bsdf_sampling_alone_agrees_with_light_sampling() {
-    // A solid cannot be sampled as a light, so only BSDF sampling finds it. The cut leaves a
-    // sphere, which as such can be sampled.
+    // A solid cannot be sampled as a light, so its light is found only by BSDF sampling. The solid
+    // has the shape of a sphere, and a plain sphere can be sampled.
     let one = over_floor("", "Sphere { center -0.8 1.6 0 radius 0.8 }");
     let cut = "Intersection { Sphere { center -0.8 1.6 0 radius 0.8 } Sphere { center 0 1.6 0 radius 3 } }";
     let other = over_floor("", cut);
     let ((a, ea), (b, eb)) = (light(&one, to_origin(), 2, 1 << 15), light(&other, to_origin(), 2, 1 << 15));
     assert!((a - b).abs() < 4.0 * (ea * ea + eb * eb).sqrt(), "{a} ± {ea}, {b} ± {eb}");
     assert!(ea < 0.5 * eb, "light sampling must have less noise: {ea} {eb}");
-    // A cylinder can be sampled, but the same shape as a solid cannot.
+    // A cylinder can be sampled, but a solid of the same shape cannot.
     let one = over_floor("", "Cylinder { base -0.4 1.2 0.3 top 0.3 2 0 radius 0.4 }");
     let cut =
         "Intersection { Cylinder { base -0.4 1.2 0.3 top 0.3 2 0 radius 0.4 } Sphere { center 0 1.6 0 radius 3 } }";
@@ -237,9 +243,9 @@ fn bsdf_sampling_alone_agrees_with_light_sampling() {
 
 #[test]
 fn light_sampling_and_bsdf_sampling_alone_have_the_mean_of_both() {
-    // A glossy floor under a sphere, a triangle and a uniform sky, with a point light and a mirror
-    // nearby. The mean must not depend on the strategy. There are 18 z-tests of pairs of means; one
-    // of them exceeds 3.6 standard errors by chance in one run of 170.
+    // The scene has a glossy floor under a sphere, a triangle and a uniform sky, with a point light
+    // and a mirror nearby. The mean must not depend on the sampling strategy. There are 18 z-tests
+    // of pairs of means; in one run out of 170, one of them exceeds 3.6 standard errors by chance.
     let materials = "PrincipledMaterial { baseColor 0.5 0.4 0.3 specularRoughness 0.35 }
         PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }
         PrincipledMaterial { baseColor 1 1 1 baseMetalness 1 specularRoughness 0 }
@@ -260,16 +266,17 @@ fn light_sampling_and_bsdf_sampling_alone_have_the_mean_of_both() {
                 assert!((a - b).abs() < 3.6 * (va + vb).sqrt(), "{ways:?}");
             }
         }
-        // Each strategy alone is noisier than both combined.
+        // Each strategy alone must be noisier than both combined.
         assert!(ways[1..].iter().all(|half| half[1].1 > ways[0][1].1), "{ways:?}");
     }
 }
 
 #[test]
 fn several_directions_to_an_environment_have_the_mean_of_one() {
-    // Rough metal, glass and lacquer under a sky with a small bright patch, a point light, an area
-    // light and a wall. All strategies must have the same mean, by z-tests as above. (There are 48;
-    // one exceeds 4 standard errors by chance in one run of 300.)
+    // The scene has rough metal, glass and lacquer under a sky with a small bright patch, a point
+    // light, an area light and a wall. All strategies must have the same mean, according to
+    // z-tests. (There are 48; in one run out of 300, one of them exceeds 4 standard errors by
+    // chance.)
     let folder = tempfile::tempdir().unwrap();
     let mut sky = b"PF\n32 16\n-1\n".to_vec();
     for texel in 0..32 * 16_usize {
@@ -302,7 +309,7 @@ fn several_directions_to_an_environment_have_the_mean_of_one() {
                 assert!((a - b).abs() < 4.0 * (va + vb).sqrt(), "{x} {y}: {ways:?}");
             }
         }
-        // The first glossy vertex follows two directions, all others follow one.
+        // The first glossy vertex follows two directions, and all other vertices follow one.
         fn follow(node: &TraceNode, directions: u32) -> usize {
             let below = node.terms.iter().map(|term| match &term.kind {
                 TermKind::Ray { bounce: Some(bounce), .. } => {
@@ -322,8 +329,9 @@ fn several_directions_to_an_environment_have_the_mean_of_one() {
 
 #[test]
 fn integrating_sphere_has_uniform_indirect_light() {
-    // For a point light of intensity I in a sphere of area S and albedo rho, E = I cos / d^2 + 4 pi
-    // I / S rho / (1 - rho). A light of colour c gives an irradiance of pi c at distance 1.
+    // For a point light of intensity I in a sphere of area S and albedo rho, the irradiance is E =
+    // I cos / d^2 + 4 pi I / S rho / (1 - rho). A light of colour c causes an irradiance of pi c at
+    // distance 1.
     let world = scene(
         MATTE,
         "PointLight { position 0.5 0.8 0 color 1 1 1 attenuation 0 0 1 }",
@@ -360,7 +368,8 @@ fn objects_without_absorption_vanish_in_a_uniform_environment() {
         for x in [0.0, 0.6, 0.95] {
             let ray = Ray::new(Vec3::new(x, 0.0, 5.0), Vec3::NEG_Z);
             let (mean, error) = light(&world, ray, 200, 1 << 13);
-            // The tables of rough glass are wrong by less than half a percent for two interfaces.
+            // For two interfaces, the tables of rough glass have an error of less than half a
+            // percent.
             assert!((mean - 0.7).abs() < 3.0 * error + 0.005, "{material} at {x}: {mean} ± {error}");
         }
     }
@@ -368,8 +377,8 @@ fn objects_without_absorption_vanish_in_a_uniform_environment() {
 
 #[test]
 fn absorbing_slab_follows_beer_and_fresnel() {
-    // At normal incidence, T = (1 - F)^2 a / (1 - F^2 a^2) with a = exp(-sigma s). The radiance
-    // behind the slab is 1.
+    // At normal incidence, the transmittance is T = (1 - F)^2 a / (1 - F^2 a^2) with a = exp(-sigma
+    // s). The radiance behind the slab is 1.
     let (f, a) = (0.04_f64, 0.3_f64);
     let glass = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 transmissionColor 0.3 0.3 0.3 transmissionDepth 2 }";
     let light = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1 }";
@@ -398,7 +407,7 @@ fn single_scattering_of_point_lights_off_matte_surfaces_is_whitteds() {
 
 #[test]
 fn many_lights_equal_their_sum() {
-    // 40 spheres on a spiral that do not occlude each other. For spheres entirely above the
+    // Use 40 spheres on a spiral that do not occlude each other. If a sphere is entirely above the
     // horizon, E = pi L r^2 cos / d^2.
     let mut all = String::new();
     let mut irradiance = 0.0;
@@ -426,7 +435,7 @@ fn partially_opaque_screen_casts_a_partial_shadow() {
 fn cameras_and_delta_lights_see_through_hidden_backs() {
     let lit = shown(std::f64::consts::PI / 16.0);
     let (up, down) = ("edge0 0 0 1 edge1 1 0 0", "edge0 1 0 0 edge1 0 0 1");
-    // The sheet is in front of the floor, as seen from the camera or from the light.
+    // The sheet is in front of the floor as seen either from the camera or from the light.
     for (corner, sides, expected) in
         [("0.5 1 -0.5", down, lit), ("0.5 1 -0.5", up, 0.0), ("-0.5 3 -0.5", down, lit), ("-0.5 3 -0.5", up, 0.0)]
     {

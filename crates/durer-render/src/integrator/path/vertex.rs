@@ -14,21 +14,20 @@ use durer_scene::spectrum::Spectrum;
 use glam::DVec3;
 
 /// Number of candidate directions to the environment for a glossy BSDF; one of them is used. For
-/// other BSDFs, one candidate is as good. (Measured for a rough metal: the variance is 0.72 with
-/// two candidates, 0.59 with four and 0.54 with eight. A picture takes 1.2 times as long with four
-/// as with one.)
+/// other BSDFs, a single candidate is just as good. Rendering takes 1.2 times as long with four
+/// candidates as with one.)
 pub(super) const CANDIDATES: u32 = 4;
 
-/// Number of directions followed from a glossy first vertex if there is an environment. Most of
-/// these paths end soon, so the cost of the first vertex is shared.
+/// Number of directions that are followed from a glossy first vertex if there is an environment.
+/// Most of the paths end soon, so they share the cost of the first vertex.
 ///
 /// Source: Arvo and Kirk, *Particle Transport and Image Synthesis*, SIGGRAPH 1990 (splitting).
 pub(super) const SPLIT_DIRECTIONS: u32 = 2;
 
-/// Path vertex with everything needed to sample lights and directions from it.
+/// Path vertex with all data needed to sample lights and directions from it.
 #[derive(Clone, Copy)]
 pub(super) struct Vertex<'a, 'w> {
-    /// Surface or medium.
+    /// Surface or medium that scatters the light.
     pub(super) kind: VertexKind<'a, 'w>,
     /// Random numbers in [0, 1)^2, indexed by [`Dimension`].
     pub(super) random: [Vec2; DIMENSIONS],
@@ -40,20 +39,21 @@ pub(super) struct Vertex<'a, 'w> {
     pub(super) receiver: Receiver,
 }
 
-/// Scatterer at a path vertex: a surface with its BSDF, or a medium with its phase function.
+/// Scatterer at a path vertex, which is a surface with its BSDF or a medium with its phase
+/// function.
 #[derive(Clone, Copy)]
 pub(super) enum VertexKind<'a, 'w> {
-    /// A surface. With a transition, light can pass through it into another medium.
+    /// A surface. If there is a transition, light can pass through the surface into another medium.
     Surface(&'a SurfacePoint, &'a Shading<'w>, Option<&'a MediumTransition>),
     /// A point in a medium, and the unit direction in which the ray arrives.
     Medium(DVec3, Vec3, HenyeyGreenstein),
 }
 
-/// Direction sampled at a path vertex from a BSDF or a phase function, with weight and density.
+/// Direction sampled at a path vertex from a BSDF or a phase function, with its weight and density.
 pub(super) struct BsdfSample {
     /// Unit direction away from the vertex, in world space.
     pub(super) wi: Vec3,
-    /// BSDF · cosine / pdf.
+    /// Weight of the direction, which is BSDF · cosine / pdf.
     pub(super) weight: Spectrum,
     /// Density per steradian, summed over all lobes; 0 for a delta lobe.
     pub(super) pdf: f32,
@@ -64,7 +64,7 @@ pub(super) struct BsdfSample {
 }
 
 impl<'w> Path<'w> {
-    /// Creates the vertex at the end of a state's ray.
+    /// Creates the vertex at the end of the ray of a path state.
     pub(super) fn vertex<'a>(&self, kind: VertexKind<'a, 'w>, state: &PathState) -> Vertex<'a, 'w> {
         let is_narrow = self.world.environment().is_some() && kind.is_glossy();
         let (tries, directions) = match (is_narrow, state.depth) {
@@ -90,13 +90,13 @@ impl Vertex<'_, '_> {
         self.random[dimension as usize]
     }
 
-    /// Samples a direction to follow.
+    /// Samples a direction in which the path continues.
     pub(super) fn sample_bsdf(&self) -> Option<BsdfSample> {
         self.kind.sample(self.random(Dimension::Choices).x, self.random(Dimension::Direction))
     }
 
-    /// Returns BSDF · cosine for a direction, and its density per steradian times the number of
-    /// directions followed.
+    /// Returns BSDF · cosine for a direction, and the direction's density per steradian multiplied
+    /// by the number of directions followed.
     pub(super) fn eval(&self, wi: Vec3) -> (Spectrum, f32) {
         let (value, pdf) = self.kind.eval(wi);
         (value, self.directions as f32 * pdf)
@@ -111,7 +111,8 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Returns the normal for light sampling; zero if light from all directions counts.
+    /// Returns the normal for light sampling, which is zero if light from all directions is taken
+    /// into account.
     fn normal(&self) -> Vec3 {
         match self {
             VertexKind::Surface(_, shading, _) if !shading.bsdf.passes_light() => shading.frame.normal,
@@ -127,12 +128,12 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Returns true if at least half of the scattered light goes into a narrow cone.
+    /// Returns true if at least half of the scattered light stays within a narrow cone.
     fn is_glossy(&self) -> bool {
         matches!(self, VertexKind::Surface(_, shading, _) if shading.bsdf.is_glossy())
     }
 
-    /// Returns BSDF · cosine for a direction, and its density per steradian.
+    /// Returns BSDF · cosine for a direction, and the direction's density per steradian.
     fn eval(&self, wi: Vec3) -> (Spectrum, f32) {
         match self {
             VertexKind::Surface(_, shading, _) => shading.eval(wi),
@@ -143,7 +144,8 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Samples a direction. `choice` in [0, 1) selects the lobe, `u` the direction in it.
+    /// Samples a direction. `choice` in [0, 1) selects the lobe, and `u` selects the direction
+    /// within the lobe.
     pub(super) fn sample(&self, choice: f32, u: Vec2) -> Option<BsdfSample> {
         match self {
             VertexKind::Surface(_, shading, _) => {
@@ -179,7 +181,8 @@ impl VertexKind<'_, '_> {
         self.nth_lobe(lobe).is_some_and(|lobe| lobe.is_delta() && lobe.kind().eta.is_some())
     }
 
-    /// Returns true if a lobe transmits light straight through an open surface, such as a pane.
+    /// Returns true if a lobe transmits light straight through an open surface, such as a window
+    /// pane.
     pub(super) fn transmits_straight(&self, lobe: usize) -> bool {
         let is_sheet = matches!(self, VertexKind::Surface(_, _, None));
         is_sheet && self.nth_lobe(lobe).is_some_and(|lobe| lobe.kind().is_straight)
@@ -192,7 +195,7 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Returns the ray that leaves the vertex in a direction.
+    /// Returns the ray that leaves the vertex in a given direction.
     pub(super) fn spawn(&self, wi: Vec3) -> Ray64 {
         match self {
             VertexKind::Surface(surface, ..) => spawn_ray(surface, wi, f32::INFINITY, None),
@@ -201,7 +204,7 @@ impl VertexKind<'_, '_> {
     }
 
     /// Returns the shadow ray to a point sampled on a light. The ray ends just before the light, so
-    /// that surfaces at the same place do not block it.
+    /// that surfaces at the light's position do not block it.
     pub(super) fn shadow_ray(&self, light: &LightSample) -> Ray64 {
         match self {
             VertexKind::Surface(surface, ..) => to_point(surface, light.wi, light.shadow_reach(offset_bound(surface))),
@@ -209,7 +212,8 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Returns the media behind the surface if a direction leads there and light can pass.
+    /// Returns the media behind the surface if the direction leads there and light can pass through
+    /// the surface.
     pub(super) fn media_behind(&self, wi: Vec3) -> Option<&MediumStack> {
         match self {
             VertexKind::Surface(_, shading, Some(transition)) if wi.dot(shading.n_geo) < 0.0 => {

@@ -1,4 +1,4 @@
-//! Tests that closed rooms stay dark, also far from the origin.
+//! Tests that closed rooms stay dark, even far from the origin.
 
 use super::*;
 use crate::compile::{AccelKind, testing};
@@ -22,7 +22,7 @@ const CORNERS: [[f32; 3]; 8] = [
 ];
 const WALLS: [[usize; 4]; 6] = [[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [3, 2, 6, 7], [0, 3, 7, 4], [1, 5, 6, 2]];
 
-/// Returns an OBJ file with the walls of a room of size 2 around a point.
+/// Returns an OBJ file with the walls of a room of size 2, centred at a point.
 fn room_file(at: Vec3) -> String {
     let mut text = String::new();
     for corner in CORNERS {
@@ -35,7 +35,7 @@ fn room_file(at: Vec3) -> String {
     text
 }
 
-/// Returns an OBJ file with a smooth sphere of radius 1 around a point.
+/// Returns an OBJ file with a smooth sphere of radius 1, centred at a point.
 fn ball_file(at: Vec3) -> String {
     let ball = include_str!("../../../../../scenes/meshes/ball80-smooth.obj");
     let moved = |line: &str| match line.strip_prefix("v ") {
@@ -60,8 +60,8 @@ fn triangles(at: Vec3) -> String {
     WALLS.iter().flat_map(|&[a, b, c, d]| [triangle([a, b, c]), triangle([a, c, d])]).collect()
 }
 
-/// Builds a room of size 2 around a point. A point light and an area light are outside, so their
-/// light could enter only through cracks.
+/// Builds a room of size 2, centred at a point. A point light and an area light are outside the
+/// room, so their light could enter only through cracks.
 fn room(walls: &str, at: Vec3, folder: &Path) -> World {
     let (p, light) = (at, at + Vec3::new(3.0, 4.0, 2.5));
     let text = format!(
@@ -85,8 +85,8 @@ fn room(walls: &str, at: Vec3, folder: &Path) -> World {
     world.unwrap_or_else(|| panic!("{found:?}"))
 }
 
-/// Returns how many of `count` squared rays from inside a room, in all directions, see light with
-/// Whitted ray tracing or path tracing.
+/// Returns the number of rays, out of `count`^2 rays from inside a room in all directions, that see
+/// light with Whitted ray tracing or path tracing.
 fn leaks(world: &World, at: Vec3, count: usize) -> usize {
     let settings = RenderSettings {
         bounces: 0,
@@ -103,7 +103,7 @@ fn leaks(world: &World, at: Vec3, count: usize) -> usize {
     let sees = |i: usize| {
         let (u, v) = ((i % count) as f32 + 0.5, (i / count) as f32 + 0.5);
         let [x, y] = [u, v].map(|x| 2.0 * x / count as f32 - 1.0);
-        // Both sides of a picture of 90 degrees, and the floor and ceiling.
+        // Shoot rays through pictures of 90 degrees in the directions +z, -z, +y and +x.
         let dir = [Vec3::new(x, y, 1.0), Vec3::new(x, y, -1.0), Vec3::new(x, 1.0, y), Vec3::new(1.0, x, y)][i % 4];
         let ray = Ray::new(eye, dir);
         assert!(world.closest(&ray, &mut ()).is_some(), "{ray:?}");
@@ -192,7 +192,7 @@ fn shadow_rays_of_curved_surfaces_end_at_the_light() {
     let ray = to_point(&surface, to.normalize(), to.length());
     let end = ray.origin() + f64::from(ray.rounded.t_max) * ray.dir().as_dvec3();
     assert!((end - surface.point() - to.as_dvec3()).length() < 1e-5, "{end}");
-    // A parallel ray ends elsewhere. A ray of infinite length stays parallel.
+    // A parallel ray ends at another point. A ray of infinite length stays parallel.
     let parallel = to_light(&surface, to.normalize(), to.length(), None);
     let end = parallel.origin() + f64::from(parallel.rounded.t_max) * parallel.dir().as_dvec3();
     assert!((end - surface.point() - to.as_dvec3()).length() > 0.01);

@@ -1,4 +1,4 @@
-//! Direct light of the Whitted integrator: shadow rays, diffuse terms and highlights.
+//! Direct light in the Whitted integrator, with shadow rays, diffuse terms and highlights.
 
 use super::{ShadedMaterial, ShadingPoint, Whitted};
 use crate::integrator::spawn::{spawn_ray, to_light};
@@ -13,7 +13,7 @@ use durer_scene::shape::SurfacePoint;
 const MOST_LAYERS: u32 = 64;
 
 impl Whitted<'_> {
-    /// Returns the shadow ray to a light for the trace.
+    /// Returns a record of the shadow ray to a light for the trace.
     pub(super) fn shadow(
         &self,
         surface: &SurfacePoint,
@@ -31,7 +31,7 @@ impl Whitted<'_> {
     pub(super) fn shadow_ray(&self, surface: &SurfacePoint, light: usize, light_sample: &LightLiSample) -> Ray64 {
         let epsilon = self.world.shading_rules().epsilon;
         if epsilon.is_none() {
-            // End before the light, so that objects exactly at the light do not block it.
+            // End the ray before the light, so that objects exactly at the light do not block it.
             return to_light(surface, light_sample.to_light, light_sample.distance * (1.0 - gamma(16)), None);
         }
         let light_direction = self.world.course_light_direction(light, surface.position);
@@ -39,8 +39,8 @@ impl Whitted<'_> {
         to_light(surface, dir, distance, epsilon)
     }
 
-    /// Computes the visibility of lights along shadow rays: 0 if occluded, else the transmittance
-    /// of transparent objects in between.
+    /// Computes the visibility of lights along shadow rays, which is 0 if the light is occluded and
+    /// otherwise the transmittance of the transparent objects in between.
     pub(super) fn visible<T: TraceListener>(&self, shadows: &mut [Ray64], shares: &mut [Color], listener: &mut T) {
         let mut hits = [None; MAX_BATCH];
         if self.world.shading_rules().shadow_fronts {
@@ -64,8 +64,8 @@ impl Whitted<'_> {
         }
     }
 
-    /// Returns the transmittance of the transparent objects along a shadow ray. `next_hit` is
-    /// its first hit.
+    /// Returns the transmittance of the transparent objects along a shadow ray. `next_hit` is the
+    /// first hit of the ray.
     fn shadow_transmittance<T: TraceListener>(
         &self,
         mut ray: Ray64,
@@ -73,10 +73,10 @@ impl Whitted<'_> {
         listener: &mut T,
     ) -> Color {
         let (to_light, mut share) = (ray.dir(), Color::ONE);
-        // Limits the number of layers.
+        // The loop limits the number of layers.
         for layer in 1.. {
             let Some(hit) = next_hit else { return share };
-            // An opaque material ends the search early, without computing the surface.
+            // An opaque material ends the search early, before the surface is computed.
             match &self.world.materials()[self.world.material_of(&hit) as usize] {
                 Material::Phong(phong) if phong.transparent == Color::ZERO => break,
                 _ => {}
@@ -95,40 +95,41 @@ impl Whitted<'_> {
     }
 }
 
-/// Diffuse and highlight terms of one light at a shaded point, without occlusion.
+/// Diffuse and highlight terms of one light at a shaded point, ignoring occlusion.
 #[derive(Clone, Copy, Default)]
 pub(super) struct LightTerms {
     /// Cosine between the normal and the direction to the light.
     cosine: f32,
-    /// Cosine that is raised to the highlight's exponent, possibly negative. `None` without a
-    /// highlight.
+    /// Cosine that is raised to the highlight's exponent, which may be negative. It is `None` if
+    /// there is no highlight.
     base: Option<f32>,
-    /// Cosine to the power of the exponent, computed by [`compute_powers`].
+    /// The cosine raised to the highlight's exponent, computed by [`compute_powers`].
     strength: f32,
     diffuse: Color,
 }
 
 impl LightTerms {
-    /// Computes all terms except the highlight's power.
+    /// Computes all terms except the power needed for the highlight.
     #[inline(always)]
     pub(super) fn of(phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, light_sample: &LightLiSample) -> Self {
         let cosine = n.dot(light_sample.to_light);
         let emits = |model| cosine > 0.0 || model == HighlightModel::Phong { behind: true };
         let highlight = phong.highlight.filter(|highlight| emits(highlight.2));
         let base = highlight.map(|(_, _, model)| match model {
-            // Cosine between the normal and the half vector of light and eye.
+            // Cosine between the normal and the half vector of the directions to the light and to
+            // the eye.
             HighlightModel::Blinn => n.dot((light_sample.to_light - view).normalize_or_zero()),
             HighlightModel::Phong { .. } => reflect(view, n).dot(light_sample.to_light),
         });
         LightTerms { cosine, base, strength: 0.0, diffuse: cosine.max(0.0) * diffuse }
     }
 
-    /// Returns true if both terms are 0 for a light of any colour.
+    /// Returns true if both terms are 0, whatever the colour of the light.
     #[inline(always)]
     pub(super) fn is_dark(&self, phong: &Phong) -> bool {
         let highlight = |(specular, exponent, _)| {
-            // An exponent of 0 gives 1. A base above 1, from a normal longer than 1, can give
-            // infinity.
+            // An exponent of 0 gives a power of 1. A base greater than 1, caused by a normal longer
+            // than 1, can give infinity.
             let shows = |base: f32| base > if specular == Color::ZERO { 1.0 } else { 0.0 };
             self.base.is_some_and(shows) || specular != Color::ZERO && exponent <= 0.0
         };
@@ -157,7 +158,7 @@ impl LightTerms {
     }
 }
 
-/// Computes the highlight powers of several points with SIMD.
+/// Computes the powers for the highlights of several points with SIMD.
 pub(super) fn compute_powers(points: &[ShadingPoint], parts: &mut [ShadedMaterial], some: impl Iterator<Item = usize>) {
     let mut powers = Powers { bases: [0.0; MAX_BATCH], exponents: [1.0; MAX_BATCH], count: 0 };
     let mut places = [0; MAX_BATCH];
@@ -204,7 +205,7 @@ impl Powers {
     }
 }
 
-/// Kernel that computes a batch of powers, for the CPU's best instruction set.
+/// Kernel that computes a batch of powers with the best instruction set of the CPU.
 struct PowerKernel<'p>(&'p Powers, usize);
 
 impl PlainKernel for PowerKernel<'_> {

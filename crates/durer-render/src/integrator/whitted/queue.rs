@@ -1,41 +1,42 @@
-//! Queue of rays that the Whitted integrator traces, with the sums of their light.
+//! Queue of rays that the Whitted integrator traces, with the sums of the light along them.
 
 use crate::integrator::media::MediumStack;
 use crate::integrator::trace::{NodeId, TraceListener};
 use crate::world::MAX_BATCH;
 use durer_scene::math::{Color, Ray, Ray64, Vec3};
 
-/// Parent index of a camera ray.
+/// Parent index of camera rays.
 const CAMERA: u32 = u32::MAX;
 
 /// Ray in the queue of the Whitted integrator, with the light found along it so far.
 pub(super) struct Segment {
     pub(super) ray: Ray64,
-    /// Minimum `t` of hits. It skips surfaces that were ignored.
+    /// Minimum value of `t` for hits. The value is chosen so that surfaces that were ignored are
+    /// skipped.
     pub(super) t_min: f32,
     /// Objects that contain the ray.
     pub(super) media: MediumStack,
-    /// Maximum depth of secondary rays from this one.
+    /// Maximum depth of secondary rays that start from this ray.
     pub(super) bounces: u32,
-    /// Weight in the pixel; see [`super::RenderSettings::min_weight`].
+    /// Weight of the ray in the pixel; see [`super::RenderSettings::min_weight`].
     pub(super) weight: f32,
-    /// Index of the camera ray from which it descends.
+    /// Index of the camera ray from which this ray descends.
     pub(super) camera: u32,
-    /// Index of the parent segment, or [`CAMERA`].
+    /// Index of the parent segment, or [`CAMERA`] if there is none.
     pub(super) parent: u32,
     /// Kind of ray: 0 for reflected, 1 for transmitted.
     pub(super) branch: usize,
-    /// Weight in the parent's radiance.
+    /// Weight of the ray in the radiance of its parent.
     pub(super) factor: Color,
-    /// Node in the trace.
+    /// Node of the ray in the trace.
     pub(super) node: NodeId,
-    /// Light at the segment's own hit: ambient light and direct light.
+    /// Ambient and direct light at the segment's own hit.
     pub(super) local: Color,
-    /// Weighted radiance of the reflected and the transmitted ray.
+    /// Weighted radiance of the reflected ray and the transmitted ray.
     pub(super) branches: [Color; 2],
-    /// Number of these rays that are not finished.
+    /// Number of secondary rays that are not finished.
     pub(super) pending: u32,
-    /// Trace node for the sum of these rays.
+    /// Trace node for the sum of the secondary rays.
     pub(super) secondary: NodeId,
 }
 
@@ -60,14 +61,15 @@ impl Default for Segment {
     }
 }
 
-/// Rays that the Whitted integrator is tracing. Waiting ones form a stack, so that at most one
+/// Rays that the Whitted integrator is tracing. The waiting rays form a stack, so that at most one
 /// batch per level of secondary rays is in progress, and there is no recursion.
 #[derive(Default)]
 pub(super) struct Queue {
-    /// The first `used` segments are in use or free. Later ones are kept for reuse.
+    /// Segments, of which the first `used` are in use or free. The remaining segments are kept for
+    /// reuse.
     segments: Vec<Segment>,
     used: u32,
-    /// Indices of finished segments among the first `used`.
+    /// Indices of the finished segments among the first `used` ones.
     free: Vec<u32>,
     waiting: Vec<u32>,
 }
@@ -93,9 +95,9 @@ impl Queue {
         (segment.camera, segment.parent) = (camera, CAMERA);
     }
 
-    /// Adds a segment as the next one to trace. The segment is filled in place, since copying one
-    /// costs as much as an intersection. The caller sets the remaining fields except the sums,
-    /// which [`super::secondary`] initializes.
+    /// Adds a segment as the next one to trace. The segment is filled in place, since copying a
+    /// segment costs as much as an intersection. The caller sets all remaining fields except the
+    /// sums, which [`super::secondary`] initializes.
     #[inline]
     pub(super) fn push(&mut self, ray: &Ray64, node: NodeId) -> &mut Segment {
         let number = self.free.pop().unwrap_or_else(|| {
@@ -111,12 +113,13 @@ impl Queue {
         segment
     }
 
-    /// Queues a segment that passed an ignored surface again.
+    /// Queues a segment again after it passed an ignored surface.
     pub(super) fn push_again(&mut self, number: u32) {
         self.waiting.push(number);
     }
 
-    /// Removes up to [`MAX_BATCH`] of the most recently added segments; returns their number.
+    /// Removes up to [`MAX_BATCH`] of the most recently added segments from the stack and returns
+    /// their number.
     pub(super) fn take(&mut self, batch: &mut [u32; MAX_BATCH]) -> usize {
         let count = self.waiting.len().min(MAX_BATCH);
         let start = self.waiting.len() - count;
@@ -125,7 +128,8 @@ impl Queue {
         count
     }
 
-    /// Finishes a segment with its radiance, and each ancestor whose sum is then complete.
+    /// Finishes a segment, given its radiance, and all ancestors whose sums are complete as a
+    /// result.
     pub(super) fn finish<T: TraceListener>(
         &mut self,
         mut number: u32,

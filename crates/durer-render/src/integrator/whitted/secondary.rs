@@ -9,20 +9,21 @@ use crate::world::{Material, SurfaceInteraction, WeightedMaterial};
 use durer_scene::math::{Color, Vec3, reflect};
 use durer_scene::shape::SurfacePoint;
 
-/// Directions and weights of the reflected and the transmitted ray at a hit.
+/// Directions and weights of the reflected ray and the transmitted ray at a hit.
 struct SecondaryRays {
     mirrored: Vec3,
     reflective: Color,
-    /// `None` for total internal reflection and for opaque materials.
+    /// Direction of the transmitted ray; `None` for total internal reflection and for opaque
+    /// materials.
     transmitted: Option<Vec3>,
     transparent: Color,
-    /// Fraction reflected, if Fresnel's equations split the light.
+    /// Fraction of the light that is reflected, if Fresnel's equations split the light.
     fresnel: Option<f32>,
 }
 
 impl Whitted<'_> {
-    /// Spawns the reflected and the transmitted ray of a point. If there are none, finishes the
-    /// point's segment.
+    /// Spawns the reflected ray and the transmitted ray at a point. If there are no such rays, the
+    /// point's segment is finished.
     pub(super) fn secondary<T: TraceListener>(
         &self,
         point: &mut ShadingPoint,
@@ -91,29 +92,30 @@ impl Whitted<'_> {
     ) -> SecondaryRays {
         let SpecularBlend { mut reflective, mut transparent, fresnel, .. } = blend;
         let (rules, leaving, dir) = (self.world.shading_rules(), self.sees_back(at), at.ray.dir());
-        // Use the normals on the ray's side.
+        // Use the normals on the side of the ray.
         let [n, n_geo] = [at.surface.n_shade, at.surface.n_geo].map(|n| if leaving { -n } else { n });
-        // An interpolated normal may point away from the ray; the geometric normal does not. A NaN
-        // normal, which only the official programs' arithmetic yields, is passed on.
+        // An interpolated normal may point away from the ray, whereas the geometric normal never
+        // does. A NaN normal, which can occur only in the arithmetic of the official programs, is
+        // passed on.
         let n = if dir.dot(n) < 0.0 || n.is_nan() { n } else { n_geo };
-        // Without `shade_back`, mirrors reflect about the unflipped normal, which gives the same
-        // direction.
+        // Without `shade_back`, mirrors reflect about the normal that was not flipped, which gives
+        // the same direction.
         let mirrored = reflect(dir, n);
-        // If the normal is not of unit length, the reflected direction is not either.
+        // If the normal is not of unit length, neither is the reflected direction.
         let mirrored = if rules.raw_normals && !rules.long_mirrors { mirrored.normalize_or(n_geo) } else { mirrored };
         let n = if rules.raw_normals && !rules.raw_refraction { n.normalize_or(n_geo) } else { n };
         let transmitted = match transparent == Color::ZERO {
             true => None,
-            // If the normal is not of unit length, the transmitted direction is not either.
+            // If the normal is not of unit length, neither is the transmitted direction.
             false if rules.raw_refraction => {
                 refract_raw(dir, n, ior_front / ior_behind).map(|through| through.normalize_or(dir))
             }
             false => refract(dir, n, ior_front / ior_behind),
         };
-        // If reflection or refraction is switched off, the other one gets all the light.
+        // If either reflection or refraction is switched off, the other one gets all the light.
         let divides = fresnel && self.settings.reflection && self.settings.refraction;
         let share = divides.then(|| {
-            // Total internal reflection has weight 1.
+            // In the case of total internal reflection, the reflected ray has weight 1.
             let before = if rules.exit_r0 { 1.0 } else { ior_front };
             transmitted.map_or(1.0, |through| fresnel_share(dir, n, through, (ior_front, ior_behind), before))
         });
@@ -124,7 +126,7 @@ impl Whitted<'_> {
         SecondaryRays { mirrored, reflective, transmitted, transparent, fresnel: share }
     }
 
-    /// Returns the refraction at a hit, or `None` if the surface is opaque.
+    /// Returns the transition of refracted light at a hit, or `None` if the surface is opaque.
     #[inline]
     pub fn transition(&self, at: &SurfaceInteraction, media: &MediumStack) -> Option<MediumTransition> {
         if !self.world.may_enter(at) {
@@ -144,8 +146,8 @@ impl Whitted<'_> {
         })
     }
 
-    /// Returns the refraction as in the course's programs: a ray has only one index of refraction,
-    /// and there is air behind glass.
+    /// Returns the transition of refracted light as in the course's programs, where a ray has only
+    /// one index of refraction and there is air behind glass.
     fn official_transition(
         &self,
         object: u32,
@@ -168,14 +170,15 @@ impl Whitted<'_> {
         }
     }
 
-    /// Returns the weight of a ray after multiplication by a colour: its largest component or, in
-    /// the course's programs, its length. For grey, the length exceeds the light that is left.
+    /// Returns the weight of a ray after multiplying it by a colour's largest component or, in the
+    /// course's programs, by the colour's length. For a grey colour, the length is greater than the
+    /// fraction of the light that is left.
     pub fn weight_after(&self, before: f32, weight: Color) -> f32 {
         let by_length = self.world.shading_rules().weight_by_length;
         before * if by_length { weight.length() } else { weight.max_element() }
     }
 
-    /// Spawns a secondary ray, unless its weight in the pixel is too small.
+    /// Spawns a secondary ray, unless its weight in the pixel would be too small.
     fn spawn<T: TraceListener>(
         &self,
         (parent, from): (u32, RayKind),
@@ -185,7 +188,7 @@ impl Whitted<'_> {
         queue: &mut Queue,
         listener: &mut T,
     ) {
-        // Schlick's formula can give less than 0 if the normal is not of unit length.
+        // Schlick's formula can give values below 0 if the normal is not of unit length.
         if factor == Color::ZERO {
             return;
         }
@@ -208,17 +211,19 @@ impl Whitted<'_> {
     }
 }
 
-/// Mirror and glass properties at a point for the Whitted integrator, averaged over its materials
-/// by their shares. The index of refraction is that of the material with the largest share.
+/// Mirror and glass properties at a point, for the Whitted integrator, averaged over the materials
+/// according to their shares. The index of refraction is that of the material with the largest
+/// share.
 #[derive(Clone, Copy)]
 pub struct SpecularBlend {
-    /// Fraction of light reflected as by a mirror, per channel.
+    /// Fraction of the light that is reflected as in a mirror, per channel.
     pub reflective: Color,
-    /// Fraction of light transmitted, per channel.
+    /// Fraction of the light that is transmitted, per channel.
     pub transparent: Color,
     /// Index of refraction.
     pub ior: f32,
-    /// True if Schlick's Fresnel approximation splits the light between the two.
+    /// True if the light is split between reflection and transmission by Schlick's approximation of
+    /// Fresnel's equations.
     pub fresnel: bool,
 }
 
@@ -228,7 +233,7 @@ impl SpecularBlend {
         self.reflective != Color::ZERO || self.transparent != Color::ZERO
     }
 
-    /// Averages the materials of a point.
+    /// Averages the properties of the materials at a point.
     #[inline]
     pub fn of<'a, 'w: 'a>(parts: impl IntoIterator<Item = &'a WeightedMaterial<'w>>) -> Self {
         let mut blend = SpecularBlend { reflective: Color::ZERO, transparent: Color::ZERO, ior: 1.0, fresnel: false };
@@ -244,11 +249,12 @@ impl SpecularBlend {
     }
 }
 
-/// Returns the fraction of light reflected, by Schlick's approximation R0 + (1 - R0) (1 - c)^5.
+/// Returns the reflected fraction of the light, by Schlick's approximation
+/// R0 + (1 - R0) (1 - c)^5.
 ///
-/// c is the cosine on the side with the lower index. R0 is computed from the indices `before` and
-/// `there`, so `before` equal to `there` makes it 0. Source: Schlick, *An Inexpensive BRDF Model
-/// for Physically-based Rendering*, Eurographics 1994.
+/// In this formula, c is the cosine on the side with the lower index of refraction. R0 is computed
+/// from the indices `before` and `there`, so it is 0 if they are equal. Source: Schlick, *An
+/// Inexpensive BRDF Model for Physically-based Rendering*, Eurographics 1994.
 #[inline(always)]
 pub fn fresnel_share(dir: Vec3, n: Vec3, transmitted: Vec3, (here, there): (f32, f32), before: f32) -> f32 {
     let ratio = (there - before) / (there + before);
@@ -259,7 +265,7 @@ pub fn fresnel_share(dir: Vec3, n: Vec3, transmitted: Vec3, (here, there): (f32,
     r0 + (1.0 - r0) * square * square * rest
 }
 
-/// Computes [`refract`] in the order of operations of the program of 2012, which rounds
+/// Computes [`refract`] with the order of operations used by the program of 2012, which rounds
 /// differently.
 fn refract_raw(d: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
     let cosine = -d.dot(n);
@@ -267,11 +273,11 @@ fn refract_raw(d: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
     if radicand >= 0.0 { Some((eta * cosine - radicand.sqrt()) * n + eta * d) } else { None }
 }
 
-/// Refracts a direction by Snell's law. The normal `n` must be on the ray's side. Returns `None`
-/// for total internal reflection.
+/// Refracts a direction according to Snell's law. The normal `n` must be on the ray's side. Returns
+/// `None` for total internal reflection.
 ///
-/// With eta = index in front / index behind, t = eta (d - n (d·n)) - n sqrt(1 - eta^2 (1 -
-/// (d·n)^2)).
+/// With eta = index in front / index behind, the result is t = eta (d - n (d·n)) - n sqrt(1 - eta^2
+/// (1 - (d·n)^2)).
 #[inline(always)]
 pub fn refract(d: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
     let cosine = d.dot(n);

@@ -40,7 +40,7 @@ fn refraction_follows_snells_law_and_ends_at_the_critical_angle() {
         let expected = sine * f64::from(eta);
         match refract(d, n, eta) {
             Some(t) => {
-                // The square root loses half the digits near the critical angle.
+                // Near the critical angle, the square root loses half the digits.
                 assert!(expected < 1.0 + 1e-6 && (t.length() - 1.0).abs() < 1e-3, "{expected} {t}");
                 assert!((t.as_dvec3().cross(n.as_dvec3()).length() - expected).abs() < 2e-6);
                 assert!(
@@ -52,7 +52,7 @@ fn refraction_follows_snells_law_and_ends_at_the_critical_angle() {
         }
     }
     assert_eq!(refract(Vec3::NEG_Y, Vec3::Y, 0.7), Some(Vec3::NEG_Y));
-    // With equal indices, the direction does not change.
+    // If the indices are equal, the direction does not change.
     let d = Vec3::new(0.6, -0.8, 0.0);
     assert!((refract(d, Vec3::Y, 1.0).unwrap() - d).length() < 1e-6);
 }
@@ -80,19 +80,19 @@ fn schlicks_reflectance_is_r0_at_normal_and_one_at_grazing_incidence() {
     close(share(false, 1.0, 1.5, 1.0), 0.04);
     close(share(false, 0.5, 1.0, 1.5), 0.04 + 0.96 / 32.0);
     close(share(false, 0.0, 1.0, 1.5), 1.0);
-    // For a ray that leaves, the angle outside counts: sin = 1.5 sin 30 degrees.
+    // For a ray that leaves the glass, the angle outside is used, with sin = 1.5 sin 30 degrees.
     let inside = 0.75f32.sqrt();
     let outside = 1.0 - (1.0f32 - 0.5625).sqrt();
     close(share(false, inside, 1.5, 1.0), 0.04 + 0.96 * outside * outside * outside * outside * outside);
     assert_eq!(share(false, 0.7, 1.5, 1.0), None);
-    // An official program uses an R0 of 0 for rays that leave.
+    // An official program uses R0 = 0 for rays that leave the glass.
     close(share(true, 1.0, 1.5, 1.0), 0.0);
     close(share(true, 1.0, 1.33, 1.5), 0.04);
 }
 
 #[test]
 fn facing_mirrors_sum_a_geometric_series() {
-    // Each wall has radiance 1 from ambient light, and reflects one half.
+    // Each wall has radiance 1 from ambient light and reflects one half of the light.
     let hall = "Background { color 0 0 0 ambientLight 1 1 1 }
         Lights { DirectionalLight { direction 0 -1 0 color 0.001 0.001 0.001 } }
         Materials { Material { diffuseColor 1 1 1 reflectiveColor 0.5 0.5 0.5 } }
@@ -122,7 +122,7 @@ fn facing_mirrors_sum_a_geometric_series() {
 
 #[test]
 fn deep_recursion_needs_no_deep_stack() {
-    // Two perfect mirrors face each other; each has radiance 1.
+    // Two perfect mirrors face each other, and each has radiance 1 from ambient light.
     let hall = "Background { color 0 0 0 ambientLight 1 1 1 }
         Lights { DirectionalLight { direction 0 -1 0 color 0.001 0.001 0.001 } }
         Materials { Material { diffuseColor 1 1 1 reflectiveColor 1 1 1 } }
@@ -130,7 +130,7 @@ fn deep_recursion_needs_no_deep_stack() {
     let settings = RenderSettings { bounces: RenderSettings::MAX_BOUNCES, ..ALL };
     let world = &testing::read(&format!("{CAMERA}{hall}"));
     let light = || Whitted { world, settings, cancel: None }.radiance(&Ray::new(Vec3::ZERO, Vec3::X), &mut ());
-    // One kilobyte of stack per level would overflow this stack.
+    // If each level needed one kilobyte of stack, this stack would overflow.
     let thread = std::thread::Builder::new().stack_size(192 << 10);
     let light = std::thread::scope(|scope| thread.spawn_scoped(scope, light).unwrap().join().unwrap());
     assert_eq!(light, Vec3::splat(RenderSettings::MAX_BOUNCES as f32 + 1.0));
@@ -146,12 +146,12 @@ fn shadows_end_at_the_light() {
         );
         seen(&text, ALL, [0.0, 1.0, 0.0], [0.0, -1.0, 0.0])
     };
-    // The wall is in front of the light, exactly at it, just behind it, and far behind it.
+    // Place the wall in front of the light, exactly at it, just behind it, and far behind it.
     assert_eq!(lit(1.99), Vec3::ZERO);
     for wall in [2.0, 2.0f32.next_up(), 2.001, 50.0] {
         assert_eq!(lit(wall), Vec3::ONE, "{wall}");
     }
-    // A directional light is at infinity, so everything above occludes it.
+    // A directional light is at infinity, so it is occluded by everything above.
     let text =
         "Lights { DirectionalLight { direction 0 -1 0 color 1 1 1 } } Materials { Material { diffuseColor 1 1 1 } }
         Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } Sphere { center 0 1e6 0 radius 1 } }";
@@ -176,13 +176,13 @@ fn sphere_with_the_index_of_air_is_invisible() {
             let origin = 3.0 * random.direction();
             let dir = (0.7 * random.point() - origin).to_array();
             let color = seen(&text, ALL, origin.to_array(), dir);
-            // For equal indices, Schlick's approximation gives (1 - c)^5, with the same c on
-            // entering and leaving.
+            // If the indices are equal, Schlick's approximation gives (1 - c)^5, with the same c
+            // for entering and leaving rays.
             let dir = Vec3::from(dir).normalize();
             let beside = origin - origin.dot(dir) * dir;
             let rest = 1.0 - (1.0 - beside.length_squared()).max(0.0).sqrt();
             let lost = if glass.contains("refractionIndex") { rest * rest * rest * rest * rest } else { 0.0 };
-            // Rays that graze the sphere within 1e-3 may miss it, because a cosine loses half its
+            // Rays within 1e-3 of grazing the sphere may miss it, because a cosine loses half its
             // digits there.
             let slack = if beside.length() > 0.99 { 0.1 } else { 1e-5 };
             let expected =
@@ -207,11 +207,12 @@ fn diffuse_light_and_highlight_follow_their_models() {
     let close = |a: f32, b: f32| assert!((a - b).abs() < 1e-5, "{a} {b}");
     let down = [0.0, -1.0, 0.0];
     close(lit("diffuseColor 1 1 1", down), 0.8);
-    // From behind, the surface receives no light.
+    // If the light is behind the surface, the surface receives no light.
     close(lit("diffuseColor 1 1 1", [0.0, 1.0, 0.0]), 0.0);
-    // Blinn: the half vector between (0.6, 0.8) and straight up has the cosine sqrt(0.9).
+    // In Blinn's model, the half vector between (0.6, 0.8) and straight up has the cosine
+    // sqrt(0.9).
     close(lit("diffuseColor 0 0 0 specularColor 1 1 1 exponent 4", down), 0.81);
-    // Phong: the view direction is reflected straight up.
+    // In Phong's model, the view direction is reflected straight up.
     close(lit("diffuseColor 0 0 0 specularColor 1 1 1 shininess 2", down), 0.64);
     close(lit("diffuseColor 0 0 0 specularColor 1 1 1 shininess 7", [0.6, -0.8, 0.0]), 1.0);
 }
@@ -241,8 +242,8 @@ fn coarse_smooth_sphere_casts_no_shadow_on_points_that_face_the_light() {
         let rules = durer_scene::dialect::DialectRules { epsilon: compat.then_some(1e-4), ..rules.clone() };
         testing::try_read(&text("ball80-smooth.obj", wall), &rules, AccelKind::Bvh, &folder).0.unwrap()
     };
-    // Returns the number of dark points whose normals face the light, and of all points whose
-    // normals do.
+    // Returns the number of dark points whose normals face the light, and the number of all points
+    // whose normals face the light.
     let dark = |world: &World| {
         let (mut random, mut dark, mut all) = (Random(5), 0, 0);
         let whitted = Whitted { world, settings: ALL, cancel: None };
@@ -264,7 +265,7 @@ fn coarse_smooth_sphere_casts_no_shadow_on_points_that_face_the_light() {
     };
     let (lost, all) = dark(&read("", false));
     assert!(lost == 0 && all > 5_000, "{lost} of {all}");
-    // Without shadow offsets, entire triangles are dark.
+    // If there are no shadow offsets, entire triangles are dark.
     let (lost, all) = dark(&read("", true));
     assert!(lost > all / 100, "{lost} of {all}");
     // Objects still cast shadows if they are farther away than the offset of the curved surface.

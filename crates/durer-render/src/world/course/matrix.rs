@@ -1,12 +1,13 @@
-//! Single-precision 4 x 4 matrices with the arithmetic of the course's programs for products,
-//! inverses and decompositions.
+//! Single-precision 4 x 4 matrices whose products, inverses and decompositions use the arithmetic
+//! of the course's programs.
 
 use super::VectorLibrary;
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::{MatrixOp, MatrixRules};
 use glam::DAffine3;
 
-/// Single-precision 4 x 4 transform matrix of the course's programs, stored by columns.
+/// Single-precision 4 x 4 transformation matrix, as used by the course's programs, stored by
+/// columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrix([[f32; 4]; 4]);
 
@@ -15,7 +16,7 @@ impl Matrix {
     pub const IDENTITY: Matrix =
         Matrix([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]);
 
-    /// Returns the product of the matrices in one transform.
+    /// Returns the product of all matrices in a transform.
     pub fn of(ops: &[MatrixOp], rules: MatrixRules, vectors: VectorLibrary) -> Self {
         let product = ops.iter().fold(Matrix::IDENTITY, |product, op| {
             let own = Matrix::from(op);
@@ -76,8 +77,8 @@ impl Matrix {
         [self, &inverse].iter().all(|matrix| matrix.0.iter().flatten().all(|x| x.is_finite()))
     }
 
-    /// Returns the inverse, computed as cofactors times the reciprocal of the determinant. For a
-    /// singular matrix, its entries are infinite or NaN.
+    /// Returns the inverse, computed as cofactors times the reciprocal of the determinant. If the
+    /// matrix is singular, the entries of the result are infinite or NaN.
     pub fn inverse(&self, vectors: VectorLibrary) -> Matrix {
         match vectors {
             VectorLibrary::Vecmath => self.inverse_by_minors(),
@@ -85,8 +86,9 @@ impl Matrix {
         }
     }
 
-    /// Inverts the matrix with cofactors that are 3 x 3 determinants. The rows and columns of each
-    /// start after its own row and column and wrap around the matrix.
+    /// Inverts the matrix by means of its cofactors, which are 3 x 3 determinants. The rows and
+    /// columns of each cofactor start after its own row and column and wrap around at the edge of
+    /// the matrix.
     fn inverse_by_minors(&self) -> Matrix {
         let m = |row: usize, column: usize| self.0[column][row];
         let cofactor = |row: usize, column: usize| {
@@ -99,14 +101,14 @@ impl Matrix {
         };
         let [a, b, c, d] = [0, 1, 2, 3].map(|column| m(0, column) * cofactor(0, column));
         let reciprocal = 1.0 / (a + b + c + d);
-        // The inverse consists of the transposed cofactors.
+        // The inverse is the transposed matrix of cofactors divided by the determinant.
         Matrix([0, 1, 2, 3].map(|column| [0, 1, 2, 3].map(|row| cofactor(column, row) * reciprocal)))
     }
 
-    /// Inverts the matrix as glm does, from products of pairs that several cofactors share.
+    /// Inverts the matrix as glm does, using 2 x 2 determinants that several cofactors share.
     fn inverse_by_factors(&self) -> Matrix {
         let m = &self.0;
-        // 2 x 2 determinants of columns i and j, rows p and q.
+        // Returns the 2 x 2 determinant of columns i and j and rows p and q.
         let pair = |i: usize, j: usize, p: usize, q: usize| m[i][p] * m[j][q] - m[j][p] * m[i][q];
         let columns = [(2, 3), (1, 3), (1, 2)];
         let factor = |p: usize, q: usize| {
@@ -133,8 +135,8 @@ impl Matrix {
         Matrix(cofactors.map(|column| column.map(|x| x * reciprocal)))
     }
 
-    /// Removes the shear, as glm's `decompose` into translation, rotation and scale does when
-    /// recomposed.
+    /// Removes the shear, as happens when glm's `decompose` splits a matrix into translation,
+    /// rotation and scale and these are multiplied again.
     ///
     /// Source: Spencer W. Thomas, *Decomposing a Matrix into Simple Transformations*, Graphics Gems
     /// II (1991), VII.1.
@@ -172,7 +174,8 @@ impl Matrix {
     }
 }
 
-/// Returns the quaternion of the rotation onto three axes, as x, y, z and w.
+/// Returns the quaternion (x, y, z, w) of the rotation that maps the coordinate axes to three given
+/// axes.
 fn quaternion(axes: [Vec3; 3]) -> [f32; 4] {
     let trace = axes[0].x + axes[1].y + axes[2].z;
     let mut q = [0.0; 4];
@@ -227,7 +230,7 @@ impl From<DAffine3> for Matrix {
     }
 }
 
-/// Returns the matrix of a rotation about a unit axis, by Rodrigues' formula.
+/// Returns the matrix of a rotation about a unit axis, computed with Rodrigues' formula.
 fn rotation(Vec3 { x, y, z }: Vec3, degrees: f32) -> Matrix {
     let radians = (std::f64::consts::PI * f64::from(degrees) / 180.0) as f32;
     let (sin, cos) = fp::sin_cos_f64(f64::from(radians));

@@ -1,9 +1,9 @@
-//! Ray intersection as in the course's programs of 2012 to 2023: object by object, in single
-//! precision, and with the same order of operations. The last bit is visible in pictures of objects
-//! that are distant, seen at a grazing angle, or as large as the ground.
+//! Ray intersection as performed by the course's programs of 2012 to 2023: object by object, in
+//! single precision, and with the same order of operations. Differences in the last bit are visible
+//! in pictures of objects that are distant, seen at a grazing angle, or as large as the ground.
 //!
-//! Sources: the starter code of the assignments, whose spheres, groups, cameras and octree the
-//! official programs share, and for the rest pictures of these programs.
+//! The sources are the starter code of the assignments, whose spheres, groups, cameras and octree
+//! the official programs share, and, for everything else, pictures rendered by these programs.
 
 mod matrix;
 mod octree;
@@ -20,19 +20,19 @@ use shapes::{Crossing, HitInterval};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Vector library whose arithmetic an official program uses: the order of operations decides the
-/// last bits.
+/// Vector library whose arithmetic an official program uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VectorLibrary {
-    /// The course's own library vecmath, 2012 to 2019.
+    /// The course's own library vecmath, used from 2012 to 2019.
     Vecmath,
-    /// The library glm, since 2020.
+    /// The library glm, used since 2020.
     Glm,
 }
 
 impl VectorLibrary {
-    /// Starts a sum with its first term. The course's own library starts with 0, so its sums are
-    /// never -0. The sign of a zero decides whether a ray passes through an octree cell.
+    /// Returns the initial value of a sum, given its first term. The course's own library starts
+    /// each sum with 0, so its sums are never -0. The sign of a zero decides whether a ray passes
+    /// through an octree cell.
     fn sum_from(self, first: f32) -> f32 {
         match self {
             VectorLibrary::Vecmath => 0.0 + first,
@@ -40,8 +40,8 @@ impl VectorLibrary {
         }
     }
 
-    /// Returns the direction with which an octree is traversed. Of unit length in the course's own
-    /// arithmetic.
+    /// Returns the ray direction that is used to traverse an octree. It has unit length in the
+    /// arithmetic of the course's own library.
     fn traversal_direction(self, dir: Vec3) -> Vec3 {
         match self {
             VectorLibrary::Vecmath => self.unit(dir),
@@ -58,37 +58,39 @@ impl VectorLibrary {
     }
 }
 
-/// Ray intersection rules of an official program, which the dialect determines when a scene is
+/// Ray intersection rules of an official program, which the dialect selects when a scene is
 /// compiled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HitRules {
-    /// Arithmetic of ray transforms and of directions to lights. With glm, each object transforms
-    /// rays, even by the identity, as the difference of two points.
+    /// Arithmetic used to transform rays and to compute directions to lights. With glm, every
+    /// object transforms the ray as the difference of two points, even if its transform is the
+    /// identity.
     pub vectors: VectorLibrary,
-    /// True to intersect triangles with the inverse of a matrix, false to use their plane and
-    /// areas.
+    /// True if triangles are intersected by inverting a matrix, false if their plane and areas are
+    /// used.
     pub triangle_matrix: bool,
-    /// True if a triangle wins over earlier objects that are hit at the same distance.
+    /// True if a triangle takes precedence over earlier objects hit at the same distance.
     pub tied_triangles: bool,
     /// True if a hit on a plane exactly at the start of a ray counts.
     pub closed_planes: bool,
     /// True if a hit on a sphere exactly at the start of a ray counts, as in the starter code of
-    /// 2020. If false, such a hit is at distance 10000, as in earlier starter code.
+    /// 2020. If false, such a hit is placed at distance 10000, as in earlier starter code.
     pub closed_spheres: bool,
     /// True if the normal of an untransformed plane keeps the length that it has in the scene file.
     pub raw_normals: bool,
-    /// True to traverse meshes with an octree that misses the far half of some cells.
+    /// True if meshes are traversed with an octree that misses the far half of some cells.
     pub octree: bool,
 }
 
-/// Objects of a world, prepared for intersection as an official program of the course does it.
+/// Objects of a world, prepared for intersection with the arithmetic of an official program of the
+/// course.
 #[derive(Clone, Debug)]
 pub struct CourseAccel {
     rules: HitRules,
     objects: Vec<CourseObject>,
 }
 
-/// Object of a world, prepared for intersection as an official program does it.
+/// Object of a world, prepared for intersection with the arithmetic of an official program.
 #[derive(Clone, Debug)]
 struct CourseObject {
     /// Inverses of the enclosing transforms, outermost first.
@@ -97,7 +99,7 @@ struct CourseObject {
     walk: Option<Arc<MeshOrder>>,
 }
 
-/// How the triangles of a mesh are visited to reproduce an official program's hits.
+/// Order in which the triangles of a mesh are visited to reproduce an official program's hits.
 #[derive(Debug)]
 enum MeshOrder {
     /// BVH of all triangles, for programs in which the order of visits does not matter.
@@ -109,7 +111,7 @@ enum MeshOrder {
 impl CourseAccel {
     /// Prepares the objects of a world.
     pub(crate) fn new(rules: HitRules, objects: &[Object]) -> Self {
-        // Several objects can use the same mesh.
+        // Several objects can share one mesh.
         let mut walks: HashMap<*const MeshTree, Arc<MeshOrder>> = HashMap::new();
         let objects = objects.iter().map(|object| {
             let walk = match &object.geometry {
@@ -155,7 +157,7 @@ impl CourseAccel {
                         offer(Some(crossing), part);
                     }
                 }
-                // The course does not have these shapes.
+                // The course has no such shapes.
                 Geometry::Primitive(_) | Geometry::Solid(_) => {
                     let found = object.closest(number, ray, false, counter);
                     let found = found.filter(|(crossing, _)| limits.takes(crossing.t, false));
@@ -187,9 +189,9 @@ impl CourseAccel {
         local
     }
 
-    /// Returns the normal of a sphere or plane in world space, or `None` for other shapes. For
-    /// ground spheres of radius 1000, and for planes whose normal is not of unit length, its
-    /// rounding decides where mirrored rays hit the ground again.
+    /// Returns the normal of a sphere or plane in world space, or `None` for other shapes. The
+    /// rounding of the normal decides where mirrored rays hit the ground again if the ground is a
+    /// sphere of radius 1000 or a plane whose normal is not of unit length.
     fn normal(&self, objects: &[Object], ray: &Ray, hit: &Hit) -> Option<Vec3> {
         let (object, vectors) = (&self.objects[hit.object as usize], self.rules.vectors);
         let own = match &objects[hit.object as usize].geometry {
@@ -248,7 +250,7 @@ impl CourseObject {
                 let Some(crossing) = shapes::triangle(tree.mesh.corners(part), ray, limits, rules) else {
                     return t_max;
                 };
-                // The result is the same as if all triangles were tested in the order of the file.
+                // The result is the same as if all triangles were tested in file order.
                 let wins = best.is_none_or(|(hit, known)| {
                     crossing.t < hit.t || crossing.t == hit.t && (part > known) == rules.tied_triangles
                 });
@@ -269,7 +271,8 @@ impl MeshOrder {
         if rules.octree {
             return MeshOrder::Octree(Octree::new(boxes.collect()));
         }
-        // In this arithmetic, a ray can hit a triangle slightly outside of its box.
+        // In this arithmetic, a ray can hit a triangle slightly outside the triangle's bounding
+        // box.
         let whole = tree.bvh.bounds();
         let pad = 1e-5 * (whole.min.abs().max(whole.max.abs()) + whole.size());
         let padded: Vec<Aabb> = boxes.map(|b| Aabb { min: b.min - pad, max: b.max + pad }).collect();
@@ -278,7 +281,8 @@ impl MeshOrder {
 }
 
 impl World {
-    /// Returns the normal at a hit in an official program's arithmetic, if its rounding matters.
+    /// Returns the normal at a hit in an official program's arithmetic, if the rounding of the
+    /// normal matters.
     pub(super) fn course_normal(&self, ray: &Ray, hit: &Hit) -> Option<Vec3> {
         match self.accel() {
             Accel::Course(hits) => hits.normal(self.objects(), ray, hit),
@@ -286,8 +290,8 @@ impl World {
         }
     }
 
-    /// Returns the direction and distance to a light in an official program's arithmetic. `None`
-    /// for Dürer's own arithmetic and for lights that the course does not have.
+    /// Returns the direction and distance to a light in an official program's arithmetic. Returns
+    /// `None` for Dürer's own arithmetic and for lights that the course does not have.
     pub fn course_light_direction(&self, light: usize, point: Vec3) -> Option<(Vec3, f32)> {
         let vectors = self.hit_rules()?.vectors;
         match &self.lights()[light] {

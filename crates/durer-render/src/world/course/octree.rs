@@ -1,23 +1,24 @@
 //! Octree of the course's starter code, which misses some hits.
 //!
-//! A ray visits the eight children of a cell in the order of the `t` at which it crosses the cell's
-//! outer and middle planes. If a component of its direction is exactly 0, these are infinite, and
-//! their mean is NaN. Comparisons with NaN are false, so the children behind the middle plane of
-//! that axis are never visited.
+//! A ray visits the eight children of a cell in the order given by the values of `t` at which it
+//! crosses the outer and middle planes of the cell. If a component of the ray direction is exactly
+//! 0, the values of `t` for the outer planes are infinite, and their mean, used for the middle
+//! plane, is NaN. Comparisons with NaN are false, so the children behind the middle plane of that
+//! axis are never visited.
 //!
 //! Source: Revelles, Ureña, Lastra, *An Efficient Parametric Algorithm for Octree Traversal*, WSCG
-//! 2000. The constants are those of the starter code.
+//! 2000. The constants come from the starter code.
 
 use durer_scene::math::{Aabb, Vec3};
 use std::ops::Range;
 
 /// Maximum number of triangles in a cell that is not divided.
 const MAX_LEAF_TRIANGLES: usize = 7;
-/// Deepest level at which cells are divided.
+/// Deepest level at which cells are still divided.
 const LAST_LEVEL: u32 = 8;
-/// Number of stored triangles beyond which cells are no longer divided, in all cells together.
-/// Bounds the memory to about 64 MB: a triangle is stored in every cell that its box touches,
-/// 1180 on average in the course's rabbit of 1000 triangles.
+/// Number of stored triangles, summed over all cells, beyond which no more cells are divided. This
+/// limits the memory use to about 64 MB: a triangle is stored in every cell that its bounding box
+/// touches, which is 1180 cells on average for the course's rabbit of 1000 triangles.
 const MOST_STORED: usize = 1 << 24;
 
 /// Octree over the triangles of a mesh, as the course's starter code builds and traverses it.
@@ -25,15 +26,15 @@ const MOST_STORED: usize = 1 << 24;
 pub(super) struct Octree {
     bounds: Aabb,
     cells: Vec<Cell>,
-    /// Triangles of undivided cells.
+    /// Triangles of the undivided cells.
     triangles: Vec<u32>,
 }
 
-/// Cell of an [`Octree`], divided or with a range of triangles.
+/// Cell of an [`Octree`], which is either divided or holds a range of triangles.
 #[derive(Clone, Debug)]
 enum Cell {
-    /// Index of the first of eight children. In a child's offset, the bits 4, 2 and 1 are set for
-    /// the upper half along x, y and z.
+    /// Index of the first of eight children. In the offset of a child from the first child, the
+    /// bits 4, 2 and 1 are set if the child is in the upper half along x, y and z respectively.
     Divided(u32),
     /// Range of the cell's triangles in [`Octree::triangles`].
     Whole(Range<u32>),
@@ -47,7 +48,7 @@ struct Span {
 }
 
 impl Octree {
-    /// Builds the octree from the boxes of a mesh's triangles.
+    /// Builds the octree from the bounding boxes of a mesh's triangles.
     pub fn new(boxes: Vec<Aabb>) -> Self {
         let bounds = boxes.iter().copied().reduce(Aabb::union).unwrap_or(Aabb::EMPTY);
         let mut octree = Octree { bounds, cells: vec![Cell::Whole(0..0)], triangles: Vec::new() };
@@ -60,7 +61,7 @@ impl Octree {
         size_of_val(&*self.cells) + size_of_val(&*self.triangles)
     }
 
-    /// Divides a cell, or stores its triangles if there are few.
+    /// Divides a cell, or stores its triangles if there are only a few.
     fn fill(&mut self, cell: usize, bounds: Aabb, triangles: Vec<u32>, boxes: &[Aabb], level: u32) {
         if triangles.len() <= MAX_LEAF_TRIANGLES || level > LAST_LEVEL || self.triangles.len() > MOST_STORED {
             let start = self.triangles.len() as u32;
@@ -85,9 +86,9 @@ impl Octree {
     }
 
     /// Calls `offer` with the triangles in the cells that a ray visits, in visiting order. Some
-    /// triangles are offered several times.
+    /// triangles are passed several times.
     pub fn walk(&self, mut origin: Vec3, mut dir: Vec3, offer: &mut impl FnMut(u32)) {
-        // Mirror the axes along which the direction is negative, and with them the children.
+        // Mirror the octree along each axis on which the ray direction is negative.
         let mut mirrored = 0;
         for axis in 0..3 {
             if dir[axis] < 0.0 {
@@ -98,7 +99,7 @@ impl Octree {
         }
         let at = |planes: Vec3| [0, 1, 2].map(|axis| (planes[axis] - origin[axis]) * (1.0 / dir[axis]));
         let span = Span { enter: at(self.bounds.min), leave: at(self.bounds.max) };
-        // Compare as C++ does: with NaN, the first operand is returned.
+        // Compare as C++ does: if one operand is NaN, the first operand is returned.
         let larger = |a: f32, b: f32| if a < b { b } else { a };
         let smaller = |a: f32, b: f32| if b < a { b } else { a };
         let [x, y, z] = span.enter;
@@ -128,7 +129,8 @@ impl Octree {
                 leave: [0, 1, 2].map(|axis| if is_upper[axis] { leave[axis] } else { middle[axis] }),
             };
             self.visit(children + (child ^ mirrored), mirrored, child_span, offer);
-            // Leave through the nearest exit plane. Nothing lies behind an outer plane.
+            // Leave the cell through the nearest exit plane. There are no more children behind an
+            // outer plane.
             let axis = first_plane(child_span.leave);
             if is_upper[axis] {
                 return;
@@ -138,10 +140,11 @@ impl Octree {
     }
 }
 
-/// Returns the child that a ray enters first. Planes are given by their `t`.
+/// Returns the child that a ray enters first. Each plane is given by the `t` at which the ray
+/// crosses it.
 fn first_child([x, y, z]: [f32; 3], middle: [f32; 3]) -> usize {
-    // Find the axis of the entry plane that is crossed last. NaN compares as false, as in the
-    // official programs.
+    // Find the axis whose entry plane is crossed last. All comparisons with NaN are false, as in
+    // the official programs.
     let (axis, t) = match (x > y, x > z, y > z) {
         (true, true, _) => (0, x),
         (false, _, true) => (1, y),

@@ -1,4 +1,5 @@
-//! Intersection of spheres, planes and triangles in the arithmetic of the course's programs.
+//! Intersection of rays with spheres, planes and triangles in the arithmetic of the course's
+//! programs.
 
 use super::HitRules;
 use durer_scene::math::{Ray, Vec2, Vec3};
@@ -9,11 +10,11 @@ use durer_scene::shape::{Plane, Sphere};
 pub(super) struct Crossing {
     /// Position along the ray.
     pub t: f32,
-    /// Second and third barycentric coordinate on a triangle; 0 on other shapes.
+    /// Second and third barycentric coordinates on a triangle; 0 on other shapes.
     pub uv: Vec2,
 }
 
-/// Interval of a ray in which a hit counts, for intersections in an official program's arithmetic.
+/// Part of a ray in which hits count, for intersections in an official program's arithmetic.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HitInterval {
     /// Minimum `t`, excluded.
@@ -25,8 +26,8 @@ pub(super) struct HitInterval {
 }
 
 impl HitInterval {
-    /// Returns true if a hit at `t` counts. With `ties`, it may be at the same distance as the best
-    /// hit. False for NaN.
+    /// Returns true if a hit at `t` counts. With `ties`, a hit at the same distance as the best hit
+    /// counts too. Returns false if `t` is NaN.
     pub fn takes(&self, t: f32, ties: bool) -> bool {
         t > self.t_min && self.is_nearer(t, ties)
     }
@@ -39,8 +40,8 @@ impl HitInterval {
     }
 }
 
-/// Intersects a sphere: solves |o + t d - c|^2 = r^2 by the quadratic formula, without avoiding
-/// cancellation.
+/// Intersects a sphere by solving |o + t d - c|^2 = r^2 with the quadratic formula, without
+/// avoiding cancellation.
 pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: HitInterval, rules: HitRules) -> Option<Crossing> {
     let Ray { dir, t_min, .. } = *ray;
     let origin = ray.origin - sphere.center;
@@ -63,13 +64,13 @@ pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: HitInterval, rules: Hit
         }
         () if near > t_min => near,
         () if later > t_min && near < t_min => later,
-        // One hit is exactly at the start of the ray, or both are NaN.
+        // Either one hit is exactly at the start of the ray, or both hits are NaN.
         () => 10_000.0,
     };
     limits.takes(t, false).then_some(Crossing { t, uv: Vec2::ZERO })
 }
 
-/// Intersects a plane: solves n·(o + t d) = offset, with n as in the scene file.
+/// Intersects a plane by solving n·(o + t d) = offset, with n as given in the scene file.
 pub(super) fn plane(plane: &Plane, ray: &Ray, limits: HitInterval, closed: bool) -> Option<Crossing> {
     let n = plane.normal;
     let t = (plane.offset - n.dot(ray.origin)) / n.dot(ray.dir);
@@ -77,18 +78,18 @@ pub(super) fn plane(plane: &Plane, ray: &Ray, limits: HitInterval, closed: bool)
     (begins && limits.is_nearer(t, false)).then_some(Crossing { t, uv: Vec2::ZERO })
 }
 
-/// Intersects both sides of a triangle.
+/// Intersects a triangle, which can be hit from both sides.
 pub(super) fn triangle(corners: [Vec3; 3], ray: &Ray, limits: HitInterval, rules: HitRules) -> Option<Crossing> {
     let (t, uv) = if rules.triangle_matrix { by_matrix(corners, ray)? } else { by_areas(corners, ray)? };
     limits.takes(t, rules.tied_triangles).then_some(Crossing { t, uv })
 }
 
-/// Solves a - o = beta (a - b) + gamma (a - c) + t d with the inverse of the matrix that has these
-/// three columns.
+/// Solves a - o = beta (a - b) + gamma (a - c) + t d by inverting the matrix whose columns are a -
+/// b, a - c and d.
 fn by_matrix([a, b, c]: [Vec3; 3], ray: &Ray) -> Option<(f32, Vec2)> {
     let [x, y, z] = [a - b, a - c, ray.dir];
     let to = a - ray.origin;
-    // The rows of the cofactor matrix are rows of the inverse times the determinant.
+    // The rows of the cofactor matrix are the rows of the inverse multiplied by the determinant.
     let minor = |p: f32, q: f32, r: f32, s: f32| p * s - q * r;
     let cofactors = [
         [minor(y.y, z.y, y.z, z.z), -minor(y.x, z.x, y.z, z.z), minor(y.x, z.x, y.y, z.y)],
@@ -102,8 +103,8 @@ fn by_matrix([a, b, c]: [Vec3; 3], ray: &Ray) -> Option<(f32, Vec2)> {
     (beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0).then_some((t, Vec2::new(beta, gamma)))
 }
 
-/// Intersects the triangle's plane, and computes barycentric coordinates as areas of the three
-/// triangles around that point.
+/// Intersects the triangle's plane and computes barycentric coordinates from the areas of the three
+/// triangles around the intersection point.
 fn by_areas([a, b, c]: [Vec3; 3], ray: &Ray) -> Option<(f32, Vec2)> {
     let n = (b - a).cross(c - a);
     let t = n.dot(a - ray.origin) / n.dot(ray.dir);

@@ -1,4 +1,5 @@
-//! Tests of CSG solids against boolean operations on points, closed forms and set identities.
+//! Tests of CSG solids against boolean operations on points, closed-form solutions and set
+//! identities.
 
 use super::*;
 use crate::compile::{AccelKind, testing};
@@ -61,7 +62,7 @@ fn closed_shape(random: &mut Random) -> scene::Object {
     }
 }
 
-/// Returns a random tree of operations over closed shapes, with groups and transforms.
+/// Returns a random tree of boolean operations on closed shapes, with groups and transforms.
 fn tree(random: &mut Random, depth: usize) -> scene::Object {
     let inner = match random.below(if depth == 0 { 1 } else { 5 }) {
         0 => closed_shape(random),
@@ -79,7 +80,7 @@ fn tree(random: &mut Random, depth: usize) -> scene::Object {
     moved(MatrixOp::Matrix(rows), &inner)
 }
 
-/// Returns true if a solid contains a point, by the definition of its operations.
+/// Returns true if a solid contains a point according to the definition of its operations.
 fn member(object: &scene::Object, p: DVec3) -> bool {
     let count = |parts: &[scene::Object]| parts.iter().filter(|part| member(part, p)).count();
     match &object.node {
@@ -99,7 +100,7 @@ fn member(object: &scene::Object, p: DVec3) -> bool {
     }
 }
 
-/// Returns true if containment changes within a distance from a point.
+/// Returns true if some point at the given distance is on the other side of the solid's surface.
 fn near_surface(object: &scene::Object, p: DVec3, distance: f64) -> bool {
     let here = member(object, p);
     let around = DVec3::AXES.into_iter().chain(DVec3::AXES.map(|a| -a)).chain([DVec3::ONE, -DVec3::ONE]);
@@ -112,7 +113,7 @@ fn goes_out(world: &World, ray: impl Into<Ray64>, hit: &Hit) -> bool {
 
 #[test]
 fn solids_contain_the_points_of_their_operations() {
-    // Distance from a surface within which single precision can be wrong.
+    // Distance from a surface within which single precision may give wrong results.
     const DISTANCE: f64 = 1e-4;
     let wanted = std::env::var("DURER_SOLID_POINTS").ok().and_then(|n| n.parse().ok()).unwrap_or(20_000);
     let folder = tempfile::tempdir().unwrap();
@@ -120,8 +121,8 @@ fn solids_contain_the_points_of_their_operations() {
     let mut random = Random(21);
     let (mut points, mut inside, mut near) = (0, 0, 0);
     while points < wanted {
-        // The parts of a top-level union stay separate objects with inner surfaces, so wrap it in
-        // another operation.
+        // The parts of a top-level union remain separate objects with inner surfaces, so wrap the
+        // union in another operation.
         let solid = join(CsgOperation::Merge, &[&tree(&mut random, 3)]);
         let world = testing::object(solid.clone(), AccelKind::Bvh, folder.path());
         for _ in 0..40 {
@@ -159,8 +160,8 @@ fn solids_contain_the_points_of_their_operations() {
     assert!(inside > points / 10 && near < points / 10, "{points} {inside} {near}");
 }
 
-/// Returns the volume of a solid within the cube of half-width 2, estimated with rays along x, and
-/// its standard error.
+/// Returns the volume of the part of a solid inside the cube of half-width 2, estimated with rays
+/// along x, and the standard error of the estimate.
 fn volume(solid: &scene::Object, random: &mut Random, rays: usize) -> (f64, f64) {
     let world = world(solid);
     let (mut sum, mut squares) = (0.0, 0.0);
@@ -218,7 +219,7 @@ fn volumes_match_closed_forms() {
     }
 }
 
-/// Asserts that random rays have the same hits and normals on two solids. Returns the number of
+/// Asserts that random rays have the same hits and normals on both solids. Returns the number of
 /// hits.
 fn assert_same(a: &scene::Object, b: &scene::Object, random: &mut Random) -> usize {
     let (first, second) = (world(a), world(b));
@@ -253,23 +254,23 @@ fn set_identities_hold_bit_for_bit() {
         let not = |x: &scene::Object| join(Difference, &[&all, x]);
         let both = join(Intersection, &[&a, &b]);
         let mut same = |x: &scene::Object, y: &scene::Object| hits += assert_same(x, y, &mut rays);
-        // A - B is the intersection of A and not B, and A xor (A and B).
+        // A - B is equal to the intersection of A and not B, and to A xor (A and B).
         same(&join(Difference, &[&a, &b]), &join(Intersection, &[&a, &not(&b)]));
         same(&join(Difference, &[&a, &b]), &join(Xor, &[&a, &both]));
         // De Morgan.
         same(&not(&join(Merge, &[&a, &b])), &join(Intersection, &[&not(&a), &not(&b)]));
         same(&not(&both), &join(Merge, &[&not(&a), &not(&b)]));
-        // Both distributive laws.
+        // Test both distributive laws.
         let either = join(Merge, &[&b, &c]);
         same(&join(Intersection, &[&a, &either]), &join(Merge, &[&both, &join(Intersection, &[&a, &c])]));
         same(
             &join(Merge, &[&a, &join(Intersection, &[&b, &c])]),
             &join(Intersection, &[&join(Merge, &[&a, &b]), &join(Merge, &[&a, &c])]),
         );
-        // Subtract one after the other, or both together.
+        // Subtract two solids one after the other and both together.
         same(&join(Difference, &[&a, &b, &c]), &join(Difference, &[&a, &either]));
         same(&join(Difference, &[&join(Difference, &[&a, &b]), &c]), &join(Difference, &[&a, &either]));
-        // Idempotence, and a solid minus itself.
+        // Test idempotence and the difference of a solid and itself.
         same(&join(Merge, &[&a, &a]), &a);
         same(&join(Intersection, &[&a, &a]), &a);
         same(&join(Xor, &[&a, &a, &a]), &a);
@@ -283,7 +284,7 @@ fn coincident_faces_leave_no_skin() {
     use CsgOperation::*;
     let mut random = Random(25);
     let long = cuboid([0.0; 3], [0.3, 0.1, 0.1]);
-    // Get the same position from other numbers: 0.1 + 0.2 is not 0.3 in single precision.
+    // Compute the same position from different numbers: 0.1 + 0.2 is not 0.3 in single precision.
     let end = moved(MatrixOp::Translate(Vec3::new(0.1, 0.0, 0.0)), &cuboid([0.0; 3], [0.2, 0.1, 0.1]));
     let other = moved(
         MatrixOp::Translate(Vec3::new(0.1, 0.05, 0.05)),
@@ -308,11 +309,11 @@ fn coincident_faces_leave_no_skin() {
             for _ in 0..200 {
                 let inside = DVec3::new(0.31, 0.11, 0.11) * (random.point().as_dvec3() * 0.55 + 0.5);
                 let target = map.transform_point3(inside).as_vec3();
-                // Shoot rays from near and far.
+                // Shoot rays from near and far origins.
                 let origin = target + [0.5, 5.0, 50.0][random.below(3)] * random.direction();
                 let ray = Ray::new(origin, target - origin);
                 let (a, b): (Vec<Hit>, Vec<Hit>) = (found.all_hits(&ray).collect(), wanted.all_hits(&ray).collect());
-                // At an edge, single precision cannot decide on which side a ray passes.
+                // At an edge, single precision cannot tell on which side a ray passes.
                 let width = b.windows(2).map(|w| (w[1].t - w[0].t) * ray.dir.length()).fold(f32::INFINITY, f32::min);
                 let cuts = a.windows(2).map(|w| (w[1].t - w[0].t) * ray.dir.length()).fold(f32::INFINITY, f32::min);
                 if width < 1e-3 || b.is_empty() && cuts < 1e-3 {
@@ -342,21 +343,22 @@ fn surfaces_have_the_material_of_their_part() {
         let list = |at: SurfaceInteraction| (at.material, at.hit.t, at.surface.n_geo.to_array());
         world.all_hits(&ray).map(|hit| list(world.interaction(&ray, hit))).collect::<Vec<_>>()
     };
-    // The ray enters through the dent, whose surface is inverted, and leaves at the back.
+    // The ray enters the solid through the dent, whose surface is inverted, and leaves it at the
+    // back.
     let through = seen([0.0, 0.0, 5.0], [0.0, 0.0, -1.0]);
     assert_eq!(through, [(2, 4.5, [0.0, 0.0, 1.0]), (1, 6.0, [0.0, 0.0, -1.0])]);
-    // The right wall was the left wall of the second box.
+    // The right wall of the solid is the left wall of the second box.
     let across = seen([5.0, 0.9, 0.0], [-1.0, 0.0, 0.0]);
     assert_eq!((across[0].0, across[0].2, across[1].0, across[1].2), (2, [1.0, 0.0, 0.0], 1, [-1.0, 0.0, 0.0]));
-    // A hollow sphere.
+    // Test a hollow sphere.
     let hollow: Vec<_> = seen([9.0, 0.0, 5.0], [0.0, 0.0, -1.0]).into_iter().map(|(m, t, n)| (m, t, n[2])).collect();
     assert_eq!(hollow, [(0, 4.0, 1.0), (1, 4.5, -1.0), (1, 5.5, 1.0), (0, 6.0, -1.0)]);
 }
 
 #[test]
 fn lens_of_two_spheres_focuses_by_the_lensmakers_equation() {
-    // 1/f = (n - 1) (2/R - (n - 1) d / (n R^2)), measured from behind the lens by f (1 - (n - 1) d
-    // / (n R)).
+    // Lensmaker's equation: 1/f = (n - 1) (2/R - (n - 1) d / (n R^2)); the focus is f (1 - (n - 1)
+    // d / (n R)) behind the lens.
     let (n, radius, offset) = (1.5f64, 2.2f64, 1.9f64);
     let thickness = 2.0 * (radius - offset);
     let f = 1.0 / ((n - 1.0) * (2.0 / radius - (n - 1.0) * thickness / (n * radius * radius)));
@@ -365,7 +367,7 @@ fn lens_of_two_spheres_focuses_by_the_lensmakers_equation() {
     let world = world(&lens);
     let mut random = Random(28);
     for _ in 0..1000 {
-        // For paraxial rays, the error grows with the square of the height.
+        // For rays close to the axis, the error grows with the square of the height.
         let (y, z) = (random.between(-0.05, 0.05), random.between(-0.05, 0.05));
         let mut ray = Ray64::from(Ray::new(Vec3::new(-5.0, y, z), Vec3::X));
         for (eta, outwards) in [(1.0 / 1.5, false), (1.5, true)] {
@@ -390,7 +392,7 @@ fn a_union_keeps_inner_surfaces_and_a_merge_does_not() {
         (world.objects().len(), world.all_hits(&Ray::new(Vec3::new(-5.0, 0.0, 0.0), Vec3::X)).count())
     };
     assert_eq!(hits(CsgOperation::Union), (2, 4));
-    // This also holds for nested unions.
+    // Nested unions are split into objects as well.
     let nested = join(CsgOperation::Union, &[&join(CsgOperation::Union, &[&a, &b]), &ball([9.0, 0.0, 0.0], 1.0)]);
     assert_eq!(world(&nested).objects().len(), 3);
     assert_eq!(hits(CsgOperation::Merge), (1, 2));
@@ -411,7 +413,7 @@ fn disjoint_parts_become_separate_objects() {
     assert_eq!(compiled.objects().len(), 1000);
     let solids = compiled.objects().iter().filter(|object| matches!(object.geometry, Geometry::Solid(_)));
     assert_eq!(solids.count(), 1);
-    // Intersection with a box keeps only the spheres in it and tightens the bounds.
+    // An intersection with a box keeps only the spheres inside the box and tightens the bounds.
     let window = join(Intersection, &[&merged, &cuboid([2.5, -0.5, -2.0], [9.5, 0.5, 2.0])]);
     let bounds = world(&window).bounds();
     assert_eq!(world(&window).objects().len(), 3);
@@ -424,7 +426,7 @@ fn disjoint_parts_become_separate_objects() {
 
 #[test]
 fn cluster_of_many_parts_matches_its_parts() {
-    // All parts are in one cluster, which has its own BVH. Rays start outside and inside.
+    // All parts are in one cluster, which has its own BVH. The rays start both outside and inside.
     let mut random = Random(26);
     let balls: Vec<scene::Object> =
         (0..300).map(|i| ball([0.5 * (i % 20) as f32, 0.5 * (i / 20) as f32, random.unit()], 0.4)).collect();
@@ -440,7 +442,7 @@ fn cluster_of_many_parts_matches_its_parts() {
         inner += usize::from(from_inside);
         let hit = world.closest(&ray, &mut ());
         assert_eq!(world.occluded(&ray, &mut ()), hit.is_some());
-        // March along the ray up to the first change.
+        // March along the ray up to the first surface.
         let step = 1e-3;
         let limit = hit.map_or(14.0, |hit| f64::from(hit.t));
         let mut t = step;
@@ -456,8 +458,8 @@ fn cluster_of_many_parts_matches_its_parts() {
     assert!(inner > 400, "{inner}");
 }
 
-/// Compares a solid with a BVH over its subtracted parts, clipped to the bounds of the solid, with
-/// one that tests all parts.
+/// Compares a solid whose subtracted parts are in a BVH, clipped to the solid's bounds, with one
+/// that tests all parts.
 #[test]
 fn parts_are_clipped_to_the_bounds_of_the_whole() {
     let (mut random, mut hits) = (Random(28), 0);
@@ -508,7 +510,7 @@ fn rays_that_leave_a_solid_do_not_hit_it_at_their_start() {
                 }
                 let away = spawn_ray(&surface, dir, f32::INFINITY, None);
                 let Some(next) = world.closest(&away, &mut ()) else { continue };
-                // After an exit there must be an entry, and after an entry an exit.
+                // Entries and exits must alternate.
                 count += 1;
                 let turns = goes_out(&world, &away, &next) != (dir.dot(surface.n_geo) > 0.0);
                 assert!(turns, "{solid:?} {ray:?} {surface:?} {away:?} {next:?}");
@@ -518,8 +520,8 @@ fn rays_that_leave_a_solid_do_not_hit_it_at_their_start() {
     assert!(count > 10_000, "{count}");
 }
 
-/// There are as many coincident crossings as parts. Each must be visited only a few times, not once
-/// for each of the others.
+/// There are as many coincident crossings as parts. Each crossing must be visited only a few times
+/// rather than once for each of the others.
 #[test]
 fn coincident_parts_take_linear_time() {
     let count = 30_000;

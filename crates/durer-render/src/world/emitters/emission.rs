@@ -10,7 +10,7 @@ use durer_scene::texture::Environment;
 use glam::DVec3;
 use std::f32::consts::PI;
 
-/// Bounding sphere of an object that casts caustics; photons are sent to it.
+/// Bounding sphere of an object that casts caustics, to which photons are sent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhotonTarget {
     /// Centre.
@@ -21,12 +21,12 @@ pub struct PhotonTarget {
     pub object: u32,
 }
 
-/// Photon emitter of a scene: all light sources, and the targets to which they send photons.
+/// Photon emitter of a scene, with all light sources and the targets to which they send photons.
 #[derive(Clone, Debug, Default)]
 pub struct PhotonEmitter {
     targets: Vec<PhotonTarget>,
     sources: Vec<PhotonSource>,
-    /// Cumulative power of the sources, for choosing one.
+    /// Cumulative power of the sources, used to choose one at random.
     sums: Vec<f32>,
     /// Length of the diagonal of the scene's bounds.
     reach: f32,
@@ -45,22 +45,24 @@ enum PhotonSource {
     EnvironmentMap,
 }
 
-/// Photon at its emission: ray and power, divided by the sampling density.
+/// Photon as emitted, with its ray and its power divided by the sampling density.
 #[derive(Clone, Copy, Debug)]
 pub struct EmittedPhoton {
     /// The ray.
     pub ray: Ray64,
-    /// Power per colour channel. For a light with a position, relative to the light's intensity.
+    /// Power per colour channel. For a light with a position, the power is relative to the light's
+    /// intensity.
     pub power: Color,
-    /// Index of the light that emitted the photon, if it has a position. Its intensity is applied
-    /// at the hit point.
+    /// Index of the light that emitted the photon, if it has a position. The light's intensity is
+    /// applied at the hit point.
     pub light: Option<u32>,
     /// Index of the material that emitted the photon, if any.
     pub material: Option<u32>,
 }
 
 impl PhotonEmitter {
-    /// Prepares emission from all lights to all objects that reflect or refract.
+    /// Prepares the emission of photons from all lights to all objects that reflect or refract
+    /// light.
     pub fn new(world: &World) -> Self {
         let targets = targets(world);
         let all = world.objects().iter().filter_map(Object::bounds).reduce(Aabb::union);
@@ -86,8 +88,8 @@ impl PhotonEmitter {
             let color = world.lights()[light as usize].color().max_element();
             match way != Vec3::ZERO {
                 true => beams.add(PhotonSource::Distant(light), PI * color * area),
-                // Its attenuation may differ from the inverse square law, so use its strength at a
-                // distance of the scene's size.
+                // The light's attenuation may differ from the inverse square law, so use its
+                // strength at a distance equal to the scene's size.
                 false => beams.add(PhotonSource::Point(light), 4.0 * PI * PI * color * reach * reach),
             }
         }
@@ -97,7 +99,7 @@ impl PhotonEmitter {
         beams
     }
 
-    /// Adds a light source with its power.
+    /// Adds a light source with the given power.
     fn add(&mut self, source: PhotonSource, power: f32) {
         if power > 0.0 && power.is_finite() {
             self.sources.push(source);
@@ -115,8 +117,8 @@ impl PhotonEmitter {
         self.targets.iter().map(|target| target.radius).fold(f32::INFINITY, f32::min)
     }
 
-    /// Emits a photon. `choices` selects the source and the target, `place` the point on the
-    /// source. All numbers are in [0, 1).
+    /// Emits a photon. The numbers in `choices` select the source and the target, and `place`
+    /// selects the point on the source. All numbers are in [0, 1).
     pub fn emit(&self, world: &World, choices: Vec2, place: Vec2, direction: Vec2) -> Option<EmittedPhoton> {
         let all = *self.sums.last()?;
         let wanted = choices.x * all;
@@ -133,7 +135,7 @@ impl PhotonEmitter {
                     return None;
                 }
                 let power = area.radiance * (cosine.abs() / (density * pdf * choice));
-                // Offset the ray from the surface of the emitter.
+                // Offset the ray origin from the emitter's surface.
                 let side = if cosine < 0.0 { -normal } else { normal };
                 let origin = point + f64::from(4.0 * area.error) * side.as_dvec3();
                 Some(EmittedPhoton {
@@ -168,13 +170,13 @@ impl PhotonEmitter {
         }
     }
 
-    /// Samples a direction from a point towards a target. Also returns its density per steradian,
-    /// taken over all targets.
+    /// Samples a direction from a point towards a target. The result includes the density of the
+    /// direction per steradian, averaged over all targets.
     fn sample_cone(&self, point: DVec3, target: usize, u: Vec2) -> Option<(Vec3, f32)> {
         let cone = |target: &PhotonTarget| {
             let to = (target.center.as_dvec3() - point).as_vec3();
             let (d2, r2) = (to.length_squared(), target.radius * target.radius);
-            // From inside the sphere, all directions hit it.
+            // From inside the sphere, all directions hit the sphere.
             let cosine = if d2 > r2 { (1.0 - r2 / d2).sqrt() } else { -1.0 };
             (to.normalize_or(Vec3::Z), cosine)
         };
@@ -189,8 +191,9 @@ impl PhotonEmitter {
         (sum > 0.0).then(|| (dir, sum / self.targets.len() as f32))
     }
 
-    /// Samples a ray through a target in a given direction. It starts in front of all objects. Also
-    /// returns its density per area, taken over all targets.
+    /// Samples a ray in a given direction that passes through a target. The ray starts in front of
+    /// all objects. The result includes the density of the ray per unit area, averaged over all
+    /// targets.
     fn sample_parallel(&self, dir: Vec3, target: usize, u: Vec2) -> (Ray64, f32) {
         let frame = Frame::around(dir);
         let disc = warp::disc(u);
@@ -202,16 +205,17 @@ impl PhotonEmitter {
             if beside <= square * (1.0 + 1e-5) { 1.0 / (PI * square) } else { 0.0 }
         };
         let sum: f32 = self.targets.iter().map(density).sum();
-        // Start in front of all objects, because they can also cast shadows.
+        // Start in front of all objects, because objects other than the target can cast shadows.
         let far = 2.0 * self.reach;
         let origin = through.as_dvec3() - f64::from(far) * dir.as_dvec3();
         (Ray64::new(origin, dir, 0.0, f32::INFINITY), sum / self.targets.len() as f32)
     }
 }
 
-/// Samples a direction to the environment. Also returns its radiance and its density per steradian.
-/// Half of the directions are uniformly distributed, because only photons find dim parts of the
-/// environment through mirrors and glass.
+/// Samples a direction towards the environment. The result includes the radiance from that
+/// direction and its density per steradian. Half of the directions are uniformly distributed,
+/// because light from dim parts of the environment that passes mirrors and glass is found only by
+/// photons.
 fn from_all_around(sky: &Environment, u: Vec2) -> Option<(Vec3, Color, f32)> {
     let (wi, light, pdf) = match u.x < 0.5 {
         true => sky.sample(Vec2::new(2.0 * u.x, u.y))?,
@@ -229,7 +233,8 @@ fn strength(world: &World, light: u32) -> f32 {
     world.lights()[light as usize].inverse_square().map_or(0.0, |(_, intensity)| intensity.max_element()).max(0.0)
 }
 
-/// Returns bounding spheres of all bounded objects with delta lobes, ordered by object.
+/// Returns the bounding spheres of all bounded objects that reflect or refract light into single
+/// directions, ordered by object.
 fn targets(world: &World) -> Vec<PhotonTarget> {
     let mut found = Vec::new();
     for (number, object) in world.objects().iter().enumerate() {
@@ -240,7 +245,7 @@ fn targets(world: &World) -> Vec<PhotonTarget> {
         let (center, half) = (bounds.center(), 0.5 * bounds.size());
         let radius = match &object.geometry {
             Geometry::Primitive(Primitive::Sphere(_)) => half.max_element(),
-            // This sphere contains the corners of the bounding box.
+            // The sphere contains all corners of the bounding box.
             Geometry::Primitive(_) | Geometry::Mesh(_) | Geometry::Solid(_) => half.length(),
         };
         if radius > 0.0 && radius.is_finite() {
@@ -252,7 +257,7 @@ fn targets(world: &World) -> Vec<PhotonTarget> {
 
 /// Returns true if an object may reflect or refract light into single directions.
 fn casts_caustics(world: &World, object: &Object) -> bool {
-    // The parts of a solid have their own materials.
+    // The parts of a solid have materials of their own.
     if matches!(object.geometry, Geometry::Solid(_)) {
         return true;
     }

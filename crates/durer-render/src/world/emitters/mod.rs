@@ -1,4 +1,4 @@
-//! Light sampling: emissive surfaces, the scene's lights and the environment.
+//! Light sampling of emissive surfaces, of the scene's lights and of the environment.
 
 pub mod emission;
 pub mod tree;
@@ -16,10 +16,10 @@ use serde::Serialize;
 use std::f32::consts::PI;
 use tree::{LightBounds, LightTree};
 
-/// Maximum number of objects for which containment between objects is tested.
+/// Maximum number of objects for which the program tests which objects contain others.
 const MAX_OBJECTS_TESTED: usize = 10_000;
 
-/// Emissive part of an object that light sampling can choose, such as a triangle or a sphere.
+/// Emissive part of an object, such as a triangle or a sphere, that light sampling can choose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AreaLight {
     /// Shape of the part in world space.
@@ -28,17 +28,19 @@ pub struct AreaLight {
     pub normal: Vec3,
     /// Index of the object.
     pub object: u32,
-    /// Index of the part in its object.
+    /// Index of the part within its object.
     pub part: u32,
-    /// True if both sides are sampled, false if only the side of the normal is.
+    /// True if both sides are sampled, false if only the side to which the normal points is
+    /// sampled.
     pub two_sided: bool,
-    /// Bound on the distance between the sampled and the traced surface, due to rounding.
+    /// Upper bound on the distance between the sampled and the traced surface that rounding can
+    /// cause.
     pub error: f32,
-    /// Radiance times opacity.
+    /// Emitted radiance multiplied by the opacity.
     pub radiance: Color,
 }
 
-/// Emitter in the light tree: an emissive surface or a light with a position.
+/// Emitter in the light tree, which is an emissive surface or a light with a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum LightEntry {
     /// An emissive surface.
@@ -47,14 +49,15 @@ enum LightEntry {
     Light(u32),
 }
 
-/// Light sampler of a world: all emitters, and the light tree that chooses between them.
+/// Light sampler of a world, with all emitters and the light tree that chooses between them.
 #[derive(Clone, Debug, Default)]
 pub struct LightSampler {
-    /// Emitters in the order of the tree.
+    /// Emitters, in the order of the tree.
     sources: Vec<LightEntry>,
-    /// Index in `parts` of the first part of each object. `u32::MAX` for objects that do not emit.
+    /// Index in `parts` of the first part of each object. It is `u32::MAX` for objects that do not
+    /// emit light.
     first: Vec<u32>,
-    /// Index in `sources` of each part.
+    /// Index of each part in `sources`.
     parts: Vec<u32>,
     /// Lights that are not in the tree.
     outside_tree: Vec<InfiniteLight>,
@@ -63,14 +66,14 @@ pub struct LightSampler {
     tree: LightTree,
 }
 
-/// Light outside the light tree: at infinity, or with an attenuation other than the inverse square
-/// law.
+/// Light that is not in the light tree because it is at infinity or its attenuation differs from
+/// the inverse square law.
 #[derive(Clone, Copy, Debug)]
 struct InfiniteLight {
     light: u32,
     /// Direction to the light; zero if the light is not at infinity.
     way: Vec3,
-    /// Approximate irradiance on a surface that faces the light.
+    /// Approximate irradiance of a surface that faces the light.
     irradiance: f32,
 }
 
@@ -81,8 +84,8 @@ impl InfiniteLight {
         InfiniteLight { light, way: direction, irradiance: PI * color.max_element().max(0.0) }
     }
 
-    /// Returns the estimated irradiance on a surface with normal `n`. A zero normal stands for any
-    /// orientation.
+    /// Returns the estimated irradiance of a surface with normal `n`. If the normal is zero, the
+    /// surface can have any orientation.
     fn estimated_irradiance(&self, n: Vec3) -> f32 {
         if n == Vec3::ZERO || self.way == Vec3::ZERO {
             self.irradiance
@@ -93,17 +96,18 @@ impl InfiniteLight {
 }
 
 /// Estimated irradiances at a point, used to choose between the lights outside the light tree, the
-/// environment and the tree.
+/// environment, and the tree as a whole.
 struct LightWeights {
-    /// Number of these choices.
+    /// Number of options to choose from.
     choices: f32,
-    /// Sum of all estimates; NaN if they are not valid.
+    /// Sum of all estimates; NaN if the estimates are not valid.
     total: f32,
     sky: f32,
     tree: f32,
 }
 
-/// Fraction of choices that ignore the estimates and are uniform, because estimates can be wrong.
+/// Fraction of choices that are made uniformly, without the estimates, because estimates can be
+/// wrong.
 const UNIFORM_FRACTION: f32 = 0.1;
 
 impl LightWeights {
@@ -123,18 +127,18 @@ impl LightWeights {
 struct Sun {
     light: u32,
     direction: Vec3,
-    /// Squared chord of half the angle. (The cosine of a small angle is too imprecise.)
+    /// Square of the chord of half the angle. (The cosine of a small angle is too imprecise.)
     chord2: f32,
     radiance: Color,
 }
 
-/// Identity of an emitter: a light, a part of an emissive object, or the environment.
+/// Identity of an emitter, which is a light, a part of an emissive object, or the environment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LightId {
     /// A light, by its index in the scene.
     Light(u32),
-    /// A part of an emissive object: indices of the object and of the part.
+    /// A part of an emissive object, given by the indices of the object and of the part.
     Surface(u32, u32),
     /// The environment.
     Environment,
@@ -150,29 +154,29 @@ impl LightId {
     }
 }
 
-/// Point for which light sampling chooses a light, with its normal.
+/// Point for which light sampling chooses a light, together with the normal at the point.
 #[derive(Clone, Copy, Debug)]
 pub struct Receiver {
     /// World-space position.
     pub point: DVec3,
-    /// Normal on the lit side; zero if light from all directions counts.
+    /// Normal on the lit side; zero if light from all directions is taken into account.
     pub n: Vec3,
-    /// Threshold for sampling a distant group of similar emitters uniformly, since all contribute
-    /// about the same. It is the maximum ratio of the group's radius to its distance, divided by
-    /// the cosines at group and point.
+    /// Threshold for choosing uniformly within a distant group of similar emitters, which all
+    /// contribute about equally. It is the maximum ratio of the group's radius to its distance,
+    /// divided by the cosines at the group and at the point.
     pub uniform_threshold: f32,
 }
 
 impl Receiver {
-    /// Value of [`Receiver::uniform_threshold`] for points that the camera sees, also through delta
-    /// lobes.
+    /// Value of [`Receiver::uniform_threshold`] for points that the camera sees, either directly or
+    /// through delta lobes.
     pub const UNIFORM_THRESHOLD: f32 = 0.1;
-    /// Value of [`Receiver::uniform_threshold`] for later bounces. Many of them are averaged, so
-    /// each choice of a light matters less.
+    /// Value of [`Receiver::uniform_threshold`] for later bounces. Many later bounces are averaged,
+    /// so each choice of a light matters less.
     pub const INDIRECT_UNIFORM_THRESHOLD: f32 = 0.3;
 }
 
-/// Light that was chosen for a point, with the probability of the choice.
+/// Light chosen for a point, with the probability of the choice.
 pub struct LightChoice {
     of: ChosenLight,
     probability: f32,
@@ -196,11 +200,12 @@ enum ChosenLight {
     Apart(u32),
     /// The environment.
     Sky,
-    /// An emitter in the light tree, by its index there.
+    /// An emitter in the light tree, by its index in the tree.
     Source(u32),
 }
 
-/// Direction sampled from a point towards a light, with the light's radiance and the densities.
+/// Direction sampled from a point towards a light, with the light's radiance and the sampling
+/// densities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSample {
     /// Light that was sampled.
@@ -209,12 +214,13 @@ pub struct LightSample {
     pub wi: Vec3,
     /// Distance to the sampled point; infinite for lights at infinity.
     pub reach: f32,
-    /// Bound on the distance between the sampled and the traced surface, due to rounding.
+    /// Upper bound on the distance between the sampled and the traced surface that rounding can
+    /// cause.
     pub error: f32,
-    /// Absolute cosine between the light's normal and the direction, greater than zero. 1 if there
-    /// is no normal.
+    /// Absolute value of the cosine between the light's normal and the direction, greater than
+    /// zero. The cosine is 1 if there is no normal.
     pub cosine: f32,
-    /// Radiance. For a light without extent, the irradiance on a surface that faces it.
+    /// Radiance. For a light without extent, the irradiance of a surface that faces the light.
     pub radiance: Color,
     /// Probability with which this light was chosen.
     pub choice: f32,
@@ -223,7 +229,7 @@ pub struct LightSample {
 }
 
 impl LightSample {
-    /// Creates a sample of the environment in direction `wi`.
+    /// Creates a sample of the environment in the direction `wi`.
     pub fn of_sky(choice: &LightChoice, wi: Vec3, radiance: Color, pdf: f32) -> Self {
         LightSample {
             light: LightId::Environment,
@@ -237,9 +243,9 @@ impl LightSample {
         }
     }
 
-    /// Returns the length of a shadow ray from a point whose position has this error bound. The ray
-    /// ends early enough for both errors. For an inclined light, the margin grows with the inverse
-    /// cosine.
+    /// Returns the length of a shadow ray from a point whose position has the given error bound.
+    /// The ray ends early enough to allow for the errors of both ends. If the light is inclined,
+    /// the margin grows with the reciprocal of the cosine.
     pub fn shadow_reach(&self, error: f32) -> f32 {
         (self.reach - 2.0 * (self.error + error) / self.cosine) * (1.0 - gamma(16))
     }
@@ -293,7 +299,7 @@ impl LightSampler {
         emitters
     }
 
-    /// Sorts the emitters into the order of the tree. Emitters that are not in the tree come last.
+    /// Sorts the emitters by their order in the tree. Emitters that are not in the tree come last.
     fn arrange(&mut self, order: &[u32]) {
         self.parts = vec![u32::MAX; self.sources.len()];
         let mut sources = vec_on_large_pages(self.sources.len());
@@ -308,12 +314,12 @@ impl LightSampler {
         self.sources = sources;
     }
 
-    /// Iterates over the emitters in the order of the scene.
+    /// Iterates over the emitters in scene order.
     fn in_scene_order(&self) -> impl Iterator<Item = &LightEntry> {
         self.parts.iter().map(|&source| &self.sources[source as usize])
     }
 
-    /// Estimates the irradiances at a point. `None` if there are no lights.
+    /// Estimates the irradiances at a point. Returns `None` if there are no lights.
     fn chances(&self, world: &World, to: &Receiver) -> Option<LightWeights> {
         let (environment, has_tree) = (world.environment(), !self.tree.is_empty());
         let choices = self.outside_tree.len() + usize::from(environment.is_some()) + usize::from(has_tree);
@@ -323,14 +329,14 @@ impl LightSampler {
             weights.tree = self.tree.importance(to);
             let apart: f32 = self.outside_tree.iter().map(|apart| apart.estimated_irradiance(to.n)).sum();
             let total = apart + weights.sky + weights.tree;
-            // If the estimates are not valid, NaN makes the choice uniform.
+            // If the estimates are not valid, the sum is NaN, which makes the choice uniform.
             weights.total = if total.is_finite() { total } else { f32::NAN };
         }
         (choices > 0).then_some(weights)
     }
 
-    /// Chooses a light for a point. `u` in [0, 1) is a random number. Prefetches the data needed to
-    /// sample it.
+    /// Chooses a light for a point. `u` in [0, 1) is a random number. The data needed to sample the
+    /// chosen light is prefetched.
     pub fn choose(&self, world: &World, to: &Receiver, u: f32) -> Option<LightChoice> {
         let weights = self.chances(world, to)?;
         let (has_sky, has_tree) = (world.environment().is_some(), !self.tree.is_empty());
@@ -359,7 +365,8 @@ impl LightSampler {
         Some(LightChoice { of: ChosenLight::Source(source), probability: chance * probability })
     }
 
-    /// Samples a direction from a point to the chosen light. `u` in [0, 1)^2 are random numbers.
+    /// Samples a direction from a point to the chosen light. The components of `u` in [0, 1)^2 are
+    /// random numbers.
     pub fn sample(&self, world: &World, choice: &LightChoice, point: DVec3, u: Vec2) -> Option<LightSample> {
         let probability = choice.probability;
         match choice.of {
@@ -375,9 +382,9 @@ impl LightSampler {
         }
     }
 
-    /// Returns the random numbers with which [`LightSampler::sample`] samples the centre of a
-    /// surface as seen from the point. For a triangle or cylinder, it samples some fixed point.
-    /// `None` if the emitter is not a surface.
+    /// Returns the random numbers for which [`LightSampler::sample`] samples the centre of an
+    /// emissive surface as seen from the point. On a triangle or cylinder, they select some fixed
+    /// point. Returns `None` if the emitter is not a surface.
     pub fn center_sample(&self, light: LightId) -> Option<Vec2> {
         let source = *self.parts.get(self.first[light.object()? as usize] as usize)? as usize;
         match self.sources.get(source)? {
@@ -386,7 +393,7 @@ impl LightSampler {
         }
     }
 
-    /// Returns the emitter that a ray hit, if light sampling can choose that side of it.
+    /// Returns the emitter hit by a ray, if light sampling can choose the side that was hit.
     fn emitter_at(&self, hit: &Hit, dir: Vec3) -> Option<(u32, &AreaLight)> {
         let source = *self.parts.get(self.first[hit.object as usize].checked_add(hit.part)? as usize)?;
         match self.sources.get(source as usize)? {
@@ -395,13 +402,13 @@ impl LightSampler {
         }
     }
 
-    /// Returns true if light sampling can choose the emissive surface that a ray hit.
+    /// Returns true if light sampling can choose the emissive surface hit by a ray.
     pub fn can_choose(&self, hit: &Hit, dir: Vec3) -> bool {
         self.emitter_at(hit, dir).is_some()
     }
 
-    /// Returns the density per steradian with which light sampling finds an emissive surface that a
-    /// ray hit. 0 if it never does.
+    /// Returns the density per steradian with which light sampling finds an emissive surface hit by
+    /// a ray. The density is 0 if light sampling never finds it.
     pub fn pdf_of_hit(&self, world: &World, hit: &Hit, to: &Receiver, wi: Vec3, distance: f32) -> f32 {
         let Some((source, area)) = self.emitter_at(hit, wi) else { return 0.0 };
         let Some(weights) = self.chances(world, to) else { return 0.0 };
@@ -410,15 +417,15 @@ impl LightSampler {
         if pdf.is_finite() { choice * pdf } else { 0.0 }
     }
 
-    /// Iterates over the lights at infinity that are visible in a direction, with their radiance.
+    /// Iterates over the lights at infinity that are visible in a direction, with their radiances.
     pub fn suns(&self, dir: Vec3) -> impl Iterator<Item = (LightId, Color)> {
         let dir = if self.suns.is_empty() { dir } else { dir.normalize_or_zero() };
         let visible_suns = self.suns.iter().filter(move |sun| sun.direction.distance_squared(dir) <= sun.chord2);
         visible_suns.map(|sun| (LightId::Light(sun.light), sun.radiance))
     }
 
-    /// Returns the background radiance in a direction and, for an environment, its density in light
-    /// sampling.
+    /// Returns the background radiance in a direction and, if there is an environment, the density
+    /// with which light sampling chooses that direction.
     pub fn sky(&self, world: &World, wi: Vec3) -> (Color, f32) {
         match world.environment() {
             Some(environment) => environment.at_with_pdf(wi),
@@ -433,8 +440,8 @@ impl LightSampler {
     }
 }
 
-/// Returns the surface of a part of an object for light sampling, and its unit normal in world
-/// space. `None` if only rays that hit the part find its light.
+/// Returns the surface of one part of an object, for light sampling, and its unit normal in world
+/// space. Returns `None` if the part's light is found only by rays that hit the part.
 pub fn emitter_of(object: &Object, part: u32) -> Option<(EmitterShape, Vec3)> {
     let place = EmitterTransform(object.to_world.as_ref());
     match &object.geometry {
@@ -444,14 +451,15 @@ pub fn emitter_of(object: &Object, part: u32) -> Option<(EmitterShape, Vec3)> {
     }
 }
 
-/// Returns true for a closed mesh with outward normals that contains no other object. Sampling its
-/// inside would have no effect, and rays that hit the inside still find its emission.
+/// Returns true if the object is a closed mesh with outward normals that contains no other object.
+/// Sampling the inside of such a mesh would have no effect, and rays that hit the inside still find
+/// its emission.
 fn has_empty_inside(world: &World, number: usize) -> bool {
     let objects = world.objects();
     let object = &objects[number];
     let (Geometry::Mesh(_), Some(bounds)) = (&object.geometry, object.bounds()) else { return false };
     let center = bounds.center().as_dvec3();
-    // Six times the signed volume of the tetrahedron from the centre to a triangle.
+    // Returns six times the signed volume of the tetrahedron formed by the centre and a triangle.
     let cone = |part| match emitter_of(object, part) {
         Some((EmitterShape::Triangle(p, [e, f]), normal)) => {
             e.as_dvec3().cross(f.as_dvec3()).length() * (p - center).dot(normal.as_dvec3())
@@ -468,7 +476,7 @@ fn has_empty_inside(world: &World, number: usize) -> bool {
 }
 
 /// Samples a light of the scene at its centre. The colour of such a light is the radiance of a
-/// white matte surface that faces it, which is irradiance divided by pi.
+/// white matte surface that faces it, which is the irradiance divided by pi.
 fn of_light(world: &World, light: u32, point: DVec3, choice: f32) -> LightSample {
     let light_sample = world.illuminate(light as usize, point);
     LightSample {
@@ -489,7 +497,7 @@ impl Sun {
         let degrees = world.lights()[light as usize].angular_radius();
         let light_sample = of_light(world, light, DVec3::ZERO, 1.0);
         let (half, _) = fp::sin_cos_degrees(0.5 * f64::from(degrees.min(90.0)));
-        // The solid angle 2 pi (1 - cos) equals pi times this.
+        // The solid angle 2 pi (1 - cos) equals pi times `chord2`.
         let chord2 = (4.0 * half * half) as f32;
         (degrees > 0.0).then(|| Sun {
             light,
@@ -512,10 +520,10 @@ fn spread(world: &World, light: u32, sample: LightSample, u: Vec2) -> LightSampl
 }
 
 impl AreaLight {
-    /// Returns the bounds for the light tree.
+    /// Returns the emitter's bounds for the light tree.
     fn bounds(&self) -> LightBounds {
         let round = self.form.is_round();
-        // On average, a quarter of the area of a convex surface is visible.
+        // On average, a quarter of a convex surface's area is visible.
         let area = self.form.area() * if round { 0.25 } else { 1.0 };
         let power = area * self.radiance.max_element();
         let power = if power.is_finite() { power.max(0.0) } else { 0.0 };

@@ -1,38 +1,39 @@
-//! Light tree, which chooses one of many emitters in proportion to their estimated contributions to
-//! a point.
+//! Light tree, which chooses one of many emitters with probabilities proportional to their
+//! estimated contributions to a point.
 //!
 //! Source: Conty Estévez and Kulla, *Importance Sampling of Many Lights with Adaptive Tree
 //! Splitting*, HPG 2018, with the bounds of *Physically Based Rendering*, 4th edition, section
-//! 12.6.3. Unlike there, nodes have eight children that are weighted together, which makes the tree
-//! shallower. In distant groups of similar emitters, the choice is uniform. With many lights, most
-//! choices then read only the upper nodes, which stay in the CPU cache.
+//! 12.6.3. Unlike in these sources, each node has eight children that are weighted together, which
+//! makes the tree shallower. Within a distant group of similar emitters, the choice is uniform. If
+//! there are many lights, most choices then read only the upper nodes, which stay in the CPU cache.
 
 use super::Receiver;
 use durer_bvh::internal::{PlainKernel, run_plain, vec_on_large_pages};
 use durer_scene::math::{Aabb, Vec3, fp};
 use std::f32::consts::PI;
 
-/// Bounds of a group of emitters in the light tree: position, power and directions.
+/// Bounds on the position, power and directions of a group of emitters in the light tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightBounds {
     /// Bounding box.
     pub bounds: Aabb,
-    /// Total power in an arbitrary unit, the same for all emitters.
+    /// Total power, in an arbitrary unit that is the same for all emitters.
     pub power: f32,
     /// Axis of the cone that contains all normals.
     pub axis: Vec3,
     /// Cosine of the largest angle between the axis and a normal.
     pub cos_normals: f32,
-    /// Cosine of the largest angle between a normal and the light emitted there.
+    /// Cosine of the largest angle between a normal and the directions in which light is emitted
+    /// there.
     pub cos_emission: f32,
-    /// True if light is emitted on both sides.
+    /// True if light is emitted from both sides.
     pub two_sided: bool,
-    /// Power of each emitter, if all have similar powers and directions; otherwise 0.
+    /// Power of each emitter if all of them have similar powers and directions, otherwise 0.
     pub emitter_power: f32,
 }
 
 impl LightBounds {
-    /// Returns bounds of both groups together.
+    /// Returns the bounds of both groups together.
     fn union(&self, other: &LightBounds) -> LightBounds {
         let (axis, cos_normals) = cone_union((self.axis, self.cos_normals), (other.axis, other.cos_normals));
         let share = self.emitter_power.min(other.emitter_power) / self.emitter_power.max(other.emitter_power);
@@ -54,12 +55,13 @@ impl LightBounds {
     }
 }
 
-/// Returns the angle with this cosine.
+/// Returns the angle that has the given cosine.
 fn angle(cosine: f32) -> f32 {
     fp::atan2(sine(cosine), cosine)
 }
 
-/// Returns the smallest cone that contains two cones, given by axis and cosine.
+/// Returns the smallest cone that contains two cones, each given by its axis and the cosine of its
+/// half-angle.
 fn cone_union((a, cos_a): (Vec3, f32), (b, cos_b): (Vec3, f32)) -> (Vec3, f32) {
     let (wide_a, wide_b, between) = (angle(cos_a), angle(cos_b), angle(a.dot(b).clamp(-1.0, 1.0)));
     if (between + wide_b).min(PI) <= wide_a {
@@ -75,14 +77,14 @@ fn cone_union((a, cos_a): (Vec3, f32), (b, cos_b): (Vec3, f32)) -> (Vec3, f32) {
     (axis.normalize_or(a), fp::cos(wide))
 }
 
-/// Weight of the cosines at a node's centre against the largest cosines in the node. The largest
-/// cosines alone would overestimate wide nodes seen from the side.
+/// Weight of the cosines at a node's centre relative to the largest cosines in the node. If only
+/// the largest cosines were used, wide nodes seen from the side would be overestimated.
 const CENTER: f32 = 0.8;
 
-/// Minimum cosine between the axis and the normals of emitters that count as similar.
+/// Minimum cosine between the axis and the normals at which emitters count as similar.
 const MIN_SIMILAR_COSINE: f32 = 0.995;
 
-/// Minimum ratio between powers that count as similar.
+/// Minimum ratio between two powers that count as similar.
 const MIN_SIMILAR_RATIO: f32 = 0.8;
 
 /// Number of children of a node.
@@ -91,27 +93,28 @@ const WIDTH: usize = 8;
 /// One number per child of a [`Node`].
 type Eight = [f32; WIDTH];
 
-/// Node of the light tree: the bounds of its eight children, as arrays for SIMD. Nodes are often
-/// read from main memory, so values that can be computed are not stored.
+/// Node of the light tree, which stores the bounds of its eight children as arrays for SIMD. Nodes
+/// are often read from main memory, so values that can be computed are not stored.
 #[derive(Clone, Debug)]
 struct Node {
-    /// Centre of each child's bounds.
+    /// Centre of the bounds of each child.
     middle: [Eight; 3],
-    /// Squared radius of the bounding sphere around that centre.
+    /// Squared radius of each child's bounding sphere, which has the same centre.
     radius2: Eight,
-    /// Power; 0 for a missing child, negative for two-sided emission.
+    /// Power of each child; 0 if the child is missing, negative if the emission is two-sided.
     power: Eight,
     axis: [Eight; 3],
     cos_normals: Eight,
     cos_emission: Eight,
     children: [Child; WIDTH],
-    /// Start of each child's emitters in the tree's order, and the end of the last child's.
+    /// Start of each child's emitters in the tree's order, followed by the end of the last child's
+    /// emitters.
     ends: [u32; WIDTH + 1],
     /// Bit mask of the children that contain several similar emitters.
     alike: u8,
 }
 
-/// Index of a child node or, with the bit [`Child::EMITTER`], of an emitter.
+/// Index of a child node or, if the bit [`Child::EMITTER`] is set, of an emitter.
 #[derive(Clone, Copy, Debug)]
 struct Child(u32);
 
@@ -136,10 +139,11 @@ impl Node {
         }
     }
 
-    /// Estimates the contribution of each child to a point. It is greater than zero wherever the
-    /// child contributes any light. Also returns true for each distant child.
+    /// Estimates the contribution of each child to a point. The estimate is greater than zero
+    /// wherever the child contributes any light. The second result is true for each child that is
+    /// distant.
     ///
-    /// Call it within [`run_plain`]. The loop has no branches.
+    /// Must be called within [`run_plain`]. The loop has no branches.
     #[inline(always)]
     fn importances(&self, to: &Receiver) -> (Eight, [bool; WIDTH]) {
         if to.n == Vec3::ZERO { self.importances_of::<false>(to) } else { self.importances_of::<true>(to) }
@@ -163,12 +167,13 @@ impl Node {
             let cos_bounds = (1.0 - sine2).sqrt();
             let inside = distance2 <= radius2;
             let bounds = (if inside { -1.0 } else { cos_bounds }, if inside { 0.0 } else { sine2.sqrt() });
-            // Lower bound on the angle between the direction to the point and any normal in the
-            // child's bounds.
+            // Lower bound on the angle between the direction to the point and any normal of the
+            // child's emitters.
             let least = subtract_angles((cosine, sine(cosine)), (self.cos_normals[i], sine(self.cos_normals[i])));
             let (cos_least, _) = subtract_angles(least, bounds);
             // On the axis of a uniform disc, the mean of 1 / distance^2 times both cosines is 1 /
-            // (d^2 + r^2). A square whose corners are at the radius has 0.64 of the disc's area.
+            // (d^2 + r^2). A square whose corners lie on a circle has 0.64 times the area of the
+            // disc inside the circle.
             let spread2 = largest(0.64 * radius2, f32::MIN_POSITIVE);
             let mut importance = power.abs() * blend_cosines(least.0, cos_least) / (distance2 + spread2);
             let mut across = least.0;
@@ -191,7 +196,7 @@ fn sum(x: &Eight) -> f32 {
     ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]))
 }
 
-/// Converts estimated contributions to probabilities. NaN if no child contributes.
+/// Converts estimated contributions to probabilities. The results are NaN if no child contributes.
 #[inline(always)]
 fn shares(mut importances: Eight) -> Eight {
     let sum = sum(&importances);
@@ -202,13 +207,13 @@ fn shares(mut importances: Eight) -> Eight {
     importances
 }
 
-/// Returns the greater of two numbers that are not NaN, with one instruction.
+/// Returns the greater of two numbers, neither of which is NaN, with one instruction.
 #[inline(always)]
 fn largest(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// Returns the sine of the angle from 0 to pi with this cosine.
+/// Returns the sine of the angle between 0 and pi that has the given cosine.
 #[inline(always)]
 fn sine(cosine: f32) -> f32 {
     largest(1.0 - cosine * cosine, 0.0).sqrt()
@@ -220,7 +225,8 @@ fn blend_cosines(center: f32, most: f32) -> f32 {
     CENTER * largest(center, 0.0) + (1.0 - CENTER) * most
 }
 
-/// Returns cosine and sine of the difference of two angles, or of 0 if it is negative.
+/// Returns the cosine and sine of the difference of two angles, or of 0 if the difference is
+/// negative.
 #[inline(always)]
 fn subtract_angles((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f32) {
     let (cosine, sine) = (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b);
@@ -262,8 +268,8 @@ impl PlainKernel for Sample<'_> {
             let node = nodes.get(place)?;
             let (importances, far) = node.importances(to);
             let shares = shares(importances);
-            // Find the first child whose cumulative probability exceeds the number, without
-            // branches, since they would be unpredictable.
+            // Find the first child whose cumulative probability exceeds the random number, without
+            // branches, since the branches would be unpredictable.
             let (mut slot, mut sum, mut before) = (0, 0.0, 0.0);
             for share in shares {
                 sum += share;
@@ -272,7 +278,8 @@ impl PlainKernel for Sample<'_> {
                 before = if is_passed { sum } else { before };
             }
             if slot == WIDTH {
-                // This is due to rounding: take the last child with a probability above 0.
+                // Because of rounding, no child was found: take the last child with a probability
+                // above 0.
                 slot = shares.iter().rposition(|&share| share > 0.0)?;
                 before = shares[..slot].iter().sum();
             } else if shares[0].is_nan() {
@@ -294,19 +301,19 @@ impl PlainKernel for Sample<'_> {
     }
 }
 
-/// Light tree over the emitters of a world, from which one is chosen in proportion to its estimated
-/// contribution to a point.
+/// Light tree over the emitters of a world, which chooses an emitter with a probability
+/// proportional to its estimated contribution to a point.
 #[derive(Clone, Debug, Default)]
 pub struct LightTree {
     nodes: Vec<Node>,
-    /// Parent of each node, and the node's slot there.
+    /// Parent of each node, and the node's slot in the parent.
     parents: Vec<(u32, u8)>,
-    /// Node that contains each emitter, and the emitter's slot there.
+    /// Node that contains each emitter, and the emitter's slot in the node.
     leaves: Vec<(u32, u8)>,
 }
 
-/// Node of the binary light tree that is built first, before nodes are merged to have eight
-/// children. Its children are at `first` and `first + 1`, unless it is a single emitter.
+/// Node of the binary light tree that is built first, before nodes are merged into nodes with eight
+/// children. If the node is not a single emitter, its children are at `first` and `first + 1`.
 struct BuildNode {
     bounds: LightBounds,
     first: usize,
@@ -323,8 +330,9 @@ impl BuildNode {
 const BUCKETS: usize = 12;
 
 impl LightTree {
-    /// Builds a tree over the emitters that have power. Also returns the indices of these emitters
-    /// in the tree's order; the other functions use positions in that order.
+    /// Builds a tree over all emitters whose power is greater than zero. The result includes the
+    /// indices of these emitters in the tree's order; the other functions identify an emitter by
+    /// its position in that order.
     pub fn new(emitters: &[LightBounds]) -> (Self, Vec<u32>) {
         let (halves, order) = build_binary(emitters);
         let mut tree = LightTree { leaves: vec![(0, 0); order.len()], ..LightTree::default() };
@@ -362,7 +370,7 @@ impl LightTree {
             tree.nodes.push(node);
             tree.parents.push(parent);
         }
-        // Move the nodes to aligned memory, where reads are faster.
+        // Move the nodes to aligned memory, which is faster to read.
         let mut placed = vec_on_large_pages(tree.nodes.len());
         placed.append(&mut tree.nodes);
         tree.nodes = placed;
@@ -379,8 +387,8 @@ impl LightTree {
         self.nodes.first().map_or(0.0, |node| sum(&run_plain(Estimate { node, to }).0))
     }
 
-    /// Chooses an emitter for a point. `u` in [0, 1) is a random number. Also returns the
-    /// probability.
+    /// Chooses an emitter for a point. `u` in [0, 1) is a random number. The result includes the
+    /// probability of the choice.
     pub fn sample(&self, to: &Receiver, u: f32) -> Option<(u32, f32)> {
         run_plain(Sample { nodes: &self.nodes, to, u })
     }
@@ -390,8 +398,8 @@ impl LightTree {
         self.leaves.get(emitter as usize).map_or(0.0, |&(place, slot)| self.reached(place, slot, to).0)
     }
 
-    /// Returns the probability of reaching a child of a node. Also returns true if a uniform choice
-    /// within a group ended the descent before.
+    /// Returns the probability of reaching a child of a node. The second result is true if a
+    /// uniform choice within a group ends the descent before that child.
     fn reached(&self, place: u32, slot: u8, to: &Receiver) -> (f32, bool) {
         let mut before = 1.0;
         if place > 0 {
@@ -418,7 +426,7 @@ impl LightTree {
     }
 }
 
-/// Builds a binary tree. Also returns the emitters in the tree's order.
+/// Builds a binary tree. The result includes the emitters in the tree's order.
 fn build_binary(emitters: &[LightBounds]) -> (Vec<BuildNode>, Vec<u32>) {
     let mut order: Vec<u32> = (0..emitters.len() as u32).filter(|&i| emitters[i as usize].power > 0.0).collect();
     if order.is_empty() {
@@ -444,8 +452,8 @@ fn build_binary(emitters: &[LightBounds]) -> (Vec<BuildNode>, Vec<u32>) {
     (halves, order)
 }
 
-/// Splits emitters into two groups that are compact, weak and similar in direction. Returns the
-/// number of emitters in the first group.
+/// Splits emitters into two groups such that each group is compact, has little power and emits in
+/// similar directions. Returns the number of emitters in the first group.
 fn split(emitters: &[LightBounds], range: &mut [u32], whole: &LightBounds) -> usize {
     let middle = |i: u32| emitters[i as usize].bounds.center();
     let middles = Aabb::around(range.iter().map(|&i| middle(i)));
@@ -473,7 +481,7 @@ fn split(emitters: &[LightBounds], range: &mut [u32], whole: &LightBounds) -> us
         for i in 0..BUCKETS - 1 {
             below = join(below, buckets[i]);
             let (Some(low), Some(high)) = (below, above[i]) else { continue };
-            // Prefer to split long boxes across their longest side.
+            // Prefer splits across the longest side of a long box.
             let stretch = whole.bounds.size().max_element() / whole.bounds.size()[axis];
             let cost = stretch * (cost(&low) + cost(&high));
             if best.is_none_or(|(least, ..)| cost < least) {
@@ -483,14 +491,14 @@ fn split(emitters: &[LightBounds], range: &mut [u32], whole: &LightBounds) -> us
     }
     let half = range.len() / 2;
     let Some((_, axis, last)) = best else { return half };
-    // The partition is stable, so that trees are reproducible.
+    // The partition is stable so that the tree is reproducible.
     let (low, high): (Vec<u32>, Vec<u32>) = range.iter().partition(|&&i| bucket(axis, i) <= last);
     range[..low.len()].copy_from_slice(&low);
     range[low.len()..].copy_from_slice(&high);
     low.len()
 }
 
-/// Returns the cost of a node: power times solid angle of emission times surface area.
+/// Returns the cost of a node, which is power times solid angle of emission times surface area.
 fn cost(b: &LightBounds) -> f32 {
     let (normals, emission) = (angle(b.cos_normals), angle(b.cos_emission));
     let wide = (normals + emission).min(PI);

@@ -1,4 +1,5 @@
-//! Tests of textures: each one changes its parameter, and bump and normal maps match closed forms.
+//! Tests that each texture changes its parameter, and that bump and normal maps match closed-form
+//! solutions.
 
 use crate::compile::{AccelKind, testing};
 use crate::world::{Material, Principled, SurfaceInteraction, World};
@@ -11,10 +12,10 @@ use std::path::Path;
 
 const FOLDER: &str = "maps";
 
-/// Name, side length and texels (by column and row) of a picture.
+/// Name, side length and texels of a picture, where texels are given by column and row.
 type FaceCase<'a> = (&'a str, u32, &'a dyn Fn(u32, u32) -> [u8; 3]);
 
-/// Writes pictures into a folder in PPM format.
+/// Writes pictures to a folder in PPM format.
 fn folder(name: &str, pictures: &[FaceCase]) -> tempfile::TempDir {
     let folder = tempfile::Builder::new().prefix(&format!("{FOLDER}-{name}")).tempdir().unwrap();
     for (name, side, texel) in pictures {
@@ -26,7 +27,7 @@ fn folder(name: &str, pictures: &[FaceCase]) -> tempfile::TempDir {
     folder
 }
 
-/// Compiles a scene of one object with one material.
+/// Compiles a scene that contains one object with one material.
 fn world(material: &str, object: &str, folder: &Path) -> World {
     compiled(&[material.to_string()], object, folder)
 }
@@ -51,7 +52,7 @@ fn hit(world: &World, origin: Vec3, dir: Vec3) -> SurfaceInteraction {
     world.intersect(Ray::new(origin, dir), &mut ()).expect("a hit")
 }
 
-/// Returns the material's parameters where a ray along -z hits the object.
+/// Returns the material's parameters at the point where a ray along -z hits the object.
 fn parameters(world: &World) -> Parameters {
     *world.parameters_at(material(world, 0), &hit(world, Vec3::new(0.2, 0.1, 5.0), Vec3::NEG_Z))
 }
@@ -70,7 +71,7 @@ fn every_texture_changes_its_parameter() {
             continue;
         }
         seen += 1;
-        // Enable all layers, so that each change has an effect.
+        // Enable all layers, so that every change has an effect.
         let mut written =
             PrincipledMaterial { walls: durer_scene::material::principled::Walls::Thin, ..Default::default() };
         for (i, other) in PrincipledMaterial::FIELDS.iter().enumerate() {
@@ -158,7 +159,7 @@ fn opacity_comes_from_a_picture() {
     }
 }
 
-/// Returns the bumped and the original shading normal where a ray hits the object.
+/// Returns the bumped and the original shading normal at the point where a ray hits the object.
 fn normal(world: &World, origin: Vec3, dir: Vec3) -> [Vec3; 2] {
     let at = hit(world, origin, dir);
     [world.mapped_normal(&material(world, 0).maps, &at).expect("a bent normal"), at.surface.n_shade]
@@ -166,11 +167,11 @@ fn normal(world: &World, origin: Vec3, dir: Vec3) -> [Vec3; 2] {
 
 #[test]
 fn bump_ramp_tilts_the_normals_of_a_wall() {
-    // One picture goes from black on the left to white on the right, the other from black at the
-    // bottom to white at the top.
+    // One picture goes from black on the left to white on the right, and the other from black at
+    // the bottom to white at the top.
     let (right, up) = (|x, _| [x as u8; 3], |_, y| [255 - y as u8; 3]);
     let folder = folder("ramp", &[("right.ppm", 256, &right), ("up.ppm", 256, &up)]);
-    // The picture is mapped to a wall of 2 x 4, which is scaled and moved.
+    // The picture is mapped to a wall of size 2 x 4, which is scaled and moved.
     let mesh = "v 0 0 0\nv 2 0 0\nv 2 4 0\nv 0 4 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
     std::fs::write(folder.path().join("wall.obj"), mesh).unwrap();
     let object = "Transform { Translate 1 0 0 UniformScale 2 TriangleMesh { obj_file wall.obj } }";
@@ -178,7 +179,7 @@ fn bump_ramp_tilts_the_normals_of_a_wall() {
         let text = format!("bumpTexture {name} bumpHeight 1");
         let world = world(&text, object, folder.path());
         let [bent, _] = normal(&world, Vec3::new(3.0, 4.0, 9.0), Vec3::NEG_Z);
-        // Brightness rises by 1/255 per texel, which is 256/255 over the full picture.
+        // Brightness rises by 1/255 per texel, which amounts to 256/255 over the full picture.
         let expected = (Vec3::Z - slope * (256.0 / 255.0)).normalize();
         assert!((bent - expected).length() < 1e-3, "{name}: {bent} {expected}");
     }
@@ -186,8 +187,8 @@ fn bump_ramp_tilts_the_normals_of_a_wall() {
 
 #[test]
 fn bump_ramp_tilts_the_normals_of_a_sphere() {
-    // Brightness increases eastwards by 1 all around the sphere. Along a circle of latitude, the
-    // slope is therefore h / (2 pi r cos latitude).
+    // Brightness increases by 1 over a full turn around the sphere towards the east. The slope
+    // along a circle of latitude is therefore h / (2 pi r cos latitude).
     let folder = folder("ball", &[("east.ppm", 256, &|x, _| [x as u8; 3])]);
     let world = world(
         "bumpTexture east.ppm bumpHeight 0.5",

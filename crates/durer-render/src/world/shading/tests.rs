@@ -11,7 +11,7 @@ fn bent_normals_reflect_outwards_and_change_continuously() {
         let [n, n_geo, wo] = [unit(), unit(), unit()];
         let n_geo = if n_geo.dot(wo) < 0.0 { -n_geo } else { n_geo };
         let z = n_geo.dot(wo);
-        // Precision is lost at grazing views and with opposite normals.
+        // Skip grazing view directions and opposite normals, where precision is lost.
         if z < 1e-3 || n.dot(n_geo) < -0.99 {
             continue;
         }
@@ -19,18 +19,18 @@ fn bent_normals_reflect_outwards_and_change_continuously() {
         let shown = |n: Vec3| (2.0 * n.dot(wo) * n - wo).dot(n_geo);
         let least = (0.9 * z).min(0.01);
         assert!((made.length() - 1.0).abs() < 1e-5 && made.dot(wo) > 0.0, "{n} {n_geo} {wo}: {made}");
-        // The height is right to single precision, also near the horizon.
+        // The height is correct to single precision, even near the horizon.
         assert!(shown(made) > least - 5e-4, "{n} {n_geo} {wo}: {made} shows {}", shown(made));
-        // The bent normal is in the plane of both normals, between them.
+        // The bent normal lies in the plane of both normals, between them.
         assert!(made.dot(n.cross(n_geo)).abs() < 1e-5 && made.dot(n_geo) > n.dot(n_geo) - 1e-5);
         if made == n {
             kept += 1;
         } else {
             bent_ones += 1;
-            // The normal is bent no more than necessary.
+            // The normal is not bent farther than necessary.
             assert!(shown(made) < least + 1e-3, "{n} {n_geo} {wo}: {made} shows {}", shown(made));
         }
-        // Neighbouring normals stay close to each other.
+        // Normals that are close to each other stay close when they are bent.
         let beside = (n + 1e-4 * Vec3::new(1.0, -1.0, 0.5)).normalize();
         assert!((bend_normal(beside, n_geo, wo) - made).length() < 0.05, "{n} {n_geo} {wo}");
     }

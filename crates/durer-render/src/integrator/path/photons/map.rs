@@ -1,4 +1,5 @@
-//! Photon map of one sample: a grid of photons, and density estimates from nearby photons.
+//! Photon map of one sample: a grid of photons, used to estimate radiance from the density of
+//! nearby photons.
 
 use crate::world::Shading;
 use durer_scene::math::Vec3;
@@ -11,26 +12,27 @@ use std::f32::consts::PI;
 /// Photon absorbed at a surface or in a medium, as stored in a [`PhotonMap`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Photon {
-    /// Point of absorption in world space.
+    /// World-space position at which the photon was absorbed.
     position: Vec3,
     /// Unit direction towards the previous vertex.
     wi: Vec3,
-    /// Power by lane. In a medium, it is divided by the scattering coefficient.
+    /// Power of the photon, by lane. If the photon was absorbed in a medium, its power is divided
+    /// by the scattering coefficient.
     power: Spectrum,
-    /// Number of delta bounces between the light and this point.
+    /// Number of delta bounces between the light and the point of absorption.
     bounces: u32,
     pub(super) absorber: Absorber,
 }
 
-/// Place where a photon was absorbed: a surface, or the medium inside an object.
+/// Place where a photon was absorbed, which is a surface or the medium inside an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Absorber {
     Surface,
-    /// Medium inside the object with this index; `None` for the air.
+    /// Medium inside the object with this index, or in the air if it is `None`.
     Medium(Option<u32>),
 }
 
-/// Photon map for one sample of all pixels: the photons on surfaces and in media.
+/// Photon map for one sample of every pixel, with the photons on surfaces and in media.
 #[derive(Debug)]
 pub struct PhotonMap {
     pub(super) lanes: Lanes,
@@ -38,7 +40,7 @@ pub struct PhotonMap {
     pub(super) in_media: PhotonGrid,
 }
 
-/// Radiance estimated from the photons near a point, by [`PhotonMap`].
+/// Radiance estimated by a [`PhotonMap`] from the photons near a point.
 #[derive(Clone, Copy, Debug)]
 pub struct DensityEstimate {
     /// Radiance that the point scatters towards the previous vertex of the path.
@@ -49,25 +51,25 @@ pub struct DensityEstimate {
     pub radius: f32,
 }
 
-/// Photons sorted into the cells of a hashed grid, for finding those near a point.
+/// Photons sorted into the cells of a hashed grid, which is used to find the photons near a point.
 #[derive(Debug)]
 pub(super) struct PhotonGrid {
     /// Search radius in world units. Cells are two radii wide.
     radius: f32,
     corrected: bool,
-    /// Cell number of each photon, in ascending order.
+    /// Number of the cell that contains each photon, in ascending order.
     cells: Vec<u64>,
     photons: Vec<Photon>,
 }
 
-/// Returns the number of a grid cell, with 21 bits along each axis.
+/// Returns the number of a grid cell, which encodes 21 bits for each axis.
 fn cell_of(place: glam::I64Vec3) -> u64 {
     let part = |x: i64| (x as u64) & 0x1f_ffff;
     part(place.x) | part(place.y) << 21 | part(place.z) << 42
 }
 
 impl Photon {
-    /// Creates a photon; `None` if its power is infinite or NaN.
+    /// Creates a photon, or returns `None` if its power is infinite or NaN.
     pub(super) fn new(position: Vec3, wi: Vec3, power: Spectrum, bounces: u32, rest: Absorber) -> Option<Self> {
         power.is_finite().then_some(Photon { position, wi, power, bounces, absorber: rest })
     }
@@ -76,7 +78,7 @@ impl Photon {
 impl PhotonGrid {
     /// Sorts photons into cells that are two search radii wide.
     pub(super) fn new(photons: &[Photon], radius: f32, corrected: bool) -> Self {
-        // Photons in a cell stay in the order of emission, so sums are reproducible.
+        // Photons in the same cell stay in the order of emission, so sums are reproducible.
         let cell = |photon: &Photon| cell_of(place(photon.position, radius, 0.0));
         let mut order: Vec<(u64, u32)> = (0..).zip(photons).map(|(i, photon)| (cell(photon), i)).collect();
         order.sort_unstable();
@@ -84,9 +86,9 @@ impl PhotonGrid {
         PhotonGrid { radius, corrected, cells: order.into_iter().map(|(cell, _)| cell).collect(), photons }
     }
 
-    /// Sums `value` over the photons within the search radius of a point that have at most
-    /// `max_bounces` bounces. `value` is called with the vector to the photon and its squared
-    /// length.
+    /// Sums `value` over all photons within the search radius of a point that had at most
+    /// `max_bounces` bounces. `value` is called with the vector from the point to the photon and
+    /// with the squared length of that vector.
     fn gather(&self, point: Vec3, max_bounces: u32, value: impl Fn(&Photon, Vec3, f32) -> Spectrum) -> DensityEstimate {
         let mut gathered = DensityEstimate { radiance: Spectrum::ZERO, photons: 0, radius: self.radius };
         // Cells are two radii wide, so the nearest 2 x 2 x 2 cells contain all photons within the
@@ -112,12 +114,13 @@ impl PhotonGrid {
         gathered
     }
 
-    /// Returns the weight of a photon for its squared distance and its squared height above the
-    /// surface. 0 if the photon is too high and so lies on another surface.
+    /// Returns the weight of a photon, given its squared distance from the point and its squared
+    /// height above the surface. The weight is 0 if the photon is so high that it lies on another
+    /// surface.
     ///
-    /// The bias of a kernel with radius r is c r^2 to second order, and c r^2 / 2 with half the
-    /// squared radius. Twice the latter estimate minus the former cancels it (Richardson
-    /// extrapolation).
+    /// To second order, the bias of a kernel with radius r is c r^2, and that of a kernel with half
+    /// the squared radius is c r^2 / 2. Twice the estimate of the smaller kernel minus that of the
+    /// larger one therefore has no such bias (Richardson extrapolation).
     fn kernel(&self, distance: f32, beside: f32, kernel: fn(f32, f32) -> f32) -> f32 {
         let square = self.radius * self.radius;
         if beside > FLATNESS * square {
@@ -133,13 +136,13 @@ impl PhotonGrid {
 }
 
 impl PhotonMap {
-    /// Returns the meaning of the lanes of the photons' power.
+    /// Returns the meaning of the lanes in which the photons' power is stored.
     pub fn lanes(&self) -> &Lanes {
         &self.lanes
     }
 
-    /// Estimates the radiance that a surface point scatters from nearby photons. Ignores photons
-    /// with more than `max_bounces` bounces.
+    /// Estimates the radiance that a surface point scatters from nearby photons. Photons with more
+    /// than `max_bounces` bounces are ignored.
     pub fn on_surface(&self, surface: &SurfacePoint, shading: &Shading, max_bounces: u32) -> DensityEstimate {
         let cells = &self.on_surfaces;
         cells.gather(surface.position, max_bounces, |photon, way, distance| {
@@ -155,7 +158,7 @@ impl PhotonMap {
     }
 
     /// Estimates the radiance scattered along a unit direction at a point in the medium of an
-    /// object (`None` for air). See [`PhotonMap::on_surface`].
+    /// object (`None` means air). See [`PhotonMap::on_surface`].
     pub fn in_medium(
         &self,
         (point, dir): (Vec3, Vec3),
@@ -171,21 +174,22 @@ impl PhotonMap {
     }
 }
 
-/// Maximum squared height of a photon above a surface, as a fraction of the squared search radius.
-/// Higher photons lie on another surface.
+/// Maximum squared height of a photon above a surface, relative to the squared search radius.
+/// Photons at a greater height lie on another surface.
 const FLATNESS: f32 = 0.1;
 
-/// Epanechnikov kernel in the plane, from the squares of radius and distance.
+/// Returns the Epanechnikov kernel in the plane, given the squares of radius and distance.
 fn disc(square: f32, distance: f32) -> f32 {
     2.0 / (PI * square) * (1.0 - distance / square)
 }
 
-/// Epanechnikov kernel in space, from the squares of radius and distance.
+/// Returns the Epanechnikov kernel in space, given the squares of radius and distance.
 fn ball(square: f32, distance: f32) -> f32 {
     15.0 / (8.0 * PI * square * square.sqrt()) * (1.0 - distance / square)
 }
 
-/// Returns the coordinates of a point's grid cell, after a shift in units of cells.
+/// Returns the coordinates of the grid cell that contains a point, after the point was shifted by
+/// `shift` cells along each axis.
 fn place(point: Vec3, radius: f32, shift: f64) -> glam::I64Vec3 {
     (point.as_dvec3() / (2.0 * f64::from(radius)) + DVec3::splat(shift)).floor().as_i64vec3()
 }

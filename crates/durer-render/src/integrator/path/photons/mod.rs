@@ -1,15 +1,16 @@
-//! Photon mapping for caustics: light that mirrors and glass focus on other objects.
+//! Photon mapping for caustics, which is light that mirrors and glass focus on other objects.
 //!
-//! Paths from the camera find such light rarely or never. Photons are therefore sent from the
-//! lights to all objects that mirror or refract. Each one is followed over delta lobes and stored
-//! on the first surface with another lobe, or where a medium scatters it. The light there is then a
-//! density estimate. Each sample of a pixel traces new photons and uses a smaller radius than the
-//! sample before, so the mean over samples converges to the true value.
+//! Paths from the camera find such light rarely or never. Therefore, photons are sent from the
+//! lights to all objects that mirror or refract light. Each photon is followed over delta lobes and
+//! stored on the first surface with another kind of lobe, or where a medium scatters it. The light
+//! at a point is then estimated from the density of the photons. Each sample of a pixel traces new
+//! photons and uses a smaller radius than the sample before, so the mean over all samples converges
+//! to the true value.
 //!
-//! Sources: Hachisuka and Jensen, *Stochastic Progressive Photon Mapping*, 2009; for radii that do
-//! not depend on pixel statistics, Knaus and Zwicker, *Progressive Photon Mapping: A Probabilistic
-//! Approach*, 2011; for media, Jensen and Christensen, *Efficient Simulation of Light Transport in
-//! Scenes with Participating Media using Photon Maps*, 1998.
+//! Sources: Hachisuka and Jensen, *Stochastic Progressive Photon Mapping*, 2009; Knaus and Zwicker,
+//! *Progressive Photon Mapping: A Probabilistic Approach*, 2011, for radii that do not depend on
+//! pixel statistics; Jensen and Christensen, *Efficient Simulation of Light Transport in Scenes
+//! with Participating Media using Photon Maps*, 1998, for media.
 
 use super::Path;
 use super::propagate::PathEvent;
@@ -29,22 +30,22 @@ use std::collections::VecDeque;
 use std::f32::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Fraction of the photons in a new sample that the shrinking radius keeps. The error falls fastest
-/// at 2/3; source: Kaplanyan and Dachsbacher, *Adaptive Progressive Photon Mapping*, 2013.
+/// Fraction of a new sample's photons that remain within the shrinking radius. The error decreases
+/// fastest at 2/3; source: Kaplanyan and Dachsbacher, *Adaptive Progressive Photon Mapping*, 2013.
 const ALPHA: f64 = 2.0 / 3.0;
 
 /// Maximum number of cached photon maps.
 const MAX_CACHED: usize = 32;
 
-/// Photon tracer of a render: one photon map per sample index, built on demand and cached.
+/// Photon tracer of a render, which builds one photon map per sample index on demand and caches it.
 #[derive(Debug)]
 pub struct PhotonTracer {
     beams: PhotonEmitter,
     seed: u64,
     count: u32,
-    /// Search radius of the first sample in world units.
+    /// Search radius of the first sample, in world units.
     radius: f32,
-    /// True if the bias of the estimate is removed to second order.
+    /// True if the estimate's bias is removed to second order.
     corrected: bool,
     cache: Mutex<MapCache>,
 }
@@ -52,16 +53,17 @@ pub struct PhotonTracer {
 /// Cached photon maps with their sample indices, oldest first.
 type MapCache = VecDeque<(u32, Arc<PhotonMap>)>;
 
-/// Pairs of random numbers that the emission of a photon uses.
+/// Number of pairs of random numbers used to emit a photon.
 const FIRST_DIMENSION: u32 = 3;
 
-/// Ratio of the search radius in media, where photons are sparser, to that on surfaces.
+/// Ratio of the search radius in media, where photons are sparser, to the search radius on
+/// surfaces.
 const MEDIUM_RADIUS: f32 = 3.0;
 
 impl PhotonTracer {
     /// Creates a photon tracer with `count` photons per sample. `radius` is the search radius of
-    /// the first sample in world units; the default depends on the smallest object that photons are
-    /// sent to.
+    /// the first sample, in world units; its default depends on the smallest object to which
+    /// photons are sent.
     pub fn new(world: &World, seed: u64, count: u32, radius: Option<f32>) -> Self {
         let beams = PhotonEmitter::new(world);
         let usual = 0.05 * beams.min_target_radius();
@@ -69,8 +71,8 @@ impl PhotonTracer {
         PhotonTracer { beams, seed, count, radius, corrected: false, cache: Mutex::default() }
     }
 
-    /// Removes the bias of the estimates to second order in the radius, at the cost of more noise.
-    /// The difference from the uncorrected light estimates the bias.
+    /// Removes the bias of the estimates to second order in the radius, which increases noise. The
+    /// difference from the uncorrected light is an estimate of the bias.
     pub fn corrected(self) -> Self {
         PhotonTracer { corrected: true, ..self }
     }
@@ -80,20 +82,21 @@ impl PhotonTracer {
         self.beams.reaches(object)
     }
 
-    /// Returns the search radius of a sample: r_(i+1)^2 = r_i^2 (i + alpha) / (i + 1).
+    /// Returns the search radius of a sample, where r_(i+1)^2 = r_i^2 (i + alpha) / (i + 1).
     fn radius(&self, sample: u32) -> f32 {
         let square = (1..=sample).map(f64::from).fold(1.0, |square, i| square * (i + ALPHA) / (i + 1.0));
         self.radius * square.sqrt() as f32
     }
 
-    /// Returns the photon map of a sample, and builds it if it is not cached.
+    /// Returns the photon map of a sample, which is built if it is not cached.
     pub(super) fn map(&self, path: &Path, sample: u32) -> Arc<PhotonMap> {
         let mut cache = self.cache.lock().unwrap_or_else(PoisonError::into_inner);
-        // One thread builds the map. A parallel job could steal work that waits for the lock.
+        // A single thread builds the map. In a parallel job, a thread could steal work that waits
+        // for the lock.
         Self::find(&cache, sample).unwrap_or_else(|| Self::keep(&mut cache, sample, self.make(path, sample, false)))
     }
 
-    /// Builds the photon map of a sample in advance, on all threads.
+    /// Builds the photon map of a sample in advance, using all threads.
     pub fn prepare(&self, path: &Path, sample: u32) {
         let lock = || self.cache.lock().unwrap_or_else(PoisonError::into_inner);
         if Self::find(&lock(), sample).is_none() {
@@ -102,12 +105,12 @@ impl PhotonTracer {
         }
     }
 
-    /// Returns the map of a sample if it is cached.
+    /// Returns the photon map of a sample if it is cached.
     fn find(cache: &MapCache, sample: u32) -> Option<Arc<PhotonMap>> {
         cache.iter().find(|(number, _)| *number == sample).map(|(_, map)| map.clone())
     }
 
-    /// Caches a map, and drops the oldest one if there are too many.
+    /// Caches a photon map, and removes the oldest one if there are too many.
     fn keep(cache: &mut MapCache, sample: u32, map: PhotonMap) -> Arc<PhotonMap> {
         let map = Arc::new(map);
         cache.push_back((sample, map.clone()));
@@ -119,7 +122,7 @@ impl PhotonTracer {
 
     /// Traces the photons of a sample and builds their map.
     fn make(&self, path: &Path, sample: u32, parallel: bool) -> PhotonMap {
-        // Photons have the same wavelengths as the paths of the sample.
+        // The photons have the same wavelengths as the paths of the sample.
         let lanes = Lanes::new(path.options.color, SampleId::new(self.seed, (0, 0), sample).wavelength());
         let one = |number: u32| self.trace(path, sample, number, lanes);
         let photons: Vec<Photon> = match parallel {
@@ -136,7 +139,7 @@ impl PhotonTracer {
         }
     }
 
-    /// Traces one photon until it is absorbed. Returns `None` if it is not stored.
+    /// Traces one photon until it is absorbed. Returns `None` if the photon is not stored.
     fn trace(&self, path: &Path, pass: u32, number: u32, lanes: Lanes) -> Option<Photon> {
         // The photons of a sample are stratified over lights and directions.
         let id = SampleId::new(self.seed ^ OTHER_SEED, (pass, 0), number);
@@ -150,7 +153,7 @@ impl PhotonTracer {
         loop {
             let hit = path.world.closest_along(&mut state.ray, &mut ());
             let event = path.propagate(hit, &mut at, &mut state, &context, &mut ());
-            // Paths already include light that a medium scatters before any delta lobe.
+            // Light that a medium scatters before any delta lobe is already found by paths.
             if let PathEvent::Medium(point, dir, _) = event
                 && !is_first
             {
@@ -162,12 +165,12 @@ impl PhotonTracer {
             }
             let PathEvent::Surface(transition) = event else { return None };
             if is_first {
-                // Light sampling already includes the light on other objects.
+                // Light that reaches other objects is already found by light sampling.
                 if !self.beams.reaches(at.hit.object) {
                     return None;
                 }
-                // The intensity of such a light is known only for a given point, here the hit
-                // point.
+                // The intensity of a light with a position can be computed only for a given point,
+                // which here is the hit point.
                 let color = match emitted.light {
                     Some(light) => {
                         let light_sample = path.world.illuminate(light as usize, at.surface.point());
@@ -182,7 +185,7 @@ impl PhotonTracer {
             let eta = transition.as_ref().map_or(1.0, MediumTransition::eta);
             let shading = path.world.shading(&at, eta, &lanes);
             path.select_hero(&at, &mut state, &context, &mut ());
-            // Black surfaces reflect nothing, but their irradiance can be measured.
+            // Black surfaces reflect nothing, but the irradiance on them can be measured.
             if !is_first && (shading.bsdf.has_non_delta() || shading.bsdf.is_black()) {
                 let wi = -state.ray.dir().normalize();
                 return Photon::new(at.surface.position, wi, state.throughput, state.depth, Absorber::Surface);
@@ -193,7 +196,7 @@ impl PhotonTracer {
             if sample.pdf != 0.0 || state.depth > path.max_depth() {
                 return None;
             }
-            // Radiance scales with the index of refraction squared; power does not.
+            // Radiance scales with the square of the index of refraction, but power does not.
             let weight = sample.weight * if vertex.refracts(sample.lobe) { eta * eta } else { 1.0 };
             let survival = (state.throughput * weight).max_element() / state.throughput.max_element();
             let survival = survival.clamp(0.0, 1.0);
@@ -215,7 +218,7 @@ impl PhotonTracer {
     }
 }
 
-/// Distinguishes the random numbers of photons from those of paths.
+/// Seed that makes the random numbers of photons different from those of paths.
 const OTHER_SEED: u64 = 0x7068_6f74_6f6e_7321;
 
 mod map;

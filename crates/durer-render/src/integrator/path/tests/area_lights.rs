@@ -1,4 +1,4 @@
-//! Tests of emitters of all shapes with light sampling and BSDF sampling.
+//! Tests of emitters of all shapes, with light sampling and with BSDF sampling.
 
 use super::*;
 
@@ -13,16 +13,16 @@ const SHAPES: [&str; 8] = [
     "Disc { center 0 0 0 normal 0 -1 0.2 radius 0.6 innerRadius 0.2 }",
 ];
 
-/// Transforms: a translation, a slight scaling, and one that stretches, rotates, shears and
-/// mirrors.
+/// Transforms of the shapes: a translation, a slight scaling, and one that stretches, rotates,
+/// shears and mirrors.
 const MAPS: [&str; 3] = [
     "Translate 0.4 1.5 0.2",
     "Translate 0.4 1.5 0.2 Scale 1.0001 1 1",
     "Translate 0.4 1.5 0.2 ZRotate 40 Scale -1.5 0.6 0.9 XRotate 30",
 ];
 
-/// Asserts that two means with these variances are equal, by a z-test that fails by chance once in
-/// 15,000.
+/// Asserts that two means with the given variances are equal, by a z-test that fails by chance once
+/// in 15,000 times.
 fn assert_alike(name: &str, a: (f64, f64), b: (f64, f64)) {
     assert!((a.0 - b.0).abs() <= 4.0 * (a.1 + b.1).sqrt() + 1e-5 * a.0, "{name}: {a:?} {b:?}");
 }
@@ -43,8 +43,8 @@ fn light_and_bsdf_sampling_agree_for_every_shape_and_transform() {
 
 #[test]
 fn emissive_shapes_light_their_inside() {
-    // In a closed furnace with radiance 1 and albedo 0.5 on both sides, the walls show their
-    // emission and light scattered once, 1 + 0.5.
+    // In a closed furnace with radiance 1 and albedo 0.5 on both sides, the radiance of the walls
+    // is their emission plus light scattered once, which is 1 + 0.5.
     let material = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 emissionLuminance 1 walls thin }";
     let settings = RenderSettings { bounces: 0, ..Job::default().settings };
     for shape in &SHAPES[..6] {
@@ -60,8 +60,8 @@ fn emissive_shapes_light_their_inside() {
 
 #[test]
 fn irradiance_of_a_distant_emitter_follows_its_area() {
-    // E = L A / d^2, for the face of a box of 0.1 x 0.1 at a distance of 6, and for the base of a
-    // cone.
+    // The irradiance is E = L A / d^2 for the face of a box of 0.1 x 0.1 at a distance of 6, and
+    // for the base of a cone.
     for (light, area) in [
         ("Box { min -0.05 6 -0.05 max 0.05 6.1 0.05 }", 0.01),
         ("Cone { base 0 6 0 top 0 6.1 0 baseRadius 0.05 }", 0.0025 * std::f64::consts::PI),
@@ -78,7 +78,7 @@ fn convex_emitters_do_not_light_their_own_outside() {
         let world = scene(material, "", &format!("MaterialIndex 0 Transform {{ Scale 1.1 0.9 1 {shape} }}"));
         for y in [0.0, 0.11, 0.23] {
             let ray = Ray::new(Vec3::new(0.05, y, 5.0), Vec3::NEG_Z);
-            // Only the object's own emission must be visible.
+            // Only the emission of the object itself must be visible.
             for way in by_ways(&world, ray, settings, ColorMode::Rgb).map(|way| way[0]) {
                 assert!((way.0 - 0.5).abs() < 1e-6, "{shape}: {way:?}");
             }
@@ -101,7 +101,7 @@ fn without_a_background_only_lights_of_the_scene_emit() {
         let sum: Vec3 = (0..64).map(one).sum();
         sum.dot(durer_scene::math::LUMINANCE) / 64.0
     };
-    // E = I / d^2, plus pi L for a uniform environment.
+    // The irradiance is E = I / d^2, plus pi L if there is a uniform environment.
     assert!((lux(&of("")) - 250.0).abs() < 1e-3, "{}", lux(&of("")));
     let grey = lux(&of("Background { color 0.5 0.5 0.5 }")) - 250.0;
     assert!((grey - 0.5 * std::f32::consts::PI).abs() < 0.01, "{grey}");
@@ -116,7 +116,8 @@ fn errors_account_for_emitters_that_only_bsdf_sampling_finds() {
         let transport = PathOptions { direct, ..PathOptions::default() };
         Path::new(&world, Job::default().settings, transport).max_rare_contribution(|color| color.x)
     };
-    // The maximum is pi times the radiance of 3 for an emitter that light sampling does not choose.
+    // The maximum is pi times the radiance, which is 3, if light sampling does not choose the
+    // emitter.
     let solid = "Intersection { Box { min -1 1 -1 max 1 2 1 } Sphere { center 0 1.5 0 radius 0.6 } }";
     assert!((most(solid, DirectSampling::Both) - 3.0 * std::f32::consts::PI).abs() < 1e-5);
     assert_eq!(most("Box { min -1 1 -1 max 1 2 1 }", DirectSampling::Both), 0.0);

@@ -1,8 +1,8 @@
-//! Tests of photon mapping against path tracing and closed forms.
+//! Tests of photon mapping against path tracing and closed-form solutions.
 
 use super::*;
 
-/// Returns the mean radiance along a ray with photon mapping, and its standard error.
+/// Returns the mean radiance along a ray with photon mapping, and the standard error of the mean.
 pub(super) fn by_photons(world: &World, ray: Ray, (count, radius): (u32, f32), samples: u32) -> (f64, f64) {
     let settings = RenderSettings { bounces: 12, ..Job::default().settings };
     let photons = Some(Arc::new(PhotonTracer::new(world, 3, count, Some(radius))));
@@ -19,8 +19,8 @@ const GLASS: &str = "PrincipledMaterial { transmissionWeight 1 specularRoughness
 
 #[test]
 fn slab_transmits_light_by_fresnel() {
-    // With all interreflections, T = (1 - F) / (1 + F), where F = 0.04. Paths find this light only
-    // by way of the floor.
+    // If all interreflections are included, T = (1 - F) / (1 + F), where F = 0.04. Paths find this
+    // light only by way of the floor.
     let world = scene(
         &format!("{MATTE} {GLASS}"),
         "DirectionalLight { direction 0 -1 0 color 2 2 2 }",
@@ -48,23 +48,23 @@ fn photons_and_paths_agree_if_both_find_the_light() {
         let ray = Ray::new(Vec3::new(place + 3.0, 0.4, 0.0), Vec3::new(-3.0, -0.4, 0.0).normalize());
         let (a, ea) = light(&world, ray, 12, 1 << 16);
         let (b, eb) = by_photons(&world, ray, (20_000, 0.1), 48);
-        // The light varies within the search radius, so allow one percent.
+        // The light varies within the search radius, so allow an error of one percent.
         assert!((a - b).abs() < 3.5 * (ea * ea + eb * eb).sqrt() + 0.01 * a, "at {place}: {a} ± {ea}, {b} ± {eb}");
     }
 }
 
 #[test]
 fn fog_and_rough_glass_scatter_equal_light_with_and_without_photons() {
-    // All light leaves a glass sphere with a light inside. Photons carry the light that delta lobes
-    // send to surfaces, and paths the light that fog or rough glass scatters after that. No light
-    // must be lost or counted twice.
+    // All light comes from inside a glass sphere. Photons account for the light that delta lobes
+    // send to surfaces, and paths account for the light that fog or rough glass scatters
+    // afterwards. No light may be lost or counted twice.
     let emitter = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 6 }";
     let rough = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0.4 }";
     let objects = "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.6 } \
         MaterialIndex 2 Sphere { center 0 1 0 radius 0.35 }";
     let ball = "MaterialIndex 3 Sphere { center 1 0.45 0 radius 0.4 }";
     let fog = "Fog { extinction 0.4 color 0.95 0.95 0.95 min -3 0 -3 max 3 4 3 }";
-    // Look at the floor below the sphere, and through the air.
+    // Look at the floor below the sphere and through the air.
     let floor = (Vec3::new(3.0, 0.5, 3.0), Vec3::new(0.7, 0.0, 0.2));
     let above = (Vec3::new(1.2, 0.6, 4.0), Vec3::new(1.2, 0.6, -4.0));
     let (few, many) = (((100, 0.2), 1 << 13), ((8_000, 0.1), 1 << 10));
@@ -79,8 +79,8 @@ fn fog_and_rough_glass_scatter_equal_light_with_and_without_photons() {
         let (a, ea) = light(&world, ray, 12, 1 << 15);
         let (b, eb) = by_photons(&world, ray, photons, samples);
         let error = (ea * ea + eb * eb).sqrt();
-        // Allow one percent for the search radius. The errors are small enough to reveal light that
-        // is lost or counted twice.
+        // Allow an error of one percent because of the search radius. The standard errors are small
+        // enough to reveal light that is lost or counted twice.
         let near = (a - b).abs() < 3.5 * error + 0.01 * a && error < 0.15 * a;
         assert!(near, "{air} {more}: {a} ± {ea}, {b} ± {eb}");
     }
@@ -88,8 +88,9 @@ fn fog_and_rough_glass_scatter_equal_light_with_and_without_photons() {
 
 #[test]
 fn photon_beams_in_fog_match_their_integral() {
-    // Light from the zenith passes a slab and then goes down through fog. Single scattering along a
-    // horizontal ray to a black surface is (1 - F)^2 E / (4 pi) e^(-s h) a (1 - e^(-s l)).
+    // Light from the zenith passes through a slab and then continues downwards through fog. The
+    // light scattered once along a horizontal ray to a black surface is (1 - F)^2 E / (4 pi) e^(-s
+    // h) a (1 - e^(-s l)).
     let fog = "Fog { extinction 1 color 0.8 0.8 0.8 min -1 -2 -1 max 1 0.9 1 }";
     let black = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 }";
     let objects = "MaterialIndex 0 Box { min -1.5 1 -1.5 max 1.5 1.2 1.5 }
@@ -115,8 +116,8 @@ fn photon_beams_in_fog_match_their_integral() {
 
 #[test]
 fn photons_and_paths_start_in_the_surrounding_medium() {
-    // A light, a glass sphere and the floor below it are in a box of fog with an index-matched
-    // surface.
+    // A light, a glass sphere and the floor below it are inside a box of fog whose surface is
+    // index-matched.
     let fog = "PrincipledMaterial { transmissionWeight 1 specularIor 1 specularWeight 0 transmissionDepth 1 transmissionColor 0.6 0.6 0.6 specularRoughness 0 }";
     let emitter = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 6 }";
     let objects = "MaterialIndex 0 Rectangle { corner -2 0 2 edge0 4 0 0 edge1 0 0 -4 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.7 }
@@ -126,7 +127,7 @@ fn photons_and_paths_start_in_the_surrounding_medium() {
     let (a, ea) = light(&world, ray, 12, 1 << 15);
     let (b, eb) = by_photons(&world, ray, (20_000, 0.1), 48);
     assert!((a - b).abs() < 3.5 * (ea * ea + eb * eb).sqrt() + 0.01 * a, "{a} ± {ea}, {b} ± {eb}");
-    // Seen from inside, the fog attenuates a light.
+    // The fog attenuates a light that is seen from inside.
     let emitter = Ray::new(Vec3::new(-0.9, 0.5, 0.9), Vec3::Y);
     let (seen, _) = light(&world, emitter, 12, 64);
     let expected = 6.0 * libm::pow(0.6, 2.5);

@@ -3,7 +3,7 @@
 use super::*;
 use durer_scene::spectrum::ColorMode;
 
-/// Material of a closed shell with radiance 1, which light sampling can choose.
+/// Material of a closed shell of radiance 1 that light sampling can choose.
 const SHELL: &str = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1 walls thin }";
 
 fn inside_shell(material: &str, fog: &str, group: &str) -> World {
@@ -20,7 +20,8 @@ fn media_without_absorption_vanish_in_uniform_light() {
     let fog = "Fog { extinction 0.6 min -2 -2 -2 max 2 2 2 anisotropy 0.4 }";
     let nothing = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 opacity 0 }";
     assert_light("fog in a box", &inside_shell(nothing, fog, ball), ray, 200, 1.0);
-    // The transmittance is e^-1 at depth 1, and all extinction is scattering: 1 / depth.
+    // The transmittance is e^-1 at depth 1, and all of the extinction, which is 1 / depth, is
+    // scattering.
     let through = "transmissionWeight 1 transmissionDepth 0.5 transmissionColor 0.36787944 0.36787944 0.36787944 \
                    transmissionScatter 1 1 1";
     for (name, rest) in [("cloud", "specularIor 1"), ("milky glass", "specularIor 1.5 specularRoughness 0")] {
@@ -36,8 +37,8 @@ fn media_without_absorption_vanish_in_uniform_light() {
 
 #[test]
 fn single_scattering_of_a_beam_matches_its_integral() {
-    // Light from above has irradiance pi c. For a horizontal ray at depth d with length l in the
-    // fog, L = albedo / (4 pi) · pi c · e^(-s d) (1 - e^(-s l)).
+    // Light from above causes the irradiance pi c. For a horizontal ray at depth d that passes
+    // through the fog over a length l, L = albedo / (4 pi) · pi c · e^(-s d) (1 - e^(-s l)).
     let (s, albedo, d, l) = (0.7_f64, 0.6, 0.8, 3.0);
     let world = read(
         "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }\nBackground { color 0 0 0 }\n\
@@ -57,7 +58,7 @@ fn single_scattering_of_a_beam_matches_its_integral() {
 
 #[test]
 fn light_sampling_passes_index_matched_surfaces() {
-    // A box of smoke, first as fog and then as an object with an index-matched surface.
+    // Build a box of smoke, first as fog and then as an object with an index-matched surface.
     let emitter = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 5 }";
     let at = |fog: &str, material: &str, group: &str| {
         read(&format!(

@@ -1,17 +1,17 @@
-//! Tests of light through thin sheets, such as panes of glass.
+//! Tests of light that passes through thin sheets, such as window panes.
 
 use super::caustics::by_photons;
 use super::*;
 
 const LIGHTS: [(&str, f64); 3] = [
-    // A light of colour c gives an irradiance of pi c at distance 1; a directional light does at
-    // any distance.
+    // A light of colour c causes an irradiance of pi c at distance 1, and a directional light does
+    // so at any distance.
     ("PointLight { position 0 2 0 color 1 1 1 attenuation 0 0 1 }", 0.25),
     ("DirectionalLight { direction 0 -1 0 color 1 1 1 }", 1.0),
     ("SpotLight { position 0 2 0 direction 0 -1 0 color 1 1 1 angle 60 }", 0.25),
 ];
 
-/// Builds a pane of a material above a floor.
+/// Builds a pane of the given material above a floor.
 fn under(pane: &str, light: &str) -> World {
     scene(
         &format!("{MATTE} PrincipledMaterial {{ {pane} }}"),
@@ -20,27 +20,28 @@ fn under(pane: &str, light: &str) -> World {
     )
 }
 
-/// Returns a ray from below the pane that hits the floor at the origin.
+/// Returns a ray that starts below the pane and hits the floor at the origin.
 fn below() -> Ray {
     Ray::new(Vec3::new(2.0, 0.9, 0.0), Vec3::new(-2.0, -0.9, 0.0).normalize())
 }
 
 #[test]
 fn pane_transmits_light_by_fresnel_and_its_colour() {
-    // With all interreflections, T = (1 - F) / (1 + F), where F = 0.04.
+    // If all interreflections are included, T = (1 - F) / (1 + F), where F = 0.04.
     let clear = 0.96 / 1.04;
     for (emitter, distance) in LIGHTS {
         for (pane, share) in [
             ("transmissionWeight 1 specularRoughness 0 walls thin", clear),
             ("transmissionWeight 1 specularRoughness 0 transmissionColor 0.5 0.5 0.5 walls thin", 0.5 * clear),
-            // Each pass absorbs half of the light: T = (1 - F)² / 2 / (1 - F² / 4).
+            // Each pass through the pane absorbs half of the light, so T = (1 - F)² / 2 / (1 - F² /
+            // 4).
             (
                 "transmissionWeight 1 specularRoughness 0 transmissionColor 0.5 0.5 0.5 transmissionDepth 1 walls thin",
                 0.96 * 0.96 * 0.5 / (1.0 - 0.0016 * 0.25),
             ),
             ("transmissionWeight 1 specularRoughness 0 opacity 0.25 walls thin", 0.75 + 0.25 * clear),
             ("baseColor 0 0 0 transmissionWeight 0.5 specularRoughness 0 walls thin", 0.5 * clear),
-            // Light that is scattered or refracted arrives by other paths.
+            // Light that is scattered or refracted is found by other means.
             ("transmissionWeight 1 specularRoughness 0.5 walls thin", 0.0),
             ("transmissionWeight 1 specularRoughness 0", 0.0),
         ] {
@@ -73,7 +74,7 @@ fn photons_do_not_count_light_through_a_pane_twice() {
     assert!((a - b).abs() < 3.5 * error + 0.005 * a, "{a}, {b} ± {error}");
 }
 
-/// Builds a floor below an infinite pane, which is below a disc of radiance 3.
+/// Builds a floor below an infinite pane, with a disc of radiance 3 above the pane.
 fn below_disc(pane: &str) -> World {
     let emissive = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }";
     scene(
@@ -86,20 +87,22 @@ fn below_disc(pane: &str) -> World {
 
 #[test]
 fn pane_transmits_the_light_of_a_small_disc() {
-    // A disc of angular radius t around the normal gives an irradiance of pi L sin(t)^2. Over such
-    // a small angle, the pane's transmittance is constant to 1e-6.
+    // A disc of angular radius t around the normal causes an irradiance of pi L sin(t)^2. Over such
+    // a small angle, the pane's transmittance varies by no more than 1e-6.
     let irradiance = 3.0 * std::f64::consts::PI * 0.04 / 4.04;
     for (pane, share) in [
         ("transmissionWeight 1 specularRoughness 0 walls thin", 0.96 / 1.04),
         ("transmissionWeight 1 specularRoughness 0 opacity 0.25 walls thin", 0.75 + 0.25 * 0.96 / 1.04),
         ("baseColor 0 0 0 transmissionWeight 0.5 specularRoughness 0 walls thin", 0.5 * 0.96 / 1.04),
     ] {
-        // Without bounces, paths end at the pane. With one, MIS combines them with light samples.
+        // Without bounces, paths end at the pane. With one bounce, MIS combines paths and light
+        // samples.
         for bounces in [0, 1] {
             let (world, expected) = (below_disc(pane), shown(share * irradiance));
             let (mean, error) = light(&world, below(), bounces, 1 << 13);
             assert!((mean - expected).abs() <= 3.0 * error + 1e-3 * expected, "{pane}: {mean}, expected {expected}");
-            // A BSDF sample finds the light once in a hundred times, which gives an error of 0.11.
+            // A BSDF sample finds the light once in a hundred times, which would give an error of
+            // 0.11.
             assert!(error < 0.02 * expected, "{pane}, {bounces} bounces: {mean} ± {error}");
         }
     }

@@ -1,5 +1,5 @@
-//! Tests of two-sided emissive meshes. Their light must not depend on whether their insides are
-//! sampled.
+//! Tests of two-sided emissive meshes. The light of a mesh must not depend on whether light
+//! sampling samples its inside.
 
 use super::*;
 use crate::compile::AccelKind;
@@ -8,8 +8,8 @@ use durer_scene::dialect::Dialect;
 use std::path::Path as FilePath;
 use tempfile::TempDir;
 
-/// Returns a cube of half-width `half`. Its triangles are counter-clockwise as seen from outside
-/// or, if `turned`, from inside.
+/// Returns a cube of half-width `half`. The cube's triangles are counter-clockwise as seen from
+/// outside or, if `turned`, from inside.
 fn cube(half: f32, turned: bool) -> String {
     let corner = |i: usize| [1, 2, 4].map(|bit| if i & bit > 0 { half } else { -half });
     let vertices: String = (0..8).map(corner).map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
@@ -19,7 +19,7 @@ fn cube(half: f32, turned: bool) -> String {
     vertices + &faces.into_iter().map(face).collect::<String>()
 }
 
-/// Writes a cube in both orientations into a folder.
+/// Writes a cube in both orientations to files in a folder.
 fn cubes(half: f32) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, turned) in [("out.obj", false), ("in.obj", true)] {
@@ -50,10 +50,11 @@ fn emissive_meshes_light_their_inside() {
                  MaterialIndex 0 Rectangle {{ corner -1 0 1 edge0 2 0 0 edge1 0 0 -2 }}"
             ),
         );
-        // The floor receives radiance 3 from all directions.
+        // The floor receives light of radiance 3 from all directions.
         let (mean, error) = light(&world, to_origin(), 0, 1 << 12);
         assert!((mean - 1.5).abs() < 3.0 * error + 0.0015, "{name}: {mean} ± {error}");
-        // BSDF sampling alone would have no noise, so light sampling is used too.
+        // If only BSDF sampling were used, there would be no noise, so light sampling must be used
+        // too.
         assert!(error > 1e-3, "{name}: {error}");
     }
 }

@@ -1,10 +1,10 @@
-//! Tests of path traces: the sum of their terms, and the clamp on single terms.
+//! Tests of the traces of paths: the sum of all terms, and the clamp on single terms.
 
 use super::*;
 use crate::integrator::{TraceRecorder, Tree};
 
-/// Returns the trace of a sample. Checks that its sum equals the sample's colour bit for bit, and
-/// that the factors along each path multiply to the throughput.
+/// Returns the trace of a sample. Checks that the trace's sum equals the sample's colour bit for
+/// bit, and that the product of the factors along each path is the throughput.
 pub(super) fn tree(path: &Path, ray: &Ray, sample: u32) -> Tree {
     fn check(node: &TraceNode) {
         assert_eq!(node.sum(), node.value, "{:?}", node.kind);
@@ -31,8 +31,8 @@ pub(super) fn tree(path: &Path, ray: &Ray, sample: u32) -> Tree {
     tree
 }
 
-/// Collects the light sources below a node in order, each with the number of scattering events up
-/// to the camera and its contribution to the pixel.
+/// Collects the light sources below a node, in order, each with the number of scattering events on
+/// the way to the camera and with its contribution to the pixel.
 fn sources(node: &TraceNode, rays: u32, found: &mut Vec<(u32, Spectrum)>) {
     for term in &node.terms {
         let adds = || term.path_contribution().unwrap().spectrum();
@@ -45,7 +45,7 @@ fn sources(node: &TraceNode, rays: u32, found: &mut Vec<(u32, Spectrum)>) {
     }
 }
 
-/// Builds the inside of a matte sphere with a point light and a small emissive sphere, which gives
+/// Builds the inside of a matte sphere with a point light and a small emissive sphere, which causes
 /// light of all depths.
 fn closed_room() -> World {
     scene(

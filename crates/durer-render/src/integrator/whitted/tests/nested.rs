@@ -1,4 +1,4 @@
-//! Tests of nested glass: the indices of refraction along a ray, computed with Snell's law.
+//! Tests of nested glass that derive the indices of refraction along a ray from Snell's law.
 
 use super::*;
 use crate::compile::testing;
@@ -12,8 +12,8 @@ const CAMERA: &str = "PerspectiveCamera { center 0 9 0 direction 0 -1 0 up 0 0 1
       Material { transparentColor 1 1 1 indexOfRefraction 1 }
       Material { diffuseColor 1 1 1 } }\n";
 
-/// Returns the indices of refraction along a ray from the sines of its angles to the y axis. In
-/// flat layers, index times sine is constant.
+/// Returns the indices of refraction along a ray, computed from the sines of the angles between the
+/// ray and the y axis. In flat layers, the product of index and sine is constant.
 fn indices(objects: &str, origin: [f32; 3], sine: f32) -> Vec<f32> {
     along(&testing::read(&format!("{CAMERA}Group {{ {objects} }}")), origin, sine)
 }
@@ -33,7 +33,7 @@ fn along(world: &World, origin: [f32; 3], sine: f32) -> Vec<f32> {
     Whitted { world, settings, cancel: None }.radiance(&ray, &mut account);
     let mut found = Vec::new();
     transmitted(&account.into_tree().unwrap().root, &mut found);
-    // The indices are rounded to thousandths.
+    // Round the indices to thousandths.
     found.iter().map(|dir| (1e3 * sine / dir.x).round() / 1e3).collect()
 }
 
@@ -56,8 +56,8 @@ fn nested_layers_refract_by_their_own_indices_in_any_order() {
         for sine in [0.1, 0.5, 0.9] {
             assert_eq!(indices(&objects, [0.0, 6.0, 0.0], sine), [1.5, 1.33, 1.31, 1.33, 1.5, 1.0]);
         }
-        // Rays from inside the ice, the water and the glass. The sines are those in the medium
-        // where the ray starts.
+        // Shoot rays from inside the ice, the water and the glass. Each sine is that of the angle
+        // in the medium where the ray starts.
         assert_eq!(
             indices(&objects, [0.0, 0.0, 0.0], 0.5).iter().map(|n| n * 1.31).map(short).collect::<Vec<_>>(),
             [1.33, 1.5, 1.0]
@@ -82,7 +82,8 @@ fn ice_partly_out_of_water_displaces_it() {
         // Beside the ice there is only water.
         assert_eq!(indices(&objects, [12.0, 6.0, 0.0], 0.5), [1.33, 1.0]);
     }
-    // An infinite sea also contains the ice. There is nothing below it, so the ray stays inside.
+    // A sea of infinite depth also contains the ice. There is nothing below the sea, so the ray
+    // stays inside.
     let sea = format!("{ice}MaterialIndex 1 Plane {{ normal 0 1 0 offset 0 }}");
     assert_eq!(indices(&sea, [0.0, 6.0, 0.0], 0.5), [1.31, 1.33]);
 }
@@ -94,7 +95,7 @@ fn bubble_is_air_and_pane_hides_nothing() {
     // Opaque objects inside glass are visible.
     let stone = format!("{}MaterialIndex 4 Sphere {{ center 0 0 0 radius 1 }}", slab(0, -2.0, 2.0, 20.0));
     assert_eq!(indices(&stone, [-4.2, 8.0, 0.0], 0.5), [1.5]);
-    // A pane without thickness has no inside. Glass behind it is unaffected.
+    // A pane without thickness has no inside. Glass behind the pane is unaffected.
     let pane = "MaterialIndex 2 Rectangle { corner -30 3 -30 edge0 0 0 60 edge1 60 0 0 } ";
     let behind = indices(&format!("{pane}{}", slab(0, -1.0, 1.0, 20.0)), [0.0, 6.0, 0.0], 0.5);
     assert_eq!(behind[..2], [1.31, 1.5]);
@@ -103,7 +104,7 @@ fn bubble_is_air_and_pane_hides_nothing() {
 #[test]
 fn inverted_mesh_is_the_wall_of_a_cavity() {
     let folder = tempfile::tempdir().unwrap();
-    // A box of twelve triangles that face inwards.
+    // Build a box from twelve triangles that face inwards.
     let corners: String = (0..8)
         .map(|i| format!("v {} {} {}\n", 10 * (2 * (i & 1) - 1), 2 * (i >> 1 & 1) - 1, 10 * (2 * (i >> 2) - 1)))
         .collect();

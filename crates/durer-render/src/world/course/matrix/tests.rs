@@ -54,7 +54,7 @@ fn singular_matrix_is_detected_and_tiny_one_is_skipped() {
     assert!(!Matrix::of(&flat, MatrixRules::default(), VectorLibrary::Vecmath).is_regular());
     let tiny = MatrixRules { ignore_tiny: true, ..MatrixRules::default() };
     assert_eq!(Matrix::of(&flat, tiny, VectorLibrary::Glm), Matrix::IDENTITY);
-    // 0.004^3 is smaller than the rounding of 1, and 0.006^3 is not.
+    // 0.004^3 is smaller than the rounding error of 1, whereas 0.006^3 is larger.
     let scale = |s: f32| [MatrixOp::Translate(Vec3::X), MatrixOp::UniformScale(s)];
     assert_eq!(Matrix::of(&scale(0.004), tiny, VectorLibrary::Glm), Matrix::IDENTITY);
     assert_ne!(Matrix::of(&scale(0.006), tiny, VectorLibrary::Glm), Matrix::IDENTITY);
