@@ -89,7 +89,7 @@ impl BandedRender {
     /// picture.
     ///
     /// # Errors
-    /// [`BandsError`]. The output is then incomplete.
+    /// Returns [`BandsError`]. The output is then incomplete.
     pub fn write(
         &self,
         world: &World,

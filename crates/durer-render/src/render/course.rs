@@ -18,7 +18,7 @@ use std::cell::Cell;
 /// Takes all samples of a job and returns their positions and colours for a diagram.
 ///
 /// # Errors
-/// [`RenderError`], including [`RenderError::TooManySamples`].
+/// Returns [`RenderError`], including [`RenderError::TooManySamples`].
 pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<StoredSamples, RenderError> {
     let (sampler, samples) = match job.sampling {
         Sampling::Course2004 { sampler, samples, .. } => (sampler, samples),

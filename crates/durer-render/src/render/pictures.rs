@@ -34,7 +34,7 @@ impl PartialRender {
     /// Returns the current pictures. Pixels without samples are black.
     ///
     /// # Errors
-    /// [`RenderError::Image`].
+    /// Returns [`RenderError::Image`].
     pub fn pictures(&self) -> Result<Rendered, RenderError> {
         let statistics = self.statistics();
         let (job, window) = (&self.job, self.job.window());

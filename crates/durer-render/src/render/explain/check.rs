@@ -45,7 +45,7 @@ pub const SAMPLINGS: [SamplingCase; 12] = [
 /// [`SAMPLINGS`]. Returns a message for each pixel whose explanation differs from the picture.
 ///
 /// # Errors
-/// [`RenderError`].
+/// Returns [`RenderError`].
 pub fn check(world: &World, job: &Job, pixels: u32, seed: u64) -> Result<Vec<String>, RenderError> {
     let mut differences = Vec::new();
     let control = Control { threads: Some(1), ..Control::default() };
