@@ -8,8 +8,8 @@ use std::sync::{Once, mpsc};
 /// Maximum number of threads.
 pub const MAX_THREADS: usize = 1024;
 
-/// Returns the number of threads to start. This is the requested number, otherwise
-/// `RAYON_NUM_THREADS`, and otherwise the number of processors.
+/// Returns the number of threads to start. This is the requested number if there is one, otherwise
+/// the value of `RAYON_NUM_THREADS` if it is set, and otherwise the number of processors.
 fn wanted(requested: Option<usize>) -> usize {
     let environment = || std::env::var("RAYON_NUM_THREADS").ok()?.parse().ok().filter(|&count: &usize| count > 0);
     let machine = || std::thread::available_parallelism().map_or(1, usize::from);

@@ -2,8 +2,8 @@
 
 use durer::image::{Display, Layer, Tone, Transfer};
 
-/// Returns the display transform for an exposure in stops and a tone curve. Both are defined as for
-/// `--exposure` and `--tone`.
+/// Returns the display transform for an exposure in stops and a tone curve. They have the same
+/// meaning as the options `--exposure` and `--tone`.
 pub(crate) fn display(stops: f32, tone: &str) -> Display {
     let tone = Tone::from_name(tone).unwrap_or_default();
     Display { exposure: durer::math::fp::pow(2.0, stops), tone, transfer: Transfer::Srgb }

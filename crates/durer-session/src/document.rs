@@ -53,8 +53,8 @@ impl Document {
         if self.is_model() { None } else { std::str::from_utf8(&self.bytes).ok() }
     }
 
-    /// Reads and compiles the text. Returns the findings and true on success. If there are errors,
-    /// the previous compiled scene is kept.
+    /// Reads and compiles the text. Returns true on success, together with the findings. If there
+    /// are errors, the previous compiled scene is kept.
     pub fn compile(&mut self) -> (bool, Vec<Finding>) {
         let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
         let loaded = load_text(&self.path, self.bytes.clone(), &self.options, &mut files, &mut diagnostics);

@@ -61,8 +61,8 @@ impl Host {
     }
 
     /// Works for a few milliseconds. Sessions that have not shown their latest change yet have
-    /// priority, and among them the session that received the latest request. The other sessions
-    /// take turns.
+    /// priority. Among these, the session that received the latest request comes first. The other
+    /// sessions take turns.
     pub fn step(&mut self, send: &mut dyn FnMut(Vec<u8>)) {
         let Some(session) = self.next() else { return };
         self.worked = session;

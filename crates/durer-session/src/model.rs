@@ -8,7 +8,7 @@ use durer::describe::DescribedKind;
 use durer::dialect::Dialect;
 use durer::scene::{Material, Object, ObjectKind, Scene};
 
-/// Maximum number of nodes and maximum number of materials that are listed.
+/// Maximum number of nodes that are listed. The same limit applies to materials.
 const MAX_NODES: usize = 2000;
 
 /// Returns the objects of a scene as a tree of groups.

@@ -27,7 +27,7 @@ pub(crate) fn distance(world: &World) -> f32 {
     near.unwrap_or(center).max(1e-3 * frame.eye.length().max(1.0))
 }
 
-/// Returns the index of the field of the camera with this name.
+/// Returns the index of the camera field with this name.
 fn field(camera: &Camera, name: &str) -> Option<usize> {
     camera.fields().iter().position(|field| field.name == name)
 }

@@ -38,7 +38,7 @@ const MAX_BYTES: usize = 256 << 20;
 pub struct SessionFiles {
     /// Scene file that is opened and saved if the page does not name a file.
     pub file: Option<PathBuf>,
-    /// Lesson of a teacher in Markdown. The scenes that it names are in the same folder.
+    /// A teacher's lesson in Markdown format. The scenes that it names are in the same folder.
     pub lesson: Option<PathBuf>,
 }
 

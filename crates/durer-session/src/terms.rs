@@ -77,7 +77,7 @@ fn camera_rows(compiled: &CompiledDocument, job: &Job, place: Vec2) -> Vec<Formu
     rows
 }
 
-/// Vectors of the enclosing terms, to which the formulas of a term refer.
+/// Vectors from the enclosing terms that the formulas of a term use.
 #[derive(Clone, Default)]
 struct TermContext {
     dir: Vec3,

@@ -13,7 +13,7 @@ const MAX_BOXES: usize = 3000;
 const MAX_RAYS: u32 = 1 << 16;
 const MAX_OBJECTS: usize = 20_000;
 
-/// Returns the camera rays through the centres of the pixels of a raster, row by row.
+/// Returns the camera rays through the pixel centres of a raster, row by row.
 pub(crate) fn rays(
     world: &World,
     [columns, rows]: [u32; 2],

@@ -1,4 +1,4 @@
-//! Rendering of the picture of a session from coarse to fine, in steps of a few milliseconds.
+//! Rendering of a session's picture from coarse to fine, in steps of a few milliseconds.
 
 use crate::display::{display, pixels};
 use crate::document::CompiledDocument;

@@ -79,8 +79,8 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 /// Path of a module from the root of its crate, as a list of names.
 type Module = Vec<String>;
 
-/// Returns the files of the modules of a crate, except tests, by module path from the root of the
-/// crate.
+/// Returns the source files of a crate by module path from the root of the crate. Tests are not
+/// included.
 fn modules(source: &Path) -> BTreeMap<Module, PathBuf> {
     let mut all = Vec::new();
     files(source, &mut all);

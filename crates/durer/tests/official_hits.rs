@@ -280,7 +280,7 @@ fn glass_of_2012_uses_plane_normals_as_written() {
                MaterialIndex 1 Sphere {{ center 0 -2 0 radius 1 }} }}"
         )
     };
-    // At normal incidence, the ball is seen through the pane with 1 - R of its light.
+    // At normal incidence, the pane lets through a share of 1 - R of the ball's light.
     let share = |text: &str, off: &[Quirk]| {
         traced_color(&world_in(Path::new("."), text, Dialect::F12a5, off).0, [0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).x
     };
@@ -324,7 +324,8 @@ fn weights_of_mirrored_rays_below_zero_count_in_2012() {
           PhongMaterial { diffuseColor 1 1 1 } }
         Group { numObjects 2 MaterialIndex 0 Plane { normal 0 2 0 offset 0 }
           MaterialIndex 1 Sphere { center 0 -2 0 radius 1 } }";
-    // The expected light is R = 0.04 - 0.96 of the background plus 1 - R of the ball.
+    // The expected light is R times the background plus 1 - R times the ball, where R = 0.04 -
+    // 0.96.
     let light = traced_color(&world(scene, Dialect::F12a5), [0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).x;
     assert!((light - (1.92 - 0.92 * 0.5)).abs() < 1e-5, "{light}");
 }

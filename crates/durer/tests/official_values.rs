@@ -48,7 +48,7 @@ const DOWN: [f32; 3] = [0.0, -1.0, 0.0];
 const LIT: &str = "Lights { numLights 1 DirectionalLight { direction 0 -1 0 color 0.5 0.5 0.5 } }";
 const BALL: &str = "Sphere { center 0 0 0 radius 2 }";
 
-/// Returns a scene in the language used before 2020 that is seen from above.
+/// Returns a scene in the language used before 2020. The scene is seen from above.
 fn classic(lights: &str, angle: &str, shininess: &str, objects: &str) -> String {
     format!(
         "PerspectiveCamera {{ center 0 5 0 direction 0 -1 0 up 0 0 1 angle {angle} }} {lights}

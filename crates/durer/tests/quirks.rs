@@ -29,7 +29,7 @@ fn world_with(folder: &Path, text: &str, dialect: Dialect, compat: Vec<(Quirk, b
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))
 }
 
-/// Returns all quirks of the rules in a list that turns them off.
+/// Returns a list that turns off all quirks of the rules.
 fn off(rules: &durer::dialect::DialectRules) -> Vec<(Quirk, bool)> {
     Quirk::ALL.iter().filter(|row| rules.has(row.0)).map(|row| (row.0, false)).collect()
 }
@@ -117,8 +117,9 @@ fn plane_normals_are_not_normalised() {
         close(traced_color(&world(&moved, dialect, true), [0.0, 5.0, 0.0], DOWN), [0.25; 3]);
         close(traced_color(&world(&long, dialect, false), [0.0, 5.0, 0.0], DOWN), [0.25; 3]);
     }
-    // A mirror reflects in the direction d - 2 (d·n) n, where n is the normal as written. Here, n
-    // is (0, 1, 1) with length √2, and a downward ray is reflected in the direction (0, 1, 2) / √5.
+    // A mirror reflects in the direction d - 2 (d·n) n, where n is the normal as written in the
+    // scene. Here, n is (0, 1, 1) with length √2, and a downward ray is reflected in the direction
+    // (0, 1, 2) / √5.
     let mirror = "Background { color 0 0 0 ambientLight 0 0 0 }
          Lights { numLights 1 DirectionalLight { direction 0 1 2 color 1 1 1 } }
          Materials { numMaterials 2 Material { diffuseColor 0 0 0 specularColor 1 1 1 shininess 1000 } Material { } }

@@ -25,7 +25,7 @@ pub(super) enum AssetKey {
 #[derive(Debug, Default)]
 pub struct AssetCache(Mutex<CacheEntries>);
 
-/// Contents of an [`AssetCache`], behind its mutex.
+/// Contents of an [`AssetCache`], which its mutex protects.
 #[derive(Debug, Default)]
 struct CacheEntries {
     /// Dialect rules that the cached meshes were built with.

@@ -35,7 +35,7 @@ const SKY_WIDTH: u32 = 512;
 /// Key of a decoded picture: its name and encoding.
 pub(super) type PictureKey = (String, Encoding);
 
-/// Loads the meshes, pictures, profiles, spectra and densities of a scene, for its compilation.
+/// Loads the meshes, pictures, profiles, spectra and densities that are needed to compile a scene.
 pub(super) struct Loader<'r> {
     pub(super) resources: Resources<'r>,
     rules: DialectRules,
@@ -217,7 +217,7 @@ impl<'r> Loader<'r> {
         if self.rules.is_bit_compatible() { mesh } else { mesh.centered() }
     }
 
-    /// Returns the index of the texture of a Phong material.
+    /// Returns the index of a Phong material's texture.
     pub(super) fn texture(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<u32> {
         if let Some(known) = self.texture_numbers.get(&name.path) {
             return *known;

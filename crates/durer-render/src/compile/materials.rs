@@ -1,4 +1,4 @@
-//! Compilation of materials. The dialect determines the meaning of their parameters.
+//! Compilation of materials. The dialect determines the meaning of material parameters.
 
 use super::files::Loader;
 use super::media;

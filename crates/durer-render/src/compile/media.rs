@@ -102,7 +102,7 @@ pub(super) fn is_interface(m: &PrincipledMaterial) -> bool {
         && m.emission_luminance == 0.0
 }
 
-/// Returns the medium of the fog in a scene. A box or a density grid can bound it.
+/// Returns the medium of the fog in a scene. The fog can be bounded by a box or a density grid.
 pub(super) fn fog(written: &Fog, loader: &mut Loader, diagnostics: &mut Diagnostics) -> Option<Medium> {
     let corners = written.min.zip(written.max).map(|(min, max)| Aabb { min, max });
     let density = match &written.density {

@@ -304,8 +304,8 @@ fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Res
     Ok(Accel::Grid { grid, parts, wide })
 }
 
-/// Returns the indices of boxes that extend far beyond the others, in ascending order. A grid
-/// around all boxes would contain the other boxes in a single cell.
+/// Returns the indices of boxes that extend far beyond the others, in ascending order. If a grid
+/// included them, all other boxes would be in a single cell of the grid.
 fn outliers(boxes: &[Aabb]) -> Vec<usize> {
     /// Maximum number of outliers. Every ray tests all of them, so the number must be small.
     const MOST: usize = 64;

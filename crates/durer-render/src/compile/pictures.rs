@@ -1,5 +1,5 @@
-//! Loading of the textures of materials. Each picture is decoded only once, even if several
-//! textures use it.
+//! Loading of material textures. Each picture is decoded only once, even if several textures use
+//! it.
 
 use super::cache::AssetKey;
 use super::decoded::{Encoding, decode};
@@ -17,8 +17,8 @@ use rayon::prelude::*;
 use std::collections::HashSet;
 
 impl Loader<'_> {
-    /// Returns the index of a texture of a principled material. The picture is an asset or a file.
-    /// A picture from a file repeats over the surface.
+    /// Returns the index of a principled material's texture. The picture is an asset or a file. A
+    /// picture from a file repeats over the surface.
     fn map(&mut self, name: &FileName, encoding: Encoding, diagnostics: &mut Diagnostics) -> Option<u32> {
         let key = (name.path.clone(), encoding);
         if let Some(known) = self.map_numbers.get(&key) {
@@ -203,7 +203,7 @@ fn pictures(layers: &PrincipledMaterial) -> impl Iterator<Item = (&FileName, Enc
     own.into_iter().chain(parameters).filter_map(|(name, encoding)| Some((name?, encoding)))
 }
 
-/// Returns the encoding of the texture of a parameter: sRGB for colours and linear for numbers.
+/// Returns the encoding of a parameter's texture: sRGB for colours and linear for numbers.
 fn encoding_of(textured: &TextureField) -> Encoding {
     match textured.change {
         TextureEffect::Number(_) => Encoding::Linear,

@@ -40,8 +40,7 @@ impl AovInput {
     };
 }
 
-/// Sample count, mean and variance of the colour of one pixel. AOVs use them, and they are computed
-/// on demand.
+/// Sample count, mean and variance of one pixel's colour. They are computed on demand for AOVs.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelStatistics<'a> {
     /// The film and the pixel's coordinates, or `None` if the pixel has no samples yet.
@@ -96,9 +95,9 @@ pub struct Display {
 /// samples.
 #[derive(Clone, Copy, Debug)]
 pub enum AovFunction {
-    /// Uses the ray through the pixel's centre.
+    /// Function that uses the ray through the pixel's centre.
     Ray(fn(&AovInput) -> Vec3),
-    /// Uses the statistics of the colour samples.
+    /// Function that uses the statistics of the colour samples.
     Sums(fn(&PixelStatistics) -> Vec3),
 }
 
@@ -264,7 +263,7 @@ pub static AOVS: &[Aov] = &[
     },
 ];
 
-/// Converts a normal to a colour in the way of the dialect.
+/// Converts a normal to a colour as the dialect prescribes.
 fn normal_picture(n: Vec3, _: bool, display: &Display) -> Color {
     match display.rules.normals {
         NormalsPicture::Abs => n.abs(),
@@ -287,7 +286,7 @@ fn of_surface(input: &AovInput, value: impl Fn(&SurfacePoint) -> Vec3) -> Vec3 {
     input.hit.map_or(Vec3::ZERO, |at| value(&at.surface))
 }
 
-/// Converts a depth to a shade of grey in the way of the dialect.
+/// Converts a depth to a shade of grey as the dialect prescribes.
 fn depth_picture(depth: Vec3, hit: bool, display: &Display) -> Color {
     let rules = display.rules;
     let (least, greatest) = (display.hit_bounds.min.x, display.hit_bounds.max.x);

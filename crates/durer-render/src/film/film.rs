@@ -326,8 +326,8 @@ impl Film {
                 to.samples = to.samples.wrapping_add(from.samples);
             }
         }
-        // At least sixteen rejected samples come before any that `other` did not store. Those are
-        // therefore not among the first sixteen of the union either.
+        // The film `other` stores its first sixteen rejected samples. Any that it did not store
+        // come after these and are therefore not among the first sixteen of the union either.
         other.first_rejected.iter().for_each(|&r| self.reject(r));
         self.rejected = self.rejected.wrapping_add(other.rejected - other.first_rejected.len() as u64);
         Ok(())

@@ -40,8 +40,8 @@ impl PartialRender {
         true
     }
 
-    /// Returns the number of samples that was decided for a pixel of the window, or `None` if it is
-    /// undecided.
+    /// Returns the number of samples that was decided for a pixel of the window, or `None` if the
+    /// number is undecided.
     pub(super) fn sample_target(&self, x: u32, y: u32) -> Option<u32> {
         let (state, index) = (self.state(), self.blocks.index_at(x, y));
         let pixel = self.blocks.rect(index).pixel_positions().position(|place| place == (x, y))?;

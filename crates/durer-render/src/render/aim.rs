@@ -24,7 +24,7 @@ pub(super) struct PixelSample {
     pub(super) ray: Option<Ray>,
 }
 
-/// Position and random sequence of a pixel. All its samples share them.
+/// Position and random sequence of a pixel. All samples of the pixel share both.
 #[derive(Clone, Copy)]
 pub(super) struct Pixel {
     pub(super) x: u32,
@@ -219,7 +219,7 @@ impl<'a> CameraRays<'a> {
         (PixelSample { film_position, lens, weight: 1.0, ray }, position)
     }
 
-    /// Generates the sample of a sub-pixel for the course of 2012.
+    /// Generates the sample of a sub-pixel for the 2012 course.
     pub(super) fn sub_pixel(&self, grid: &SubPixels, raster: &Raster, (x, y): (u32, u32)) -> PixelSample {
         let (place, lens) = (grid.place(self.job.seed, (x, y)), self.lens(Sampler::Random, x, y, 0));
         let ray = camera_ray(self.world, raster, (x, y), place, lens);

@@ -43,17 +43,20 @@ const MOST: u32 = 1 << 20;
 /// their product approximates a normal distribution with a standard deviation of 1.7.
 const WEIGHTS: [f32; 13] = [1.0, 12.0, 66.0, 220.0, 495.0, 792.0, 924.0, 792.0, 495.0, 220.0, 66.0, 12.0, 1.0];
 
-/// Returns half the number of pilot samples per pixel. `samples` is the average number.
+/// Returns half the number of pilot samples per pixel. `samples` is the average number of samples
+/// per pixel.
 pub(super) fn half(samples: u32) -> u32 {
     (samples / 8).max(LEAST_HALF)
 }
 
-/// Returns the number of pilot samples per pixel. `samples` is the average number.
+/// Returns the number of pilot samples per pixel. `samples` is the average number of samples per
+/// pixel.
 pub(super) fn pilot(samples: u32) -> u32 {
     2 * half(samples)
 }
 
-/// Returns the maximum number of samples of a pixel. `samples` is the average number.
+/// Returns the maximum number of samples of a pixel. `samples` is the average number of samples per
+/// pixel.
 pub(super) fn max_samples(samples: u32) -> u32 {
     samples.saturating_mul(MAX_RATIO).min(MOST.max(samples))
 }

@@ -37,8 +37,8 @@ impl BandedRender {
     /// Divides the picture of a job into bands of at most `memory` bytes each.
     ///
     /// # Errors
-    /// Returns [`RenderError::Bands`] if the job needs all pixels at once, and [`RenderError::Memory`] if
-    /// the memory is too small for a single row of blocks.
+    /// Returns [`RenderError::Bands`] if the job needs all pixels at once, and
+    /// [`RenderError::Memory`] if the memory is too small for a single row of blocks.
     pub fn new(job: &Job, memory: u64) -> Result<Self, RenderError> {
         let refuse = |why: &str| Err(RenderError::Bands(why.into()));
         if !job.color || !job.aovs.is_empty() {
@@ -101,7 +101,7 @@ impl BandedRender {
         let window = self.job.window();
         let bottom_up = format.rows.is_some_and(|rows| rows.bottom_up);
         // Full coverage is known only after the last band. An alpha channel is therefore written
-        // unless the camera sees something everywhere.
+        // unless the camera is known to see something in every pixel.
         let (width, height, display) = (window.width, window.height, options.display);
         let strip = RowLayout { width, height, alpha: !has_all_rays(world, &self.job), display };
         let samples = u64::from(self.job.sampling.samples());

@@ -1,4 +1,4 @@
-//! Centre rays, which compute AOV values from one ray through the centre of each pixel.
+//! Tracing of centre rays. Some AOV values of a pixel are computed from one ray through its centre.
 
 use super::part::{BlockAovs, PrimaryHit};
 use super::samples::{Cancelled, SampleCursor, SampleSource};

@@ -70,7 +70,7 @@ fn student(freedom: f64) -> f64 {
     // The 0.95 quantile of the normal distribution.
     let z = 1.644_853_626_951_472_7_f64;
     let (square, mut power) = (z * z, z);
-    // Powers of z with odd exponents up to nine.
+    // The odd powers of z up to the ninth power.
     let powers = [1.0, square, square, square, square].map(|factor| {
         power *= factor;
         power

@@ -13,8 +13,8 @@ pub struct Control {
     pub tile_size: Option<u32>,
     /// Time after which no more samples are taken, provided that every pixel has at least one.
     pub time_limit: Option<Duration>,
-    /// Number of tiles after which the render stops as if it had been cancelled. Tests of resuming
-    /// use this.
+    /// Number of tiles after which the render stops as if it had been cancelled. This is used to
+    /// test that a render can be resumed.
     pub max_tiles: Option<u64>,
     /// Time between two requests to the callback to save a checkpoint.
     pub save_every: Option<Duration>,
@@ -28,18 +28,18 @@ pub struct Control {
     pub done_work: AtomicU64,
     /// Number of rays traced so far.
     pub rays: AtomicU64,
-    /// True if `total_work` is the total of several renders. Their work is then added up in
-    /// `done_work`.
+    /// True if `total_work` is the total of several renders. The finished work of all these renders
+    /// is then added up in `done_work`.
     pub accumulates: bool,
 }
 
 /// Point at which a call of [`super::PartialRender::render_to`] stops.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum RunLimit {
-    /// The end of all work.
+    /// Stops when all work is done.
     End,
-    /// The end of all passes with at most this many samples per pixel.
+    /// Stops when all passes with at most this many samples per pixel are done.
     Samples(u32),
-    /// The end of the single pass that ends with this many samples per pixel.
+    /// Stops after the single pass that ends with this many samples per pixel.
     Pass(u32),
 }

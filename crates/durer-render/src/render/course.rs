@@ -1,4 +1,4 @@
-//! Sampling methods of the courses of Fall 2004 and 2012, in which a sample can affect several
+//! Sampling methods of the Fall 2004 and Fall 2012 courses, in which a sample can affect several
 //! pixels.
 
 use super::aim::PixelSample;
@@ -118,7 +118,7 @@ impl SampleSource<'_> {
         aim.ray.map_or(Vec3::ZERO, light)
     }
 
-    /// Stores samples and reconstructs the picture as in the course of Fall 2004.
+    /// Stores samples and reconstructs the picture as in the Fall 2004 course.
     fn course_2004(
         &self,
         show: &SubPixelPicture,
@@ -157,7 +157,7 @@ impl SampleSource<'_> {
         })
     }
 
-    /// Applies `-jitter` and `-filter` of the course of Fall 2012. Without jitter, the picture is
+    /// Applies `-jitter` and `-filter` of the Fall 2012 course. Without jitter, the picture is
     /// blurred at its own size.
     fn course_2012(
         &self,

@@ -55,11 +55,11 @@ pub struct Explanation {
 pub enum SampleCombination {
     /// Weighted mean of the pixel's own samples, computed with the exact sums of the film.
     Own,
-    /// Combination of the course of Fall 2004. The pixel is the weighted mean of its own samples
-    /// and the samples of its neighbours, summed in double precision.
+    /// Combination of the Fall 2004 course. The pixel is the weighted mean of its own samples and
+    /// the samples of its neighbours, summed in double precision.
     #[serde(rename = "around")]
     Neighbors,
-    /// Combination of the course of Fall 2012. The sub-pixels are blurred along rows, then blurred
+    /// Combination of the Fall 2012 course. The sub-pixels are blurred along rows, then blurred
     /// along columns, and then averaged. The weights of the samples include all three steps.
     SubPixels(SubPixels),
 }
@@ -118,7 +118,7 @@ fn trace_tree(integrator: &Integrator, ray: &Ray, id: SampleId) -> Option<Tree> 
     account.into_tree()
 }
 
-/// Explains a pixel of the colour picture of a job.
+/// Explains a pixel of a job's colour picture.
 ///
 /// # Errors
 ///

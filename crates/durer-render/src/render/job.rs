@@ -1,4 +1,4 @@
-//! A render job, which contains everything except the scene that determines a picture.
+//! A render job. It contains everything that determines a picture, except the scene.
 
 use super::camera_rays::raster;
 use super::crop::PixelRect;
@@ -30,8 +30,8 @@ pub enum Sampling {
         /// Reconstruction filter.
         filter: Filter,
     },
-    /// Sampling of the course of Fall 2004. Samples are stored and then weighted by their offset
-    /// from the centre of a pixel.
+    /// Sampling of the Fall 2004 course. Samples are stored and then weighted by their offset from
+    /// the centre of a pixel.
     Course2004 {
         /// Distribution of samples in a pixel.
         sampler: Sampler,
@@ -40,8 +40,8 @@ pub enum Sampling {
         /// Reconstruction filter. If it is `None`, a pixel is the mean of its own samples.
         filter: Option<CourseFilter>,
     },
-    /// Sampling of the course of Fall 2012, with 3 x 3 jittered sub-pixels that are blurred with
-    /// five taps and averaged.
+    /// Sampling of the Fall 2012 course, with 3 x 3 jittered sub-pixels that are blurred with five
+    /// taps and averaged.
     Course2012 {
         /// True if pixels are divided into sub-pixels.
         jitter: bool,
@@ -78,8 +78,8 @@ impl Sampling {
     }
 }
 
-/// A render job, which contains everything except the scene that determines the pictures. It is
-/// plain data and does not depend on the machine.
+/// A render job. It contains everything that determines the pictures, except the scene. It is plain
+/// data and does not depend on the machine.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Job {
     /// Width of the full picture in pixels.
@@ -247,7 +247,7 @@ impl Job {
         PixelRect { left: 0, top: 0, width: self.width, height: self.height }
     }
 
-    /// Returns the names of the pictures of the job, in order.
+    /// Returns the names of the job's pictures, in order.
     pub fn picture_names(&self) -> impl Iterator<Item = &'static str> {
         self.color.then_some("color").into_iter().chain(self.aovs.iter().map(|aov| aov.name))
     }

@@ -53,8 +53,8 @@ pub(super) struct BlockSamples {
     /// Sums of the samples, or `None` if there are no samples. The film is shared, so that readers
     /// hold the lock only while they clone the pointer.
     pub(super) film: Option<Arc<PackedFilm>>,
-    /// Variances of the means of the pixels once the pilot samples are complete. They are used for
-    /// adaptive sampling.
+    /// Variances of the pixel means, which are known once the pilot samples are complete. They are
+    /// used for adaptive sampling.
     pub(super) variances: Option<Arc<[f32]>>,
     /// Final number of samples of each pixel once it has been decided. It is used for adaptive
     /// sampling. `to` is then an average over the picture.

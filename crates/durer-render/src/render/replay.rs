@@ -12,8 +12,8 @@ use std::cell::Cell;
 use std::sync::atomic::AtomicBool;
 
 /// Takes one sample of a job again and returns its colour, or `None` if the camera has no ray
-/// there. If the argument `sample` is `None`, repeats the work on the pixel that does not belong to
-/// a sample.
+/// there. If the argument `sample` is `None`, repeats the work for the pixel that is not part of
+/// any sample.
 ///
 /// This function panics if the repeated work panics.
 ///

@@ -61,7 +61,7 @@ pub enum RenderOutcome {
 pub enum RenderEvent {
     /// A pass has ended.
     PassDone,
-    /// The time [`Control::save_every`] has passed since the last save.
+    /// A save is due, because the interval [`Control::save_every`] has passed since the last one.
     SaveDue,
 }
 

@@ -1,4 +1,4 @@
-//! Rendering of the samples of blocks for all sampling methods.
+//! Sampling of pixel blocks with any of the sampling methods.
 
 use super::aim::{BATCH, Batch, CameraRays, Pixel, PixelRun, PixelSample, SampleGroup};
 use super::error::center;

@@ -162,8 +162,8 @@ impl PartialRender {
     /// Reads a saved part.
     ///
     /// # Errors
-    /// Returns [`PartError`] for all data that [`PartialRender::write`] of this version did not
-    /// write.
+    /// Returns [`PartError`] for data that was not written by [`PartialRender::write`] of this
+    /// version.
     pub fn read(bytes: &[u8]) -> Result<PartialRender, PartError> {
         if !bytes.starts_with(PartialRender::MAGIC) {
             return Err(if PartialRender::MAGIC.starts_with(bytes) { PartError::Damaged } else { PartError::NotAPart });

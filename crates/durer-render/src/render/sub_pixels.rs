@@ -1,4 +1,4 @@
-//! Sub-pixels of the course of Fall 2012, assignment 5. Each pixel has 3 x 3 sub-pixels, which are
+//! Sub-pixels for assignment 5 of the Fall 2012 course. Each pixel has 3 x 3 sub-pixels, which are
 //! jittered, blurred and averaged.
 
 use super::{Job, PixelRect, raster};
@@ -57,8 +57,8 @@ impl SubPixels {
         y % self.scale() * self.scale() + x % self.scale()
     }
 
-    /// Returns the position of the ray of a sub-pixel in the picture, in sub-pixels from the upper
-    /// left corner.
+    /// Returns the position of a sub-pixel's ray in the picture, in sub-pixels from the upper left
+    /// corner.
     pub(super) fn place(&self, seed: u64, (x, y): (u32, u32)) -> Vec2 {
         let corner = if self.jitter { jittered_position(seed, x, y) } else { Vec2::new(x as f32, y as f32) };
         corner + 0.5

@@ -379,7 +379,7 @@ fn time_limit_and_cancel_stop_soon_and_the_callback_is_called() {
     }
     assert!(passes > 0 && saves > 0, "{passes} {saves}");
     assert!(part.is_whole() && !part.is_finished());
-    // A time limit of zero gives a picture without holes, but with no more samples than that
+    // With a time limit of zero, the picture has no holes, but no more samples are taken than this
     // requires.
     let hasty = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
     let control = Control { time_limit: Some(Duration::ZERO), ..Control::default() };
@@ -407,7 +407,7 @@ fn memory_is_estimated_before_it_is_allocated() {
     let control = Control { memory: Some(1 << 30), ..Control::default() };
     let error = part.render(&world, &control, &mut |_, _| {}).unwrap_err();
     assert!(matches!(error, RenderError::Memory { needed, .. } if needed > 1 << 30), "{error}");
-    // With shards by tiles, a shard stores only the sums of its own tiles.
+    // If the work is divided by tiles, a shard stores only the sums of its own tiles.
     let shard = Shard { index: 1, count: 100, by: ShardBy::Tiles };
     assert!(PartialRender::bytes_needed(&job, shard) < PartialRender::bytes_needed(&job, Shard::WHOLE));
     // The samples that the film of the course stores are also counted.

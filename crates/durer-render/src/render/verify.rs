@@ -8,8 +8,8 @@ use durer_scene::source::Digest;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// One way of rendering a picture with certain threads, tiles, shards and interruptions. It must
-/// not affect the result.
+/// One way of rendering a picture, which must not affect the result. It determines the threads,
+/// tiles, shards and interruptions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RenderVariant {
     /// Index of the world to render. All worlds contain the same scene but use different

@@ -111,8 +111,8 @@ pub struct PixelExplanation {
     pub tree: Option<Term>,
 }
 
-/// Result of testing a ray against one object. The object can be the closest hit, a farther hit, or
-/// no hit.
+/// Result of testing a ray against one object. The object is the closest hit, a farther hit, or not
+/// hit at all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]

@@ -90,8 +90,8 @@ macro_rules! options {
 }
 
 options! {
-    /// Options of a render that determine the picture, such as size, integrator, and samples.
-    /// Options that are not set have the scene's defaults: see [`RenderJob::resolve`].
+    /// Options of a render that determine the picture, such as size, integrator and samples.
+    /// Options that are not set get the scene's defaults. See [`RenderJob::resolve`].
     ///
     /// ```
     /// use durer::job::RenderJob;

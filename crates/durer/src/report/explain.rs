@@ -7,7 +7,7 @@ use durer_scene::math::Vec3;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 
-/// Version of the format of the document.
+/// Version of the document format.
 const VERSION: u32 = 2;
 
 /// A traced pixel or ray from which [`explanation`] creates a JSON document.
@@ -66,8 +66,8 @@ pub fn explanation(subject: &Explained, names: &SceneNames) -> Value {
     json
 }
 
-/// Adds to each term the lines that derive its numbers. `at` is the direction of the ray and the
-/// normal at its hit.
+/// Adds to each term the lines that derive its numbers. `at` contains the direction of the ray and
+/// the normal at its hit.
 fn annotate(node: &TraceNode, json: &mut Value, at: (Vec3, Vec3), names: &SceneNames) {
     let lines = names.origins(node, at.0, at.1);
     if !lines.is_empty() {

@@ -1,4 +1,4 @@
-//! Film of the course of Fall 2012, assignment 5. It takes three by three jittered samples per
+//! Film for assignment 5 of the Fall 2012 course. It takes three by three jittered samples per
 //! pixel, blurs them and averages them.
 
 use durer_scene::math::{Color, Vec2, Vec3};

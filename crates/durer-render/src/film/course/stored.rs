@@ -1,5 +1,5 @@
-//! Film of the course of Fall 2004, assignment 7, which stores all samples. Each pixel is the
-//! weighted mean of its own samples and the samples of neighbouring pixels.
+//! Film for assignment 7 of the Fall 2004 course. It stores all samples. Each pixel is the weighted
+//! mean of its own samples and the samples of neighbouring pixels.
 //!
 //! The samples of a pixel are added in a fixed order. The result is therefore the same if only a
 //! part of the picture is rendered.
@@ -12,7 +12,7 @@ use std::convert::Infallible;
 #[cfg(test)]
 mod tests;
 
-/// Position and colour of one sample on the film of the course of 2004.
+/// Position and colour of one sample on the film of the 2004 course.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoredSample {
     /// Position within the pixel, in [0,1)^2. The axes point right and down.
@@ -21,7 +21,7 @@ pub struct StoredSample {
     pub color: Color,
 }
 
-/// All samples of a picture on the film of the course of 2004. Each pixel has the same number of
+/// All samples of a picture on the film of the 2004 course. Each pixel has the same number of
 /// samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StoredSamples {
@@ -128,7 +128,7 @@ impl StoredSamples {
     }
 }
 
-/// Reconstruction filter of the course of 2004. Lengths are in pixels. The maximum weight is 1, and
+/// Reconstruction filter of the 2004 course. Lengths are in pixels. The maximum weight is 1, and
 /// the weights are not normalized.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum CourseFilter {

@@ -41,7 +41,7 @@ pub const SAMPLINGS: [SamplingCase; 12] = [
     sub_pixels(false, false),
 ];
 
-/// Explains random pixels of the picture of a job, `pixels` of them for each entry of
+/// Explains random pixels of a job's picture. `pixels` is their number for each entry of
 /// [`SAMPLINGS`]. Returns a message for each pixel whose explanation differs from the picture.
 ///
 /// # Errors

@@ -13,8 +13,8 @@ use durer_scene::math::{Color, Vec3};
 use durer_scene::sampler::Sampler;
 use glam::DVec3;
 
-/// Returns the samples of a pixel in the course of Fall 2004. These are all samples within the
-/// support of the filter, with their weights in this pixel.
+/// Returns the samples of a pixel in the Fall 2004 course. These are all samples within the support
+/// of the filter, with their weights in this pixel.
 pub(super) fn around(
     source: &SampleSource,
     job: &Job,
@@ -37,7 +37,7 @@ pub(super) fn around(
     (SampleCombination::Neighbors, aims.into_iter().map(|(of, sample, aim)| account(of, sample, aim)).collect())
 }
 
-/// Returns the sub-pixels that contribute to a pixel in the course of Fall 2012.
+/// Returns the sub-pixels that contribute to a pixel in the Fall 2012 course.
 pub(super) fn sub_pixels(
     source: &SampleSource,
     world: &World,

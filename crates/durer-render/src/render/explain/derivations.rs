@@ -82,7 +82,7 @@ fn equation(object: &Object, ray: &RayRecord, t: f32) -> Option<String> {
     }
 }
 
-/// Returns the text of the matrix of a transformed object.
+/// Returns the matrix of a transformed object as text.
 fn matrix(object: &Object) -> Option<String> {
     let to_world = object.to_world.as_ref()?;
     let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| to_world.vector(axis));
@@ -94,7 +94,8 @@ fn matrix(object: &Object) -> Option<String> {
     Some(format!("M = {} {} {}; N = norm(M⁻ᵀ n)", row(0), row(1), row(2)))
 }
 
-/// Returns a text about the origin of a surface colour: pattern cells or blend weights, and texels.
+/// Returns text that explains where a surface colour comes from: pattern cells or blend weights,
+/// and texels.
 fn of_color(hit: &HitRecord, scene: &Scene, world: &World) -> Vec<String> {
     let (mut material, mut lines) = (hit.material, Vec::new());
     // Patterns can be nested.

@@ -14,8 +14,8 @@ use durer_scene::math::{Color, LUMINANCE, Vec3, reflect};
 use durer_scene::scene::Scene;
 use durer_scene::spectrum::{Lanes, Spectrum};
 
-/// Lookup of the names of objects, materials and lights, and of their positions in the scene file,
-/// for explanations.
+/// Finds the names of objects, materials and lights and their positions in the scene file, for use
+/// in explanations.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneNames<'a> {
     /// Files that have been read.

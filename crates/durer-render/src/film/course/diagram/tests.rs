@@ -109,8 +109,8 @@ fn filtered_pictures_match_the_official_ones() {
 /// Returns the colour of the course's scene that shows a checkerboard at height 0.01 with squares
 /// of size 0.1. The coordinates of the point in the picture are from -1 to 1.
 ///
-/// It is computed in double precision, because single precision hits different squares near the
-/// horizon.
+/// The colour is computed in double precision, because single precision hits different squares near
+/// the horizon.
 fn chessboard(p: DVec2) -> Color {
     let forward = DVec3::new(0.338670, -0.392536, -0.855113).normalize();
     let right = forward.cross(DVec3::Y).normalize();
