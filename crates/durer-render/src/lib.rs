@@ -1,5 +1,5 @@
 //! Dürer's renderer. [`compile`] turns a [`durer_scene::scene::Scene`] into a [`world::World`],
-//! which is immutable while it is rendered, and [`render`] renders the world into a [`film::Film`].
+//! which does not change during rendering. [`render`] renders the world into a [`film::Film`].
 
 mod clock;
 pub mod compile;

@@ -1,5 +1,5 @@
-//! Thread pools with the requested number of threads, or fewer if the system allows fewer. If it
-//! allows none, the calling thread does all the work.
+//! Thread pools with the requested number of threads, or with fewer threads if the system allows
+//! fewer. If the system allows none, the calling thread does all the work.
 
 use rayon::{ThreadBuilder, ThreadPool, ThreadPoolBuilder};
 use std::io;
@@ -8,16 +8,16 @@ use std::sync::{Once, mpsc};
 /// Maximum number of threads.
 pub const MAX_THREADS: usize = 1024;
 
-/// Returns the number of threads to start: the requested one, or else `RAYON_NUM_THREADS`, or else
-/// the number of processors.
+/// Returns the number of threads to start. This is the requested number if there is one, otherwise
+/// the value of `RAYON_NUM_THREADS` if it is set, and otherwise the number of processors.
 fn wanted(requested: Option<usize>) -> usize {
     let environment = || std::env::var("RAYON_NUM_THREADS").ok()?.parse().ok().filter(|&count: &usize| count > 0);
     let machine = || std::thread::available_parallelism().map_or(1, usize::from);
     requested.or_else(environment).unwrap_or_else(machine).clamp(1, MAX_THREADS)
 }
 
-/// Starts the threads that [`wanted`] returns, or as many as the system allows. Each waits until it
-/// is assigned to a pool.
+/// Starts the number of threads that [`wanted`] returns, or as many as the system allows. Each
+/// thread waits until it is assigned to a pool.
 fn start_threads(requested: Option<usize>) -> Vec<mpsc::Sender<ThreadBuilder>> {
     let start = |_| {
         let (sender, receiver) = mpsc::channel::<ThreadBuilder>();
@@ -28,7 +28,7 @@ fn start_threads(requested: Option<usize>) -> Vec<mpsc::Sender<ThreadBuilder>> {
 }
 
 /// Returns a spawn handler that assigns running threads to a pool. Unlike starting new threads,
-/// this cannot fail halfway.
+/// this cannot fail after some threads have been added.
 fn spawn_handler(mut started: Vec<mpsc::Sender<ThreadBuilder>>) -> impl FnMut(ThreadBuilder) -> io::Result<()> {
     move |thread| {
         let sent = started.pop().map(|sender| sender.send(thread));
@@ -46,7 +46,7 @@ pub fn pool(requested: Option<usize>) -> Option<ThreadPool> {
     ThreadPoolBuilder::new().num_threads(started.len()).spawn_handler(spawn_handler(started)).build().ok()
 }
 
-/// Runs work in a new thread pool or, if there is none, in the calling thread.
+/// Runs the work in a new thread pool or, if there is none, in the calling thread.
 pub fn install<R: Send>(requested: Option<usize>, work: impl FnOnce() -> R + Send) -> R {
     match pool(requested) {
         Some(pool) => pool.install(work),
@@ -54,8 +54,9 @@ pub fn install<R: Send>(requested: Option<usize>, work: impl FnOnce() -> R + Sen
     }
 }
 
-/// Starts the threads of rayon's global pool. Programs should call this at their start. Otherwise,
-/// the threads start at first use, and the program fails if the system allows none.
+/// Starts the threads of rayon's global pool. Programs should call this function when they start.
+/// Otherwise, the threads are started when they are first used, and the program fails if the system
+/// allows none.
 pub fn prepare() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {

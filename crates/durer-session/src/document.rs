@@ -1,4 +1,4 @@
-//! The text of a scene and its compiled form.
+//! The text of a scene and the world that was compiled from it.
 
 use crate::protocol::{Finding, Severity, TextEdit, TextPosition};
 use durer::camera::Camera;
@@ -20,23 +20,23 @@ use durer::{LoadOptions, LoadedScene, load_text};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// File number of the scene's own file.
+/// File number of the scene file itself.
 const OWN: u32 = 0;
 
-/// The scene file that a session edits, with its compiled form.
+/// The scene file that a session edits, together with its compiled form.
 pub(crate) struct Document {
     pub path: PathBuf,
     pub bytes: Arc<[u8]>,
     pub options: LoadOptions,
-    /// Compiled form of the last version of the text that had no errors.
+    /// Compiled form of the latest version of the text that had no errors.
     pub compiled: Option<CompiledDocument>,
 }
 
-/// A scene that was read without errors, and its compiled world, from which a session renders.
+/// A scene that was read without errors and its compiled world. A session renders from this world.
 pub(crate) struct CompiledDocument {
     loaded: LoadedScene,
     pub world: World,
-    /// The camera as written in the text.
+    /// The camera that is defined in the text.
     pub text_camera: Camera,
     pub files: Files,
     diagnostics: Diagnostics,
@@ -48,13 +48,13 @@ impl Document {
         Document { path, bytes, options, compiled: None }
     }
 
-    /// Text of the document; `None` for a model.
+    /// Returns the text of the document, or `None` for a model file.
     pub fn text(&self) -> Option<&str> {
         if self.is_model() { None } else { std::str::from_utf8(&self.bytes).ok() }
     }
 
-    /// Reads and compiles the text. Returns true on success, and the findings. If there are errors,
-    /// the previous compiled scene is kept.
+    /// Reads and compiles the text. Returns true on success, together with the findings. If there
+    /// are errors, the previous compiled scene is kept.
     pub fn compile(&mut self) -> (bool, Vec<Finding>) {
         let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
         let loaded = load_text(&self.path, self.bytes.clone(), &self.options, &mut files, &mut diagnostics);
@@ -66,8 +66,8 @@ impl Document {
         (true, findings)
     }
 
-    /// Returns true if the file is not text in the scene language, but for example a mesh or a glTF
-    /// file.
+    /// Returns true if the file is not text in the scene language but, for example, a mesh or a
+    /// glTF file.
     pub fn is_model(&self) -> bool {
         let name = self.path.to_string_lossy();
         let is_written = |format: &SceneFormat| format.write.is_some();
@@ -76,8 +76,8 @@ impl Document {
             || find_scene_format(&self.bytes, &name).is_some_and(is_written)
     }
 
-    /// Changes the scene of a model and compiles it again. If that fails, the document is not
-    /// changed.
+    /// Changes the scene of a model and compiles it again. If compiling fails, the document does
+    /// not change.
     pub fn change(&mut self, change: impl FnOnce(&mut Scene) -> Result<(), String>) -> Result<(), String> {
         let compiled = self.compiled.as_mut().ok_or("the scene has errors")?;
         let before = compiled.loaded.scene.clone();
@@ -88,7 +88,7 @@ impl Document {
         });
         match changed {
             Ok(mut world) => {
-                // The document no longer equals the file.
+                // The document is no longer the same as the file.
                 world.edit().camera = compiled.world.camera().clone();
                 world.set_camera(compiled.world.camera().clone());
                 compiled.world = world;
@@ -101,7 +101,7 @@ impl Document {
         }
     }
 
-    /// Converts the scene to text in the scene language, with the current camera. Also returns the
+    /// Converts the scene with the current camera to text in the scene language. Also returns the
     /// files to which the text refers.
     pub fn as_text(&self) -> Result<(String, Vec<AssetFile>), String> {
         let compiled = self.compiled.as_ref().ok_or("the scene has errors")?;
@@ -111,7 +111,8 @@ impl Document {
         Ok((write(&scene, Dialect::Durer), files))
     }
 
-    /// Byte range of the camera statement in the text, from its keyword to its closing brace.
+    /// Returns the byte range of the camera statement in the text, from its keyword to its closing
+    /// brace.
     pub fn camera_statement(&self) -> Option<(usize, usize)> {
         let compiled = self.compiled.as_ref()?;
         let span = compiled.loaded.scene.camera_span;
@@ -154,7 +155,7 @@ impl CompiledDocument {
         SceneNames { files: &self.files, scene: &self.loaded.scene, world: &self.world }
     }
 
-    /// Returns the findings of `durer check`.
+    /// Returns the findings that `durer check` reports.
     pub fn check(&self, job: &Job) -> Vec<Finding> {
         let subject = CheckInput {
             scene: &self.loaded.scene,
@@ -168,7 +169,7 @@ impl CompiledDocument {
         check(&subject, &self.diagnostics).iter().map(|found| finding(&found.diagnostic, &self.files)).collect()
     }
 
-    /// Keyword and line of a light.
+    /// Returns the keyword and the line of a light.
     pub fn light(&self, number: usize) -> String {
         let light = self.loaded.scene.lights.iter().flatten().nth(number);
         match light.and_then(|light| Some((light.value.own_keyword(), self.place(light.span)?.line))) {
@@ -177,7 +178,7 @@ impl CompiledDocument {
         }
     }
 
-    /// Returns the place of a span if it lies in the scene's own text.
+    /// Returns the position of a span if it is in the scene file itself.
     pub fn place(&self, span: Span) -> Option<TextPosition> {
         place(&self.files, span)
     }

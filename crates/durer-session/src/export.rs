@@ -2,7 +2,7 @@
 
 use durer::image::{Display, Layer, WriteOptions, format_for};
 
-/// Encodes a picture in the format given by the extension of `name`.
+/// Encodes a picture in the format that the extension of `name` selects.
 pub(crate) fn export(name: &str, layer: &Layer, display: Display) -> Result<Vec<u8>, String> {
     let format = format_for(name).map_err(|error| error.to_string())?;
     let mut bytes = Vec::new();

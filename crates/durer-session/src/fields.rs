@@ -1,16 +1,16 @@
-//! Fields of cameras and materials, which a page shows as sliders.
+//! Fields of cameras and materials that a web page shows as sliders.
 
 use crate::protocol::FieldState;
 use durer::describe::{Constraint, DescribedKind, Field, Value};
 use durer::dialect::Dialect;
 use durer::math::Vec3;
 
-/// Fields of an item with their values.
+/// Returns the fields of an item with their values.
 pub(crate) fn field_states(list: &impl DescribedKind) -> Vec<FieldState> {
     list.fields().iter().enumerate().map(|(i, field)| state(field, list.get(i))).collect()
 }
 
-/// Sets the numbers of the field with the keyword `word` in the scene language.
+/// Sets the numbers of the field whose keyword in the scene language is `word`.
 pub(crate) fn set_numbers(list: &mut impl DescribedKind, word: &str, numbers: &[f32]) -> Result<(), String> {
     let fields = list.fields();
     let at = fields.iter().position(|field| spelled(field) == word).ok_or_else(|| format!("no field `{word}`"))?;

@@ -4,18 +4,18 @@ use crate::protocol::{Event, EventMessage, Request, RequestMessage};
 use crate::session::{Clock, Session, SessionFiles};
 use std::collections::BTreeMap;
 
-/// Maximum number of sessions. It is limited because each holds a scene in memory.
+/// Maximum number of sessions. The number is limited because each session keeps a scene in memory.
 const MAX_SESSIONS: usize = 64;
 
-/// The sessions of one connection from a page: passes messages to them and shares the time between
-/// them.
+/// The sessions of one connection from a web page. The host passes messages to the sessions and
+/// divides the time between them.
 pub struct Host {
     start: SessionFiles,
     clock: Clock,
     sessions: BTreeMap<u32, Session>,
-    /// Session that received the last request. Its coarse pictures have priority.
+    /// Session that received the latest request. Its coarse pictures have priority.
     latest: u32,
-    /// Session that worked last, for taking turns.
+    /// Session that worked most recently. It is stored so that the sessions take turns.
     worked: u32,
 }
 
@@ -25,12 +25,12 @@ impl Host {
         Host { start, clock, sessions: BTreeMap::new(), latest: 0, worked: 0 }
     }
 
-    /// Answers a message: the JSON of a [`RequestMessage`].
+    /// Answers a message that contains the JSON of a [`RequestMessage`].
     pub fn receive(&mut self, message: &str, send: &mut dyn FnMut(Vec<u8>)) {
         let RequestMessage { session, id, request } = match serde_json::from_str(message) {
             Ok(ask) => ask,
             Err(error) => {
-                // Truncate the error, which can quote a long message.
+                // Truncate the error message, because it can quote a long message.
                 let why: String = format!("invalid request: {error}").chars().take(200).collect();
                 let event = Event::Refused { why };
                 return send(EventMessage { session: 0, id: 0, event }.encode(&[]));
@@ -60,8 +60,9 @@ impl Host {
         self.sessions.values().any(Session::is_busy)
     }
 
-    /// Works for a few milliseconds. Sessions whose last change is not visible yet have priority,
-    /// first the one that received the last request. The others take turns.
+    /// Works for a few milliseconds. Sessions that have not shown their latest change yet have
+    /// priority. Among these, the session that received the latest request comes first. The other
+    /// sessions take turns.
     pub fn step(&mut self, send: &mut dyn FnMut(Vec<u8>)) {
         let Some(session) = self.next() else { return };
         self.worked = session;
@@ -77,7 +78,7 @@ impl Host {
         first.or_else(|| turns.filter(|(_, session)| session.is_busy()).map(|(id, _)| *id).next())
     }
 
-    /// Notifies the page of scene files that have changed on disk.
+    /// Notifies the page about scene files that have changed on disk.
     #[cfg(feature = "fs")]
     pub fn check_disk(&mut self, send: &mut dyn FnMut(Vec<u8>)) {
         for (&session, found) in &mut self.sessions {

@@ -1,5 +1,5 @@
-//! Intersection tests of a ray with each object, and the reason why an object is not the closest
-//! hit.
+//! Intersection tests between a ray and each object, with the reason why an object is not the
+//! closest hit.
 
 use crate::document::CompiledDocument;
 use crate::protocol::{CastHit, CastResult, FormulaRow, ObjectTest, Verdict};
@@ -12,7 +12,7 @@ use glam::DVec3;
 /// Maximum number of objects that are listed.
 const MAX_TESTS: usize = 200;
 
-/// Intersects a ray in world space with every object, and reports the result for each object.
+/// Intersects a ray in world space with every object and reports the result for each object.
 pub(crate) fn cast(compiled: &CompiledDocument, ray: &Ray) -> CastResult {
     let world = &compiled.world;
     let ray64 = Ray64::from(*ray);
@@ -98,7 +98,7 @@ fn text(t: f32) -> String {
     number(t.into())
 }
 
-/// Returns the formulas of the intersection with their numbers, in object space.
+/// Returns the formulas of an intersection with their numbers in object space.
 fn formulas(object: &Object, ray: &Ray, hit: Option<&Hit>) -> Vec<FormulaRow> {
     let line = Line { origin: ray.origin.as_dvec3(), dir: ray.dir.as_dvec3() };
     let back = object.center;
@@ -175,7 +175,7 @@ fn plane(it: &Plane, line: &Line) -> Vec<FormulaRow> {
     rows
 }
 
-/// Returns the rows that solve o + t d = a + β (b − a) + γ (c − a) by Cramer's rule.
+/// Returns the rows that solve o + t d = a + β (b − a) + γ (c − a) with Cramer's rule.
 fn triangle(corners: [Vec3; 3], line: &Line) -> Vec<FormulaRow> {
     let [a, b, c] = corners.map(|corner| corner.as_dvec3());
     let (e1, e2, s, d) = (b - a, c - a, line.origin - a, line.dir);
@@ -204,7 +204,7 @@ fn triangle(corners: [Vec3; 3], line: &Line) -> Vec<FormulaRow> {
     rows
 }
 
-/// Returns the values of t at which a line crosses any other shape, without formulas.
+/// Returns the values of t at which a line crosses a shape of any other kind, without formulas.
 fn crossings(shape: &Primitive, back: Vec3, line: &Line) -> Vec<FormulaRow> {
     let moved = Line { origin: line.origin - back.as_dvec3(), dir: line.dir };
     let mut found: Vec<f64> = Vec::new();

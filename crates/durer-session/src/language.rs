@@ -1,4 +1,4 @@
-//! Keywords of the scene language, for completion and hints.
+//! Keywords of the scene language for completion and hints.
 
 use crate::protocol::{Keyword, KeywordField};
 use durer::dialect::Dialect;

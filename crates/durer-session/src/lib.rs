@@ -1,8 +1,8 @@
-//! Interactive sessions: edit a scene's text, move its camera, render progressively from coarse to
-//! fine, and explain pixels.
+//! Interactive sessions for editing the text of a scene, moving its camera, rendering progressively
+//! from coarse to fine, and explaining pixels.
 //!
-//! [`Session`] does the work and [`Host`] holds several sessions. They exchange the messages of
-//! [`protocol`] and are independent of sockets and browsers: `durer-live` and `durer-wasm`
+//! [`Session`] does the work, and [`Host`] contains several sessions. Both exchange the messages of
+//! [`protocol`] and are independent of sockets and browsers. `durer-live` and `durer-wasm`
 //! transport the messages.
 
 mod display;

@@ -1,5 +1,5 @@
-//! Contents of a scene: groups, objects and materials. Scenes with text are edited as text, but the
-//! materials of models, which have no text, are edited here.
+//! Contents of a scene, such as groups, objects and materials. Scenes with text are edited as text.
+//! Models have no text, so their materials are edited here.
 
 use crate::document::CompiledDocument;
 use crate::fields::{field_states, set_numbers};
@@ -8,7 +8,7 @@ use durer::describe::DescribedKind;
 use durer::dialect::Dialect;
 use durer::scene::{Material, Object, ObjectKind, Scene};
 
-/// Maximum number of nodes, and of materials, that are listed.
+/// Maximum number of nodes that are listed. The same limit applies to materials.
 const MAX_NODES: usize = 2000;
 
 /// Returns the objects of a scene as a tree of groups.
@@ -18,7 +18,7 @@ pub(crate) fn nodes(compiled: &CompiledDocument) -> Vec<SceneNode> {
     root.map_while(|object| node(compiled, object, &mut left)).collect()
 }
 
-/// Returns an object with its subtree; `None` if the maximum number of nodes is reached.
+/// Returns an object with its subtree, or `None` if the maximum number of nodes has been reached.
 fn node(compiled: &CompiledDocument, object: &Object, left: &mut usize) -> Option<SceneNode> {
     *left = left.checked_sub(1)?;
     let below: &[Object] = match &object.node {
@@ -44,7 +44,7 @@ fn node(compiled: &CompiledDocument, object: &Object, left: &mut usize) -> Optio
     })
 }
 
-/// Returns the materials with their fields.
+/// Returns the materials of a scene with their fields.
 pub(crate) fn materials(compiled: &CompiledDocument) -> Vec<MaterialState> {
     let all = compiled.scene().materials.iter().take(MAX_NODES);
     all.map(|material| {

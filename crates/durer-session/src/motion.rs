@@ -1,4 +1,4 @@
-//! Applies motions, such as orbit and pan, to the camera.
+//! Motions of the camera, such as orbiting and panning.
 
 use crate::fields::{field_states, set_numbers};
 use crate::protocol::{CameraState, Motion};
@@ -9,24 +9,25 @@ use durer::math::{Aabb, Vec3};
 use durer::world::World;
 use glam::Quat;
 
-/// Smallest angle between the view direction of an orbiting camera and its axis, in radians.
+/// Minimum angle between the view direction of an orbiting camera and the axis of the orbit, in
+/// radians.
 const POLE: f32 = 0.02;
 
-/// Distance from the eye to the point that the camera looks at, in world units.
+/// Returns the distance from the eye to the point that the camera looks at, in world units.
 pub(crate) fn distance(world: &World) -> f32 {
     let frame = world.camera_frame();
     let ray = durer::math::Ray::new(frame.eye, frame.forward);
     let bounds = world.bounds();
     let center = if bounds.is_empty() { 1.0 } else { (bounds.center() - frame.eye).dot(frame.forward) };
     let hit = world.closest(&ray, &mut ()).map(|hit| hit.t).filter(|t| t.is_finite());
-    // Ignore a hit far beyond the scene, for example on a ground plane near the horizon, since it
-    // is not a useful centre of an orbit.
+    // Ignore a hit that is far beyond the scene, for example on a ground plane near the horizon,
+    // because it is not a useful centre for an orbit.
     let size = if bounds.is_empty() { f32::INFINITY } else { bounds.size().length() };
     let near = hit.filter(|&t| t <= center.max(0.0) + size);
     near.unwrap_or(center).max(1e-3 * frame.eye.length().max(1.0))
 }
 
-/// Index of the camera's field with this name.
+/// Returns the index of the camera field with this name.
 fn field(camera: &Camera, name: &str) -> Option<usize> {
     camera.fields().iter().position(|field| field.name == name)
 }
@@ -37,7 +38,7 @@ fn set(camera: &mut Camera, name: &str, value: Vec3) {
     }
 }
 
-/// Returns the camera after a motion, and the distance of its target.
+/// Returns the camera after a motion and the distance to its target.
 pub(crate) fn moved(world: &World, written: &Camera, mut distance: f32, motion: Motion) -> (Camera, f32) {
     let frame = world.camera_frame();
     let (mut eye, mut forward) = (frame.eye, frame.forward.normalize_or(Vec3::NEG_Z));
@@ -82,18 +83,18 @@ fn reach(bounds: &Aabb) -> f32 {
     0.55 * bounds.size().length().max(1e-3)
 }
 
-/// Rotates a direction about an axis by `around` radians, then tilts it towards the axis by
+/// Rotates a direction around an axis by `around` radians and then tilts it towards the axis by
 /// `towards` radians.
 fn turned(forward: Vec3, axis: Vec3, right: Vec3, around: f32, towards: f32) -> Vec3 {
     let angle = forward.angle_between(axis);
     let limit = std::f32::consts::PI - POLE;
-    // A camera that already looks along its axis keeps its angle.
+    // A camera that already looks along the axis keeps its angle.
     let wanted = (angle - towards).clamp(POLE.min(angle), limit.max(angle));
     let pitched = Quat::from_axis_angle(right, angle - wanted) * forward;
     (Quat::from_axis_angle(axis, around) * pitched).normalize_or(forward)
 }
 
-/// Sets the numbers of the camera field with the keyword `word` in the scene language.
+/// Sets the numbers of the camera field whose keyword in the scene language is `word`.
 pub(crate) fn set_field(camera: &mut Camera, word: &str, numbers: &[f32]) -> Result<(), String> {
     let mut changed = camera.clone();
     set_numbers(&mut changed, word, numbers)?;
@@ -102,7 +103,7 @@ pub(crate) fn set_field(camera: &mut Camera, word: &str, numbers: &[f32]) -> Res
     Ok(())
 }
 
-/// Returns the state of a camera for the page.
+/// Returns the state of a camera for the web page.
 pub(crate) fn state(world: &World, written: &Camera, dialect: Dialect, distance: f32) -> CameraState {
     let (camera, frame) = (world.camera(), world.camera_frame());
     CameraState {
@@ -119,7 +120,7 @@ pub(crate) fn state(world: &World, written: &Camera, dialect: Dialect, distance:
     }
 }
 
-/// Returns the camera as a statement of the scene language.
+/// Returns the camera as a statement in the scene language.
 pub(crate) fn statement(camera: &Camera, dialect: Dialect) -> String {
     let fields = camera.fields().iter().enumerate().filter_map(|(i, field)| {
         let word = field.keyword(dialect)?;

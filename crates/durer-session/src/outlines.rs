@@ -1,4 +1,4 @@
-//! Line drawings of a scene, for the page's 3D view.
+//! Line drawings of a scene for the 3D view of the web page.
 
 use crate::document::CompiledDocument;
 use crate::protocol::{LightMarker, Outline};
@@ -6,10 +6,10 @@ use durer::math::Vec3;
 use durer::render::explain::SceneNames;
 use durer::report::{LightMark, light_marks, object_outlines};
 
-/// Maximum number of lights drawn.
+/// Maximum number of lights that are drawn.
 const MAX_LIGHTS: usize = 32;
 
-/// Returns the polylines of the objects.
+/// Returns the polylines that show the objects.
 pub(crate) fn outlines(names: &SceneNames) -> Vec<Outline> {
     let flat = |line: &Vec<Vec3>| line.iter().flat_map(Vec3::to_array).collect();
     let one =
@@ -17,7 +17,7 @@ pub(crate) fn outlines(names: &SceneNames) -> Vec<Outline> {
     object_outlines(names.world).enumerate().map(one).collect()
 }
 
-/// Returns the marks of the lights, with their names.
+/// Returns markers for the lights with their names.
 pub(crate) fn light_markers(compiled: &CompiledDocument) -> Vec<LightMarker> {
     let marks = light_marks(&compiled.world).take(MAX_LIGHTS).enumerate();
     marks

@@ -1,9 +1,9 @@
-//! Messages between a page and a session.
+//! Messages between a web page and a session.
 //!
 //! A page sends [`RequestMessage`]s as JSON and receives [`EventMessage`]s. An answer consists of
-//! the length of its JSON (four bytes, little endian), the JSON, and a payload of bytes: pixels or
-//! a file. The tests of this crate generate the TypeScript types in `web/src/protocol.ts` from
-//! these.
+//! the length of its JSON (four bytes, little endian), the JSON, and a payload that contains the
+//! bytes of pixels or a file. The tests of this crate generate the TypeScript types in
+//! `web/src/protocol.ts` from these types.
 
 mod explanation;
 mod ray;
@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 #[cfg(test)]
 use ts_rs::TS;
 
-/// A message from a page to a session: a request, with the number of the session.
+/// A message from a page to a session. It contains a request and the number of the session.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct RequestMessage {
@@ -28,7 +28,8 @@ pub struct RequestMessage {
     pub request: Request,
 }
 
-/// A message from a session to a page: an event, with the number of the request that it answers.
+/// A message from a session to a page. It contains an event and the number of the request that it
+/// answers.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct EventMessage {
@@ -47,7 +48,7 @@ pub struct EventMessage {
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Request {
     /// Opens a scene from its text, from a file in the server's folder, or from the server's own
-    /// file. Answer: [`Event::Opened`], then [`Event::Scene`].
+    /// file. The answer is [`Event::Opened`], followed by [`Event::Scene`].
     Open {
         /// Name of the file; its extension determines the format. Empty for the server's own file.
         name: String,
@@ -63,7 +64,7 @@ pub enum Request {
         /// True if this is the scene itself.
         opens: bool,
     },
-    /// Replaces the scene's text. Answer: [`Event::Scene`].
+    /// Replaces the text of the scene. The answer is [`Event::Scene`].
     Edit {
         /// The text.
         text: String,
@@ -75,7 +76,7 @@ pub enum Request {
         /// Height in pixels.
         height: u32,
     },
-    /// Selects the picture to show, and its exposure and tone curve.
+    /// Selects the picture to show and its exposure and tone curve.
     Show {
         /// `color`, or the name of an auxiliary picture.
         picture: String,
@@ -84,19 +85,19 @@ pub enum Request {
         /// Name of the tone curve.
         tone: String,
     },
-    /// Sets the options of the render job. Options that are not listed have the scene's defaults.
+    /// Sets the options of the render job. Options that are not listed get the scene's defaults.
     Options {
         /// Names and values, as on the command line.
         options: Vec<Setting>,
     },
-    /// Moves the camera. Answer: [`Event::Camera`].
+    /// Moves the camera. The answer is [`Event::Camera`].
     Move {
         /// The motion.
         motion: Motion,
         /// True while the motion continues: only coarse pictures are rendered.
         moving: bool,
     },
-    /// Sets a field of the camera. Answer: [`Event::Camera`].
+    /// Sets a field of the camera. The answer is [`Event::Camera`].
     Field {
         /// Keyword of the field in the scene language.
         name: String,
@@ -105,7 +106,7 @@ pub enum Request {
         /// True while the motion continues.
         moving: bool,
     },
-    /// Replaces the camera with a perspective camera. Answer: [`Event::Camera`].
+    /// Replaces the camera with a perspective camera. The answer is [`Event::Camera`].
     Look {
         /// Position of the eye in world space.
         center: [f32; 3],
@@ -118,9 +119,9 @@ pub enum Request {
         /// True while the motion continues.
         moving: bool,
     },
-    /// Writes the camera into the text. Answer: [`Event::Text`].
+    /// Writes the camera into the text. The answer is [`Event::Text`].
     WriteCamera,
-    /// Explains the colour of a pixel. Answer: [`Event::Explained`].
+    /// Explains the colour of a pixel. The answer is [`Event::Explained`].
     Explain {
         /// Column from the left.
         x: u32,
@@ -129,7 +130,7 @@ pub enum Request {
         /// Index of the sample; `None` selects the sample with the largest contribution.
         sample: Option<u32>,
     },
-    /// Intersects a ray with each object. Answer: [`Event::Cast`].
+    /// Intersects a ray with each object. The answer is [`Event::Cast`].
     Cast {
         /// Origin of the ray in world space.
         origin: [f32; 3],
@@ -138,7 +139,7 @@ pub enum Request {
         /// End of the ray, in lengths of `direction`; `None` for an infinite ray.
         t_max: Option<f32>,
     },
-    /// Requests the camera rays through the pixel centres of a coarse raster. Answer:
+    /// Requests the camera rays through the pixel centres of a coarse raster. The answer is
     /// [`Event::Rays`].
     Rays {
         /// Number of columns of the raster.
@@ -148,8 +149,8 @@ pub enum Request {
         /// The requested row; `None` for all rows.
         row: Option<u32>,
     },
-    /// Requests the steps in which a ray traverses an acceleration structure over the objects.
-    /// Answer: [`Event::Walk`].
+    /// Requests the steps in which a ray traverses an acceleration structure for the objects. The
+    /// answer is [`Event::Walk`].
     Walk {
         /// Structure to traverse.
         structure: Structure,
@@ -158,10 +159,10 @@ pub enum Request {
         /// Direction of the ray, of any length.
         direction: [f32; 3],
     },
-    /// Requests the bounding boxes of the BVHs over objects and triangles. Answer:
+    /// Requests the bounding boxes of the BVHs of objects and triangles. The answer is
     /// [`Event::Boxes`].
     Boxes,
-    /// Requests the values of some pixels. Answer: [`Event::Values`].
+    /// Requests the values of some pixels. The answer is [`Event::Values`].
     Values {
         /// First column.
         left: u32,
@@ -172,7 +173,8 @@ pub enum Request {
         /// Number of rows.
         height: u32,
     },
-    /// Renders only a part of the picture: first column, first row, width and height.
+    /// Renders only a part of the picture. The part is given by its first column, first row, width
+    /// and height.
     Crop {
         /// Part to render; `None` for the full picture.
         crop: Option<[u32; 4]>,
@@ -183,14 +185,14 @@ pub enum Request {
         on: bool,
     },
     /// Starts secondary rays exactly on the surface and ignores hits closer than `epsilon`, as the
-    /// programs of the course do. Answer: [`Event::Scene`].
+    /// programs of the course do. The answer is [`Event::Scene`].
     Epsilon {
         /// Minimum `t`; `None` for Dürer's exact ray origins.
         epsilon: Option<f32>,
     },
-    /// Requests the groups and materials of the scene. Answer: [`Event::Tree`].
+    /// Requests the groups and materials of the scene. The answer is [`Event::Tree`].
     Tree,
-    /// Sets a field of a material, in a scene without text. Answer: [`Event::Scene`].
+    /// Sets a field of a material in a scene without text. The answer is [`Event::Scene`].
     Material {
         /// Number of the material.
         number: u32,
@@ -199,29 +201,31 @@ pub enum Request {
         /// Values of the field.
         values: Vec<f32>,
     },
-    /// Converts a model to text in the scene language, with separate asset files. Answer:
-    /// [`Event::Opened`], then [`Event::Scene`].
+    /// Converts a model to text in the scene language with separate asset files. The answer is
+    /// [`Event::Opened`], followed by [`Event::Scene`].
     AsText,
-    /// Requests the text of the scene and the files to which it refers. Answer: [`Event::Packed`],
-    /// followed by their bytes.
+    /// Requests the text of the scene and the files to which it refers. The answer is
+    /// [`Event::Packed`], followed by the bytes of the files.
     Pack,
-    /// Requests the lesson that the server was started with. Answer: [`Event::Lesson`].
+    /// Requests the lesson with which the server was started. The answer is [`Event::Lesson`].
     Lesson,
-    /// Requests the outlines of all objects. Answer: [`Event::Outlines`].
+    /// Requests the outlines of all objects. The answer is [`Event::Outlines`].
     Outlines,
-    /// Requests the keywords of the language. Answer: [`Event::Language`].
+    /// Requests the keywords of the language. The answer is [`Event::Language`].
     Language,
-    /// Requests the picture as a file. Answer: [`Event::Exported`], with its bytes.
+    /// Requests the picture as a file. The answer is [`Event::Exported`] with the bytes of the
+    /// file.
     Export {
         /// Name of the file; its extension selects the format.
         name: String,
     },
-    /// Writes the text into the scene's file. Answer: [`Event::Saved`] or [`Event::Conflict`].
+    /// Writes the text to the file of the scene. The answer is [`Event::Saved`] or
+    /// [`Event::Conflict`].
     Save {
         /// True to overwrite changes by other programs.
         force: bool,
     },
-    /// Pauses or resumes rendering, for pages that are hidden.
+    /// Pauses or resumes rendering. Hidden pages use this request.
     Pause {
         /// True to pause.
         pause: bool,
@@ -230,7 +234,8 @@ pub enum Request {
     Close,
 }
 
-/// An event from a session to a page: the answer to a request, a new picture, or a notification.
+/// An event that a session sends to a page: the answer to a request, a new picture, or a
+/// notification.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -261,7 +266,7 @@ pub enum Event {
         /// Time to read and compile it, in milliseconds.
         ms: f64,
     },
-    /// Findings of `durer check`, computed after the picture is finished.
+    /// Findings of `durer check`, which are computed after the picture is finished.
     Checked {
         /// The findings, including those of [`Event::Scene`].
         findings: Vec<Finding>,
@@ -271,7 +276,7 @@ pub enum Event {
         /// The current camera.
         camera: CameraState,
     },
-    /// A picture to show. The payload holds four bytes per pixel: red, green, blue, coverage.
+    /// A picture to show. The payload contains four bytes per pixel: red, green, blue and coverage.
     Picture {
         /// Description of the payload.
         head: PictureInfo,
@@ -281,12 +286,12 @@ pub enum Event {
         /// The pixel.
         pixel: PixelExplanation,
     },
-    /// Intersection tests of a ray with each object.
+    /// Results of the intersection tests between a ray and each object.
     Cast {
         /// The results.
         cast: CastResult,
     },
-    /// Camera rays, row by row; `None` for a pixel without a ray.
+    /// Camera rays, row by row. The value is `None` for a pixel without a ray.
     Rays {
         /// The rays.
         rays: Vec<Option<CameraRay>>,
@@ -301,7 +306,8 @@ pub enum Event {
         /// Boxes, level by level, up to a limit.
         boxes: Vec<TreeBox>,
     },
-    /// Values of pixels, three per pixel, row by row; `None` for infinity and NaN.
+    /// Values of pixels, with three numbers per pixel, row by row. A number is `None` if it is
+    /// infinite or NaN.
     Values {
         /// First column.
         left: u32,
@@ -321,7 +327,7 @@ pub enum Event {
         /// The materials, by number.
         materials: Vec<MaterialState>,
     },
-    /// Text and files of the scene. Their bytes follow, one file after another.
+    /// Text and files of the scene. The bytes of all files follow, one file after another.
     Packed {
         /// Names of the files; the text is first.
         names: Vec<String>,
@@ -352,14 +358,14 @@ pub enum Event {
         /// True if the file changed on disk.
         from_disk: bool,
     },
-    /// A picture as a file. The payload holds the file.
+    /// A picture as a file. The payload contains the file.
     Exported {
         /// Name of the file.
         name: String,
     },
     /// The text was saved.
     Saved,
-    /// The text was not saved, because the file has changed since it was read.
+    /// The text was not saved because the file has changed since it was read.
     Conflict,
     /// The request failed.
     Refused {
@@ -371,7 +377,7 @@ pub enum Event {
 impl EventMessage {
     /// Encodes the message with its payload.
     pub fn encode(&self, payload: &[u8]) -> Vec<u8> {
-        // Serialization of these types cannot fail.
+        // Serializing these types cannot fail.
         let json = serde_json::to_vec(self).unwrap_or_default();
         let mut bytes = Vec::with_capacity(4 + json.len() + payload.len());
         bytes.extend((json.len() as u32).to_le_bytes());

@@ -1,4 +1,4 @@
-//! Rows of explanations: formulas with their numbers.
+//! Rows of explanations, which show formulas with their numbers.
 
 use crate::protocol::FormulaRow;
 use glam::DVec3;
@@ -23,7 +23,7 @@ pub(crate) fn vector(v: impl Into<DVec3>) -> String {
     format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
 }
 
-/// Formats a factor of a formula: negative numbers in parentheses.
+/// Formats a factor of a formula. Negative numbers are put in parentheses.
 pub(crate) fn factor(x: f64) -> String {
     if x < 0.0 { format!("({})", number(x)) } else { number(x) }
 }

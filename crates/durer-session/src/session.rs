@@ -1,4 +1,4 @@
-//! A session: a scene with its camera and picture, for one view of a page.
+//! A session, which contains a scene with its camera and picture for one view of a web page.
 
 mod disk;
 
@@ -21,31 +21,32 @@ use durer::world::{Epsilon, Geometry};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Name and content of a file of a packed scene.
+/// Name and content of a file that belongs to a packed scene.
 type NamedBytes = (String, Arc<[u8]>);
 
-/// Function that returns the time in milliseconds since an arbitrary origin, for time budgets of
-/// sessions.
+/// Function that returns the time in milliseconds since an arbitrary origin. Sessions use it for
+/// their time budgets.
 pub type Clock = Arc<dyn Fn() -> f64 + Send + Sync>;
 
 /// Maximum number of objects that are listed.
 const MAX_ITEMS: usize = 2000;
-/// Maximum size of a text or file from a page, in bytes.
+/// Maximum size of a text or file that a page sends, in bytes.
 const MAX_BYTES: usize = 256 << 20;
 
-/// Files of the server with which new sessions start: a scene file and a lesson.
+/// Files of the server that new sessions start with: a scene file and a lesson.
 #[derive(Clone, Debug, Default)]
 pub struct SessionFiles {
-    /// Scene file that is opened and saved if a page does not name one.
+    /// Scene file that is opened and saved if the page does not name a file.
     pub file: Option<PathBuf>,
-    /// A teacher's lesson in Markdown. The scenes that it names are in the same folder.
+    /// A teacher's lesson in Markdown format. The scenes that it names are in the same folder.
     pub lesson: Option<PathBuf>,
 }
 
-/// An event for the page, and its payload.
+/// An event for the page with its payload.
 pub(crate) type Message = (Event, Vec<u8>);
 
-/// An interactive session: answers requests about one scene and renders its picture progressively.
+/// An interactive session, which answers requests about one scene and renders its picture
+/// progressively.
 pub struct Session {
     start: SessionFiles,
     clock: Clock,
@@ -56,15 +57,15 @@ pub struct Session {
     /// True until the current scene has been checked.
     unchecked: bool,
     paused: bool,
-    /// Minimum `t` of secondary rays; `None` for exact ray origins.
+    /// Minimum value of `t` for secondary rays, or `None` for exact ray origins.
     epsilon: Option<f32>,
-    /// Stamp of the scene file when it was last read or saved.
+    /// Stamp of the scene file at the time when it was last read or saved.
     #[cfg(feature = "fs")]
     stamp: Option<durer::source::Stamp>,
-    /// Stamp of the file when the page was last notified.
+    /// Stamp of the scene file at the time when the page was last notified.
     #[cfg(feature = "fs")]
     reported: Option<durer::source::Stamp>,
-    /// True if the document is the server's file.
+    /// True if the document is the scene file of the server.
     on_disk: bool,
 }
 
@@ -93,12 +94,12 @@ impl Session {
         !self.paused && (self.viewer.is_busy() || self.unchecked)
     }
 
-    /// Returns true if no picture shows the last change yet.
+    /// Returns true if no picture shows the latest change yet.
     pub(crate) fn is_urgent(&self) -> bool {
         !self.paused && self.viewer.is_urgent()
     }
 
-    /// Answers a request. Pictures are rendered later, by [`Session::step`].
+    /// Answers a request. Pictures are rendered later by [`Session::step`].
     pub(crate) fn handle(&mut self, request: Request, send_message: &mut dyn FnMut(Message)) {
         if let Err(why) = self.answer(request, send_message) {
             send_message((Event::Refused { why }, Vec::new()));
@@ -271,8 +272,8 @@ impl Session {
         self.begin(path, bytes, send)
     }
 
-    /// Path of a scene that a page has sent. It is always in the folder of the server's file, so
-    /// the scene can only refer to files in that folder.
+    /// Returns the path of a scene that a page has sent. The path is always in the folder of the
+    /// server's file, so the scene can only refer to files in that folder.
     fn path_of(&self, name: &str) -> PathBuf {
         let own = self.start.file.as_deref().or(self.start.lesson.as_deref());
         let folder = own.and_then(Path::parent).unwrap_or(Path::new(""));
@@ -327,7 +328,7 @@ impl Session {
         self.read(false, send)
     }
 
-    /// Reads and compiles the text. A camera that was moved keeps its position, unless its
+    /// Reads and compiles the text. If the camera was moved, it keeps its position unless its
     /// statement in the text has changed.
     fn read(&mut self, is_new: bool, send: &mut dyn FnMut(Event)) -> Result<(), String> {
         let start = (self.clock)();
@@ -441,7 +442,7 @@ impl Session {
         Ok(Event::Walk { walk: traversal::traverse(&self.compiled()?.world, structure, &ray)? })
     }
 
-    /// Converts a model to text with asset files. From then on, the text is edited.
+    /// Converts a model to text with asset files. After that, the session edits the text.
     fn become_text(&mut self, send: &mut dyn FnMut(Event)) -> Result<(), String> {
         let document = self.document.as_mut().ok_or("no scene is open")?;
         let (text, files) = document.as_text()?;
@@ -453,7 +454,7 @@ impl Session {
         self.begin(path, text.into_bytes().into(), send)
     }
 
-    /// Text and files of the scene, with their names.
+    /// Returns the text and the files of the scene with their names.
     fn pack(&self) -> Result<Vec<NamedBytes>, String> {
         let document = self.document.as_ref().ok_or("no scene is open")?;
         let own = document.path.with_extension("txt").file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -521,7 +522,7 @@ fn read(path: &Path) -> Result<Arc<[u8]>, String> {
     Ok(std::fs::read(path).map_err(wrong)?.into())
 }
 
-/// Converts a ray sent by a page.
+/// Converts a ray that a page has sent.
 fn ray_of(origin: [f32; 3], direction: [f32; 3]) -> Result<Ray, String> {
     let ray = Ray::new(origin.into(), direction.into());
     match ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != Vec3::ZERO {
@@ -530,7 +531,7 @@ fn ray_of(origin: [f32; 3], direction: [f32; 3]) -> Result<Ray, String> {
     }
 }
 
-/// Decodes base64, with or without padding.
+/// Decodes base64 with or without padding.
 fn decode(text: &str) -> Option<Vec<u8>> {
     let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
     let (mut bits, mut count) = (0_u32, 0);

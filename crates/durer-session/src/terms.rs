@@ -1,4 +1,4 @@
-//! Explains the radiance of a pixel as a tree of terms, each with its formula and numbers.
+//! Explanation of the radiance of a pixel as a tree of terms, each with its formula and numbers.
 
 use crate::document::CompiledDocument;
 use crate::protocol::{FormulaRow, PixelExplanation, Segment, SegmentKind, Term};
@@ -12,8 +12,8 @@ use durer::render::Job;
 use durer::render::explain::{Explanation, SceneNames};
 use durer::world::emitters::LightId;
 
-/// Explains a pixel by one of its samples. If `sample` is `None`, it is the one with the largest
-/// contribution.
+/// Explains a pixel through one of its samples. If `sample` is `None`, the sample with the largest
+/// contribution is used.
 pub(crate) fn explain(
     compiled: &CompiledDocument,
     job: &Job,
@@ -77,7 +77,7 @@ fn camera_rows(compiled: &CompiledDocument, job: &Job, place: Vec2) -> Vec<Formu
     rows
 }
 
-/// Vectors of the enclosing terms that the formulas of a term refer to.
+/// Vectors from the enclosing terms that the formulas of a term use.
 #[derive(Clone, Default)]
 struct TermContext {
     dir: Vec3,
@@ -85,7 +85,7 @@ struct TermContext {
     to_light: Vec3,
 }
 
-/// Converter of the trace of a pixel sample to the tree of [`Term`]s for the page.
+/// Converter from the trace of a pixel sample to the tree of [`Term`]s that the page shows.
 struct TermFormatter<'a> {
     compiled: &'a CompiledDocument,
     names: SceneNames<'a>,

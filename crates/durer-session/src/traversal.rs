@@ -1,4 +1,4 @@
-//! Camera rays, and the steps in which rays traverse acceleration structures over the objects.
+//! Camera rays, and the steps in which rays traverse acceleration structures for the objects.
 
 use crate::protocol::{CameraRay, Structure, Traversal, TraversalStep, TraversalTest, TreeBox};
 use durer::bvh::{Bvh, Grid};
@@ -8,8 +8,8 @@ use durer::world::{Accel, Geometry, Object, World};
 
 /// Maximum number of boxes that are sent.
 const MAX_BOXES: usize = 3000;
-/// Maximum number of camera rays in one answer. `MAX_OBJECTS` is the maximum number of objects over
-/// which a structure is built to show one traversal.
+/// Maximum number of camera rays in one answer. `MAX_OBJECTS` is the maximum number of objects for
+/// which a structure is built to show a traversal.
 const MAX_RAYS: u32 = 1 << 16;
 const MAX_OBJECTS: usize = 20_000;
 
@@ -34,7 +34,7 @@ pub(crate) fn rays(
     Ok(wanted.flat_map(|y| (0..columns).map(move |x| (x, y))).map(one).collect())
 }
 
-/// Tests objects against a ray during a traversal, and keeps the closest hit.
+/// Recorder that tests objects against a ray during a traversal and keeps the closest hit.
 struct TraversalRecorder<'a> {
     world: &'a World,
     ray: Ray64,
@@ -42,7 +42,7 @@ struct TraversalRecorder<'a> {
 }
 
 impl TraversalRecorder<'_> {
-    /// Tests an object, and records the hit if it is the closest so far.
+    /// Tests an object and records the hit if it is the closest hit so far.
     fn test(&mut self, object: u32) -> TraversalTest {
         let t = self.world.hit_of(object, &self.ray).map(|hit| hit.t);
         let test = TraversalTest { object, t };
@@ -53,7 +53,7 @@ impl TraversalRecorder<'_> {
         test
     }
 
-    /// Returns the end of the interval of `t` in which a hit can be the closest one.
+    /// Returns the end of the interval of `t` in which a hit can still be the closest one.
     fn end(&self) -> f32 {
         self.closest.and_then(|closest| closest.t).map_or(self.ray.rounded.t_max, f32::next_up)
     }
@@ -64,8 +64,8 @@ impl TraversalRecorder<'_> {
     }
 }
 
-/// Builds a structure over all bounded objects, and records how a ray traverses it. Unbounded
-/// objects such as planes are tested first.
+/// Builds a structure for all bounded objects and records how a ray traverses it. Unbounded objects
+/// such as planes are tested first.
 pub(crate) fn traverse(world: &World, structure: Structure, ray: &Ray) -> Result<Traversal, String> {
     let objects = world.objects();
     if objects.len() > MAX_OBJECTS {
@@ -129,8 +129,8 @@ pub(crate) fn traverse(world: &World, structure: Structure, ray: &Ray) -> Result
     Ok(Traversal { steps, visits, tests, objects: count, hit: walker.closest, boxes: shown })
 }
 
-/// Returns the boxes of the BVH over the objects and, at deeper levels, of the BVHs over the
-/// triangles of meshes. A world with few objects has no BVH, so one is built here.
+/// Returns the boxes of the BVH of the objects and, at deeper levels, of the BVHs of the triangles
+/// of meshes. A world with few objects has no BVH, so this function builds one.
 pub(crate) fn boxes(world: &World) -> Vec<TreeBox> {
     let bounds: Vec<Aabb> = world.objects().iter().filter_map(Object::bounds).collect();
     let built;
@@ -148,7 +148,7 @@ pub(crate) fn boxes(world: &World) -> Vec<TreeBox> {
     for object in world.objects() {
         let Geometry::Mesh(mesh) = &object.geometry else { continue };
         let place = |corner| object.world_point(corner);
-        // Skip the root box of a mesh, which is the box of its object.
+        // Skip the root box of a mesh, because it is the same as the box of its object.
         let found = mesh.bvh.boxes().filter(|found| found.level > 0).take(MAX_BOXES);
         meshes.extend(found.map(|found| state(below + found.level, &found.bounds, place)));
         if meshes.len() > 16 * MAX_BOXES {

@@ -1,4 +1,4 @@
-//! Renders the picture of a session from coarse to fine, in steps of a few milliseconds.
+//! Rendering of a session's picture from coarse to fine, in steps of a few milliseconds.
 
 use crate::display::{display, pixels};
 use crate::document::CompiledDocument;
@@ -9,15 +9,15 @@ use durer::image::Layer;
 use durer::job::OutputSelection;
 use durer::render::{Control, Job, PixelRect, ProgressiveRender, RenderError, Sampling};
 
-/// Time budgets for a coarse picture in milliseconds: `MOVING` while the camera moves, and
-/// `RESTING` otherwise.
+/// Time budgets for a coarse picture in milliseconds. `MOVING` applies while the camera moves, and
+/// `RESTING` applies otherwise.
 const MOVING: f64 = 24.0;
 const RESTING: f64 = 45.0;
 /// Duration of a step in milliseconds. Messages are handled between steps.
 const STEP: f64 = 12.0;
-/// Time between pictures that are sent during one render, in milliseconds.
+/// Time between the pictures that are sent during a render, in milliseconds.
 const BETWEEN: f64 = 160.0;
-/// Possible sizes of the blocks of a coarse picture, in pixels.
+/// Possible sizes of the pixel blocks in a coarse picture, in pixels.
 const DIVISORS: [u32; 9] = [1, 2, 3, 4, 5, 6, 8, 12, 16];
 /// Maximum width and height of a picture, in pixels.
 const LARGEST: u32 = 8192;
@@ -32,38 +32,40 @@ pub(crate) struct Viewer {
     pub stops: f32,
     pub tone: String,
     pub moving: bool,
-    /// Rendered part, in pixels of the full picture; `None` for all of it.
+    /// Part of the picture that is rendered, in pixels of the full picture, or `None` for the full
+    /// picture.
     pub crop: Option<[u32; 4]>,
     /// True if finished colour pictures are denoised.
     pub denoises: bool,
     options: RenderJob,
     stage: Stage,
-    /// Time per pixel with one sample, in milliseconds; `None` if unknown.
+    /// Time to take one sample of one pixel, in milliseconds, or `None` if it is unknown.
     cost: Option<f64>,
     tiles: u64,
     changed: f64,
     reported: f64,
-    /// Last finished picture, kept to show it with other display settings or to export it.
+    /// The last finished picture. It is kept so that it can be exported or shown with other display
+    /// settings.
     shown: Option<ProgressiveRender>,
     /// Denoised version of the finished picture, if denoising is on.
     clean: Option<Layer>,
     rays: u64,
-    /// Time at which the fine picture was started.
+    /// Time at which rendering of the fine picture started.
     began: f64,
 }
 
-/// Stage of progressive rendering in a [`Viewer`]: idle, coarse picture, or full picture.
+/// Stage of progressive rendering in a [`Viewer`]: idle, coarse picture or full picture.
 enum Stage {
-    /// No work is left.
+    /// There is no work left.
     Idle,
-    /// A coarse picture is next.
+    /// The next step renders a coarse picture.
     Coarse,
-    /// The full picture is being rendered. The number is the samples per pixel after the last
-    /// complete pass.
+    /// The full picture is being rendered. The number is the number of samples per pixel after the
+    /// last complete pass.
     Fine(Box<ProgressiveRender>, Option<u32>),
 }
 
-/// A picture to send to the page: its description and its pixels.
+/// A picture to send to the page, as a description and pixels.
 pub(crate) type PictureMessage = (PictureInfo, Vec<u8>);
 
 impl Viewer {
@@ -104,22 +106,23 @@ impl Viewer {
         (self.width, self.height) = (width.clamp(1, LARGEST), height.clamp(1, LARGEST));
     }
 
-    /// Restarts rendering after a change.
+    /// Restarts the render after a change.
     pub fn restart(&mut self, now: f64) {
         (self.stage, self.changed, self.rays) = (Stage::Coarse, now, 0);
     }
 
-    /// Discards the measured cost and the last picture. Called when another scene is opened.
+    /// Discards the measured cost and the last picture. This is called when another scene is
+    /// opened.
     pub fn forget(&mut self) {
         (self.cost, self.shown, self.clean, self.crop) = (None, None, None, None);
     }
 
-    /// Returns true if no picture shows the last change yet.
+    /// Returns true if no picture shows the latest change yet.
     pub fn is_urgent(&self) -> bool {
         matches!(self.stage, Stage::Coarse)
     }
 
-    /// Stops rendering and keeps the last picture.
+    /// Stops the render and keeps the last picture.
     pub fn stop(&mut self) {
         self.stage = Stage::Idle;
     }
@@ -136,7 +139,7 @@ impl Viewer {
         Ok(Job { crop: crop.filter(|crop| *crop != whole).or(job.crop), ..job })
     }
 
-    /// Job for the full picture.
+    /// Returns the job for the full picture.
     pub fn job_of(&self, compiled: &CompiledDocument, picture: &str) -> Result<Job, String> {
         let options = self.options.clone().size((self.width, self.height));
         options.resolve(&compiled.job_context(), Some(&OutputSelection { crop: None, show: vec![picture.into()] }))
@@ -195,8 +198,8 @@ impl Viewer {
         while render.next_pass(&compiled.world, &control).map_err(wrong)?.is_some() {}
         let shown = self.picture_of(&render, divisor, 1, None)?;
         let made = (clock() - start) / coarse.window().pixels() as f64;
-        // Average the cost with its previous value, so that outliers from cold caches or a coarse
-        // clock have little effect after a few pictures.
+        // Average the cost with its previous value. After a few pictures, outliers due to cold
+        // caches or a coarse clock then have little effect.
         let known = self.cost.map_or(made, |cost| 0.5 * (cost + made));
         self.cost = (made > 0.0).then_some(known).or(self.cost);
         self.tiles = self.cost.map_or(4, |cost| ((STEP / cost / 256.0) as u64).clamp(2, 4096));
@@ -270,7 +273,7 @@ impl Viewer {
         Ok((head, bytes))
     }
 
-    /// Denoised picture, if denoising is on and applies.
+    /// Returns the denoised picture if denoising is on and possible.
     fn denoised(&self, render: &ProgressiveRender, compiled: &CompiledDocument) -> Result<Option<Layer>, String> {
         if !self.denoises || self.picture != "color" {
             return Ok(None);
@@ -278,7 +281,8 @@ impl Viewer {
         Ok(Some(render.part().noisy(&compiled.world, None).map_err(wrong)?.denoised()))
     }
 
-    /// Values of the pixels in a rectangle: colours, or the values of the picture shown instead.
+    /// Returns the values of the pixels in a rectangle. These are colours, or the values of the
+    /// picture that is shown instead.
     pub fn values(&self, [left, top, width, height]: [u32; 4]) -> Result<Vec<Option<f32>>, String> {
         let render = match &self.stage {
             Stage::Fine(render, Some(_)) => render,
@@ -345,7 +349,7 @@ impl Viewer {
     }
 }
 
-/// Clips a crop to the picture `whole`, but keeps at least one pixel.
+/// Clips a crop rectangle to the picture `whole`, but keeps at least one pixel.
 fn within(crop: PixelRect, whole: PixelRect) -> PixelRect {
     let left = crop.left.clamp(whole.left, whole.left + whole.width - 1);
     let top = crop.top.clamp(whole.top, whole.top + whole.height - 1);

@@ -4,7 +4,7 @@ use durer_session::{Host, SessionFiles};
 use std::path::Path;
 use std::sync::Arc;
 
-/// A linear congruential random number generator, for reproducible edits.
+/// A linear congruential random number generator that makes the edits reproducible.
 struct Random(u64);
 
 impl Random {
@@ -33,7 +33,8 @@ const WORDS: [&str; 16] = [
     "Noise {",
 ];
 
-/// Returns the text with a random part removed, inserted or repeated, at character boundaries.
+/// Returns the text after a random part has been removed, inserted or repeated, at character
+/// boundaries.
 fn changed(text: &str, random: &mut Random) -> String {
     let mut place = || {
         let at = random.below(text.len() + 1);
@@ -81,6 +82,6 @@ fn edits_never_end_a_session() {
         }
         assert!(ask(serde_json::json!({ "kind": "edit", "text": text })));
     }
-    // About one edit in twenty leaves a valid scene.
+    // About one in twenty edits gives a valid scene.
     assert!(counts.iter().all(|&count| count > 100), "{counts:?}");
 }

@@ -1,12 +1,12 @@
-//! Tests that the memory of a session does not grow over many edits. The test is alone in its
-//! process, since allocations of other tests would be counted too.
+//! Tests that the memory of a session does not grow over many edits. The test has its own process,
+//! because the allocations of other tests would also be counted.
 
 mod page;
 
 use page::Page;
 use serde_json::json;
 
-/// Resident memory in bytes, if the system reports it.
+/// Returns the resident memory in bytes, if the system reports it.
 fn resident() -> Option<u64> {
     let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
     Some(4096 * pages.split(' ').nth(1)?.parse::<u64>().ok()?)

@@ -1,4 +1,4 @@
-//! Tests that pictures of sessions have the same bits as those of the library, regardless of
+//! Tests that the pictures of sessions are bit-identical to those of the library, regardless of
 //! earlier requests.
 
 mod page;
@@ -76,7 +76,7 @@ fn camera_written_into_text_renders_the_same_picture() {
     assert!(now.contains("# Homage to Turner Whitted") && now.contains("PerspectiveCamera { center "), "{now}");
     assert_eq!(now.lines().count(), text.lines().count());
     assert_eq!(page.pictures().pop().unwrap().0.hash, moved.0.hash);
-    // The command renders the same picture from the written text.
+    // The command renders the same picture from the text that the session wrote.
     let folder = std::env::temp_dir().join(format!("durer-session-{}.txt", std::process::id()));
     std::fs::write(&folder, now).unwrap();
     let command = hash(&durer::open(&folder).unwrap(), RenderJob::default().size((64, 48)));
@@ -139,8 +139,8 @@ fn cast_reports_a_verdict_for_each_object() {
     let verdicts: Vec<String> = cast.tests.iter().map(|test| format!("{:?}", test.verdict)).collect();
     assert_eq!(verdicts, ["Missed", "Missed", "Closest"]);
     assert_eq!(cast.hit.as_ref().unwrap().object, 2);
-    // The sphere's centre is at z = -1.6 and its radius is 1.2; the ray starts at z = 6 and moves
-    // by 2 per unit of t.
+    // The centre of the sphere is at z = -1.6, and its radius is 1.2. The ray starts at z = 6 and
+    // moves by 2 units per unit of t.
     let value = |name: &str| cast.tests[2].rows.iter().find(|row| row.name == name).unwrap().value.unwrap();
     assert!((value("t₁") - 3.2).abs() < 1e-6 && (value("t₂") - 4.4).abs() < 1e-6);
     assert!((f64::from(cast.hit.as_ref().unwrap().t) - value("t₁")).abs() < 1e-6);

@@ -1,4 +1,4 @@
-//! Tests that answers about rays, structures, pixels and models agree with the library.
+//! Tests that the answers about rays, structures, pixels and models agree with the library.
 
 mod page;
 
@@ -9,7 +9,7 @@ use serde_json::json;
 
 const CAMERA: &str = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }";
 
-/// Sixty small balls on a floor.
+/// Returns a scene of sixty small balls on a floor.
 fn balls() -> String {
     let ball = |i: i32| {
         let (x, y, z) = (i % 5 - 2, i / 5 % 4 - 1, i / 20 - 1);
@@ -119,7 +119,7 @@ fn a_part_of_the_picture_has_the_pixels_of_the_whole() {
         let at = 4 * ((22 + i / 20) * 90 + 31 + i % 20);
         assert_eq!(pixel, &whole.1[at..at + 4], "{i}");
     }
-    // A crop beyond the edges is clipped to the picture.
+    // A crop that extends beyond the edges is clipped to the picture.
     page.ask(r#"{"kind":"crop","crop":[80,50,4000000000,4000000000]}"#);
     assert_eq!(last(&mut page).0.region, [80, 50, 10, 10]);
     page.ask(r#"{"kind":"crop","crop":null}"#);
@@ -229,7 +229,8 @@ fn a_model_has_a_tree_and_materials_that_change_and_becomes_a_text() {
     assert!(matches!(one(&mut page, short), Event::Refused { .. }));
     let absent = json!({ "kind": "material", "number": 999, "name": field.name, "values": [0.5, 0.5, 0.5] });
     assert!(matches!(one(&mut page, absent), Event::Refused { .. }));
-    // Converted to text, the scene gives the same picture, up to the rounding of its numbers.
+    // After conversion to text, the scene gives the same picture, apart from the rounding of its
+    // numbers.
     let opened = page.ask(r#"{"kind":"as_text"}"#);
     let Event::Opened { text: Some(text), name, .. } = &opened[0].0 else { panic!("{opened:?}") };
     assert!(name == "knot.txt" && text.contains("knot/"), "{name} {text}");
@@ -241,7 +242,7 @@ fn a_model_has_a_tree_and_materials_that_change_and_becomes_a_text() {
     let (Event::Packed { names, sizes }, bytes) = packed.remove(0) else { panic!() };
     assert_eq!(names[0], "knot.txt");
     assert!(names.len() > 1 && sizes.iter().map(|size| *size as usize).sum::<usize>() == bytes.len());
-    // The materials of a scene with text are edited in its text.
+    // If a scene has text, its materials are edited in the text.
     assert!(matches!(one(&mut page, set([0.1; 3])), Event::Refused { .. }));
 }
 

@@ -1,4 +1,4 @@
-//! Builds a scene in code: a mesh with two instances, a floor and an area light.
+//! Builds a scene in code. The scene contains a mesh with two instances, a floor and an area light.
 
 use durer::prelude::*;
 
@@ -13,11 +13,11 @@ pub(crate) fn main() -> Result<(), Error> {
         specular_roughness: 0.2,
         ..Default::default()
     });
-    // A surface emits light through its material, in cd/m^2.
+    // A surface emits light if its material does. The luminance is in cd/m^2.
     let light = scene.material(PrincipledMaterial { emission_luminance: 40.0, ..Default::default() });
 
-    // A pyramid with five corners. The corners of its faces are counter-clockwise when seen from
-    // outside.
+    // A pyramid with five corners. The corners of each face are in counter-clockwise order when
+    // seen from outside.
     let corners = [[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0], [0.0, 1.5, 0.0_f32]];
     let sides = [[4, 3, 2], [4, 2, 1], [4, 1, 0], [4, 0, 3], [0, 1, 2], [0, 2, 3]];
     let pyramid = scene.mesh(&corners, &sides);

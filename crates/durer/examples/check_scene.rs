@@ -1,4 +1,4 @@
-//! Checks a scene for likely mistakes: here a camera that looks away from everything.
+//! Checks a scene for likely mistakes. In this example, the camera looks away from all objects.
 
 use durer::check::{CheckInput, check};
 use durer::prelude::*;

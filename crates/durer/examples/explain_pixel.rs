@@ -1,4 +1,4 @@
-//! Explains a pixel: lists its samples, and the terms that add up to each of them.
+//! Explains a pixel by listing its samples and the terms that add up to each sample.
 
 use durer::prelude::*;
 use durer::render::explain::explain;
@@ -19,7 +19,7 @@ pub(crate) fn main() -> Result<(), Error> {
     }
     assert_eq!(found.samples.len(), 1);
 
-    // The colour has the same bits as in the picture.
+    // The colour is bit-identical to the colour in the picture.
     let picture = Renderer::new(&world, options)?.finish()?;
     assert_eq!(picture.pixel(16, 12), Some(found.color));
     Ok(())

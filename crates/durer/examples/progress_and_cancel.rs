@@ -1,4 +1,4 @@
-//! Shows a picture while it renders, and stops when it is good enough.
+//! Shows a picture while it is being rendered and stops when it is good enough.
 
 use durer::prelude::*;
 use durer::render::RenderError;
@@ -12,7 +12,7 @@ pub(crate) fn main() -> Result<(), Error> {
 
     let options = RenderJob::for_scene(&world).size((32, 24)).samples(1_u32 << 16);
     let mut render = Renderer::new(&world, options)?;
-    // With this handle, another thread could stop the render.
+    // Another thread could stop the render with this handle.
     let canceller = render.canceller();
     let mut passes = 0;
     loop {

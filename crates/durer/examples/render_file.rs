@@ -1,4 +1,4 @@
-//! Renders a scene file of any format: `cargo run --example render_file -- scene.txt picture.png`.
+//! Renders a scene file in any format: `cargo run --example render_file -- scene.txt picture.png`.
 
 use durer::prelude::*;
 use std::path::PathBuf;

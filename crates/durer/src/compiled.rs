@@ -1,4 +1,4 @@
-//! Compiled scenes, ready for rendering and ray queries.
+//! Compiled scenes, which are ready for rendering and ray queries.
 
 use crate::error::{Error, SceneError};
 use crate::job::{JobContext, OutputSelection, RenderJob};
@@ -16,8 +16,8 @@ use std::ops::Deref;
 #[cfg(feature = "fs")]
 use std::path::Path;
 
-/// A scene that is ready for rendering and ray queries: its description and the [`World`] compiled
-/// from it, to which it dereferences.
+/// A scene that is ready for rendering and ray queries. It contains the description of the scene
+/// and the [`World`] that was compiled from it, and it dereferences to this world.
 #[derive(Debug)]
 pub struct CompiledScene {
     scene: Scene,
@@ -38,7 +38,7 @@ impl Deref for CompiledScene {
 }
 
 impl CompiledScene {
-    /// Returns the scene's description.
+    /// Returns the description of the scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
@@ -48,12 +48,12 @@ impl CompiledScene {
         &self.world
     }
 
-    /// Returns the dialect of the scene's file.
+    /// Returns the dialect of the scene file.
     pub fn dialect(&self) -> Dialect {
         self.dialect
     }
 
-    /// Returns warnings and notes.
+    /// Returns the warnings and notes about the scene.
     pub fn diagnostics(&self) -> &Diagnostics {
         &self.diagnostics
     }
@@ -68,7 +68,7 @@ impl CompiledScene {
         JobContext { scene: &self.scene, rules: &self.rules, emulates: self.emulates_program, timed: false }
     }
 
-    /// Resolves options into a job for a colour picture. Options that are not set have the scene's
+    /// Resolves options into a job for a colour picture. Options that are not set get the scene's
     /// defaults.
     ///
     /// # Errors
@@ -82,8 +82,8 @@ impl CompiledScene {
 }
 
 impl RenderJob {
-    /// Returns the default job of a scene, with size, integrator, depth and samples set explicitly,
-    /// so that each can be read and changed.
+    /// Returns the default job of a scene. The size, integrator, depth and samples are set
+    /// explicitly, so that each of them can be read and changed.
     pub fn for_scene(scene: &CompiledScene) -> RenderJob {
         let context = scene.job_context();
         match RenderJob::default().resolve(&context, Some(&OutputSelection::default())) {
@@ -97,21 +97,21 @@ impl RenderJob {
     }
 }
 
-/// Extension of [`Scene`] that compiles scenes which are built in code.
+/// Extension of [`Scene`] that compiles scenes built in code.
 pub trait CompileScene {
-    /// Compiles the scene by the rules of Dürer's own language. All meshes and pictures must be in
-    /// memory.
+    /// Compiles the scene with the rules of Dürer's own language. All meshes and pictures must be
+    /// in memory.
     ///
     /// # Errors
     ///
-    /// [`Error::Scene`]: a value is invalid, or the scene names a file.
+    /// Returns [`Error::Scene`] if a value is invalid or the scene names a file.
     fn compile(self) -> Result<CompiledScene, Error>;
 
-    /// Compiles the scene, and loads the files that it names from `source`.
+    /// Compiles the scene and loads the files that it names from `source`.
     ///
     /// # Errors
     ///
-    /// [`Error::Scene`]: a value is invalid, or a file is missing or damaged.
+    /// Returns [`Error::Scene`] if a value is invalid or a file is missing or damaged.
     fn compile_with(self, source: &dyn AssetSource) -> Result<CompiledScene, Error>;
 }
 
@@ -133,11 +133,11 @@ impl CompileScene for Scene {
     }
 }
 
-/// Reads and compiles a scene file. Its format and dialect are detected.
+/// Reads and compiles a scene file. The format and dialect of the file are detected.
 ///
 /// # Errors
 ///
-/// [`Error::Source`]: the file cannot be read. [`Error::Scene`]: it has errors.
+/// Returns [`Error::Source`] if the file cannot be read and [`Error::Scene`] if it contains errors.
 #[cfg(feature = "fs")]
 pub fn open(path: impl AsRef<Path>) -> Result<CompiledScene, Error> {
     let (options, mut files, mut diagnostics) = (LoadOptions::default(), Files::default(), Diagnostics::default());

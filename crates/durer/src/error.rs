@@ -7,14 +7,14 @@ use durer_image::SaveError;
 use durer_render::render::RenderError;
 use durer_scene::source::SourceError;
 
-/// Error from loading, compiling or rendering a scene, or from saving its picture.
+/// Error while loading, compiling or rendering a scene or saving its picture.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// The scene has errors.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// Options of a render job are invalid, or contradict each other or the scene.
+    /// Options of a render job are invalid or contradict each other or the scene.
     #[error("{0}")]
     Options(String),
     /// The render failed or was cancelled.
@@ -32,8 +32,8 @@ pub enum Error {
     Source(#[from] SourceError),
 }
 
-/// Errors of a scene, with the files to which they refer. Displayed with file name, line and
-/// column.
+/// Errors of a scene, with the files to which they refer. They are displayed with file name, line
+/// and column.
 #[derive(Debug)]
 pub struct SceneError {
     diagnostics: Diagnostics,
@@ -45,7 +45,7 @@ impl SceneError {
         SceneError { diagnostics, files }
     }
 
-    /// Returns the errors, and all other diagnostics of the scene.
+    /// Returns the errors and all other diagnostics of the scene.
     pub fn diagnostics(&self) -> &Diagnostics {
         &self.diagnostics
     }

@@ -1,8 +1,8 @@
-//! Checks for arbitrary input: it causes no panic, memory is proportional to the input, and results
-//! are consistent.
+//! Checks that arbitrary input causes no panic, that memory is proportional to the input, and that
+//! the results are consistent.
 //!
 //! The fuzz targets in `fuzz/` call these functions with random bytes. A test calls them with the
-//! seeds, which include the inputs of past failures.
+//! seeds, which include inputs that caused failures in the past.
 
 use crate::LoadOptions;
 use durer_diag::{Diagnostics, Files, Span};
@@ -26,10 +26,10 @@ use std::sync::{Arc, OnceLock};
 
 /// Memory limit for pictures, in bytes.
 const MEMORY: u64 = 64 << 20;
-/// Maximum number of pixels for which the pictures of a partial render are computed.
+/// Maximum number of pixels of a partial render for which its pictures are computed.
 const PIXELS: u64 = 1 << 16;
 
-/// Reads a scene file, and checks that writing and reading it again gives the same scene.
+/// Reads a scene file and checks that writing it and reading it again gives the same scene.
 pub fn scene(data: &[u8]) {
     let mut files = Files::default();
     let file = files.add("scene.txt", data.into());
@@ -50,7 +50,7 @@ pub fn scene(data: &[u8]) {
     }
 }
 
-/// Reads a JSON scene, and checks that writing and reading it again gives the same scene.
+/// Reads a JSON scene and checks that writing it and reading it again gives the same scene.
 pub fn json(data: &[u8]) {
     let read = |data: &[u8]| {
         let mut diagnostics = Diagnostics::default();
@@ -68,7 +68,7 @@ pub fn json(data: &[u8]) {
     }
 }
 
-/// Reads a mesh file, and checks that its indices are in range and its positions are finite.
+/// Reads a mesh file and checks that its indices are in range and its positions are finite.
 pub fn mesh(data: &[u8], name: &str) {
     let mut files = Files::default();
     let file = files.add(name, data.into());
@@ -80,7 +80,7 @@ pub fn mesh(data: &[u8], name: &str) {
     }
 }
 
-/// Reads a photometric file, and checks that its intensity is never NaN.
+/// Reads a photometric file and checks that its intensity is never NaN.
 pub fn profile(data: &[u8]) {
     let mut files = Files::default();
     let file = files.add("x.ies", data.into());
@@ -94,8 +94,8 @@ pub fn profile(data: &[u8]) {
     }
 }
 
-/// Reads a spectrum, and checks that its wavelengths ascend and that it works as an illuminant or
-/// is black.
+/// Reads a spectrum and checks that its wavelengths are in ascending order and that it can be used
+/// as an illuminant or is black.
 pub fn curve(data: &[u8]) {
     let mut files = Files::default();
     let file = files.add("x.csv", data.into());
@@ -109,7 +109,7 @@ pub fn curve(data: &[u8]) {
     }
 }
 
-/// Reads a model, and checks that its meshes are valid and it has a camera.
+/// Reads a model and checks that its meshes are valid and that it has a camera.
 pub fn model(data: &[u8], name: &str) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let bytes = data.into();
@@ -138,7 +138,7 @@ pub fn model(data: &[u8], name: &str) {
     }
 }
 
-/// Reads a picture file, and checks that the size and memory in its header are right.
+/// Reads a picture file and checks that the size and the memory stated by its header are correct.
 pub fn picture(data: &[u8], name: &str) {
     let Ok(encoded) = Encoded::open(data, name) else { return };
     let (width, height) = encoded.size();
@@ -154,7 +154,7 @@ pub fn picture(data: &[u8], name: &str) {
     }
 }
 
-/// Reads a partial render, and checks that writing it gives the same bytes and that its colours are
+/// Reads a partial render and checks that writing it gives the same bytes and that its colours are
 /// finite.
 pub fn part(data: &[u8]) {
     let mut bytes = data.to_vec();
@@ -176,7 +176,7 @@ pub fn part(data: &[u8]) {
     }
 }
 
-/// Returns a folder with the files to which random scenes refer.
+/// Returns a folder that contains the files to which random scenes refer.
 fn folder() -> PathBuf {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     let make = || {
@@ -187,11 +187,11 @@ fn folder() -> PathBuf {
     FOLDER.get_or_init(make).clone()
 }
 
-/// Writes the files to which random scenes refer into a folder.
+/// Writes the files to which random scenes refer to a folder.
 ///
 /// # Errors
 ///
-/// Errors of writing the files.
+/// Returns errors from writing the files.
 pub fn write_files(folder: &Path) -> std::io::Result<()> {
     let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\n\
                 f 1/1 3/3 2/2\nf 1/1 2/2 4/3\nf 1/1 4/2 3/3\nf 2/1 3/2 4/3\n";
@@ -200,13 +200,13 @@ pub fn write_files(folder: &Path) -> std::io::Result<()> {
     std::fs::write(folder.join("a.ppm"), picture)
 }
 
-/// Returns the text of a random but valid scene, determined by `bytes`.
+/// Returns the text of a random but valid scene that is determined by `bytes`.
 pub fn random_scene(bytes: &[u8]) -> String {
     write(&SceneGenerator::renderable(bytes).scene(Dialect::Durer), Dialect::Durer)
 }
 
-/// Builds a random scene from bytes, and checks that its text gives the same scene again, and that
-/// its picture is the same with BVH, grid and brute force.
+/// Builds a random scene from bytes. Checks that its text gives the same scene again, and that its
+/// picture is the same with a BVH, a grid and brute force.
 pub fn ways(data: &[u8]) {
     let scene = SceneGenerator::renderable(data).scene(Dialect::Durer);
     let text = random_scene(data);
@@ -237,7 +237,7 @@ pub fn ways(data: &[u8]) {
     };
     let Some(plain) = hash(AccelKind::None) else { return };
     for accel in [AccelKind::Bvh, AccelKind::Grid(None)] {
-        // A grid with too many entries fails to build.
+        // Building a grid fails if it has too many entries.
         if let Some(other) = hash(accel) {
             assert_eq!(other, plain, "{accel:?}\n{text}");
         }
@@ -248,7 +248,7 @@ pub fn ways(data: &[u8]) {
 #[test]
 fn seeds_hold() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz");
-    // A published package has no seeds.
+    // A published package contains no seeds.
     let entries = |path: PathBuf| std::fs::read_dir(path).into_iter().flatten().map(|entry| entry.unwrap().path());
     for target in entries(root.join("seeds")) {
         let name = target.file_name().unwrap().to_string_lossy().into_owned();

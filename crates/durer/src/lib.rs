@@ -1,7 +1,7 @@
 //! Dürer: a ray tracer that is exact, explainable and deterministic.
 //!
-//! A scene is built in code or read from a file, compiled into immutable tables, and rendered pass
-//! by pass:
+//! A scene is built in code or read from a file, compiled into immutable data, and rendered pass by
+//! pass:
 //!
 //! ```
 //! use durer::prelude::*;
@@ -34,9 +34,9 @@
 //! }
 //! ```
 //!
-//! This crate is the entry point to the others. It loads files ([`open`], [`load()`]), defines the
-//! options of a render and their defaults ([`job`]), creates reports as JSON ([`report`]), and
-//! re-exports the modules of the other crates.
+//! This crate is the entry point to the other crates. It loads files ([`open`], [`load()`]),
+//! defines the options of a render and their defaults ([`job`]), creates reports as JSON
+//! ([`report`]), and re-exports the modules of the other crates.
 
 pub mod compiled;
 pub mod error;

@@ -1,5 +1,5 @@
-//! Loads scenes from files: detects format and dialect, applies the rules of the dialect, and finds
-//! assets.
+//! Loading of scenes from files. The loader detects the format and the dialect, applies the rules
+//! of the dialect, and finds assets.
 
 use crate::job::JobContext;
 use durer_diag::{Diagnostic, Diagnostics, Files, Severity};
@@ -21,64 +21,67 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Options for loading a scene file and compiling it: dialect, quirks, assets, and limits.
+/// Options for loading and compiling a scene file, such as the dialect, quirks, assets and limits.
 #[derive(Clone, Debug, Default)]
 pub struct LoadOptions {
-    /// Dialect, including the bugs of its program. `None`: detected, without bugs.
+    /// Dialect to use, including the bugs of its program. `None` means that the dialect is detected
+    /// and its bugs are not emulated.
     pub dialect: Option<Dialect>,
-    /// True to behave like the command line of the course: also applies the bugs of a detected
-    /// dialect, and also looks for files below the current directory.
+    /// True to behave like the command line of the course. The bugs of a detected dialect are then
+    /// emulated, and files are also looked for in the current directory and the folders below it.
     pub course: bool,
-    /// Additional hints for detecting the dialect.
+    /// Additional hints that help to detect the dialect.
     pub hints: Vec<Hint>,
-    /// Quirks to turn on or off.
+    /// Quirks with a flag that turns them on or off.
     pub compat: Vec<(Quirk, bool)>,
-    /// Reject words of other dialects.
+    /// True to reject words of other dialects.
     pub strict: bool,
-    /// Allow files outside the scene's folder.
+    /// True to allow files outside the folder of the scene.
     pub allow_outside: bool,
-    /// Folders to search for missing files.
+    /// Folders in which missing files are searched for.
     pub assets: Vec<PathBuf>,
-    /// Contents of files by the names that the scene uses.
+    /// Contents of files in memory, by the names that the scene uses.
     pub in_memory: Vec<(String, Arc<[u8]>)>,
-    /// Camera, light and ground for a model that has none.
+    /// Camera, light and ground for models that have none.
     pub scene_defaults: SceneDefaults,
-    /// Acceleration structure over the objects.
+    /// Acceleration structure for the objects.
     pub accel: AccelKind,
-    /// Number of threads that build the world; `None`: one per processor.
+    /// Number of threads that build the world, or `None` for one thread per processor.
     pub threads: Option<usize>,
-    /// Memory limit of the world in bytes; `None`: unlimited.
+    /// Memory limit for the world in bytes, or `None` for no limit.
     pub memory: Option<u64>,
-    /// Expected number of camera rays; `None`: many. If there are few, the BVH is built faster.
+    /// Expected number of camera rays, or `None` for many rays. If there are few rays, the BVH is
+    /// built faster.
     pub rays: Option<u64>,
-    /// Cache with the meshes and pictures of the previous version of the scene, so that unchanged
-    /// ones are not read or built again.
+    /// Cache with the meshes and pictures of the previous version of the scene. Items that have not
+    /// changed are not read or built again.
     pub cache: Option<Arc<AssetCache>>,
 }
 
-/// A scene that was read from a file but not compiled yet, with its dialect and the source of its
-/// files.
+/// A scene that has been read from a file but not compiled yet, with its dialect and the source of
+/// its files.
 #[derive(Debug)]
 pub struct LoadedScene {
-    /// The scene's description.
+    /// Description of the scene.
     pub scene: Scene,
     /// Rules of the dialect.
     pub rules: DialectRules,
     /// Dialect of the file.
     pub dialect: Dialect,
-    /// Detected dialect with the reasons for it; `None` if the dialect was requested.
+    /// The detected dialect with the reasons for it, or `None` if the dialect was requested.
     pub guess: Option<Guess>,
-    /// Source of the scene's files.
+    /// Source of the files of the scene.
     source: FolderSource,
     /// Memory limit for decoding a picture, in bytes.
     memory: u64,
 }
 
-/// Reads a scene file. Adds diagnostics to `diagnostics`, and the text to `files`.
+/// Reads a scene file. Adds diagnostics to `diagnostics` and the text of the file to `files`.
 ///
 /// # Errors
 ///
-/// The file itself cannot be read. `Ok(None)` means that it was read and has errors.
+/// Returns an error if the file itself cannot be read. The result `Ok(None)` means that the file
+/// was read but contains errors.
 pub fn load(
     path: &Path,
     options: &LoadOptions,
@@ -90,7 +93,7 @@ pub fn load(
     Ok(load_text(path, bytes, options, files, diagnostics))
 }
 
-/// Returns the folder of a file.
+/// Returns the folder that contains a file.
 fn folder_of(path: &Path) -> PathBuf {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
@@ -98,7 +101,7 @@ fn folder_of(path: &Path) -> PathBuf {
     }
 }
 
-/// Reads a scene from text as if it were in the file at `path`. Returns `None` after errors.
+/// Reads a scene from text as if it were in the file at `path`. Returns `None` if there are errors.
 pub fn load_text(
     path: &Path,
     bytes: Arc<[u8]>,
@@ -116,7 +119,8 @@ pub fn load_text(
     for (name, bytes) in &options.in_memory {
         source = source.add_in_memory(name, bytes.clone());
     }
-    // Record the scene file without a name, since the digest must not depend on its path.
+    // Record the scene file without a name, because the digest must not depend on the path of the
+    // file.
     source.record().add("", &bytes);
     let mut name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut bytes = bytes;
@@ -155,7 +159,7 @@ pub fn load_text(
     let mut guess = None;
     let dialect = options.dialect.unwrap_or_else(|| {
         let detected = match &json {
-            // A JSON scene states its dialect, so there is nothing to detect.
+            // A JSON scene names its dialect, so no dialect needs to be detected.
             Some(json) => Guess::certain(json.dialect()),
             None => course::guess(&bytes, file, &options.hints, &|name| source.contains(name)),
         };
@@ -192,7 +196,7 @@ pub fn load_text(
         diagnostics.extend(portability(&bytes, file, dialect, diagnostics));
     }
     if let (None, Some(guess)) = (&scene, &guess) {
-        // A construct that is an error in this dialect may be valid in another one.
+        // A construct that is an error in this dialect may be valid in another dialect.
         diagnostics.push(guess.note());
     }
     scene.map(|scene| LoadedScene { scene, rules, dialect, guess, source, memory })
@@ -204,7 +208,7 @@ fn budget(options: &LoadOptions) -> u64 {
 }
 
 /// Returns a note about the first construct that the official program of the dialect would reject,
-/// unless it was already reported.
+/// unless the construct has already been reported.
 fn portability(bytes: &[u8], file: u32, dialect: Dialect, messages: &Diagnostics) -> Diagnostics {
     let (mut strict, mut notes) = (Diagnostics::default(), Diagnostics::default());
     if dialect != Dialect::Durer {
@@ -222,16 +226,16 @@ fn portability(bytes: &[u8], file: u32, dialect: Dialect, messages: &Diagnostics
 }
 
 impl LoadedScene {
-    /// Returns the context that determines the defaults of a job. `timed` is true if a time limit
-    /// ends the sampling.
+    /// Returns the context that determines the defaults of a job. `timed` must be true if a time
+    /// limit ends the sampling.
     pub fn job_context(&self, timed: bool) -> JobContext<'_> {
-        // Dürer's own dialect emulates no program.
+        // Dürer's own dialect does not emulate a program.
         let emulates = self.guess.is_none() && self.dialect != Dialect::Durer;
         JobContext { scene: &self.scene, rules: &self.rules, emulates, timed }
     }
 
-    /// Returns the paths of the files that were read so far, except the scene file. The list is
-    /// complete after compilation.
+    /// Returns the paths of the files that have been read so far, except the scene file. The list
+    /// is complete after compilation.
     pub fn files(&self) -> Vec<PathBuf> {
         self.source.paths()
     }
@@ -242,28 +246,28 @@ impl LoadedScene {
         // In JSON, all names are quoted, and no other string is the name of a file.
         let text = json::write(&self.scene, self.dialect);
         let quoted: BTreeSet<&str> = text.split('"').collect();
-        // `picture.png:g` is a channel of a file.
+        // A name such as `picture.png:g` refers to a channel of a file.
         let names = quoted.iter().flat_map(|text| [Some(*text), text.rsplit_once(':').map(|parted| parted.0)]);
         let mut paths = self.source.paths();
         paths.extend(names.flatten().filter_map(|name| self.source.find_path(name)));
         paths
     }
 
-    /// Converts the scene to the format given by the extension of `name`; `None` if it cannot be
-    /// written. Adds a warning for everything that the format cannot express.
+    /// Converts the scene to the format that the extension of `name` selects. Returns `None` if the
+    /// scene cannot be written. Adds a warning for everything that the format cannot express.
     pub fn write(&self, name: &str, diagnostics: &mut Diagnostics) -> Option<Vec<u8>> {
         let write = scene_format_for(name)?.write?;
         let output = WriteContext { name, source: &self.source, normals: self.rules.mesh_normals, memory: self.memory };
         Some(write(&self.scene, &output, diagnostics))
     }
 
-    /// Returns a copy of the scene in which embedded data is replaced with files in `folder`, and
-    /// these files.
+    /// Returns a copy of the scene in which embedded data is replaced by files in `folder`. Also
+    /// returns these files.
     pub fn export_assets(&self, folder: &str) -> (Scene, Vec<AssetFile>) {
         export_assets(&self.scene, folder, &self.source)
     }
 
-    /// Compiles the scene. Returns `None` after errors, which are in `diagnostics`.
+    /// Compiles the scene. If there are errors, adds them to `diagnostics` and returns `None`.
     pub fn compile(&self, options: &LoadOptions, files: &mut Files, diagnostics: &mut Diagnostics) -> Option<World> {
         let memory = options.memory.unwrap_or(u64::MAX);
         let resources = Resources {

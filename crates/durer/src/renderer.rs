@@ -1,4 +1,4 @@
-//! Progressive rendering of a scene, and its picture.
+//! Progressive rendering of a scene into a picture.
 
 use crate::compiled::CompiledScene;
 use crate::error::Error;
@@ -14,8 +14,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Progressive renderer of a [`CompiledScene`], which adds samples pass by pass. See the example of
-/// [this crate](crate). It is also an iterator over [`Progress`].
+/// Progressive renderer for a [`CompiledScene`] that adds samples pass by pass. See the example of
+/// [this crate](crate). The renderer is also an iterator over [`Progress`].
 #[derive(Debug)]
 pub struct Renderer<'w> {
     world: &'w World,
@@ -23,12 +23,12 @@ pub struct Renderer<'w> {
     control: Arc<Control>,
 }
 
-/// Handle that cancels a [`Renderer`] from any thread.
+/// Handle with which any thread can cancel a [`Renderer`].
 #[derive(Clone, Debug)]
 pub struct Canceller(Arc<Control>);
 
 impl Canceller {
-    /// Cancels the render; its next pass returns [`RenderError::Cancelled`].
+    /// Cancels the render. The next pass then returns [`RenderError::Cancelled`].
     pub fn cancel(&self) {
         self.0.cancel.store(true, Relaxed);
     }
@@ -39,37 +39,38 @@ impl<'w> Renderer<'w> {
     ///
     /// # Errors
     ///
-    /// [`Error::Options`] and [`Error::Render`]: the options are invalid.
+    /// Returns [`Error::Options`] or [`Error::Render`] if the options are invalid.
     pub fn new(scene: &'w CompiledScene, options: RenderJob) -> Result<Self, Error> {
         Renderer::with_control(scene, options, Control::default())
     }
 
-    /// Starts a render with execution options: threads, memory and so on.
+    /// Starts a render with execution options such as threads and memory.
     ///
     /// # Errors
     ///
-    /// Errors of [`Renderer::new`].
+    /// Returns the same errors as [`Renderer::new`].
     pub fn with_control(scene: &'w CompiledScene, options: RenderJob, control: Control) -> Result<Self, Error> {
         let job = scene.job(&options)?;
         let (world, control) = (scene.world(), Arc::new(control));
         Ok(Renderer { world, render: ProgressiveRender::new(world, &job)?, control })
     }
 
-    /// Renders the next pass over all pixels; `None` if the picture is finished. At first, each
-    /// pass doubles the number of samples, and short passes are combined.
+    /// Renders the next pass over all pixels. Returns `None` if the picture is finished. At first,
+    /// each pass doubles the number of samples, and short passes are combined.
     ///
     /// # Errors
     ///
-    /// [`Error::Render`], for example if the render was cancelled. Earlier passes are kept.
+    /// Returns [`Error::Render`], for example if the render was cancelled. The results of earlier
+    /// passes are kept.
     pub fn next_pass(&mut self) -> Result<Option<Progress>, Error> {
         Ok(self.render.next_pass(self.world, &self.control)?)
     }
 
-    /// Renders the remaining passes, and returns the picture.
+    /// Renders the remaining passes and returns the picture.
     ///
     /// # Errors
     ///
-    /// Errors of [`Renderer::next_pass`].
+    /// Returns the same errors as [`Renderer::next_pass`].
     pub fn finish(mut self) -> Result<Picture, Error> {
         while self.next_pass()?.is_some() {}
         self.image()
@@ -80,11 +81,11 @@ impl<'w> Renderer<'w> {
         Canceller(Arc::clone(&self.control))
     }
 
-    /// Returns the picture as rendered so far. It is black until the first pass has finished.
+    /// Returns the current picture. The picture is black until the first pass has finished.
     ///
     /// # Errors
     ///
-    /// [`Error::Render`]: the picture does not fit into memory.
+    /// Returns [`Error::Render`] if the picture does not fit into memory.
     pub fn image(&self) -> Result<Picture, Error> {
         let mut rendered = self.render.part().pictures()?;
         match rendered.layers.is_empty() {
@@ -102,8 +103,8 @@ impl Iterator for Renderer<'_> {
     }
 }
 
-/// A rendered picture in linear light with sRGB primaries, as returned by [`Renderer::image`]. By
-/// default, 1 is white.
+/// A rendered picture in linear light with sRGB primaries, which [`Renderer::image`] returns. By
+/// default, white has the value 1.
 #[derive(Clone, Debug)]
 pub struct Picture {
     layer: Layer,
@@ -122,12 +123,13 @@ impl Picture {
         self.layer.image.height
     }
 
-    /// Returns the colours, row by row from the top, each row from left to right.
+    /// Returns the colours row by row from the top, and each row from left to right.
     pub fn pixels(&self) -> &[Color] {
         &self.layer.image.pixels
     }
 
-    /// Returns the colour of a pixel, counted from 0 at the upper left; `None` outside the picture.
+    /// Returns the colour of a pixel, or `None` outside the picture. Coordinates start at 0 in the
+    /// upper left corner.
     pub fn pixel(&self, x: u32, y: u32) -> Option<Color> {
         self.layer.image.get(x, y)
     }
@@ -137,13 +139,14 @@ impl Picture {
         &self.layer.image
     }
 
-    /// Saves the picture to a file atomically. The extension determines the format: `.exr`, `.hdr`
-    /// and `.pfm` store linear light, and other formats eight bits per channel with the sRGB curve.
+    /// Saves the picture to a file atomically. The extension determines the format. Files with the
+    /// extension `.exr`, `.hdr` or `.pfm` store linear light, and other formats store eight bits
+    /// per channel with the sRGB curve.
     ///
     /// # Errors
     ///
-    /// [`Error::Image`]: the format is unknown, or cannot store such pictures.
-    /// [`Error::Save`]: the file cannot be written.
+    /// Returns [`Error::Image`] if the format is unknown or cannot store such pictures. Returns
+    /// [`Error::Save`] if the file cannot be written.
     #[cfg(feature = "fs")]
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();

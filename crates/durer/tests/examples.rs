@@ -1,4 +1,4 @@
-//! Runs the examples, which assert their results.
+//! Runs the examples, which check their own results with assertions.
 
 macro_rules! examples {
     ($($name:ident: $file:literal)*) => {$(

@@ -1,4 +1,4 @@
-//! Tests of the source structure: crates use only crates of lower layers, the modules of a folder
+//! Tests of the source structure. Crates use only crates of lower layers, the modules of a folder
 //! have no cyclic dependencies, and files are small.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use syn::{Item, UseTree};
 
-/// Crates by layer, as in ARCHITECTURE.md. A crate may use only crates of lower layers.
+/// The crates in each layer, as in ARCHITECTURE.md. A crate may use only crates of lower layers.
 const LAYERS: [&[&str]; 10] = [
     &["durer-bvh", "durer-diag", "durer-photo"],
     &["durer-image"],
@@ -20,7 +20,7 @@ const LAYERS: [&[&str]; 10] = [
     &["xtask"],
 ];
 
-/// The only dependency that exists solely for tests, which read scene texts.
+/// The only dependency that is used solely by tests. The tests read scene texts.
 const FOR_TESTS: (&str, &str) = ("durer-render", "durer-formats");
 
 fn root() -> PathBuf {
@@ -35,7 +35,8 @@ fn layer(name: &str) -> Option<usize> {
     LAYERS.iter().position(|crates| crates.contains(&name))
 }
 
-/// Returns the crates of this workspace in the `[dependencies]` of a Cargo.toml.
+/// Returns the crates of this workspace that are listed in the `[dependencies]` of a Cargo.toml
+/// file.
 fn dependencies(manifest: &str) -> Vec<String> {
     let mut section = "";
     let mut found = Vec::new();
@@ -78,7 +79,8 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 /// Path of a module from the root of its crate, as a list of names.
 type Module = Vec<String>;
 
-/// Returns the files of a crate's modules, except tests, by module path from the root of the crate.
+/// Returns the source files of a crate by module path from the root of the crate. Tests are not
+/// included.
 fn modules(source: &Path) -> BTreeMap<Module, PathBuf> {
     let mut all = Vec::new();
     files(source, &mut all);
@@ -94,7 +96,7 @@ fn modules(source: &Path) -> BTreeMap<Module, PathBuf> {
     all.into_iter().map(module).filter(|(module, _)| !is_test(module)).collect()
 }
 
-/// Flattens a `use` tree into paths of segments.
+/// Flattens a `use` tree into paths, which are lists of segments.
 fn paths(tree: &UseTree, before: &mut Module, found: &mut Vec<Module>) {
     match tree {
         UseTree::Path(path) => {
@@ -109,8 +111,8 @@ fn paths(tree: &UseTree, before: &mut Module, found: &mut Vec<Module>) {
     }
 }
 
-/// Returns the module of this crate to which a `use` path in module `own` refers; `None` for other
-/// crates.
+/// Returns the module of this crate to which a `use` path in the module `own` refers. Returns
+/// `None` for paths to other crates.
 fn target(path: &[String], own: &Module, modules: &BTreeMap<Module, PathBuf>) -> Option<Module> {
     let (mut at, rest) = match path[0].as_str() {
         "crate" => (Vec::new(), &path[1..]),
@@ -132,8 +134,8 @@ fn target(path: &[String], own: &Module, modules: &BTreeMap<Module, PathBuf>) ->
     Some(at)
 }
 
-/// Returns, for each folder, the dependencies between its modules. The folder's `mod.rs` is
-/// excluded: it declares the folder's files and is used by them.
+/// Returns the dependencies between the modules of each folder. The `mod.rs` of a folder is
+/// excluded, because it declares the files of the folder and they use it.
 fn arrows(source: &Path) -> BTreeMap<Module, BTreeMap<String, BTreeSet<String>>> {
     let modules = modules(source);
     let mut arrows: BTreeMap<Module, BTreeMap<String, BTreeSet<String>>> = BTreeMap::new();
@@ -157,7 +159,7 @@ fn arrows(source: &Path) -> BTreeMap<Module, BTreeMap<String, BTreeSet<String>>>
     arrows
 }
 
-/// Returns the modules of a folder that depend on themselves through other modules.
+/// Returns the modules of a folder that depend on themselves through other modules of the folder.
 fn in_circles(arrows: &BTreeMap<String, BTreeSet<String>>) -> Vec<&String> {
     let reaches_itself = |start: &String| {
         let mut seen = BTreeSet::new();

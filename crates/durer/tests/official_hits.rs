@@ -1,5 +1,5 @@
-//! Tests that rays and hits are computed like the course's programs since 2012 do, and without
-//! their quirks otherwise.
+//! Tests that rays and hits are computed in the same way as in the course's programs since 2012.
+//! Without the quirks, the results must be correct.
 
 #![allow(clippy::disallowed_methods, reason = "the official programs call the platform's tangent")]
 
@@ -12,7 +12,7 @@ use durer::world::{Hit, World};
 use durer::{LoadOptions, load_text};
 use std::path::Path;
 
-/// Compiles a world of a dialect with its quirks, except those in `off`. Files are read from
+/// Compiles a world in a dialect with its quirks, except the quirks in `off`. Files are read from
 /// `folder`.
 fn world_in(folder: &Path, text: &str, dialect: Dialect, off: &[Quirk]) -> (World, Diagnostics) {
     let compat = off.iter().map(|&compat| (compat, false)).collect();
@@ -50,7 +50,8 @@ fn traced_color(world: &World, origin: [f32; 3], dir: [f32; 3]) -> Color {
     Whitted { world, settings, cancel: None }.radiance(&ray, &mut ())
 }
 
-/// Returns a scene before 2020: a camera, lights, and objects with one white material.
+/// Returns a scene in the language used before 2020, with a camera, lights, and objects that share
+/// one white material.
 fn classic(lights: &str, objects: &[&str]) -> String {
     let count = lights.matches("Light {").count();
     format!(
@@ -64,7 +65,7 @@ fn classic(lights: &str, objects: &[&str]) -> String {
     )
 }
 
-/// Returns a scene of nodes, each with its transform and its object.
+/// Returns a scene of nodes. Each node has a transform and an object.
 fn nodes(objects: &[&str]) -> String {
     let node = |object: &&str| format!("Node {{ Component<Material> {{ index 0 }} {object} }}\n");
     format!(
@@ -80,8 +81,8 @@ const SUN: &str = "DirectionalLight { direction 0 -1 0 color 1 1 1 }";
 
 #[test]
 fn secondary_rays_of_2016_start_farther_along_and_those_of_2012_have_a_minimum_t() {
-    // A light 0.005 in front of the right wall illuminates the left wall at a distance of 1.995.
-    // The ray hits the right wall at t = 1.99, because its start is moved by 0.01 along its
+    // A light that is 0.005 in front of the right wall illuminates the left wall at a distance of
+    // 1.995. The ray hits the right wall at t = 1.99, because its start is moved by 0.01 along its
     // direction.
     let light = "PointLight { position 0.995 1 0 color 1 1 1 falloff 0.25 }";
     let scene = classic(light, &["Plane { normal 1 0 0 offset -1 }", "Plane { normal -1 0 0 offset -1 }"]);
@@ -134,7 +135,7 @@ fn object_space_rays_of_2020_are_differences_of_two_points() {
     assert!(differ > 150, "{differ}");
 }
 
-/// Returns the ray through a point of the picture, for the camera as written.
+/// Returns the ray through a point of the picture for the camera as it is written in the scene.
 fn camera_ray(world: &World, point: Vec2) -> Vec3 {
     world.camera().ray(world.camera_frame(), &CameraSample::at(point)).unwrap().dir
 }
@@ -176,8 +177,8 @@ fn triangle_of_2012_wins_ties() {
     }
 }
 
-/// Returns a closed mesh of 48 triangles: an octahedron with each face split into six around its
-/// center.
+/// Returns a closed mesh of 48 triangles, which is an octahedron with each face divided into six
+/// triangles around its centre.
 fn stone() -> String {
     let mut text = String::from("v 0 0 0\n");
     let mut count = 1;
@@ -212,7 +213,8 @@ fn axis_parallel_ray_misses_half_of_a_mesh() {
         let (world, _) = world_in(folder.path(), text, dialect, &[]);
         let down = |x: f32, y: f32| hit(&world, [x, y, 5.0], [0.0, 0.0, -1.0]);
         assert_eq!(down(0.35, 0.3).is_none(), holes, "{dialect:?}");
-        // On the near side, only cells at the mesh's lowest corner are visited, and they are empty.
+        // On the near side, the ray visits only cells at the lowest corner of the mesh, and they
+        // are empty.
         assert_eq!(down(-0.35, -0.3).is_none(), holes, "{dialect:?}");
         let inclined = hit(&world, [0.35, 0.3, 5.0], [1e-7, 1e-7, -1.0]).unwrap();
         assert!((inclined.t - 4.65).abs() < 1e-5, "{dialect:?} {inclined:?}");
@@ -278,13 +280,13 @@ fn glass_of_2012_uses_plane_normals_as_written() {
                MaterialIndex 1 Sphere {{ center 0 -2 0 radius 1 }} }}"
         )
     };
-    // Seen at normal incidence through the pane, the ball appears with 1 - R of its light.
+    // At normal incidence, the pane lets through a share of 1 - R of the ball's light.
     let share = |text: &str, off: &[Quirk]| {
         traced_color(&world_in(Path::new("."), text, Dialect::F12a5, off).0, [0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).x
     };
     let unit = share(&pane("0 1 0", 0.0), &[]);
     assert!((unit - 0.96).abs() < 1e-5, "{unit}");
-    // With a normal of length 2, c = |d·N| is 2: R = R0 + (1 - R0) (1 - 2)^5 = 0.04 - 0.96.
+    // For a normal of length 2, c = |d·N| is 2 and R = R0 + (1 - R0) (1 - 2)^5 = 0.04 - 0.96.
     let long = share(&pane("0 2 0", 0.0), &[]);
     assert!((long - 1.92).abs() < 1e-5, "{long}");
     assert!((share(&pane("0 2 0", 0.0), &[Quirk::RawRefraction]) - 0.96).abs() < 1e-5);
@@ -304,8 +306,8 @@ fn mirrors_of_2012_and_2016_keep_the_length_that_the_normal_of_a_plane_gives_a_r
                MaterialIndex 1 Sphere {{ center {center} radius 0.3 }} }}"
         )
     };
-    // d - 2 (d·N) N: (1, -1, 0) becomes (1, 7, 0) with this normal, and (1, 1, 0) with a unit
-    // normal.
+    // The reflected direction is d - 2 (d·N) N. With this normal, (1, -1, 0) becomes (1, 7, 0), and
+    // with a unit normal, it becomes (1, 1, 0).
     for dialect in [Dialect::F12a5, Dialect::F16] {
         let share = |center: &str| traced_color(&world(&scene(center), dialect), [-5.0, 5.0, 0.0], [1.0, -1.0, 0.0]).x;
         assert_eq!((share("1 7 0"), share("5 5 0")), (1.0, 0.0), "{dialect:?}");
@@ -322,7 +324,8 @@ fn weights_of_mirrored_rays_below_zero_count_in_2012() {
           PhongMaterial { diffuseColor 1 1 1 } }
         Group { numObjects 2 MaterialIndex 0 Plane { normal 0 2 0 offset 0 }
           MaterialIndex 1 Sphere { center 0 -2 0 radius 1 } }";
-    // R = 0.04 - 0.96 of the background, and 1 - R of the ball.
+    // The expected light is R times the background plus 1 - R times the ball, where R = 0.04 -
+    // 0.96.
     let light = traced_color(&world(scene, Dialect::F12a5), [0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).x;
     assert!((light - (1.92 - 0.92 * 0.5)).abs() < 1e-5, "{light}");
 }
@@ -335,7 +338,7 @@ fn highlights_beyond_all_numbers_spoil_black_ones_too() {
     };
     for dialect in [Dialect::F12a4, Dialect::F16] {
         let light = |normal| traced_color(&world(&plane(normal), dialect), [0.0, 5.0, 0.0], [0.0, -1.0, 0.0]).x;
-        // The base of the power is 7 with a normal of length 2, and 1 with a unit one.
+        // The base of the power is 7 for a normal of length 2, and 1 for a unit normal.
         assert!(light("0 2 0").is_nan(), "{dialect:?}");
         assert_eq!(light("0 1 0"), 1.0, "{dialect:?}");
     }
@@ -348,7 +351,7 @@ fn spheres_are_hit_at_10000_where_a_ray_leaves_them_until_2019() {
         let found = hit(&world(&classic(SUN, &[ball]), dialect), [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]);
         assert_eq!(found.map(|hit| hit.t), Some(10_000.0), "{dialect:?}");
     }
-    // Since 2020 it is hit at the start.
+    // Since 2020, the sphere is hit at the start of the ray.
     let ball = "Component<Object> { type sphere radius 1 }";
     let found = hit(&world(&nodes(&[ball]), Dialect::F23), [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]);
     assert_eq!(found.map(|hit| hit.t), Some(0.0));

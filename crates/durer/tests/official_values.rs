@@ -1,5 +1,5 @@
-//! Tests that degenerate values and repeated sections are treated like the course's programs since
-//! 2012 do, and without their quirks otherwise.
+//! Tests that degenerate values and repeated sections are handled in the same way as in the
+//! course's programs since 2012. Without the quirks, the results must be correct.
 
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::dialect::{Dialect, Quirk};
@@ -12,8 +12,8 @@ use durer::world::World;
 use durer::{LoadOptions, load_text};
 use std::path::Path;
 
-/// Loads a scene in a dialect, with its quirks if `official`. Returns the world, which is `None`
-/// after errors, and the diagnostics.
+/// Loads a scene in a dialect, with its quirks if `official` is true. Returns the diagnostics and
+/// the world, which is `None` if there are errors.
 fn load(folder: &Path, text: &str, dialect: Dialect, official: bool) -> (Option<World>, Diagnostics) {
     let all = Quirk::ALL.iter().map(|row| (row.0, false));
     let compat = if official { Vec::new() } else { all.collect() };
@@ -48,7 +48,7 @@ const DOWN: [f32; 3] = [0.0, -1.0, 0.0];
 const LIT: &str = "Lights { numLights 1 DirectionalLight { direction 0 -1 0 color 0.5 0.5 0.5 } }";
 const BALL: &str = "Sphere { center 0 0 0 radius 2 }";
 
-/// Returns a scene before 2020, seen from above.
+/// Returns a scene in the language used before 2020. The scene is seen from above.
 fn classic(lights: &str, angle: &str, shininess: &str, objects: &str) -> String {
     format!(
         "PerspectiveCamera {{ center 0 5 0 direction 0 -1 0 up 0 0 1 angle {angle} }} {lights}
@@ -70,7 +70,7 @@ fn nodes(fov: &str, shininess: &str, node: &str) -> String {
 
 const NODE: &str = "Node { Component<Material> { index 0 } Component<Object> { type sphere radius 2 } }";
 
-/// Returns the dialects that have an official program, each with a scene.
+/// Returns all dialects that have an official program, with a scene for each.
 fn years(edit: impl Fn(&str) -> String) -> Vec<(Dialect, String)> {
     let classic = edit(&classic(LIT, "40", "10", BALL));
     let mut scenes: Vec<_> =
@@ -102,7 +102,7 @@ fn degenerate_values_are_rendered_for_a_named_year_and_refused_otherwise() {
             assert!(world.is_none() && found.has_errors(), "{what} {dialect:?}");
         }
     }
-    // No official program accepts these.
+    // No official program accepts these values.
     for wrong in ["radius 1e99", "radius x", "radius nan"] {
         let text = years(|text| text.replace("radius 2", wrong)).remove(2).1;
         assert!(load(Path::new("."), &text, Dialect::F16, true).0.is_none(), "{wrong}");
@@ -148,8 +148,8 @@ fn flat_scales_are_rendered_before_2020_and_ignored_since() {
         let (world, found) = load(Path::new("."), &flat("1 0 1"), dialect, false);
         assert!(world.is_none() && found.has_errors(), "{dialect:?}");
     }
-    // In 2016, the sphere is hit at a NaN t and is black. In 2012, it is hit at t = 10000, as in
-    // a4soln.
+    // In the program of 2016, the sphere is hit at a t of NaN and is black. In the program of 2012,
+    // it is hit at t = 10000, as in a4soln.
     assert_eq!(traced_color(&official(&flat("1 0 1"), Dialect::F16), [0.0, 5.0, 0.0], DOWN), Color::ZERO);
     assert_eq!(traced_color(&official(&flat("1 0 1"), Dialect::F12a4), [0.0, 5.0, 0.0], DOWN), Color::splat(0.25));
     let node = |scale: &str| {
@@ -231,7 +231,8 @@ fn depths_of_2012_are_clamped_before_they_are_mapped_to_grey() {
     // The ball is hit at t = 3.
     assert_eq!(grey(Dialect::F12a4, (2.0, 6.0)), 0.75);
     assert_eq!(grey(Dialect::F12a4, (4.0, 6.0)), 1.0);
-    // In a reversed range, depths below its start are set to the start, and all others to its end.
+    // In a reversed range, depths below the start of the range are set to the start, and all other
+    // depths to the end.
     assert_eq!(grey(Dialect::F12a4, (9.0, 2.0)), 1.0);
     assert_eq!(grey(Dialect::F12a4, (2.5, 2.0)), 0.0);
     assert_eq!(grey(Dialect::F04, (9.0, 2.0)), 0.0 + (2.0 - 3.0) / (2.0 - 9.0));

@@ -1,4 +1,4 @@
-//! Tests of the public API that its examples do not cover.
+//! Tests of the parts of the public API that its examples do not cover.
 
 use durer::prelude::*;
 use durer::render::{RenderError, render};

@@ -1,4 +1,4 @@
-//! Tests of the quirks of the course's programs, one test per quirk, with the quirk and without it.
+//! Tests of the quirks of the course's programs. Each test renders with one quirk and without it.
 
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::{Dialect, Quirk};
@@ -8,7 +8,8 @@ use durer::world::World;
 use durer::{LoadOptions, load_text};
 use std::path::Path;
 
-/// Compiles a world in a dialect, with its quirks if `official`. Files are read from `folder`.
+/// Compiles a world in a dialect, with its quirks if `official` is true. Files are read from
+/// `folder`.
 fn world_in(folder: &Path, text: &str, dialect: Dialect, official: bool) -> World {
     let compat = if official { Vec::new() } else { off(dialect.rules()) };
     world_with(folder, text, dialect, compat, official)
@@ -28,7 +29,7 @@ fn world_with(folder: &Path, text: &str, dialect: Dialect, compat: Vec<(Quirk, b
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))
 }
 
-/// Returns all quirks of the rules, turned off.
+/// Returns a list that turns off all quirks of the rules.
 fn off(rules: &durer::dialect::DialectRules) -> Vec<(Quirk, bool)> {
     Quirk::ALL.iter().filter(|row| rules.has(row.0)).map(|row| (row.0, false)).collect()
 }
@@ -73,23 +74,23 @@ fn transform_of_2023_drops_shear_and_nested_transforms_keep_it() {
     let sheared = "Transform { scale 2 1 1 z_rotate 45 }";
     let bounds = |text: &str, official| world(text, Dialect::F23, official).bounds().max;
     let root = |x: f32| x.sqrt();
-    // The first axis of the product is (2, 1) / √2; the rest of the second, perpendicular to it, is
-    // (-2, 4) √2 / 5.
+    // The first axis of the product is (2, 1) / √2. The part of the second axis that is
+    // perpendicular to the first is (-2, 4) √2 / 5.
     let image = bounds(&node(sheared, ball), true);
     let [a, b] = [[2.0 / root(2.0), 1.0 / root(2.0)], [-0.4 * root(2.0), 0.8 * root(2.0)]];
     let extent = |i: usize| (a[i] * a[i] + b[i] * b[i]).sqrt();
-    // The bounds of the transformed box are larger: they are sums of absolute components of the
-    // axes.
+    // The bounds of the transformed box are larger, because they are sums of the absolute values of
+    // the axis components.
     close(image, [a[0] + b[0].abs(), a[1] + b[1].abs(), 1.0]);
     assert!(extent(0) < image.x);
     close(bounds(&node(sheared, ball), false), [4.0 / root(2.0), 2.0 / root(2.0), 1.0]);
-    // The same two matrices in nested nodes.
+    // Put the same two matrices in nested nodes.
     let nested = node("Transform { scale 2 1 1 }", &format!("Node {{ Transform {{ z_rotate 45 }} {ball} }}"));
     close(bounds(&nested, true), [4.0 / root(2.0), 2.0 / root(2.0), 1.0]);
     // A reflection is not a shear.
     let mirrored = node("Transform { translate 1 2 3 scale -2 1 3 }", ball);
     assert_eq!(bounds(&mirrored, true), bounds(&mirrored, false));
-    // Lights move with their nodes.
+    // Lights move together with their nodes.
     let place = |official| match &world(&node(sheared, emitter), Dialect::F23, official).lights()[0] {
         durer::light::Light::Point(light) => light.position,
         light => panic!("{light:?}"),
@@ -116,8 +117,9 @@ fn plane_normals_are_not_normalised() {
         close(traced_color(&world(&moved, dialect, true), [0.0, 5.0, 0.0], DOWN), [0.25; 3]);
         close(traced_color(&world(&long, dialect, false), [0.0, 5.0, 0.0], DOWN), [0.25; 3]);
     }
-    // Mirrors: d - 2 (d·n) n with the normal as written, here (0, 1, 1) of length √2, reflects a
-    // downward ray into (0, 1, 2) / √5.
+    // A mirror reflects in the direction d - 2 (d·n) n, where n is the normal as written in the
+    // scene. Here, n is (0, 1, 1) with length √2, and a downward ray is reflected in the direction
+    // (0, 1, 2) / √5.
     let mirror = "Background { color 0 0 0 ambientLight 0 0 0 }
          Lights { numLights 1 DirectionalLight { direction 0 1 2 color 1 1 1 } }
          Materials { numMaterials 2 Material { diffuseColor 0 0 0 specularColor 1 1 1 shininess 1000 } Material { } }
@@ -171,7 +173,7 @@ fn scene_of_2023_without_lights_keeps_its_ambient_light() {
     for official in [true, false] {
         let world = world(text, Dialect::F23, official);
         close(traced_color(&world, [0.0, 0.0, 9.0], [0.0, 0.0, -1.0]), [0.25, 0.25, 0.0]);
-        // Without a diffuse colour, the program of 2023 uses none for ambient light.
+        // If no diffuse colour is given, the program of 2023 uses none for ambient light.
         let bare = if official { [0.0; 3] } else { [0.25, 0.5, 0.0] };
         close(traced_color(&world, [3.0, 0.0, 9.0], [0.0, 0.0, -1.0]), bare);
     }
@@ -194,8 +196,8 @@ fn camera_of_2012_inside_glass_starts_in_air() {
          Group {{ numObjects 2 MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }}
            MaterialIndex 1 Sphere {{ center 3 0 -4 radius 0.05 }} }}"
     );
-    // A straight line from (0, 0, 0.5) hits the target; Snell's law bends the ray away by far more
-    // than the target's size.
+    // A straight line from (0, 0, 0.5) hits the target. According to Snell's law, the ray is bent
+    // away by far more than the size of the target.
     let (origin, to_target) = ([0.0, 0.0, 0.5], [3.0, 0.0, -4.5]);
     let color = |official| traced_color(&world(&text, Dialect::F12a5, official), origin, to_target).x;
     assert!(color(true) > 0.1 && color(false) < 0.01, "{} {}", color(true), color(false));
@@ -211,8 +213,8 @@ fn r0_is_zero_for_rays_that_leave_glass() {
                Material {{ diffuseColor 0 0 0 specularColor 1 1 1 refractionIndex {index} }} }}
              Group {{ numObjects 1 MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}"
         );
-        // Straight through the centre. The background for reflected rays is black, since a white
-        // background would be attenuated by two passages.
+        // The ray goes straight through the centre. The background for reflected rays is black,
+        // because a white background would be attenuated by two passages.
         let mut world = world(&text, Dialect::F12a5, true);
         let settings = RenderSettings {
             bounces: 4,
@@ -273,7 +275,8 @@ fn meshes_are_read_as_by_each_program() {
         assert_eq!(triangles("square.obj", dialect, true), 1, "{dialect:?}");
         assert_eq!(triangles("square.obj", dialect, false), 2, "{dialect:?}");
     }
-    // Normals by vertex index point along z; those that the faces name point up, towards the light.
+    // The normals that are selected by vertex index point along z. The normals that the faces name
+    // point up, towards the light.
     let light = |official| {
         let world = world_in(folder.path(), &nodes("tilted.obj"), F23, official);
         traced_color(&world, [0.5, 5.0, -0.3], DOWN).x

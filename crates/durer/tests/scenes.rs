@@ -1,4 +1,4 @@
-//! Tests of every scene in the repository: it is read without diagnostics, gives the same picture
+//! Tests that every scene in the repository is read without diagnostics, gives the same picture
 //! with every acceleration structure, and is listed in the README and the gallery.
 
 use durer::compile::AccelKind;
@@ -13,12 +13,13 @@ use durer::{LoadOptions, LoadedScene, load, load_text};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Returns the repository's root.
+/// Returns the root folder of the repository.
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Returns the names of the files in a folder with this ending, sorted and without the ending.
+/// Returns the sorted names of the files in a folder that have this ending. The ending is removed
+/// from the names.
 fn names(folder: &str, ending: &str) -> Vec<String> {
     let files = fs::read_dir(root().join(folder)).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap());
     let mut names: Vec<String> = files.filter_map(|name| Some(name.strip_suffix(ending)?.to_string())).collect();
@@ -32,7 +33,7 @@ fn scenes() -> Vec<String> {
     scenes
 }
 
-/// Reads and compiles a scene; fails on any diagnostic.
+/// Reads and compiles a scene. Panics if there are any diagnostics.
 fn opened(name: &str, accel: AccelKind) -> (LoadedScene, World) {
     let options = LoadOptions { accel, ..LoadOptions::default() };
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
@@ -49,7 +50,7 @@ fn method(loaded: &LoadedScene) -> IntegratorKind {
     if loaded.scene.is_physical() { IntegratorKind::PATH } else { IntegratorKind::WHITTED }
 }
 
-/// Renders a small picture with one ray through each pixel's centre.
+/// Renders a small picture with one ray through the centre of each pixel.
 fn pixels(name: &str, accel: AccelKind, threads: usize) -> Vec<Vec3> {
     let (loaded, world) = opened(name, accel);
     let job = Job {
@@ -94,7 +95,7 @@ fn scenes_are_identical_for_all_thread_counts_and_accelerators() {
         assert!(picture.iter().any(|p| *p != picture[0]), "{name} has only one colour");
         for (accel, threads) in [(AccelKind::Bvh, 2), (AccelKind::Grid(None), 1), (AccelKind::Grid(None), 2)] {
             let other = pixels(&name, accel, threads);
-            // Avoid printing pictures in the message.
+            // Avoid printing the pictures in the message.
             assert!(bits(&other) == bits(&picture), "{name}: {accel:?} on {threads} threads differs");
         }
     }
@@ -125,7 +126,7 @@ fn scenes_are_equal_after_conversion_to_json_and_back() {
         let (mut files, mut found) = (Files::default(), Diagnostics::default());
         let (path, bytes) = (root().join("scenes/scene.json"), text.as_bytes().into());
         let again = load_text(&path, bytes, &LoadOptions::default(), &mut files, &mut found).unwrap();
-        // Compare bits: `==` treats 0 and -0 as equal.
+        // Compare the bits, because `==` treats 0 and -0 as equal.
         let bits = |loaded: &LoadedScene| serde_json::to_string(&loaded.scene).unwrap();
         assert!(again.scene == loaded.scene && bits(&again) == bits(&loaded), "{name}");
         assert!(again.rules == loaded.rules && found.iter().count() == 0, "{name}");

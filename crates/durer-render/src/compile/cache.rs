@@ -1,5 +1,5 @@
-//! Cache of meshes and pictures that outlives a compilation, so that a watched scene reloads only
-//! the files that changed.
+//! A cache of meshes and pictures that is kept between compilations. When a watched scene changes,
+//! only the files that changed are loaded again.
 
 use super::decoded::Encoding;
 use crate::world::MeshTree;
@@ -10,12 +10,13 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Key of a cached mesh or picture: the file or the memory contents that it was read from.
+/// Key of a cached mesh or picture. It identifies the file or the data in memory that the item was
+/// read from.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) enum AssetKey {
-    /// A file with its modification stamp.
+    /// A file and its modification stamp.
     File(Stamp),
-    /// Bytes or numbers in memory.
+    /// Data in memory.
     Memory(Digest),
 }
 
@@ -24,16 +25,16 @@ pub(super) enum AssetKey {
 #[derive(Debug, Default)]
 pub struct AssetCache(Mutex<CacheEntries>);
 
-/// Contents of an [`AssetCache`], behind its mutex.
+/// Contents of an [`AssetCache`], which its mutex protects.
 #[derive(Debug, Default)]
 struct CacheEntries {
-    /// Dialect rules that the meshes were built with.
+    /// Dialect rules that the cached meshes were built with.
     rules: Option<DialectRules>,
     meshes: AssetTable<AssetKey, Arc<MeshTree>>,
     pictures: AssetTable<(AssetKey, Encoding), Texture>,
 }
 
-/// Cached meshes or pictures, by key, with counts of those built and reused.
+/// Cached meshes or pictures by key, with the numbers of items built and reused.
 #[derive(Debug)]
 struct AssetTable<K, V> {
     all: HashMap<K, CachedAsset<V>>,
@@ -41,16 +42,16 @@ struct AssetTable<K, V> {
     reused: usize,
 }
 
-/// Cached mesh or picture, with the hash of the file that it was read from.
+/// A cached mesh or picture with the hash of the file that it was read from.
 #[derive(Clone, Debug)]
 pub(super) struct CachedAsset<V> {
     pub value: V,
     pub digest: Option<Digest>,
-    /// True if the current or most recent compilation uses the item.
+    /// True if the current or latest compilation uses the item.
     used: bool,
 }
 
-/// Numbers of meshes and pictures that the latest compilation built and took from the cache.
+/// Numbers of meshes and pictures that the latest compilation built or took from the cache.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CacheStatistics {
     /// Number of items that were read and built.
@@ -89,7 +90,8 @@ impl AssetCache {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Starts a compilation. Clears the cache if the rules differ, since meshes depend on them.
+    /// Starts a compilation. Clears the cache if the dialect rules have changed, because meshes
+    /// depend on them.
     pub(super) fn begin(&self, rules: &DialectRules) {
         let mut inside = self.lock();
         if inside.rules.as_ref() != Some(rules) {
@@ -99,7 +101,7 @@ impl AssetCache {
         inside.pictures.begin();
     }
 
-    /// Ends a compilation and drops the items that it did not use.
+    /// Ends a compilation and removes the items that it did not use.
     pub(super) fn finish(&self) {
         let mut inside = self.lock();
         inside.meshes.all.retain(|_, item| item.used);
@@ -126,7 +128,7 @@ impl AssetCache {
         self.lock().pictures.put((origin, encoding), texture.clone(), digest);
     }
 
-    /// Returns how many meshes and pictures the latest compilation built and reused.
+    /// Returns the numbers of meshes and pictures that the latest compilation built and reused.
     pub fn statistics(&self) -> CacheStatistics {
         let inside = self.lock();
         CacheStatistics {

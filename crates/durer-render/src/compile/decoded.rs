@@ -6,7 +6,7 @@ use durer_scene::describe::FileName;
 use durer_scene::math::Vec3;
 use durer_scene::texture::Texture;
 
-/// Meaning of the eight-bit values of a picture: sRGB colours or linear numbers.
+/// Interpretation of the eight-bit values of a picture as sRGB colours or linear numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Encoding {
     /// Colours encoded with the sRGB curve.
@@ -15,8 +15,8 @@ pub(super) enum Encoding {
     Linear,
 }
 
-/// Decodes an image file into a texture, using at most `memory` bytes. Eight-bit pictures stay
-/// eight-bit; all others become floats.
+/// Decodes an image file into a texture, using at most `memory` bytes. Eight-bit pictures keep
+/// their eight-bit values, and all others are converted to floats.
 pub(super) fn decode(
     name: &FileName,
     path: &str,
@@ -48,12 +48,12 @@ pub(super) fn decode(
     }
 }
 
-/// Largest finite half-precision number. Infinite texels are clamped to it; they are usually the
-/// sun in an HDR photograph, too bright for the camera.
+/// Largest finite half-precision number, to which infinite texels are clamped. Such texels usually
+/// show the sun in an HDR photograph, where it was too bright for the camera.
 const BRIGHTEST: f32 = 65_504.0;
 
-/// Replaces NaN texels by 0 and clamps infinite ones to [`BRIGHTEST`]. Returns a warning text if
-/// there were any.
+/// Replaces NaN texels by 0 and clamps infinite texels to [`BRIGHTEST`]. Returns a warning text if
+/// there were any such texels.
 pub(super) fn replace_invalid_texels(texels: &mut [Vec3], width: u32, path: &str) -> Option<String> {
     let (mut count, mut first) = (0_usize, None);
     for (i, texel) in texels.iter_mut().enumerate().filter(|(_, texel)| !texel.is_finite()) {
@@ -71,7 +71,8 @@ pub(super) fn replace_invalid_texels(texels: &mut [Vec3], width: u32, path: &str
     ))
 }
 
-/// Returns a picture that was read, or reports the error at the file name in the scene.
+/// Returns the picture if it was read. Otherwise, reports the error at the place where the scene
+/// names the file.
 pub(super) fn value_or_report<T>(
     name: &FileName,
     path: &str,

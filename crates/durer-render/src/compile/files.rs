@@ -1,4 +1,4 @@
-//! Loader for the files that a scene names. Each file is read and decoded once.
+//! Loader for the files that a scene names. It reads and decodes each file only once.
 
 use super::Resources;
 use super::cache::AssetKey;
@@ -22,30 +22,32 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Temporary memory in bytes per triangle for a mesh's BVH and its construction.
+/// Temporary memory per triangle, in bytes, for building the BVH of a mesh.
 const BVH_BYTES_PER_TRIANGLE: u64 = 200;
-/// Temporary memory in bytes per height while normals are computed: two triangles with three corner
-/// normals each, and again in vertex order.
+/// Temporary memory, in bytes, that each height of a height field needs while its normals are
+/// computed. This is the size of two triangles with three corner normals each, plus a copy of these
+/// in vertex order.
 const HEIGHT_BYTES: u64 = 112;
 
-/// Width of a sky picture in pixels.
+/// Width of a computed sky picture, in pixels.
 const SKY_WIDTH: u32 = 512;
 
-/// Picture name and encoding, the key under which a decoded picture is stored.
+/// Key of a decoded picture: its name and encoding.
 pub(super) type PictureKey = (String, Encoding);
 
-/// Loads the meshes, pictures, profiles, spectra and densities of a scene, for its compilation.
+/// Loads the meshes, pictures, profiles, spectra and densities that are needed to compile a scene.
 pub(super) struct Loader<'r> {
     pub(super) resources: Resources<'r>,
     rules: DialectRules,
     pub(super) assets: &'r Assets,
-    /// Meshes by path; `None` for unreadable files, which are reported once.
+    /// Meshes by path. The value is `None` if the file could not be read, so that the error is
+    /// reported only once.
     meshes: HashMap<String, Option<Arc<MeshTree>>>,
     /// Indices of textures by picture name, for Phong materials.
     texture_numbers: HashMap<String, Option<u32>>,
     /// Indices of the textures of layered materials, by picture name and encoding.
     pub(super) map_numbers: HashMap<PictureKey, Option<u32>>,
-    /// Decoded pictures, by file name or, for pictures in memory, by asset name.
+    /// Decoded pictures by file name or, for pictures in memory, by asset name.
     pub(super) decoded: HashMap<PictureKey, Option<Texture>>,
     /// Decoded pictures with mipmaps.
     pub(super) mipmapped: HashMap<PictureKey, Option<Texture>>,
@@ -70,8 +72,8 @@ impl<'r> Loader<'r> {
         }
     }
 
-    /// Builds the BVH of a mesh. If there are fewer rays than triangles, the build is faster and
-    /// the tree less good. The hits are bit-identical either way.
+    /// Builds the BVH of a mesh. If there are fewer rays than triangles, it chooses a faster build
+    /// that gives a less efficient tree. Both trees give bit-identical hits.
     pub(super) fn tree(&self, mesh: Mesh) -> MeshTree {
         let few = self.resources.rays < mesh.len() as u64;
         MeshTree::new(mesh, if few { BuildQuality::Fast } else { BuildQuality::Balanced })
@@ -113,11 +115,12 @@ impl<'r> Loader<'r> {
             };
             let mesh = Mesh::new(data, normals, self.rules.file_normals || by_vertex);
             let mesh = self.centered(mesh);
-            // The official program treats smaller determinants as zero.
+            // The official program treats determinants smaller than this as zero.
             let least_volume = if self.rules.has(Quirk::ThinTriangles) { 1e-6 } else { 0.0 };
             Arc::new(self.tree(mesh).least_volume(least_volume))
         });
-        // Cache only meshes without diagnostics, because each compilation must report those again.
+        // Cache only meshes without diagnostics, because each compilation must report the
+        // diagnostics again.
         if let (Some(cache), Some(origin), Some(tree), true) =
             (self.resources.cache, origin, &tree, diagnostics.iter().count() == count_before)
         {
@@ -127,14 +130,14 @@ impl<'r> Loader<'r> {
         tree
     }
 
-    /// Returns the cache key of a file or asset: the hash of data in memory, or else the stamp of
-    /// the file. `None` if caching is off.
+    /// Returns the cache key of a file or asset: the hash of the data if it is in memory, and
+    /// otherwise the stamp of the file. Returns `None` if caching is off.
     pub(super) fn origin(&self, path: &str, memory: impl FnOnce() -> Option<Digest>) -> Option<AssetKey> {
         self.resources.cache?;
         memory().map(AssetKey::Memory).or_else(|| self.resources.source.stamp(path).map(AssetKey::File))
     }
 
-    /// Records a file as read although its contents came from the cache.
+    /// Records that a file was read, although its contents came from the cache.
     pub(super) fn remember(&self, path: &str, origin: Option<&AssetKey>, digest: Option<Digest>) {
         if let (Some(AssetKey::File(stamp)), Some(digest)) = (origin, digest) {
             self.resources.source.record_unchanged(path, stamp, digest);
@@ -147,7 +150,8 @@ impl<'r> Loader<'r> {
         self.parsed(name, "mesh", diagnostics, |bytes, file, own| decoder.mesh(bytes, file, &name.path, quirks, own))
     }
 
-    /// Parses a file. After errors in the file, adds an error where the scene names it.
+    /// Parses a file. If the file has errors, also reports an error at the place where the scene
+    /// names it.
     fn parsed<T>(
         &mut self,
         name: &FileName,
@@ -169,7 +173,7 @@ impl<'r> Loader<'r> {
         data
     }
 
-    /// Reads a height field's picture and returns its mesh.
+    /// Reads the picture of a height field and returns the mesh of the field.
     pub(super) fn height_field(&mut self, field: &HeightField, diagnostics: &mut Diagnostics) -> Option<Arc<MeshTree>> {
         let name = &field.picture;
         let bytes = self.read(name, "height image", diagnostics)?;
@@ -208,7 +212,7 @@ impl<'r> Loader<'r> {
         Some(Arc::new(self.tree(self.centered(Mesh::of_terrain(terrain, self.rules.mesh_normals)))))
     }
 
-    /// Moves a distant mesh to the origin for precision, except in bit-compatible mode.
+    /// Moves a distant mesh to the origin to improve precision, except in bit-compatible mode.
     fn centered(&self, mesh: Mesh) -> Mesh {
         if self.rules.is_bit_compatible() { mesh } else { mesh.centered() }
     }
@@ -228,7 +232,8 @@ impl<'r> Loader<'r> {
         number
     }
 
-    /// Returns the cube map in a folder. If the cube map is optional, errors become warnings.
+    /// Returns the cube map in a folder. If the cube map is optional, its errors are reported as
+    /// warnings.
     pub(super) fn cube_map(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<CubeMap> {
         let mut own = Diagnostics::default();
         let map = self.faces(name, &mut own);
@@ -242,7 +247,7 @@ impl<'r> Loader<'r> {
         map
     }
 
-    /// Returns a light's intensity profile, if it has one.
+    /// Returns the intensity profile of a light, if it has one.
     pub(super) fn profile(&mut self, light: &Light, diagnostics: &mut Diagnostics) -> Option<Arc<PhotometricProfile>> {
         let name = light.profile()?;
         match self.assets.profiles.get(&name.path) {
@@ -255,7 +260,7 @@ impl<'r> Loader<'r> {
         }
     }
 
-    /// Returns the densities in a file and the box that they fill.
+    /// Returns the densities in a file and the box that they occupy.
     pub(super) fn density(
         &mut self,
         name: &FileName,
@@ -281,7 +286,8 @@ impl<'r> Loader<'r> {
         Curve::reflectance(rows).map(Arc::new)
     }
 
-    /// Returns the emission spectrum of a light: a named illuminant or a file.
+    /// Returns the emission spectrum of a light, which is either a named illuminant or read from a
+    /// file.
     pub(super) fn illuminant(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Arc<Curve>> {
         if let Some(known) = illuminants::illuminant(&name.path) {
             return Some(Arc::new(known));
@@ -301,8 +307,8 @@ impl<'r> Loader<'r> {
         emitter.map(Arc::new)
     }
 
-    /// Returns the rows of a spectrum file. For `path:column`, selects that column of the file;
-    /// otherwise the file must have only one spectrum.
+    /// Returns the rows of a spectrum file. A name of the form `path:column` selects one column.
+    /// Otherwise, the file must contain only one spectrum.
     fn curve(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Vec<[f32; 2]>> {
         let (path, column) = match name.path.rsplit_once(':') {
             Some((path, column)) if !column.contains(['/', '\\']) => (path, Some(column)),
@@ -314,7 +320,8 @@ impl<'r> Loader<'r> {
         self.parsed(&file, "spectrum", diagnostics, read)
     }
 
-    /// Returns the environment map: a picture from a file, or a computed sky.
+    /// Returns the environment map, which is either read from a picture file or computed from a sky
+    /// model.
     pub(super) fn environment(&mut self, written: &Background, diagnostics: &mut Diagnostics) -> Option<Environment> {
         let Some(name) = written.environment.as_ref() else {
             if written.is_night() {
@@ -350,7 +357,7 @@ impl<'r> Loader<'r> {
         if environment.is_none() {
             let message = format!("the environment `{}` is black: it emits no light", name.path);
             let warning = Diagnostic::warning(message).code("bad-file");
-            // A file name from a command-line option has no span in the scene.
+            // A file name that was given by a command-line option has no position in the scene.
             diagnostics.push(if name.span.has_position() { warning.at(name.span) } else { warning });
         }
         environment.filter(|environment| self.charge(name, environment.bytes() as u64, diagnostics))
@@ -367,14 +374,15 @@ impl<'r> Loader<'r> {
             let Some(bytes) = self.read(&file, "face of the cube map", &mut unread) else { break };
             files.push((file.path, bytes));
         }
-        // The faces are decoded in parallel. Each may use the memory that the ones before it leave.
+        // The faces are decoded in parallel. Each face may use the memory that is left by the faces
+        // before it.
         let mut memory = self.resources.memory;
         let mut left = Vec::with_capacity(6);
         for (path, bytes) in &files {
             left.push(memory);
             memory = memory.saturating_sub(Encoded::open(bytes, path).map_or(0, |face| face.memory_needed_raster()));
         }
-        // Decoding takes most of the time. Errors are reported in the order of the faces.
+        // Most of the time is spent on decoding. Errors are reported in the order of the faces.
         let srgb = self.rules.srgb_textures;
         let one = |((path, bytes), left): (&(String, Arc<[u8]>), &u64)| {
             let mut own = Diagnostics::default();
@@ -393,7 +401,7 @@ impl<'r> Loader<'r> {
         Some(CubeMap { faces: faces.try_into().ok()?, mirrored_back }).filter(|_| affordable)
     }
 
-    /// Reserves memory. Returns false and reports an error if too little is left.
+    /// Reserves memory. If too little memory is left, reports an error and returns false.
     pub(super) fn charge(&mut self, name: &FileName, needed: u64, diagnostics: &mut Diagnostics) -> bool {
         let left = self.resources.memory;
         self.resources.memory = left.saturating_sub(needed);
@@ -405,9 +413,9 @@ impl<'r> Loader<'r> {
         needed <= left
     }
 
-    /// Reads a file. Reports an error where the scene names it.
+    /// Reads a file. Reports an error at the place where the scene names the file.
     pub(super) fn read(&self, name: &FileName, what: &str, diagnostics: &mut Diagnostics) -> Option<Arc<[u8]>> {
-        // Skip the file if no more diagnostics are accepted.
+        // Skip the file if no more diagnostics can be reported.
         if diagnostics.is_full() {
             return None;
         }
@@ -421,7 +429,7 @@ impl<'r> Loader<'r> {
             SourceError::Missing { tried, similar, .. } => {
                 let (help, folder) =
                     (missing_help(&tried, similar.as_deref()), name.path.rfind('/').map_or(0, |at| at + 1));
-                // For cube maps the scene names only the folder, so no fix is possible.
+                // For cube maps, the scene names only the folder, so no fix can be suggested.
                 match similar.filter(|_| matches!(what, "mesh" | "texture" | "height image")) {
                     Some(similar) => diagnostic.help(help).fix(name.span, format!("{}{similar}", &name.path[..folder])),
                     None => diagnostic.help(help),
@@ -435,7 +443,8 @@ impl<'r> Loader<'r> {
     }
 }
 
-/// Returns a help text with the paths that were searched and a similar file name, if there is one.
+/// Returns a help text that lists the searched paths and suggests a similar file name, if there is
+/// one.
 fn missing_help(tried: &[PathBuf], near: Option<&str>) -> String {
     let shown: Vec<String> = tried.iter().map(|path| path.display().to_string()).collect();
     match near {

@@ -1,4 +1,4 @@
-//! Compilation of materials. The dialect determines the meaning of their fields.
+//! Compilation of materials. The dialect determines the meaning of material parameters.
 
 use super::files::Loader;
 use super::media;
@@ -25,7 +25,7 @@ pub(super) fn compile(
         scene::Material::Principled(layers) => Some(&**layers),
         _ => None,
     }));
-    // Materials with the same index of refraction share their tables.
+    // Materials with the same index of refraction share their lookup tables.
     let mut tables = Vec::new();
     let mut one = |material: &scene::Spanned<scene::Material>| match &material.value {
         scene::Material::Solid(solid, ops) => {
@@ -69,7 +69,7 @@ pub(super) fn compile(
         }
         scene::Material::Hair(hair) => {
             let fibre = Fibre::new(hair);
-            // Approximation for the Whitted integrator.
+            // Approximate highlight for the Whitted integrator.
             let highlight = Some((Color::splat(0.2), 20.0, HighlightModel::Blinn));
             let diffuse = fibre.color();
             Material::Phong(Phong { diffuse, highlight, fibre: Some(Arc::new(fibre)), ..Phong::default() })
@@ -82,7 +82,7 @@ pub(super) fn compile(
     scene.materials.iter().map(&mut one).collect()
 }
 
-/// Compiles a Phong material, with the dialect's meaning of its fields.
+/// Compiles a Phong material, whose parameters are interpreted according to the dialect.
 fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, rules: &DialectRules) -> Phong {
     let (reflective, transparent, ior) = secondary(m, rules);
     let diffuse = m.diffuse_color.unwrap_or(Color::ONE);
@@ -96,7 +96,8 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
         tinted: false,
         noise,
         ambient,
-        // A normal longer than 1 can make the highlight infinite, and infinity times 0 is NaN.
+        // With a normal longer than 1, the highlight can become infinite, and infinity times 0 is
+        // NaN.
         highlight: highlight(m, rules).filter(|(color, ..)| rules.has(Quirk::RawNormals) || *color != Color::ZERO),
         reflective,
         transparent,
@@ -108,12 +109,13 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
     }
 }
 
-/// Approximates a principled material for the Whitted integrator: a matte base, a highlight as wide
-/// as GGX's, and mirrors or glass for metals and transmission.
+/// Approximates a principled material for the Whitted integrator. The result has a matte base and a
+/// highlight as wide as that of GGX. Metals become mirrors, and transmissive materials become
+/// glass.
 fn plain(m: &PrincipledMaterial) -> Phong {
     let base = m.base_weight * m.base_color;
     let matte = (1.0 - m.base_metalness) * (1.0 - m.transmission_weight);
-    // Blinn exponent that gives the highlight the same width at its peak. Source: Walter and
+    // Exponent for which the Blinn highlight has the same width at its peak. Source: Walter and
     // others, *Microfacet Models for Refraction*, 2007.
     let alpha = (m.specular_roughness * m.specular_roughness).max(1e-3);
     let exponent = (2.0 / (alpha * alpha) - 2.0).max(1.0);
@@ -127,14 +129,15 @@ fn plain(m: &PrincipledMaterial) -> Phong {
         highlight: (reflects != Color::ZERO).then_some((reflects, exponent, HighlightModel::Blinn)),
         reflective: if glass { m.specular_color } else { smooth * m.base_metalness * base },
         transparent: m.transmission_weight * m.transmission_color,
-        // A thin sheet does not bend light.
+        // A thin sheet does not refract light.
         ior: if m.walls == Walls::Thin { 1.0 } else { m.specular_ior },
         fresnel: glass && m.walls == Walls::Solid,
         ..Phong::default()
     }
 }
 
-/// Returns colour, exponent and formula of the highlight, if the dialect gives it one.
+/// Returns the colour, exponent and formula of the highlight, if the material has one in this
+/// dialect.
 fn highlight(m: &PhongMaterial, rules: &DialectRules) -> Option<(Color, f32, HighlightModel)> {
     let blinn = |exponent: f32| Some((m.specular_color, exponent, HighlightModel::Blinn));
     let phong = |shininess: f32| {
@@ -146,8 +149,8 @@ fn highlight(m: &PhongMaterial, rules: &DialectRules) -> Option<(Color, f32, Hig
         (Highlight::Blinn, exponent, shininess) => blinn(exponent.or(shininess).unwrap_or(1.0)),
         (Highlight::Phong, exponent, shininess) => {
             let shininess = shininess.or(exponent).unwrap_or(0.0);
-            // A shininess of 0 means no highlight, except in programs that evaluate `pow(0, 0)` as
-            // 1.
+            // A shininess of 0 means that there is no highlight, except in programs that evaluate
+            // `pow(0, 0)` as 1.
             if shininess > 0.0 || rules.has(Quirk::PowZero) { phong(shininess) } else { None }
         }
         (Highlight::ByKeyword, Some(exponent), _) => blinn(exponent),
@@ -157,13 +160,13 @@ fn highlight(m: &PhongMaterial, rules: &DialectRules) -> Option<(Color, f32, Hig
 }
 
 /// Returns the index of refraction if the dialect renders the material as glass with Fresnel
-/// reflection.
+/// reflection. Otherwise, returns `None`.
 fn glass(m: &PhongMaterial, rules: &DialectRules) -> Option<f32> {
     let divides = matches!(rules.secondary, SecondaryRays::SpecularFresnel | SecondaryRays::ByKeyword);
     m.refraction_index.filter(|index| divides && *index > 0.0)
 }
 
-/// Returns the weights of the reflected and the transmitted ray, and the index of refraction.
+/// Returns the weights of the reflected and the transmitted ray and the index of refraction.
 fn secondary(m: &PhongMaterial, rules: &DialectRules) -> (Color, Color, Option<f32>) {
     let specular = m.specular_color;
     match (rules.secondary, glass(m, rules)) {

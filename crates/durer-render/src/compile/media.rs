@@ -1,4 +1,4 @@
-//! Compilation of participating media: object interiors and fog.
+//! Compilation of participating media, which fill objects or form fog.
 
 use super::files::Loader;
 use durer_diag::{Diagnostic, Diagnostics};
@@ -8,7 +8,7 @@ use durer_scene::math::{Aabb, Affine, Color, Vec3, fp};
 use durer_scene::medium::{Fog, HenyeyGreenstein, Medium, MediumRegion};
 use glam::{DAffine3, DMat3, DVec3};
 
-/// Returns the interior medium of a material, if it absorbs or scatters.
+/// Returns the medium inside a material if it absorbs or scatters light.
 pub(super) fn inside(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &mut Diagnostics) -> Option<Medium> {
     if m.walls == Walls::Thin {
         return None;
@@ -21,15 +21,16 @@ pub(super) fn inside(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &
 }
 
 /// Returns the medium of the transmission layer. Source: OpenPBR, *Translucent base*. For a colour
-/// T at a depth d, extinction is -ln T / d, and scattering is the scatter colour divided by d.
+/// T at a depth d, the extinction is -ln T / d, and the scattering is the scatter colour divided by
+/// d.
 fn transmission(m: &PrincipledMaterial) -> Option<Medium> {
     if m.transmission_depth <= 0.0 {
         return None;
     }
-    // Black would need infinite extinction.
+    // A black transmission colour would require infinite extinction.
     let extinction = m.transmission_color.map(|c| -fp::ln(c.clamp(1e-6, 1.0)) / m.transmission_depth);
     let scattering = m.transmission_scatter.max(Vec3::ZERO) / m.transmission_depth;
-    // If absorption is negative, raise it equally in all channels to keep the hue.
+    // If the absorption is negative, increase it equally in all channels to preserve the hue.
     let absorption = extinction - scattering;
     let absorption = absorption - absorption.min_element().min(0.0);
     let extinction = if scattering == Color::ZERO { extinction } else { absorption + scattering };
@@ -37,7 +38,7 @@ fn transmission(m: &PrincipledMaterial) -> Option<Medium> {
     (extinction != Color::ZERO).then(|| medium(extinction, scattering, phase))
 }
 
-/// Returns the density field of an object's interior, if its density is not uniform.
+/// Returns the density field of an object's interior if the density is not uniform.
 fn density(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &mut Diagnostics) -> Option<MediumRegion> {
     let name = m.transmission_density.as_ref()?;
     let (bounds, grid) = loader.density(name, diagnostics)?;
@@ -68,10 +69,10 @@ fn medium(extinction: Color, scattering: Color, phase: HenyeyGreenstein) -> Medi
     Medium { extinction, albedo, phase, region: None }
 }
 
-/// Returns the medium that gives a half-space the subsurface colour as its albedo.
+/// Returns the medium for which the albedo of a half-space is the subsurface colour.
 ///
-/// Source: OpenPBR, *Subsurface*. The albedo inversion is from Kulla and Conty, *Revisiting
-/// Physically Based Shading at Imageworks*, 2017.
+/// Source: OpenPBR, *Subsurface*. The formula for inverting the albedo is from Kulla and Conty,
+/// *Revisiting Physically Based Shading at Imageworks*, 2017.
 fn subsurface(m: &PrincipledMaterial) -> Medium {
     let g = m.subsurface_scatter_anisotropy;
     let albedo = |color: f32| {
@@ -88,7 +89,7 @@ fn subsurface(m: &PrincipledMaterial) -> Medium {
     }
 }
 
-/// Returns true if a surface neither reflects nor refracts but only bounds a medium.
+/// Returns true if a surface neither reflects nor refracts light and only bounds a medium.
 pub(super) fn is_interface(m: &PrincipledMaterial) -> bool {
     let tint = m.transmission_depth > 0.0 || m.transmission_color == Vec3::ONE;
     m.walls == Walls::Solid
@@ -101,7 +102,7 @@ pub(super) fn is_interface(m: &PrincipledMaterial) -> bool {
         && m.emission_luminance == 0.0
 }
 
-/// Returns the medium of a scene's fog, optionally bounded by a box or a density grid.
+/// Returns the medium of the fog in a scene. The fog can be bounded by a box or a density grid.
 pub(super) fn fog(written: &Fog, loader: &mut Loader, diagnostics: &mut Diagnostics) -> Option<Medium> {
     let corners = written.min.zip(written.max).map(|(min, max)| Aabb { min, max });
     let density = match &written.density {

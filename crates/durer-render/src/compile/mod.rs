@@ -1,4 +1,4 @@
-//! Compilation of a scene description into a world. Later stages use only the world.
+//! Compilation of a scene description into a world. All later stages use only the world.
 
 mod cache;
 mod decoded;
@@ -33,31 +33,32 @@ use glam::{DAffine3, DVec3};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Acceleration structure for the objects of a world, as chosen by the user.
+/// Kind of acceleration structure for the objects of a world, chosen by the user.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AccelKind {
     /// A bounding volume hierarchy.
     #[default]
     Bvh,
-    /// A uniform grid with these numbers of cells along x, y and z, or automatic ones.
+    /// A uniform grid with the given numbers of cells along x, y and z, or with automatic numbers.
     Grid(Option<[u32; 3]>),
-    /// No structure: every ray tests all objects.
+    /// No acceleration structure, so every ray tests all objects.
     None,
 }
 
-/// Inputs of [`compile`] besides the scene: file access, limits and a cache.
+/// Inputs of [`compile`] other than the scene, such as file access, limits and a cache.
 pub struct Resources<'a> {
-    /// Reads files that the scene names.
+    /// Source of the files that the scene names.
     pub source: &'a dyn AssetSource,
-    /// Decodes meshes, photometric files, spectra and densities.
+    /// Decoder for meshes, photometric files, spectra and densities.
     pub decoder: &'a dyn AssetDecoder,
-    /// Keeps the text of each file so that diagnostics can quote it.
+    /// Files whose text is kept so that diagnostics can quote it.
     pub files: &'a mut Files,
-    /// If true, a missing cube map is only a warning and the background colour is used instead.
+    /// True if a missing cube map is only a warning. The background colour is then used instead.
     pub sky_optional: bool,
     /// Memory limit for meshes and pictures, in bytes.
     pub memory: u64,
-    /// Expected number of camera rays, `u64::MAX` if unknown. Few rays get a faster BVH build.
+    /// Expected number of camera rays, or `u64::MAX` if unknown. For few rays, the BVH is built
+    /// faster.
     pub rays: u64,
     /// Cache of meshes and pictures from earlier compilations.
     pub cache: Option<&'a AssetCache>,
@@ -70,9 +71,10 @@ impl<'a> Resources<'a> {
     }
 }
 
-/// Compiles a scene into a world. Collects errors and warnings, and returns `None` after an error.
+/// Compiles a scene into a world and collects errors and warnings. Returns `None` if there were
+/// errors.
 ///
-/// Values are first checked with [`Scene::validate`], wherever the scene comes from.
+/// The values are first checked with [`Scene::validate`], regardless of where the scene comes from.
 pub fn compile(
     scene: &Scene,
     rules: &DialectRules,
@@ -114,7 +116,7 @@ pub fn compile(
     };
     match &scene.root {
         Some(root) => flattener.group(root, DAffine3::IDENTITY),
-        // The model's reader has already reported it.
+        // The reader of the model has already reported this error.
         None if diagnostics.iter().any(|known| known.code == "no-objects") => {}
         None => {
             let warning = Diagnostic::warning("the scene has no objects: it has no `Group`");
@@ -146,7 +148,8 @@ pub fn compile(
             *emitter = emitter.with_flux(profile);
         }
     }
-    // Serialization fails only for non-finite numbers, which valid scenes and rules do not contain.
+    // Serialization fails only for numbers that are not finite, and valid scenes and rules contain
+    // none.
     let digest = loader.resources.source.record().digest(&serde_json::to_vec(&(scene, rules)).unwrap_or_default());
     let textures = loader.textures;
     let failed = own.has_errors();
@@ -160,7 +163,7 @@ pub fn compile(
     let contents = Contents {
         frame: CameraBasis::of(&camera, rules::camera_rules(rules)),
         camera,
-        // An environment replaces the background colour, even if it is black.
+        // An environment map replaces the background colour, even if the map is black.
         background: if environment.is_none() && (scene.background.environment.is_some() || scene.background.is_night())
         {
             Color::ZERO
@@ -168,8 +171,8 @@ pub fn compile(
             scene.background.color
         },
         // With `path`, a scene without a background is lit only by the lights that it defines. (The
-        // Whitted integrator takes no light from the background.) Models have a grey background
-        // instead.
+        // Whitted integrator never takes light from the background.) Model files get a grey
+        // background instead.
         is_black_for_paths: scene.up.is_none()
             && environment.is_none()
             && scene.background == scene::Background::default()
@@ -194,7 +197,7 @@ pub fn compile(
     Some(world)
 }
 
-/// Builds or rebuilds the acceleration structure of a world. Call it after objects have moved.
+/// Builds the acceleration structure of a world. It must be called again after objects have moved.
 pub fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>> {
     let objects = world.objects();
     if let Some(rules) = world.hit_rules() {
@@ -242,16 +245,19 @@ pub fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>
     Ok(())
 }
 
-/// Maximum number of other objects for which linear search is faster than a tree.
+/// Maximum number of other objects for which a linear search is faster than a tree.
 const MAX_LINEAR_OBJECTS: usize = 2;
-/// Maximum total cost of simple shapes, in sphere tests, for which linear search is faster than a
-/// tree. Simple shapes are tested eight at a time, or against eight rays.
+/// Maximum total cost of simple shapes for which a linear search is faster than a tree. The unit is
+/// the cost of one sphere test. Simple shapes are tested in groups of eight, or one shape is tested
+/// against eight rays.
 const MAX_LINEAR_COST: usize = 16;
 
-/// Minimum number of simple shapes for which tests of eight at a time are faster than single tests.
+/// Minimum number of simple shapes for which testing them in groups of eight is faster than testing
+/// them one by one.
 const MIN_PACKED: usize = 4;
 
-/// Builds the structure over the objects with these bounds, which are `None` for unbounded objects.
+/// Builds the structure for the objects with the given bounds. The bounds of an unbounded object
+/// are `None`.
 fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Result<Accel, Box<Diagnostic>> {
     let cells = match kind {
         AccelKind::None => return Ok(Accel::None),
@@ -298,12 +304,12 @@ fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Res
     Ok(Accel::Grid { grid, parts, wide })
 }
 
-/// Returns the indices, in ascending order, of boxes that extend so far beyond the others that a
-/// grid around all boxes would have the others in a single cell.
+/// Returns the indices of boxes that extend far beyond the others, in ascending order. If a grid
+/// included them, all other boxes would be in a single cell of the grid.
 fn outliers(boxes: &[Aabb]) -> Vec<usize> {
-    /// Maximum number of outliers, because every ray tests them all.
+    /// Maximum number of outliers. Every ray tests all of them, so the number must be small.
     const MOST: usize = 64;
-    /// Maximum number of grid cells along an axis; see `Grid::suitable`.
+    /// Maximum number of grid cells along one axis; see `Grid::suitable`.
     const RATIO: f64 = 256.0;
     if boxes.len() < 2 {
         return Vec::new();
@@ -337,7 +343,7 @@ fn check_sun(scene: &Scene, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Warns about sky fields that have no effect.
+/// Warns about sky parameters that have no effect.
 fn check_sky(scene: &Scene, diagnostics: &mut Diagnostics) {
     let sky = &scene.background;
     let (standard, sun) = (sky.cie_sky.is_some(), !matches!(sky.sun_direction(), Ok(None)));
@@ -367,24 +373,25 @@ fn check_camera(scene: &Scene, pose: durer_scene::camera::Pose, diagnostics: &mu
     }
 }
 
-/// Returns the sun of a clear sky as a directional light.
+/// Returns a directional light for the sun of a clear sky.
 fn sun(background: &scene::Background) -> Option<Light> {
-    // The CIE standard skies use the sun's position but have no direct sunlight.
+    // The CIE standard skies depend on the sun's position but have no direct sunlight.
     let to_sun = background.sun().filter(|_| background.cie_sky.is_none() && !background.is_night())?;
     let sky = Sky::new(to_sun, background.turbidity());
     let (turn, scale) = background.environment_transform();
     let (sin, cos) = fp::sin_cos_degrees(f64::from(-turn));
     let [sin, cos] = [sin, cos].map(|x| x as f32);
     let way = Vec3::new(cos * to_sun.x + sin * to_sun.z, to_sun.y.max(0.0), cos * to_sun.z - sin * to_sun.x);
-    // Light colours are the radiance of a white matte surface, which is illuminance divided by pi.
+    // The colour of a light is the radiance of a white matte surface that it illuminates, which is
+    // illuminance divided by pi.
     let color = scale * sky.sun() / std::f32::consts::PI;
     Some(DirectionalLight { direction: -way, color, spread: Some(SUN_RADIUS), ..Default::default() }.into())
 }
 
-/// Returns the lights as the dialect interprets them, and the ambient light.
+/// Returns the lights and the ambient light as the dialect interprets them.
 fn lights(scene: &Scene, rules: &DialectRules, diagnostics: &mut Diagnostics) -> (Vec<Light>, Color) {
     let written = scene.lights.as_deref().unwrap_or_default();
-    // The scene is lit by emissive surfaces or the environment.
+    // This scene is lit by emissive surfaces or by the environment.
     if written.is_empty() && scene.is_physical() {
         return (Vec::new(), scene.background.ambient_light);
     }
@@ -396,7 +403,8 @@ fn lights(scene: &Scene, rules: &DialectRules, diagnostics: &mut Diagnostics) ->
                 scene.background.ambient_light,
             ),
         };
-        // The first assignments intentionally have no lights and an ambient light of 1 1 1.
+        // The scenes of the first assignments intentionally have no lights and an ambient light of
+        // 1 1 1.
         let intended = scene.background.ambient_light == Color::ONE;
         let finding = if intended { Diagnostic::note(message) } else { Diagnostic::warning(message) };
         diagnostics.push(finding.code("no-light"));
@@ -425,35 +433,36 @@ fn lights(scene: &Scene, rules: &DialectRules, diagnostics: &mut Diagnostics) ->
     (compiled, scene.background.ambient_light)
 }
 
-/// Visitor of a scene's object tree that flattens nested groups and transforms into a list of
-/// objects.
+/// Visitor that flattens the nested groups and transforms of a scene into a list of objects.
 struct SceneFlattener<'a, 'r> {
     objects: Vec<Object>,
     loader: &'a mut files::Loader<'r>,
     rules: &'a DialectRules,
     diagnostics: &'a mut Diagnostics,
     material_count: u32,
-    /// True if some object needs the default material, which is added after all others.
+    /// True if some object needs the default material, which is added after all other materials.
     plain_needed: bool,
     /// First object without a material, and the number of such objects.
     without_material: Option<(Span, usize)>,
-    /// Number of transforms around the current object.
+    /// Number of transforms that enclose the current object.
     transforms: u32,
-    /// Matrices of these transforms as an official program multiplies them, outermost first. `None`
-    /// inside a CSG solid, because the official programs have no solids.
+    /// Matrices of the enclosing transforms, multiplied as in an official program, with the
+    /// outermost first. `None` inside a CSG solid, because the official programs do not support
+    /// solids.
     matrices: Option<Vec<Matrix>>,
-    /// For each mesh file in a solid, an edge with an odd number of triangles; `None` if the mesh
-    /// is closed.
+    /// For each mesh file in a solid, an edge that belongs to an odd number of triangles, or `None`
+    /// if the mesh is closed.
     open_edges: HashMap<String, Option<[Vec3; 2]>>,
 }
 
-/// Returns true if the dialect describes scenes as nodes. Help texts depend on it.
+/// Returns true if scenes of the dialect consist of nodes. The wording of help texts depends on
+/// this.
 fn is_nodes(rules: &DialectRules) -> bool {
     rules.name == Dialect::F23.name()
 }
 
 impl SceneFlattener<'_, '_> {
-    /// Warns once about all objects without a material.
+    /// Reports a single warning for all objects without a material.
     fn warn_without_material(&mut self) {
         let Some((span, count)) = self.without_material else { return };
         let mut message = "this object has no material and is rendered in plain grey".to_string();
@@ -469,14 +478,15 @@ impl SceneFlattener<'_, '_> {
         }));
     }
 
-    /// Adds all objects of a group, with an accumulated transform.
+    /// Adds all objects of a group. `to_world` is the product of the enclosing transforms.
     fn group(&mut self, group: &Group, to_world: DAffine3) {
         for object in &group.objects {
             self.object(object, to_world);
         }
     }
 
-    /// Adds an object with everything in it, with an accumulated transform.
+    /// Adds an object and everything inside it. `to_world` is the product of the enclosing
+    /// transforms.
     fn object(&mut self, object: &scene::Object, to_world: DAffine3) {
         match &object.node {
             ObjectKind::Group(group) => self.group(group, to_world),
@@ -505,7 +515,7 @@ impl SceneFlattener<'_, '_> {
         MatrixOp::product(ops, rules::matrix_rules(self.rules))
     }
 
-    /// Places a shape or mesh in the world. Returns `None` after an error.
+    /// Places a shape or mesh in the world. Returns `None` if there was an error.
     fn shape(&mut self, object: &scene::Object, to_world: DAffine3) -> Option<Object> {
         let geometry = match &object.node {
             ObjectKind::Primitive(Primitive::Triangle(t)) if self.rules.has(Quirk::LooseTriangles) => {
@@ -577,8 +587,8 @@ impl SceneFlattener<'_, '_> {
         Some(Object { geometry, to_world, matrices, center, material, normal_length, span: object.span })
     }
 
-    /// Returns the matrices around an object if an official program's arithmetic is active: one per
-    /// transform or, with glm, their product.
+    /// Returns the matrices that enclose an object if the arithmetic of an official program is
+    /// active. There is one matrix per transform or, with glm, a single product of all of them.
     fn matrices_around(&self, to_world: DAffine3) -> Vec<Matrix> {
         let Some(rules) = rules::hit_rules(self.rules) else { return Vec::new() };
         match (&self.matrices, rules.vectors) {

@@ -1,4 +1,5 @@
-//! Loading of material textures. Each picture is decoded once even if several textures use it.
+//! Loading of material textures. Each picture is decoded only once, even if several textures use
+//! it.
 
 use super::cache::AssetKey;
 use super::decoded::{Encoding, decode};
@@ -16,8 +17,8 @@ use rayon::prelude::*;
 use std::collections::HashSet;
 
 impl Loader<'_> {
-    /// Returns the index of a principled material's texture. The picture is an asset, or else a
-    /// file, which repeats over the surface.
+    /// Returns the index of a principled material's texture. The picture is an asset or a file. A
+    /// picture from a file repeats over the surface.
     fn map(&mut self, name: &FileName, encoding: Encoding, diagnostics: &mut Diagnostics) -> Option<u32> {
         let key = (name.path.clone(), encoding);
         if let Some(known) = self.map_numbers.get(&key) {
@@ -36,12 +37,12 @@ impl Loader<'_> {
         number
     }
 
-    /// Returns the index of a texture that holds numbers instead of colours.
+    /// Returns the index of a texture that contains numbers instead of colours.
     pub(super) fn number_map(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<u32> {
         self.map(name, Encoding::Linear, diagnostics)
     }
 
-    /// Returns where a picture's bytes are, and how the picture is mapped to a surface.
+    /// Returns the location of a picture's data and the mapping of the picture to a surface.
     fn locate(&self, name: &FileName) -> (PictureBytes, Mapping) {
         if let Some(asset) = self.assets.pictures.get(&name.path) {
             return (asset.bytes.clone(), asset.mapping);
@@ -51,15 +52,16 @@ impl Loader<'_> {
         (PictureBytes::File(word.map_or(name.path.as_str(), |(path, _)| path).into()), mapping)
     }
 
-    /// Decodes the pictures of materials in parallel, as many as fit into memory together. Pictures
-    /// that fail are skipped here; their errors are reported when they are used.
+    /// Decodes the pictures of materials in parallel, as long as they fit into memory together.
+    /// Pictures that cannot be decoded are skipped here, and their errors are reported when they
+    /// are used.
     pub(super) fn decode_ahead<'m>(&mut self, materials: impl Iterator<Item = &'m PrincipledMaterial>) {
         let mut left = self.resources.memory;
         let (mut packed, mut seen) = (Vec::new(), HashSet::new());
         for (name, encoding) in materials.flat_map(pictures) {
             let (bytes, _) = self.locate(name);
             let key: PictureKey = (bytes.path().into(), encoding);
-            // Several materials can use the same picture.
+            // Several materials can share a picture.
             if !seen.insert(key.clone()) {
                 continue;
             }
@@ -89,8 +91,8 @@ impl Loader<'_> {
         self.predecoded = decoded.collect();
     }
 
-    /// Returns the textures of a principled material. Reports errors and omits the textures
-    /// concerned.
+    /// Returns the textures of a principled material. If a texture has an error, the error is
+    /// reported and the texture is omitted.
     pub(super) fn maps(&mut self, layers: &PrincipledMaterial, diagnostics: &mut Diagnostics) -> MaterialTextures {
         let mut one = |name: Option<&FileName>, encoding| name.and_then(|name| self.map(name, encoding, diagnostics));
         let mut maps = MaterialTextures {
@@ -120,7 +122,7 @@ impl Loader<'_> {
         maps
     }
 
-    /// Returns a decoded picture. All textures of the same picture share it.
+    /// Returns a decoded picture. All textures that use the picture share the decoded data.
     pub(super) fn picture(
         &mut self,
         name: &FileName,
@@ -172,14 +174,14 @@ impl Loader<'_> {
             return known.clone();
         }
         let texture = self.picture(name, bytes, encoding, diagnostics);
-        // Mipmaps need a third more memory: 1/4 + 1/16 + ...
+        // Mipmaps increase the memory by a third: 1/4 + 1/16 + ...
         let texture = texture.filter(|texture| self.charge(name, texture.bytes() as u64 / 3, diagnostics));
         let texture = texture.map(Texture::with_levels);
         self.mipmapped.insert(key, texture.clone());
         texture
     }
 
-    /// Returns the cache key of a picture if caching is on.
+    /// Returns the cache key of a picture, or `None` if caching is off.
     fn picture_origin(&self, bytes: &PictureBytes) -> Option<AssetKey> {
         match bytes {
             PictureBytes::File(path) => self.origin(path, || None),
@@ -201,7 +203,7 @@ fn pictures(layers: &PrincipledMaterial) -> impl Iterator<Item = (&FileName, Enc
     own.into_iter().chain(parameters).filter_map(|(name, encoding)| Some((name?, encoding)))
 }
 
-/// Returns the encoding of a parameter's texture: sRGB for colours, linear for numbers.
+/// Returns the encoding of a parameter's texture: sRGB for colours and linear for numbers.
 fn encoding_of(textured: &TextureField) -> Encoding {
     match textured.change {
         TextureEffect::Number(_) => Encoding::Linear,

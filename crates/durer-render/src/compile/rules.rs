@@ -1,5 +1,5 @@
-//! Translation of a dialect into rules for each part of the renderer. Only the scene's compilation
-//! depends on dialects; later code uses these rules.
+//! Translation of a dialect into rules for each part of the renderer. Only the compilation of a
+//! scene depends on the dialect. All later code uses these rules.
 
 use crate::world::{Contents, DisplayRules, Epsilon, HitRules, ShadingRules, VectorLibrary};
 use durer_scene::camera::{CameraRules, RayArithmetic, UpRule};
@@ -8,7 +8,7 @@ use durer_scene::light::{DirectionalLight, Illuminate as _, Light, PointLight};
 use durer_scene::math::Vec3;
 use durer_scene::scene::MatrixRules;
 
-/// Returns the rules for cameras and pixel positions.
+/// Returns the rules for cameras and for the positions of pixels.
 pub fn camera_rules(rules: &DialectRules) -> CameraRules {
     let up = match () {
         () if rules.has(Quirk::RawUp) => UpRule::Raw,
@@ -29,7 +29,7 @@ pub fn camera_rules(rules: &DialectRules) -> CameraRules {
     }
 }
 
-/// Returns the rules for products of transform matrices.
+/// Returns the rules for multiplying transform matrices.
 pub fn matrix_rules(rules: &DialectRules) -> MatrixRules {
     MatrixRules {
         matrix_on_left: rules.has(Quirk::MatrixOnLeft),
@@ -38,7 +38,8 @@ pub fn matrix_rules(rules: &DialectRules) -> MatrixRules {
     }
 }
 
-/// Returns the ray intersection rules of an official program, or `None` for Dürer's own arithmetic.
+/// Returns the rules of an official program for ray intersections, or `None` for Dürer's own
+/// arithmetic.
 pub fn hit_rules(rules: &DialectRules) -> Option<HitRules> {
     let vectors = match rules.arithmetic {
         Arithmetic::Own => return None,
@@ -84,7 +85,8 @@ pub fn shading_rules(rules: &DialectRules) -> ShadingRules {
     }
 }
 
-/// Returns the rules for displaying AOVs as pictures. `lumens` are the scene's.
+/// Returns the rules for displaying AOVs as pictures. `lumens` is the luminous efficacy that the
+/// scene uses.
 pub fn display_rules(rules: &DialectRules, lumens: Option<Vec3>) -> DisplayRules {
     DisplayRules {
         normals: rules.normals_picture,
@@ -98,8 +100,8 @@ pub fn display_rules(rules: &DialectRules, lumens: Option<Vec3>) -> DisplayRules
 }
 
 impl Contents {
-    /// Applies other rules, except to the camera's axes, lights, materials and objects, which stay
-    /// as they were compiled.
+    /// Applies other rules to a compiled world. The axes of the camera, the lights, the materials
+    /// and the objects do not change.
     pub fn set_rules(&mut self, rules: DialectRules) {
         self.camera_rules = camera_rules(&rules);
         self.hits = hit_rules(&rules);
@@ -109,13 +111,13 @@ impl Contents {
     }
 }
 
-/// Returns a light with its power folded into its colour, and with the dialect's attenuation.
+/// Returns a light whose colour includes its power and whose attenuation follows the dialect.
 pub(super) fn light(light: &Light, rules: &DialectRules) -> Light {
     match light {
         Light::Point(emitter) if emitter.candela.or(emitter.lumens).is_none() => {
             PointLight { attenuation: attenuation(emitter, rules), falloff: None, ..emitter.clone() }.into()
         }
-        // The zero direction normalizes to NaN, so the light it gives is NaN too.
+        // Normalizing a zero direction gives NaN, so the light from this source is NaN too.
         Light::Directional(sun) if sun.direction == Vec3::ZERO => {
             DirectionalLight { color: Vec3::NAN, ..sun.clone() }.into()
         }
@@ -123,7 +125,7 @@ pub(super) fn light(light: &Light, rules: &DialectRules) -> Light {
     }
 }
 
-/// Returns the divisor of a point light at distance d, as coefficients of a0 + a1 d + a2 d^2.
+/// Returns the coefficients of a0 + a1 d + a2 d^2, the divisor for a point light at a distance d.
 fn attenuation(light: &PointLight, rules: &DialectRules) -> Option<Vec3> {
     let divides_by_zero = rules.has(Quirk::MissingFalloff);
     match (rules.falloff, light.falloff) {

@@ -1,4 +1,4 @@
-//! Compilation of CSG solids, whose parts must be closed.
+//! Compilation of CSG solids. The parts of a solid must be closed.
 
 use super::SceneFlattener;
 use crate::world::csg::Csg;
@@ -12,7 +12,7 @@ use glam::DAffine3;
 use std::sync::Arc;
 
 impl SceneFlattener<'_, '_> {
-    /// Compiles a solid that is not part of another one, except of a union.
+    /// Compiles a solid that is either at the top level or part of a union.
     pub(super) fn solid(&mut self, span: Span, operation: CsgOperation, parts: &[scene::Object], to_world: DAffine3) {
         let (errors, before) = (self.diagnostics.error_count(), self.objects.len());
         self.check_count(span, operation, parts);
@@ -30,7 +30,7 @@ impl SceneFlattener<'_, '_> {
         }
     }
 
-    /// Compiles a part of a union. It becomes a separate object but must be closed.
+    /// Compiles a part of a union. The part becomes a separate object but must still be closed.
     fn part_of_union(&mut self, part: &scene::Object, to_world: DAffine3) {
         match &part.node {
             ObjectKind::Group(group) => {
@@ -46,7 +46,7 @@ impl SceneFlattener<'_, '_> {
         }
     }
 
-    /// Adds a piece of a solid, disjoint from the others, as an object.
+    /// Adds a piece of a solid as an object. The piece is disjoint from the other pieces.
     fn piece(&mut self, piece: CsgTree, span: Span) {
         if let CsgTree::Operand(object) = piece {
             return self.objects.push(Arc::unwrap_or_clone(object));
@@ -65,7 +65,7 @@ impl SceneFlattener<'_, '_> {
         self.objects.push(Object { geometry, to_world, matrices, center, material, normal_length: 1.0, span });
     }
 
-    /// Reports a solid without parts, and a difference of only one part.
+    /// Reports a solid without parts or a difference with only one part.
     fn check_count(&mut self, span: Span, operation: CsgOperation, parts: &[scene::Object]) {
         let name = operation.keyword();
         match parts.len() {
@@ -78,12 +78,12 @@ impl SceneFlattener<'_, '_> {
         }
     }
 
-    /// Compiles the parts of a solid. Parts with errors are missing from the result.
+    /// Compiles the parts of a solid. The result omits parts with errors.
     fn solids(&mut self, parts: &[scene::Object], to_world: DAffine3) -> Vec<CsgTree> {
         parts.iter().filter_map(|part| self.closed(part, to_world)).collect()
     }
 
-    /// Compiles a part of a solid. The part must be closed. Returns `None` after an error.
+    /// Compiles a part of a solid, which must be closed. Returns `None` if there was an error.
     fn closed(&mut self, part: &scene::Object, to_world: DAffine3) -> Option<CsgTree> {
         match &part.node {
             ObjectKind::Group(group) => {
@@ -138,7 +138,7 @@ impl SceneFlattener<'_, '_> {
     }
 }
 
-/// Combines solids with an operation; `None` if there are none.
+/// Combines solids with an operation. Returns `None` if there are no solids.
 fn joined(operation: CsgOperation, mut parts: Vec<CsgTree>) -> Option<CsgTree> {
     if parts.is_empty() {
         return None;

@@ -1,4 +1,4 @@
-//! Helpers that compile worlds for tests, also in other crates.
+//! Helpers that compile worlds for tests. They are also used by other crates.
 
 use super::*;
 use crate::world::World;
@@ -11,7 +11,7 @@ use glam::DAffine3;
 use std::cell::RefCell;
 use std::path::Path;
 
-/// Compiles a scene text; returns the world and its diagnostics.
+/// Compiles the text of a scene. Returns the world and the diagnostics.
 pub fn try_read(text: &str, rules: &DialectRules, accel: AccelKind, folder: &Path) -> (Option<World>, Diagnostics) {
     let mut files = Files::default();
     let file = files.add("scene.txt", text.as_bytes().into());
@@ -27,20 +27,20 @@ pub fn try_read(text: &str, rules: &DialectRules, accel: AccelKind, folder: &Pat
     (world, diagnostics)
 }
 
-/// Compiles a scene text with the rules of Dürer's own dialect.
+/// Compiles the text of a scene with the rules of Dürer's own dialect.
 pub fn read(text: &str) -> World {
     let (world, diagnostics) = try_read(text, Dialect::Durer.rules(), AccelKind::Bvh, Path::new("."));
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))
 }
 
-/// Returns a transform as scene text.
+/// Returns a transform in the syntax of a scene file.
 pub fn matrix_words(affine: &DAffine3) -> String {
     let rows = glam::DMat4::from(*affine).transpose().to_cols_array();
     let words: Vec<String> = rows.iter().map(|x| format!("{:?}", *x as f32)).collect();
     format!("Matrix {{ {} }}", words.join(" "))
 }
 
-/// Compiles a world with one object. Its files are relative to `folder`.
+/// Compiles a world with one object. File names are relative to `folder`.
 pub fn object(object: scene::Object, accel: AccelKind, folder: &Path) -> World {
     let root = Group { objects: vec![object] };
     let camera = Some(durer_scene::camera::PerspectiveCamera::default().into());
@@ -51,7 +51,7 @@ pub fn object(object: scene::Object, accel: AccelKind, folder: &Path) -> World {
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))
 }
 
-/// Compiles a world of shapes, each with a transform.
+/// Compiles a world of shapes with one transform each.
 pub fn shapes(shapes: &[(Primitive, DAffine3)], accel: AccelKind) -> World {
     let object = |node| scene::Object { node, material: None, span: Default::default() };
     let moved = |(shape, affine): &(Primitive, DAffine3)| {

@@ -72,7 +72,7 @@ fn solids_reject_parts_without_an_inside() {
     }
     let empty = format!("Group {{ Merge {{ {ball} Group {{ }} }} }}");
     assert_eq!(errors(&empty, AccelKind::Bvh), ["an empty `Group` cannot be part of a solid"]);
-    // Unbounded shapes are allowed, also if the solid is then unbounded.
+    // Unbounded shapes are allowed, even if they make the solid unbounded.
     let endless = format!("Group {{ Merge {{ {ball} Plane {{ normal 0 1 0 offset 0 }} }} }}");
     for accel in [AccelKind::Bvh, AccelKind::Grid(None), AccelKind::None] {
         assert_eq!(errors(&endless, accel), [""; 0]);
@@ -87,7 +87,7 @@ fn solids_reject_open_meshes_and_accept_closed_ones() {
     let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
     write("closed.obj", format!("{corners}{}", sides.concat()));
     write("open.obj", format!("{corners}{}", sides[..3].concat()));
-    // Each triangle has its own vertices, at shared positions.
+    // Each triangle has its own vertices, although their positions coincide.
     write("loose.obj", format!("{corners}{corners}{}f 5 8 7\n", sides[..3].concat()));
     for (name, closed) in [("closed", true), ("open", false), ("loose", true)] {
         let text = format!(
@@ -145,7 +145,7 @@ fn height_fields_are_closed_meshes() {
     let Geometry::Mesh(tree) = &world.objects()[0].geometry else { panic!() };
     assert_eq!(tree.mesh.open_edge(), None);
     assert_eq!((tree.mesh.len(), world.bounds().min, world.bounds().max.y), (4 + 18, [0.0, -0.5, 0.0].into(), 1.0));
-    // The white pixel is in the middle of the top row, which has the smallest z.
+    // The white pixel is in the middle of the top row, where z is smallest.
     let down = |x: f32, z: f32| {
         let ray = durer_scene::math::Ray::new([x, 5.0, z].into(), [0.0, -1.0, 0.0].into());
         world.closest(&ray, &mut ()).map(|hit| 5.0 - hit.t)
@@ -213,7 +213,7 @@ fn invalid_grids_are_rejected() {
     assert_eq!(errors(&format!("Group {{ {balls} }}"), AccelKind::Grid(Some([0, 1, 1]))).len(), 1);
     assert_eq!(errors(&format!("Group {{ {balls} }}"), AccelKind::Grid(Some([256, 256, 256]))).len(), 1);
     assert_eq!(errors(&format!("Group {{ {balls} }}"), AccelKind::Grid(None)), [""; 0]);
-    // Without bounded objects, there is no grid.
+    // Without bounded objects, no grid is built.
     assert_eq!(errors("Group { Plane { normal 0 1 0 offset 0 } }", AccelKind::Grid(None)), [""; 0]);
 }
 
@@ -230,13 +230,14 @@ fn tables_of_a_material_are_computed_before_rays_are_traced() {
         ("specularRoughness 0 coatWeight 0.5 coatRoughness 0.2", [true, false, true]),
         ("baseMetalness 1 coatWeight 0.5 coatRoughness 0.2", [false, false, true]),
     ] {
-        // An opaque base with half the specular weight has another index of refraction than glass.
+        // An opaque base with half the specular weight has a different index of refraction than
+        // glass.
         let text = format!("{CAMERA} Materials {{ PrincipledMaterial {{ specularWeight 0.5 {words} }} }} Group {{ }}");
         let world = super::testing::read(&text);
         let Material::Phong(phong) = &world.materials()[0] else { panic!("{words}") };
         let own = phong.principled.as_ref().unwrap();
         assert_eq!(own.tables.prepared(), opaque_glass_coat, "{words}");
-        // Shading must not need other tables.
+        // Shading must not need any other tables.
         let lanes = durer_scene::spectrum::Lanes::Rgb;
         let wo = Vec3::new(0.6, 0.0, 0.8);
         for inside in [false, true] {
@@ -266,7 +267,7 @@ fn outlying_objects_are_excluded_from_the_grid() {
             assert_eq!(world.occluded(&ray, &mut ()), tree.occluded(&ray, &mut ()), "{ray:?}");
         }
     }
-    // The ground and the objects on it fit into one grid.
+    // The ground and the objects on it are stored in one grid.
     let text = format!("{CAMERA}Group {{ Sphere {{ center 0 -100 0 radius 99 }} {balls} }}");
     let (world, _) = try_read(&text, Dialect::Durer.rules(), AccelKind::Grid(None), Path::new("."));
     assert!(matches!(world.unwrap().accel(), Accel::Grid { wide, .. } if wide.is_empty()));

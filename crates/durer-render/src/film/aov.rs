@@ -1,8 +1,8 @@
 //! Arbitrary output variables (AOVs): pictures of values other than colour.
 //!
-//! Most AOVs trace one ray through the centre of each pixel; some use the statistics of the colour
-//! samples. Floating-point files contain the values unchanged. For eight-bit files, values are
-//! mapped to display colours from 0 to 1.
+//! Most AOVs trace one ray through the centre of each pixel. Some use statistics of the colour
+//! samples instead. Floating-point files store the values unchanged. For eight-bit files, the
+//! values are mapped to display colours from 0 to 1.
 
 use super::false_color::FalseColorScale;
 use super::{Film, luminance_of};
@@ -13,24 +13,24 @@ use durer_scene::math::{Aabb, Color, Vec3};
 use durer_scene::sampler::hash;
 use durer_scene::shape::SurfacePoint;
 
-/// Values at the first hit of the ray through a pixel's centre, from which AOVs are computed.
+/// Data at the first hit of the ray through a pixel's centre, from which AOVs are computed.
 #[derive(Clone, Copy, Debug)]
 pub struct AovInput {
     /// True if the camera has a ray through this pixel's centre.
     pub covered: bool,
-    /// The first hit.
+    /// Surface that the ray hits first.
     pub hit: Option<SurfaceInteraction>,
     /// Diffuse colour at the hit.
     pub albedo: Color,
-    /// Traversal statistics of the pixel, including all secondary rays.
+    /// Statistics of BVH traversal for the pixel, including all secondary rays.
     pub counts: TraversalStats,
-    /// Illuminance at the surface. In lux if the scene's light is in cd/m^2 or watts; 0 unless
-    /// requested.
+    /// Illuminance at the surface, in lux if the light of the scene is given in cd/m^2 or watts. It
+    /// is 0 unless it was requested.
     pub illuminance: f32,
 }
 
 impl AovInput {
-    /// Values of a pixel for which the camera has no ray.
+    /// Input for a pixel for which the camera has no ray.
     pub const NOTHING: AovInput = AovInput {
         covered: false,
         hit: None,
@@ -40,14 +40,14 @@ impl AovInput {
     };
 }
 
-/// Colour statistics of one pixel (sample count, mean and variance) for AOVs, computed on demand.
+/// Sample count, mean and variance of one pixel's colour. They are computed on demand for AOVs.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelStatistics<'a> {
-    /// The film and pixel coordinates; `None` if the pixel has no samples yet.
+    /// The film and the pixel's coordinates, or `None` if the pixel has no samples yet.
     pub pixel: Option<(&'a Film, u32, u32)>,
-    /// Magnitude of the sample weights relative to their mean; see [`Film::variance`].
+    /// Magnitude of the sample weights relative to their mean. See [`Film::variance`].
     pub gain: f32,
-    /// Luminous efficacy of each colour channel, if light is in watts.
+    /// Luminous efficacy of each colour channel if light is measured in watts.
     pub lumens: Option<Vec3>,
 }
 
@@ -57,7 +57,7 @@ impl PixelStatistics<'_> {
         self.pixel.map_or(0, |(film, x, y)| film.samples(x, y))
     }
 
-    /// Returns the estimated variance of the mean luminance.
+    /// Returns the estimated variance of the pixel's mean luminance.
     pub fn variance(&self) -> f64 {
         self.pixel.map_or(f64::INFINITY, |(film, x, y)| film.variance(x, y, self.gain))
     }
@@ -68,18 +68,20 @@ impl PixelStatistics<'_> {
     }
 }
 
-/// Returns the luminance of a colour. If light is in watts, uses `lumens`, the luminous efficacy of
-/// each channel.
+/// Returns the luminance of a colour. If light is measured in watts, `lumens` is the luminous
+/// efficacy of each channel.
 pub fn brightness(light: Color, lumens: Option<Vec3>) -> f64 {
     lumens.map_or_else(|| luminance_of(light), |lumens| light.as_dvec3().dot(lumens.as_dvec3()))
 }
 
-/// Parameters for mapping AOV values to display colours: ranges, scales and the dialect's rules.
+/// Parameters for mapping AOV values to display colours, such as ranges, scales and the dialect's
+/// rules.
 #[derive(Clone, Copy, Debug)]
 pub struct Display {
     /// Display rules of the dialect.
     pub rules: DisplayRules,
-    /// Depths shown as black and white. `None` uses the minimum and maximum of the picture.
+    /// Depths that are shown as black and white. `None` means the minimum and maximum of the
+    /// picture.
     pub depth_range: Option<(f32, f32)>,
     /// Scale of values for false-colour pictures.
     pub light_scale: FalseColorScale,
@@ -89,29 +91,31 @@ pub struct Display {
     pub all_bounds: Aabb,
 }
 
-/// Function that computes an AOV's value at a pixel, from a ray or from the colour samples.
+/// Function that computes the value of an AOV at a pixel, either from a ray or from the colour
+/// samples.
 #[derive(Clone, Copy, Debug)]
 pub enum AovFunction {
-    /// Uses the ray through the pixel's centre.
+    /// Function that uses the ray through the pixel's centre.
     Ray(fn(&AovInput) -> Vec3),
-    /// Uses the statistics of the colour samples.
+    /// Function that uses the statistics of the colour samples.
     Sums(fn(&PixelStatistics) -> Vec3),
 }
 
-/// Entry of the table of arbitrary output variables (AOVs) such as `depth` and `normals`.
+/// Entry in the table of arbitrary output variables (AOVs), such as `depth` and `normals`.
 #[derive(Debug)]
 pub struct Aov {
-    /// Name on the command line and in files.
+    /// Name of the AOV on the command line and in files.
     pub name: &'static str,
-    /// Description for the help.
+    /// Description that the help shows.
     pub doc: &'static str,
-    /// Value at a pixel, as it is written to floating-point files.
+    /// Function that computes the value at a pixel. Floating-point files store this value.
     pub value: AovFunction,
-    /// Maps a value to a display colour; the flag is true for hits.
+    /// Function that maps a value to a display colour. The flag is true for hits.
     pub picture: fn(Vec3, bool, &Display) -> Color,
     /// True if the display colour depends on the values of other pixels.
     pub relative: bool,
-    /// Unit of false-colour values. A scale with this unit is drawn next to the picture.
+    /// Unit of the values in a false-colour picture. A scale with this unit is drawn next to the
+    /// picture.
     pub unit: Option<&'static str>,
 }
 
@@ -122,8 +126,8 @@ impl Aov {
     }
 }
 
-/// Fills each pixel without a hit with the colour of the previous hit. Rows are processed from the
-/// bottom up, each from left to right.
+/// Fills each pixel without a hit with the colour of the previous hit. Rows are processed from
+/// bottom to top, and each row from left to right.
 pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
     let rows = pixels.len() / width.max(1);
     let mut last = None;
@@ -138,7 +142,7 @@ pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
     }
 }
 
-/// Table of all AOVs, in the order in which the help lists them.
+/// Table of all AOVs in the order in which the help lists them.
 pub static AOVS: &[Aov] = &[
     Aov {
         name: "depth",
@@ -153,7 +157,7 @@ pub static AOVS: &[Aov] = &[
         doc: "shading normal, in world space",
         value: AovFunction::Ray(|input| of_surface(input, |s| s.n_shade)),
         picture: normal_picture,
-        // One quirk shows the normal of the previous hit at misses.
+        // With one quirk, a pixel without a hit shows the normal of the previous hit.
         relative: true,
         unit: None,
     },
@@ -259,7 +263,7 @@ pub static AOVS: &[Aov] = &[
     },
 ];
 
-/// Converts a normal to a colour, as the dialect does.
+/// Converts a normal to a colour as the dialect prescribes.
 fn normal_picture(n: Vec3, _: bool, display: &Display) -> Color {
     match display.rules.normals {
         NormalsPicture::Abs => n.abs(),
@@ -267,27 +271,27 @@ fn normal_picture(n: Vec3, _: bool, display: &Display) -> Color {
     }
 }
 
-/// Converts luminance or illuminance to a false colour.
+/// Converts a luminance or illuminance to a false colour.
 fn light_picture(value: Vec3, _: bool, display: &Display) -> Color {
     display.light_scale.color(value.x)
 }
 
-/// Converts a count to a heat-map colour, relative to the maximum of the picture.
+/// Converts a count to a colour of a heat map, relative to the maximum of the picture.
 fn heat_picture(value: Vec3, _: bool, display: &Display) -> Color {
     heat(value.x / display.all_bounds.max.x.max(1.0))
 }
 
-/// Returns an attribute of the surface that was hit; zero for a miss.
+/// Returns an attribute of the surface at the hit, or zero if there was no hit.
 fn of_surface(input: &AovInput, value: impl Fn(&SurfacePoint) -> Vec3) -> Vec3 {
     input.hit.map_or(Vec3::ZERO, |at| value(&at.surface))
 }
 
-/// Converts a depth to a grey, as the dialect does.
+/// Converts a depth to a shade of grey as the dialect prescribes.
 fn depth_picture(depth: Vec3, hit: bool, display: &Display) -> Color {
     let rules = display.rules;
     let (least, greatest) = (display.hit_bounds.min.x, display.hit_bounds.max.x);
     let (min, max) = match display.depth_range {
-        // Truncate the range to integers, unless its ends would become equal.
+        // Truncate the ends of the range to integers, unless they would become equal.
         Some((min, max)) if rules.whole_depths && min.trunc() != max.trunc() => (min.trunc(), max.trunc()),
         Some(range) => range,
         None => (least, if greatest > least { greatest } else { least + 1.0 }),
@@ -318,7 +322,7 @@ fn id_color(id: f32) -> Color {
     Vec3::new(channel(0), channel(8), channel(16))
 }
 
-/// Maps 0 to 1 to a heat map: black, blue, red, yellow, white.
+/// Maps numbers from 0 to 1 to the colours of a heat map: black, blue, red, yellow, white.
 pub(crate) fn heat(x: f32) -> Color {
     const STEPS: [Vec3; 5] =
         [Vec3::ZERO, Vec3::new(0.1, 0.1, 0.8), Vec3::new(0.9, 0.1, 0.1), Vec3::new(1.0, 0.9, 0.1), Vec3::ONE];

@@ -1,8 +1,8 @@
 //! Variable-length encoding of integers in checkpoint files.
 //!
-//! Integers are written in groups of seven bits, lowest first; the eighth bit of a byte is set if
-//! more bytes follow (LEB128). Signed integers are mapped to unsigned ones in the order 0, -1, 1,
-//! -2, ... (zigzag), so that small magnitudes are short.
+//! An integer is written in groups of seven bits, lowest group first. The eighth bit of each byte
+//! is set if more bytes follow (LEB128). Signed integers are first mapped to unsigned integers in
+//! the order 0, -1, 1, -2, ... (zigzag), so that small magnitudes take few bytes.
 
 /// Appends an unsigned integer to `out`.
 pub fn write_unsigned(out: &mut Vec<u8>, mut number: u128) {
@@ -18,20 +18,20 @@ pub fn write_signed(out: &mut Vec<u8>, number: i128) {
     write_unsigned(out, ((number << 1) ^ (number >> 127)) as u128);
 }
 
-/// Reader of encoded integers and floats from untrusted bytes. Returns `None` for truncated or
-/// invalid data and never panics.
+/// Reader for encoded integers and floats in untrusted data. Its methods return `None` for
+/// truncated or invalid data and never panic.
 #[derive(Clone, Copy, Debug)]
 pub struct ByteReader<'a>(pub &'a [u8]);
 
 impl<'a> ByteReader<'a> {
-    /// Takes the next `count` bytes.
+    /// Reads the next `count` bytes.
     pub fn take(&mut self, count: usize) -> Option<&'a [u8]> {
         let (bytes, rest) = self.0.split_at_checked(count)?;
         self.0 = rest;
         Some(bytes)
     }
 
-    /// Reads an unsigned integer; `None` if it does not fit into `T`.
+    /// Reads an unsigned integer. Returns `None` if it does not fit into `T`.
     pub fn read_unsigned<T: TryFrom<u128>>(&mut self) -> Option<T> {
         let mut number = 0_u128;
         for shift in (0..128).step_by(7) {
@@ -39,20 +39,20 @@ impl<'a> ByteReader<'a> {
             let bits = u128::from(byte & 0x7f);
             number |= bits << shift;
             if byte < 0x80 {
-                // Reject integers whose high bits were shifted out.
+                // Reject integers that lost high bits in the shift.
                 return if number >> shift == bits { number.try_into().ok() } else { None };
             }
         }
         None
     }
 
-    /// Reads a signed integer; `None` if it does not fit into `T`.
+    /// Reads a signed integer. Returns `None` if it does not fit into `T`.
     pub fn signed<T: TryFrom<i128>>(&mut self) -> Option<T> {
         let number: u128 = self.read_unsigned()?;
         ((number >> 1) as i128 ^ -((number & 1) as i128)).try_into().ok()
     }
 
-    /// Reads a little-endian float. Every bit pattern is valid.
+    /// Reads a little-endian float. Any bit pattern is valid.
     pub fn float(&mut self) -> Option<f32> {
         Some(f32::from_le_bytes(self.take(4)?.try_into().ok()?))
     }

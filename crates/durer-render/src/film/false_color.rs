@@ -1,23 +1,24 @@
-//! False-colour pictures of luminance and illuminance with a legend, as lighting engineers use
-//! them.
+//! False-colour pictures of luminance and illuminance with a legend. Lighting engineers use such
+//! pictures.
 
 use durer_scene::math::{Color, Vec3, fp};
 use serde::{Deserialize, Serialize};
 
-/// Range of luminance or illuminance that a false-colour picture shows, linear or logarithmic.
+/// Range of luminance or illuminance that a false-colour picture shows on a linear or logarithmic
+/// scale.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FalseColorScale {
-    /// Value shown in the first colour, dark blue.
+    /// Value that the first colour (dark blue) represents.
     pub low: f32,
-    /// Value shown in the last colour, red. Must be greater than `low`.
+    /// Value that the last colour (red) represents. It must be greater than `low`.
     pub high: f32,
     /// True for a logarithmic scale, which requires `low` > 0.
     pub logarithmic: bool,
 }
 
 impl FalseColorScale {
-    /// Returns a linear scale from 0 to the 98th percentile of the positive values. With the
-    /// maximum instead, a visible emitter would leave no colours for the rest.
+    /// Returns a linear scale from 0 to the 98th percentile of the positive values. If the maximum
+    /// were used, a visible emitter would leave almost no colours for the rest of the picture.
     pub fn from_values(values: impl Iterator<Item = f32>) -> Self {
         let mut all: Vec<f32> = values.filter(|value| value.is_finite() && *value > 0.0).collect();
         all.sort_by(f32::total_cmp);
@@ -58,14 +59,14 @@ impl FalseColorScale {
         STEPS[step].lerp(STEPS[step + 1], place - step as f32)
     }
 
-    /// Draws a legend with numbers and unit along the right edge of a picture, if the picture is
+    /// Draws a legend with numbers and a unit along the right edge of a picture, if the picture is
     /// large enough.
     pub fn draw_legend(&self, pixels: &mut [Color], width: usize, unit: &str) {
         const ROWS: usize = 8;
         let height = pixels.len() / width.max(1);
         let labels: Vec<String> = (0..=ROWS).map(|i| number(self.value(1.0 - i as f32 / ROWS as f32))).collect();
         let longest = labels.iter().map(String::len).chain([unit.len()]).max().unwrap_or(0);
-        // A glyph is three points wide and five high, plus one for spacing.
+        // A glyph is three points wide and five points high, plus one point of spacing.
         let zoom = (height / 120).clamp(1, 8);
         let (bar, line) = (6 * zoom, 7 * zoom);
         let wide = bar + (4 * longest + 3) * zoom;
@@ -98,7 +99,7 @@ impl FalseColorScale {
     }
 }
 
-/// Formats a legend number with three significant digits, without trailing zeros.
+/// Formats a number of the legend with three significant digits and without trailing zeros.
 fn number(value: f32) -> String {
     let rounded = format!("{value:.2e}").parse::<f64>().unwrap_or(0.0);
     let text = if rounded != 0.0 && !(1e-3..1e7).contains(&rounded.abs()) {
@@ -109,7 +110,7 @@ fn number(value: f32) -> String {
     text.to_lowercase()
 }
 
-/// Returns the five rows of a 3x5 glyph, top first. Unknown characters are blank.
+/// Returns the five rows of a 3x5 glyph from top to bottom. Unknown characters are blank.
 fn glyph(letter: char) -> [u8; 5] {
     match letter {
         '0' => [7, 5, 5, 5, 7],
@@ -150,11 +151,11 @@ mod tests {
                 let place = i as f32 / 10.0;
                 assert!((scale.position(scale.value(place)) - place).abs() < 1e-5);
             }
-            // Values outside the range get the colours at its ends.
+            // Values outside the range get the colours at the ends of the range.
             assert_eq!(scale.color(-1.0), scale.color(scale.low));
             assert_eq!(scale.color(f32::INFINITY), scale.color(scale.high));
         }
-        // All decades have equal length.
+        // All decades have the same length.
         let scale = FalseColorScale { low: 1.0, high: 1e4, logarithmic: true };
         assert!((scale.position(10.0) - 0.25).abs() < 1e-6 && (scale.position(100.0) - 0.5).abs() < 1e-6);
         assert_eq!(FalseColorScale::from_values([f32::NAN, 0.0].into_iter()).high, 1.0);
@@ -177,7 +178,7 @@ mod tests {
         FalseColorScale::from_values([1000.0].into_iter()).draw_legend(&mut pixels, width, "cd/m2");
         let touched = |x: usize| (0..height).any(|y| pixels[y * width + x] != Color::splat(0.25));
         assert!(touched(width - 1) && touched(width - 20) && !touched(width / 2));
-        // The bar runs from red at the top to dark blue.
+        // The colours of the bar go from red at the top to dark blue at the bottom.
         let column: Vec<Color> = (0..height).map(|y| pixels[y * width + width - 29]).collect();
         let scale = FalseColorScale::from_values([1.0].into_iter());
         assert!(column.iter().any(|color| (*color - scale.color(1.0)).length() < 0.05), "{column:?}");

@@ -1,10 +1,12 @@
-//! Reconstruction filters: the weight of a sample at an offset from a pixel's centre.
+//! Reconstruction filters, which define the weight of a sample at an offset from the centre of a
+//! pixel.
 //!
-//! Each filter is a product of the same function of `dx` and of `dy`, zero beyond the radius.
-//! Filters are importance-sampled: a uniform position is warped to an offset with a density
-//! proportional to the filter's absolute value. Every sample of a pixel thus has the same weight,
-//! up to sign, and contributes to that pixel only. Source: Pharr, Jakob, Humphreys, *Physically
-//! Based Rendering*, 4th edition, section 8.8.
+//! Each filter is the product of one function applied to `dx` and the same function applied to
+//! `dy`. The function is zero beyond the radius. Filters are importance-sampled: a uniform position
+//! is warped to an offset whose density is proportional to the absolute value of the filter. All
+//! samples of a pixel therefore have the same weight, apart from the sign, and contribute only to
+//! that pixel. Source: Pharr, Jakob, Humphreys, *Physically Based Rendering*, 4th edition, section
+//! 8.8.
 
 use durer_scene::math::{Vec2, fp};
 use serde::{Deserialize, Serialize};
@@ -13,39 +15,41 @@ use std::f32::consts::PI;
 #[cfg(test)]
 mod tests;
 
-/// Pixel reconstruction filter of a render. Lengths are in pixels and must be positive and finite.
+/// Filter that reconstructs pixels in a render. Lengths are in pixels and must be positive and
+/// finite.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Filter {
-    /// Constant weight. Sharp, but aliases.
+    /// Constant weight. The picture is sharp but shows aliasing.
     Box {
-        /// Half the width.
+        /// Half the width of the filter.
         radius: f32,
     },
-    /// Falls linearly to zero at the radius.
+    /// Weight that decreases linearly to zero at the radius.
     Tent {
-        /// Half the width.
+        /// Half the width of the filter.
         radius: f32,
     },
-    /// exp(-d^2 / (2 sigma^2)), shifted to be zero at the radius.
+    /// The Gaussian exp(-d^2 / (2 sigma^2)), shifted so that it is zero at the radius.
     Gaussian {
         /// Standard deviation.
         sigma: f32,
-        /// Half the width.
+        /// Half the width of the filter.
         radius: f32,
     },
-    /// Blackman-Harris window, a sum of four cosines: close to a Gaussian without its tail, no
-    /// ringing.
+    /// Blackman-Harris window, a sum of four cosines. It resembles a Gaussian without tails and
+    /// causes no ringing.
     ///
     /// Source: Harris, *On the Use of Windows for Harmonic Analysis*, Proc. IEEE 66(1), 1978.
     BlackmanHarris {
-        /// Half the width.
+        /// Half the width of the filter.
         radius: f32,
     },
-    /// Mitchell-Netravali cubic with B = C = 1/3 and negative lobes. The sharpest filter; can ring.
+    /// Mitchell-Netravali cubic with B = C = 1/3. It is the sharpest filter, but its negative lobes
+    /// can cause ringing.
     ///
     /// Source: Mitchell, Netravali, *Reconstruction Filters in Computer Graphics*, SIGGRAPH 1988.
     Mitchell {
-        /// Half the width.
+        /// Half the width of the filter.
         radius: f32,
     },
 }
@@ -57,7 +61,7 @@ impl Default for Filter {
 }
 
 impl Filter {
-    /// All filters at their default sizes, with their names on the command line.
+    /// All filters with their default sizes and their names on the command line.
     pub const NAMES: [(&'static str, Filter); 5] = [
         ("box", Filter::Box { radius: 0.5 }),
         ("tent", Filter::Tent { radius: 1.0 }),
@@ -66,12 +70,13 @@ impl Filter {
         ("mitchell", Filter::Mitchell { radius: 2.0 }),
     ];
 
-    /// Returns the filter with this name at its default size.
+    /// Returns the filter with the given name and its default size.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::NAMES.iter().find(|(n, _)| *n == name).map(|&(_, filter)| filter)
     }
 
-    /// Returns the filter with another radius. A Gaussian's sigma scales with it.
+    /// Returns the filter with a different radius. The sigma of a Gaussian is scaled by the same
+    /// factor.
     pub fn with_radius(self, radius: f32) -> Self {
         match self {
             Filter::Box { .. } => Filter::Box { radius },
@@ -82,7 +87,7 @@ impl Filter {
         }
     }
 
-    /// Returns half the filter's width in pixels. The weight is zero farther out.
+    /// Returns half the width of the filter in pixels. The weight is zero beyond this distance.
     pub fn radius(self) -> f32 {
         match self {
             Filter::Box { radius }
@@ -93,8 +98,8 @@ impl Filter {
         }
     }
 
-    /// Returns the weight at an offset from the pixel's centre, in pixels. Not normalized, and
-    /// negative in the lobes of the Mitchell filter.
+    /// Returns the weight at an offset from the pixel's centre, in pixels. The weights are not
+    /// normalized, and they are negative in the lobes of the Mitchell filter.
     pub fn weight(self, dx: f32, dy: f32) -> f32 {
         self.profile(dx.abs()) * self.profile(dy.abs())
     }
@@ -126,33 +131,34 @@ impl Filter {
         }
     }
 
-    /// Prepares importance sampling by building a table of 8 KiB, once per render.
+    /// Prepares importance sampling by building a table of 8 KiB. This is done once per render.
     pub fn sampler(self) -> FilterSampler {
         FilterSampler::new(self)
     }
 }
 
-/// Importance sampler of a reconstruction filter: draws offsets in proportion to the filter's
-/// absolute value.
+/// Importance sampler for a reconstruction filter. It draws offsets in proportion to the absolute
+/// value of the filter.
 ///
-/// The filter's integral along an axis is inverted once at `SHARES + 1` knots, and the density is
-/// constant between two knots. An offset is wrong by less than the distance of its two knots, which
-/// is on average below a thousandth of the radius; a test checks this.
+/// The integral of the filter along an axis is inverted once at `SHARES + 1` knots, and the density
+/// is constant between two knots. The error of an offset is less than the distance between the two
+/// knots around it. That distance is on average below a thousandth of the radius, which a test
+/// checks.
 #[derive(Clone, Debug)]
 pub struct FilterSampler {
     filter: Filter,
-    /// Distances from the centre that contain 0, 1, 2, ... of `SHARES` equal shares of the absolute
-    /// filter's integral.
+    /// Distances from the centre within which the absolute filter has 0, 1, 2, ... of `SHARES`
+    /// equal shares of its integral.
     knots: Box<[f32; SHARES + 1]>,
-    /// Integral of the absolute filter divided by that of the filter, squared because there are two
-    /// axes. It is the magnitude of the sample weights.
+    /// Magnitude of the sample weights. It is the integral of the absolute filter divided by the
+    /// integral of the filter, squared because there are two axes.
     gain: f32,
 }
 
-/// Number of equal shares of a filter's integral from the centre to the radius.
+/// Number of equal shares into which a filter's integral from the centre to the radius is divided.
 const SHARES: usize = 2048;
 
-/// Number of linear pieces from the centre to the radius for integrating the filter.
+/// Number of linear pieces between the centre and the radius when a filter is integrated.
 const BINS: usize = 1024;
 
 impl FilterSampler {
@@ -161,7 +167,8 @@ impl FilterSampler {
         let values: Vec<f64> = (0..=BINS).map(value).collect();
         let trapezoid = |a: f64, b: f64| 0.5 * (a + b);
         let signed: f64 = values.windows(2).map(|pair| trapezoid(pair[0], pair[1])).sum();
-        // Integral of the absolute filter from the centre to the end of each bin, starting with 0.
+        // Integral of the absolute filter from the centre to the end of each bin. The first value
+        // is 0.
         let parts = values.windows(2).map(|pair| trapezoid(pair[0].abs(), pair[1].abs()));
         let integral: Vec<f64> = std::iter::once(0.0)
             .chain(parts.scan(0.0, |sum, part| {
@@ -170,7 +177,7 @@ impl FilterSampler {
             }))
             .collect();
         let absolute = integral[BINS];
-        // A filter whose integral is not positive is sampled without gain.
+        // If the integral of a filter is not positive, the filter is sampled with a gain of 1.
         let gain = if signed > 0.0 { (absolute / signed) * (absolute / signed) } else { 1.0 };
         let distance = |share: usize| {
             let target = share as f64 / SHARES as f64 * absolute;
@@ -186,8 +193,8 @@ impl FilterSampler {
         FilterSampler { filter, knots: Box::new(std::array::from_fn(distance)), gain: gain as f32 }
     }
 
-    /// Returns the magnitude of the sample weights: 1 for filters without negative lobes, greater
-    /// for others.
+    /// Returns the magnitude of the sample weights. It is 1 for filters without negative lobes and
+    /// greater than 1 for others.
     pub fn gain(&self) -> f32 {
         match self.filter {
             Filter::Mitchell { .. } => self.gain,
@@ -195,18 +202,18 @@ impl FilterSampler {
         }
     }
 
-    /// Warps a uniform position in [0,1)^2 to an offset from the pixel's centre. Returns the offset
-    /// and the sample's weight.
+    /// Warps a uniform position in [0,1)^2 to an offset from the centre of a pixel. Returns the
+    /// offset and the weight of the sample.
     ///
-    /// The weight is 1 for filters without negative lobes. For others it has a constant magnitude,
-    /// the filter's sign and mean 1. Offsets are monotonic in the positions, so stratification is
-    /// preserved.
+    /// The weight is 1 for filters without negative lobes. For other filters, all weights have the
+    /// same magnitude, the sign of the filter and a mean of 1. Offsets are monotonic functions of
+    /// the positions, so stratification is preserved.
     pub fn sample(&self, position: Vec2) -> (Vec2, f32) {
         let offset = Vec2::new(self.warp(position.x), self.warp(position.y));
         (offset, self.weight(offset))
     }
 
-    /// Warps several positions, stored as all x followed by all y.
+    /// Warps several positions. All x coordinates are stored before all y coordinates.
     #[inline(always)]
     pub fn samples<const N: usize>(&self, positions: &[[f32; N]; 2]) -> ([[f32; N]; 2], [f32; N]) {
         let (mut offsets, mut weights) = ([[0.0; N]; 2], [1.0; N]);
@@ -229,7 +236,7 @@ impl FilterSampler {
         }
     }
 
-    /// Maps a uniform number in [0,1) to an offset along one axis; 1/2 is the centre.
+    /// Maps a uniform number in [0,1) to an offset along one axis. The centre corresponds to 1/2.
     #[inline(always)]
     fn warp(&self, u: f32) -> f32 {
         let v = 2.0 * u - 1.0;

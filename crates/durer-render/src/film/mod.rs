@@ -1,6 +1,8 @@
-//! Accumulation of samples in pixels: films with exact sums, reconstruction filters and AOVs.
+//! Accumulation of samples in pixels. This includes films with exact sums, reconstruction filters
+//! and AOVs.
 //!
-//! Pixel coordinates start at the top left corner; x increases to the right and y downwards.
+//! Pixel coordinates start at the top left corner. x increases to the right, and y increases
+//! downwards.
 
 pub mod aov;
 pub mod bytes;

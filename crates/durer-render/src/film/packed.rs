@@ -1,27 +1,29 @@
-//! Compact storage of film sums, which take most of a render's memory.
+//! Compact storage for the sums of a film, which take most of the memory of a render.
 
 use super::film::{Film, Pixel, WEIGHT_ONE};
 use durer_scene::math::Color;
 
-/// Film in the most compact of four lossless formats, for storage while no samples are added.
+/// A film in the most compact of four lossless formats. It is used for storage while no samples are
+/// added.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PackedFilm {
-    /// Colours only: each pixel has one sample with weight 1 and full coverage.
+    /// Format with colours only, in which each pixel has one sample with weight 1 and full
+    /// coverage.
     OneSample(Box<[Color]>),
-    /// [`PackedFilm::Small`] where all samples have weight 1, as with filters without negative
-    /// lobes.
+    /// Variant of [`PackedFilm::Small`] in which all samples have weight 1. This is the case for
+    /// filters without negative lobes.
     UnitWeights(Box<[EqualWeights]>),
-    /// Colour sums fit in 64 bits, and all samples have full coverage.
+    /// Format in which colour sums fit in 64 bits and all samples have full coverage.
     Small(Box<[CompactPixel]>),
-    /// The film as it is.
+    /// The unpacked film.
     Unpacked(Box<Film>),
 }
 
-/// Sums of one pixel in [`PackedFilm::Small`]; coverage equals the weight.
+/// Sums of one pixel in [`PackedFilm::Small`]. The coverage equals the weight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CompactPixel {
     color: [i64; 3],
-    /// Lower and upper half; as an `i128` it would need padding.
+    /// Lower and upper half of the sum. An `i128` would need padding.
     squares: [u64; 2],
     luminance: i64,
     weight: i64,
@@ -59,7 +61,7 @@ impl CompactPixel {
 }
 
 /// Sums of one pixel in [`PackedFilm::UnitWeights`], where the weight equals the number of samples.
-/// Stored as 32-bit words to avoid padding.
+/// The sums are stored as 32-bit words to avoid padding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EqualWeights {
     color: [[u32; 2]; 3],
@@ -96,12 +98,12 @@ impl EqualWeights {
     }
 }
 
-/// Returns the lower and the upper 32 bits.
+/// Returns the lower and the upper 32 bits of a number.
 fn halves(number: u64) -> [u32; 2] {
     [number as u32, (number >> 32) as u32]
 }
 
-/// Converts all pixels of a film. Returns `None` if one cannot be converted.
+/// Converts all pixels of a film. Returns `None` if any pixel cannot be converted.
 fn all<T>(film: &Film, smaller: impl Fn(&Pixel) -> Option<T>) -> Option<Vec<T>> {
     let mut packed = Vec::with_capacity(film.pixels.len());
     for pixel in &film.pixels {
@@ -110,14 +112,14 @@ fn all<T>(film: &Film, smaller: impl Fn(&Pixel) -> Option<T>) -> Option<Vec<T>> 
     Some(packed)
 }
 
-/// Returns the lower and the upper 64 bits.
+/// Returns the lower and the upper 64 bits of a number.
 fn words(number: i128) -> [u64; 2] {
     [number as u64, (number >> 64) as u64]
 }
 
 impl PackedFilm {
-    /// Packs a film. `samples` is the planned number of samples per pixel: the film gets a format
-    /// that is wide enough for it from the start, which avoids memory fragmentation.
+    /// Packs a film. `samples` is the planned number of samples per pixel. The format is wide
+    /// enough for this number from the start, which avoids fragmenting the memory.
     pub fn new(film: Film, samples: u32) -> Self {
         if film.rejected() > 0 {
             return PackedFilm::Unpacked(Box::new(film));
@@ -136,7 +138,7 @@ impl PackedFilm {
         }
     }
 
-    /// Unpacks the film. The window is given as left, top, width and height.
+    /// Unpacks the film. The window is given by its left and top edge, its width and its height.
     pub fn film(&self, [left, top, width, height]: [u32; 4]) -> Film {
         let film = |pixels: Vec<Pixel>| {
             let mut film = Film::window(left, top, width, height);
@@ -151,7 +153,7 @@ impl PackedFilm {
         }
     }
 
-    /// Calls `offer` with the mean and coverage of each pixel, row by row. They equal
+    /// Calls `offer` with the mean and coverage of each pixel, row by row. The values equal
     /// [`Film::resolve`] and [`Film::coverage`].
     pub fn for_each_mean(&self, mut offer: impl FnMut(Color, f32)) {
         let mut offer_pixel = |pixel: &Pixel| offer(pixel.mean(), pixel.coverage());
@@ -171,7 +173,8 @@ impl PackedFilm {
         }
     }
 
-    /// Returns the film if it is stored unpacked, as every film with rejected samples is.
+    /// Returns the film if it is stored unpacked. Films with rejected samples are always stored
+    /// unpacked.
     pub fn unpacked(&self) -> Option<&Film> {
         match self {
             PackedFilm::Unpacked(film) => Some(film),
@@ -179,7 +182,7 @@ impl PackedFilm {
         }
     }
 
-    /// Returns the usual size in bytes of a packed pixel with `samples` samples.
+    /// Returns the usual size of a packed pixel with `samples` samples, in bytes.
     pub fn pixel_bytes(samples: u32) -> u64 {
         (if samples == 1 { size_of::<Color>() } else { size_of::<CompactPixel>() }) as u64
     }

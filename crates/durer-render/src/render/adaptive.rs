@@ -1,4 +1,5 @@
-//! Adaptive sampling, second step: decides the number of samples of each pixel after the pilot.
+//! Second step of adaptive sampling, which decides the number of samples of each pixel after the
+//! pilot samples.
 
 use super::PixelRect;
 use super::allocation::{distribute, neighbor_variances};
@@ -7,7 +8,7 @@ use std::sync::Arc;
 
 impl PartialRender {
     /// Decides the number of samples of each pixel once all pixels have their pilot samples.
-    /// Returns true if the numbers are decided.
+    /// Returns true if the numbers have been decided.
     pub(super) fn allocate(&self) -> bool {
         let (samples, window) = (self.job.sampling.samples(), self.job.window());
         let blocks = self.state().samples.clone();
@@ -39,7 +40,8 @@ impl PartialRender {
         true
     }
 
-    /// Returns the number of samples decided for a pixel of the window, or `None` if undecided.
+    /// Returns the number of samples that was decided for a pixel of the window, or `None` if the
+    /// number is undecided.
     pub(super) fn sample_target(&self, x: u32, y: u32) -> Option<u32> {
         let (state, index) = (self.state(), self.blocks.index_at(x, y));
         let pixel = self.blocks.rect(index).pixel_positions().position(|place| place == (x, y))?;

@@ -15,57 +15,58 @@ use std::array::from_fn;
 pub(super) struct PixelSample {
     /// Position in the picture, in pixels from the upper left corner.
     pub(super) film_position: Vec2,
-    /// Position on the lens, in [0,1)^2.
+    /// Position on the lens in [0,1)^2.
     pub(super) lens: Vec2,
     /// Weight of the sample in the pixel.
     pub(super) weight: f32,
-    /// Camera ray; `None` if the camera has no ray there, as outside the circle of a fisheye.
+    /// Camera ray, or `None` if the camera has no ray there, for example outside the circle of a
+    /// fisheye lens.
     pub(super) ray: Option<Ray>,
 }
 
-/// Position and random sequence of a pixel, shared by all its samples.
+/// Position and random sequence of a pixel. All samples of the pixel share both.
 #[derive(Clone, Copy)]
 pub(super) struct Pixel {
     pub(super) x: u32,
     pub(super) y: u32,
     /// Source of random numbers for the pixel's samples.
     pub(super) id: SampleId,
-    /// Centre, in pixels from the upper left corner.
+    /// Centre of the pixel, measured in pixels from the upper left corner of the picture.
     center: Vec2,
-    /// Centre, in the camera's coordinates.
+    /// Centre of the pixel in the coordinates of the camera.
     point: Vec2,
-    /// Sobol sequence of positions in the pixel.
+    /// Sobol sequence of the positions in the pixel.
     positions: Sequence,
 }
 
-/// Number of samples whose rays are generated together with SIMD.
+/// Number of samples whose camera rays are generated together with SIMD.
 pub(super) const BATCH: usize = 8;
 
-/// Group of samples whose rays are generated together.
+/// A group of samples whose camera rays are generated together.
 pub(super) trait SampleGroup {
-    /// Returns the number of samples, at most [`BATCH`].
+    /// Returns the number of samples, which is at most [`BATCH`].
     fn len(&self) -> usize;
 
-    /// Returns the pixel of a sample. For an unused slot, returns any pixel.
+    /// Returns the pixel of a sample. For an unused slot, any pixel may be returned.
     fn pixel(&self, i: usize) -> &Pixel;
 
-    /// Returns the index of a sample in its pixel.
+    /// Returns the index of a sample within its pixel.
     fn number(&self, i: usize) -> u32;
 }
 
-/// Group of up to [`BATCH`] samples of one or several pixels.
+/// A group of up to [`BATCH`] samples of one or several pixels.
 pub(super) struct Batch {
     of: [(Pixel, u32); BATCH],
     len: usize,
 }
 
 impl Batch {
-    /// Creates an empty batch. Unused slots refer to the pixel `some`.
+    /// Creates an empty batch. The pixel `some` is used for unused slots.
     pub(super) fn new(some: Pixel) -> Self {
         Batch { of: [(some, 0); BATCH], len: 0 }
     }
 
-    /// Adds a sample. Returns true if the batch is then full.
+    /// Adds a sample. Returns true if the batch is full afterwards.
     pub(super) fn push(&mut self, pixel: &Pixel, sample: u32) -> bool {
         self.of[self.len] = (*pixel, sample);
         self.len += 1;
@@ -94,7 +95,7 @@ impl SampleGroup for Batch {
     }
 }
 
-/// Group of [`BATCH`] consecutive samples of one pixel.
+/// A group of [`BATCH`] consecutive samples of one pixel.
 pub(super) struct PixelRun<'a> {
     pub(super) pixel: &'a Pixel,
     pub(super) first: u32,
@@ -117,7 +118,7 @@ impl SampleGroup for PixelRun<'_> {
     }
 }
 
-/// Generator of the camera rays for a job's samples.
+/// Generator of the camera rays for the samples of a job.
 pub(super) struct CameraRays<'a> {
     world: &'a World,
     job: &'a Job,
@@ -147,7 +148,8 @@ impl<'a> CameraRays<'a> {
         Pixel { x, y, id, center, point: self.raster.point(center), positions: id.sequence(PIXEL_DIMENSION) }
     }
 
-    /// Generates a sample. Only for sampling methods whose samples affect their own pixel alone.
+    /// Generates a sample. This works only for sampling methods in which a sample affects a single
+    /// pixel.
     pub(super) fn sample(&self, pixel: &Pixel, sample: u32) -> PixelSample {
         let middle = Vec2::splat(0.5);
         let (film_position, lens, weight) = match (self.job.sampling, &self.filter_sampler) {
@@ -159,14 +161,14 @@ impl<'a> CameraRays<'a> {
             (Sampling::Course2004 { sampler, samples, .. }, _) => {
                 return self.spread_sample((sampler, sampler.round_up(samples)), pixel.x, pixel.y, sample).0;
             }
-            // One ray through the centres of the pixel and the lens.
+            // Generate a single ray through the centre of the pixel and the centre of the lens.
             _ => (pixel.center, middle, 1.0),
         };
         let at = CameraSample { point: self.raster.point(film_position), pixel: pixel.point, lens };
         PixelSample { film_position, lens, weight, ray: self.world.camera().ray(self.world.camera_frame(), &at) }
     }
 
-    /// Generates the rays and weights of a group of samples. The results equal those of
+    /// Generates the rays and weights of a group of samples. The results are the same as those of
     /// [`CameraRays::sample`].
     pub(super) fn sample_group(&self, of: &impl SampleGroup, mut take: impl FnMut(usize, Option<Ray>, f32)) {
         let mut take = |i: usize, ray, weight| {
@@ -202,8 +204,8 @@ impl<'a> CameraRays<'a> {
         self.world.camera().rays(self.world.camera_frame(), &samples, take);
     }
 
-    /// Generates a sample that a filter spreads over several pixels. Also returns its position in
-    /// its pixel.
+    /// Generates a sample that a filter spreads over several pixels. Also returns the position of
+    /// the sample within its pixel.
     pub(super) fn spread_sample(
         &self,
         (sampler, samples): (Sampler, u32),
@@ -217,14 +219,15 @@ impl<'a> CameraRays<'a> {
         (PixelSample { film_position, lens, weight: 1.0, ray }, position)
     }
 
-    /// Generates the sample of a sub-pixel, for the course of 2012.
+    /// Generates the sample of a sub-pixel for the 2012 course.
     pub(super) fn sub_pixel(&self, grid: &SubPixels, raster: &Raster, (x, y): (u32, u32)) -> PixelSample {
         let (place, lens) = (grid.place(self.job.seed, (x, y)), self.lens(Sampler::Random, x, y, 0));
         let ray = camera_ray(self.world, raster, (x, y), place, lens);
         PixelSample { film_position: place / grid.scale() as f32, lens, weight: 1.0, ray }
     }
 
-    /// Returns a sample's position on the lens. For a pinhole camera, it is the centre.
+    /// Returns the position of a sample on the lens. For a pinhole camera, this is the centre of
+    /// the lens.
     fn lens(&self, sampler: Sampler, x: u32, y: u32, sample: u32) -> Vec2 {
         match self.has_aperture {
             true => sampler.lens_position(self.job.seed, x, y, sample),
@@ -233,7 +236,7 @@ impl<'a> CameraRays<'a> {
     }
 }
 
-/// SIMD kernel that generates the samples of a group for sampling with a reconstruction filter.
+/// SIMD kernel that generates the samples of a group when a reconstruction filter is used.
 struct AimKernel<'a, S, F> {
     aim: &'a CameraRays<'a>,
     filter_sampler: &'a FilterSampler,

@@ -1,21 +1,22 @@
 //! Adaptive allocation of samples: noisier pixels get more samples.
 //!
-//! For a fixed total, the mean squared error is minimal if each pixel's sample count is
+//! For a fixed total, the mean squared error is minimal if the number of samples of each pixel is
 //! proportional to the standard deviation of its samples (Neyman 1934; Cochran, *Sampling
-//! Techniques*, 1977, section 5.5). First, all pixels get the same number of pilot samples, a
-//! quarter of the total. Then the final counts are decided once, from exact sums and in a fixed
-//! order.
+//! Techniques*, 1977, section 5.5). First, all pixels get the same number of pilot samples, which
+//! are a quarter of the total. Then the final numbers are computed once, from exact sums and in a
+//! fixed order.
 //!
-//! The relevant deviation is the one that remains as more samples are taken. With Sobol points, it
-//! is far smaller at edges than the deviation between samples. It is therefore estimated from the
-//! change of a pixel's mean in the second half of the pilot, not from the variance of its samples.
+//! The relevant deviation is the one that remains when more samples are taken. With Sobol points,
+//! it is far smaller at edges than the deviation between samples. It is therefore estimated from
+//! the change of a pixel's mean in the second half of the pilot samples, not from the variance of
+//! the samples.
 //!
-//! A pixel's sample count never depends on its own samples. Otherwise, samples that found much
-//! light by chance would attract more samples and get a smaller weight, and the picture would be
-//! too dark (Kirk and Arvo, *Unbiased Sampling Techniques for Image Synthesis*, 1991). Pixels are
-//! therefore split in a checkerboard pattern. The samples of each colour are distributed according
-//! to pixels of the other colour only, whose samples are independent and whose variance is similar.
-//! This makes the estimate unbiased.
+//! The number of samples of a pixel never depends on the pixel's own samples. Otherwise, samples
+//! that found much light by chance would lead to more samples and get a smaller weight, and the
+//! picture would be too dark (Kirk and Arvo, *Unbiased Sampling Techniques for Image Synthesis*,
+//! 1991). Pixels are therefore divided like the squares of a checkerboard. The number of samples of
+//! a pixel of one colour depends only on pixels of the other colour, whose samples are independent
+//! and whose variance is similar. This makes the estimate unbiased.
 
 #[cfg(test)]
 mod tests;
@@ -26,39 +27,42 @@ use crate::film::{Film, luminance_of};
 use durer_scene::sampler::Sampler;
 use std::sync::Arc;
 
-/// Minimum average number of samples per pixel with which adaptive sampling is allowed.
+/// Minimum average number of samples per pixel for adaptive sampling.
 pub const MIN_ADAPTIVE_SAMPLES: u32 = 16;
 
-/// Minimum number of samples in half of the pilot.
+/// Minimum number of samples in each half of the pilot samples.
 const LEAST_HALF: u32 = 4;
 
-/// Maximum number of samples of a pixel, as a multiple of the average.
+/// Maximum number of samples of a pixel as a multiple of the average.
 const MAX_RATIO: u32 = 64;
 
-/// Maximum number of samples of a pixel. A film can hold this many of any brightness.
+/// Maximum number of samples of a pixel. A film can hold this many samples of any brightness.
 const MOST: u32 = 1 << 20;
 
-/// Weights of the pixels up to six away along each axis: binomial coefficients. Their product
-/// approximates a normal distribution with a standard deviation of 1.7.
+/// Weights of the pixels up to six pixels away along each axis. They are binomial coefficients, and
+/// their product approximates a normal distribution with a standard deviation of 1.7.
 const WEIGHTS: [f32; 13] = [1.0, 12.0, 66.0, 220.0, 495.0, 792.0, 924.0, 792.0, 495.0, 220.0, 66.0, 12.0, 1.0];
 
-/// Returns half the number of pilot samples per pixel. `samples` is the average number.
+/// Returns half the number of pilot samples per pixel. `samples` is the average number of samples
+/// per pixel.
 pub(super) fn half(samples: u32) -> u32 {
     (samples / 8).max(LEAST_HALF)
 }
 
-/// Returns the number of pilot samples per pixel. `samples` is the average number.
+/// Returns the number of pilot samples per pixel. `samples` is the average number of samples per
+/// pixel.
 pub(super) fn pilot(samples: u32) -> u32 {
     2 * half(samples)
 }
 
-/// Returns the maximum number of samples of a pixel. `samples` is the average number.
+/// Returns the maximum number of samples of a pixel. `samples` is the average number of samples per
+/// pixel.
 pub(super) fn max_samples(samples: u32) -> u32 {
     samples.saturating_mul(MAX_RATIO).min(MOST.max(samples))
 }
 
-/// Returns how many samples a pixel has when the average so far is `end` of `samples`: the pilot
-/// samples and a proportional part of the others.
+/// Returns the number of samples that a pixel has once the image average reaches `end` out of
+/// `samples`: its pilot samples plus a proportional share of the rest.
 pub(super) fn count(samples: u32, target: u32, end: u32) -> u32 {
     let pilot = pilot(samples);
     if end <= pilot {
@@ -71,7 +75,7 @@ pub(super) fn count(samples: u32, target: u32, end: u32) -> u32 {
 /// Returns the reason why a job cannot be sampled adaptively, or `None` if it can.
 pub(super) fn reason_against(job: &Job, is_whole: bool) -> Option<String> {
     let is_spread = match job.sampling {
-        // `Center` is rejected below because it has only one sample.
+        // `Center` takes only one sample and is rejected below.
         Sampling::Center | Sampling::Filtered { .. } => true,
         Sampling::Course2004 { sampler, filter: None, .. } => matches!(sampler, Sampler::Sobol | Sampler::Random),
         _ => false,
@@ -95,9 +99,9 @@ pub(super) fn reason_against(job: &Job, is_whole: bool) -> Option<String> {
     Some(why)
 }
 
-/// Returns the variance of each pixel's mean luminance in a block after the pilot. `half` contains
-/// the first half of the pilot samples, `all` all of them. The square of half the difference
-/// between the two independent halves is an unbiased estimate.
+/// Returns the variance of the mean luminance of each pixel in a block after the pilot samples.
+/// `half` contains the first half of the pilot samples, and `all` contains all of them. The two
+/// halves are independent, so the square of half their difference is an unbiased estimate.
 pub(super) fn variances(half: &Film, all: &Film, rect: PixelRect) -> Arc<[f32]> {
     let luminance = |film: &Film, (x, y)| luminance_of(film.resolve(x, y));
     let square = |place| {
@@ -107,8 +111,8 @@ pub(super) fn variances(half: &Film, all: &Film, rect: PixelRect) -> Arc<[f32]> 
     rect.pixel_positions().map(square).map(|square| if square.is_finite() { square } else { 0.0 }).collect()
 }
 
-/// Estimates the variance of each pixel's mean from its neighbours of the other checkerboard
-/// colour.
+/// Estimates the variance of the mean of each pixel from the neighbours that have the other colour
+/// of the checkerboard.
 pub(super) fn neighbor_variances(variances: &[f32], width: usize) -> Vec<f32> {
     let (height, reach) = (variances.len() / width, WEIGHTS.len() / 2);
     let mut row = vec![(0.0_f32, 0.0_f32); width];
@@ -119,7 +123,7 @@ pub(super) fn neighbor_variances(variances: &[f32], width: usize) -> Vec<f32> {
             let (source, down) = (&variances[from * width..][..width], from + reach - y);
             for across in (0..WEIGHTS.len()).filter(|across| (down + across) % 2 == 1) {
                 let weight = WEIGHTS[down] * WEIGHTS[across];
-                // Column x gets the value of column x + across - reach.
+                // Column x receives the value of column x + across - reach.
                 let (to, from) = (reach.saturating_sub(across), across.saturating_sub(reach));
                 for ((sum, weights), variance) in row.iter_mut().skip(to).zip(source.iter().skip(from)) {
                     *sum += weight * variance;
@@ -132,21 +136,22 @@ pub(super) fn neighbor_variances(variances: &[f32], width: usize) -> Vec<f32> {
     found
 }
 
-/// Distributes an average of `samples` per pixel in proportion to the standard deviations. Each
-/// pixel gets at least the pilot samples. Samples above the maximum of all pixels are not taken.
+/// Distributes an average of `samples` samples per pixel in proportion to the standard deviations.
+/// Each pixel gets at least its pilot samples. If all pixels reach the maximum, the remaining
+/// samples are not taken.
 pub(super) fn distribute(deviations: &[f32], samples: u32) -> Vec<u32> {
     let (least, most) = (f64::from(pilot(samples)), f64::from(max_samples(samples)));
     let wanted = |factor: f64, deviation: f32| (factor * f64::from(deviation)).clamp(least, most);
     let all = deviations.len() as f64 * f64::from(samples);
-    // Find the greatest factor within the budget by bisection. The bits of positive floats are
-    // ordered like the floats.
+    // Find the greatest factor within the budget by bisection. The bit patterns of positive floats
+    // have the same order as the floats.
     let (mut low, mut high) = (0, f64::MAX.to_bits());
     while low < high {
         let middle = high - (high - low) / 2;
         let spent: f64 = deviations.iter().map(|&deviation| wanted(f64::from_bits(middle), deviation)).sum();
         if spent <= all { low = middle } else { high = middle - 1 }
     }
-    // Carry rounding errors to the next pixel, so that the sum is exact.
+    // Carry the rounding error over to the next pixel, so that the sum is exact.
     let (mut sum, mut given) = (0.0, 0.0);
     let rounded = |&deviation: &f32| {
         sum += wanted(f64::from_bits(low), deviation);

@@ -1,4 +1,5 @@
-//! Rendering of pictures that are larger than memory, in bands of rows that are written and freed.
+//! Rendering of pictures that do not fit into memory. They are rendered in bands of rows, and each
+//! band is written and freed.
 
 use super::{BLOCK, Control, Job, PartialRender, PixelRect, RenderError, RenderOutcome, Shard, Statistics};
 use crate::world::World;
@@ -7,18 +8,18 @@ use durer_scene::source::Digest;
 use std::io::{self, Write};
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Maximum size of a band in bytes. Larger bands would not be faster.
+/// Maximum size of a band in bytes. Larger bands would not render faster.
 const MAX_BAND_BYTES: u64 = 256 << 20;
 
-/// Render job whose colour picture is rendered in bands of rows to save memory.
+/// A render job whose colour picture is rendered in bands of rows to save memory.
 #[derive(Debug)]
 pub struct BandedRender {
     job: Job,
-    /// Number of rows in a band, a multiple of [`BLOCK`].
+    /// Number of rows in a band, which is a multiple of [`BLOCK`].
     rows: u32,
 }
 
-/// Error from rendering a picture in bands and writing it.
+/// Error while rendering a picture in bands and writing it.
 #[derive(Debug, thiserror::Error)]
 pub enum BandsError {
     /// The render failed.
@@ -33,11 +34,11 @@ pub enum BandsError {
 }
 
 impl BandedRender {
-    /// Divides a job's picture into bands of at most `memory` bytes each.
+    /// Divides the picture of a job into bands of at most `memory` bytes each.
     ///
     /// # Errors
-    /// [`RenderError::Bands`] if the job needs all pixels at once, and [`RenderError::Memory`] if
-    /// not even one row of blocks fits into memory.
+    /// Returns [`RenderError::Bands`] if the job needs all pixels at once, and
+    /// [`RenderError::Memory`] if the memory is too small for a single row of blocks.
     pub fn new(job: &Job, memory: u64) -> Result<Self, RenderError> {
         let refuse = |why: &str| Err(RenderError::Bands(why.into()));
         if !job.color || !job.aovs.is_empty() {
@@ -66,7 +67,7 @@ impl BandedRender {
         self.crops().first().map_or(0, |crop| PartialRender::bytes_needed(&self.band(*crop), Shard::WHOLE))
     }
 
-    /// Returns the bands from top to bottom. They end at block boundaries of the full picture.
+    /// Returns the bands from top to bottom. Their edges are block boundaries of the full picture.
     fn crops(&self) -> Vec<PixelRect> {
         let window = self.job.window();
         let (mut crops, mut top, end) = (Vec::new(), window.top, window.top + window.height);
@@ -83,11 +84,12 @@ impl BandedRender {
         Job { crop: Some(crop), ..self.job.clone() }
     }
 
-    /// Renders and writes the picture band by band. Returns statistics and, for top-down formats,
-    /// the hash that [`PartialRender::hash`] would give for the full picture.
+    /// Renders the picture band by band and writes each band. Returns statistics and, for formats
+    /// stored from top to bottom, the hash that [`PartialRender::hash`] would return for the full
+    /// picture.
     ///
     /// # Errors
-    /// [`BandsError`]. The output is then incomplete.
+    /// Returns [`BandsError`]. The output is then incomplete.
     pub fn write(
         &self,
         world: &World,
@@ -98,8 +100,8 @@ impl BandedRender {
     ) -> Result<(Statistics, Option<Digest>), BandsError> {
         let window = self.job.window();
         let bottom_up = format.rows.is_some_and(|rows| rows.bottom_up);
-        // Full coverage is known only at the end, so write an alpha channel unless the camera sees
-        // something everywhere.
+        // Full coverage is known only after the last band. An alpha channel is therefore written
+        // unless the camera is known to see something in every pixel.
         let (width, height, display) = (window.width, window.height, options.display);
         let strip = RowLayout { width, height, alpha: !has_all_rays(world, &self.job), display };
         let samples = u64::from(self.job.sampling.samples());
@@ -126,7 +128,7 @@ impl BandedRender {
     }
 }
 
-/// Returns true if the camera has a ray at all points of a grid over the window, including its
+/// Returns true if the camera has a ray at every point of a grid over the window, including its
 /// corners.
 fn has_all_rays(world: &World, job: &Job) -> bool {
     const ACROSS: u32 = 256;

@@ -1,8 +1,8 @@
-//! Division of a picture into blocks, into tiles of blocks as tasks for threads, and into shards.
+//! Division of a picture into blocks, into tiles that threads render, and into shards.
 //!
-//! All decisions (which shard renders a pixel, or where noise is low enough) are made for blocks of
-//! 8 x 8 pixels, whose corners are at multiples of 8 in the full picture. The tile size therefore
-//! does not affect the result.
+//! All decisions, such as which shard renders a pixel or where the noise is low enough, are made
+//! for blocks of 8 x 8 pixels. The corners of the blocks are at multiples of 8 in the full picture.
+//! The tile size therefore does not affect the result.
 
 use super::PixelRect;
 use serde::{Deserialize, Serialize};
@@ -15,11 +15,11 @@ use std::str::FromStr;
 pub const BLOCK: u32 = 8;
 
 /// Division of a window of the picture into blocks of 8 x 8 pixels, in reading order. Blocks at the
-/// window's edges can be smaller.
+/// edges of the window can be smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Blocks {
     window: PixelRect,
-    /// Column and row of the first block, counted in blocks from the corner of the full picture.
+    /// Column and row of the first block, in blocks from the corner of the full picture.
     first: (u32, u32),
     columns: u32,
     rows: u32,
@@ -51,7 +51,7 @@ impl Blocks {
         PixelRect { left, top, width, height }
     }
 
-    /// Iterates over the rows of blocks; each item is the range of block indices in a row.
+    /// Iterates over the rows of blocks. Each item is the range of block indices in one row.
     pub fn rows(&self) -> impl Iterator<Item = Range<usize>> {
         let columns = self.columns as usize;
         (0..self.count() / columns.max(1)).map(move |row| row * columns..(row + 1) * columns)
@@ -62,7 +62,8 @@ impl Blocks {
         (y / BLOCK - self.first.1) as usize * self.columns as usize + (x / BLOCK - self.first.0) as usize
     }
 
-    /// Groups the chosen blocks into tiles of `side` pixels. Both are in reading order.
+    /// Groups the chosen blocks into tiles of `side` pixels. Both blocks and tiles are in reading
+    /// order.
     pub fn tiles(&self, chosen: impl Iterator<Item = usize>, side: u32) -> Vec<Vec<usize>> {
         let blocks_a_side = side.div_ceil(BLOCK).max(1);
         let mut tiles: BTreeMap<(u32, u32), Vec<usize>> = BTreeMap::new();
@@ -75,7 +76,7 @@ impl Blocks {
     }
 }
 
-/// How shards divide a render between machines: by pixels or by samples.
+/// The way in which a render is divided between machines: by pixels or by samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ShardBy {
@@ -86,14 +87,14 @@ pub enum ShardBy {
     Samples,
 }
 
-/// One of several parts of a render, for distributing it over machines.
+/// One of several parts of a render that different machines can render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
-    /// Index of the shard, from 1.
+    /// Index of the shard, starting at 1.
     pub index: u32,
     /// Number of shards.
     pub count: u32,
-    /// How the work is divided.
+    /// The way in which the work is divided.
     pub by: ShardBy,
 }
 
@@ -102,19 +103,19 @@ impl Shard {
     pub const WHOLE: Shard = Shard { index: 1, count: 1, by: ShardBy::Tiles };
 
     /// Returns true if the shard renders the pixels of a block. Neighbouring blocks belong to
-    /// different shards, which balances the work.
+    /// different shards to balance the work.
     pub fn has_block(self, index: usize) -> bool {
         self.by == ShardBy::Samples || self.has_rays(index)
     }
 
-    /// Returns true if the shard traces the centre rays of a block. These are always divided by
-    /// blocks.
+    /// Returns true if the shard traces the centre rays of a block. Centre rays are always divided
+    /// by blocks.
     pub fn has_rays(self, index: usize) -> bool {
         index as u64 % u64::from(self.count) == u64::from(self.index - 1)
     }
 
-    /// Returns the range of a pixel's samples that the shard renders: first index and end
-    /// (exclusive).
+    /// Returns the range of a pixel's samples that the shard renders, as the first index and the
+    /// end (exclusive).
     pub fn range(self, samples: u32) -> (u32, u32) {
         let end = |index: u32| (u64::from(samples) * u64::from(index) / u64::from(self.count)) as u32;
         if self.by == ShardBy::Tiles { (0, samples) } else { (end(self.index - 1), end(self.index)) }
@@ -130,7 +131,7 @@ impl fmt::Display for Shard {
 impl FromStr for Shard {
     type Err = String;
 
-    /// Parses a shard such as `3/16`, the third of sixteen, divided by tiles.
+    /// Parses a shard such as `3/16`, which is the third of sixteen shards divided by tiles.
     fn from_str(text: &str) -> Result<Self, String> {
         let numbers = text.split_once('/').and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
         let (index, count) = numbers.ok_or("expected INDEX/COUNT, for example 3/16 for the third of sixteen")?;

@@ -1,4 +1,4 @@
-//! Centre rays: AOV values from one ray through each pixel's centre.
+//! Tracing of centre rays. Some AOV values of a pixel are computed from one ray through its centre.
 
 use super::part::{BlockAovs, PrimaryHit};
 use super::samples::{Cancelled, SampleCursor, SampleSource};
@@ -39,7 +39,7 @@ pub(super) fn trace(
         let albedo = hit.map_or(Vec3::ZERO, |at| samples.whitted.albedo(&at));
         let illuminance = match &hit {
             Some(at) if illuminance_wanted => {
-                // Irradiance on the visible side.
+                // Irradiance on the side of the surface that the ray hits.
                 let side = if at.inside() { -at.surface.n_shade } else { at.surface.n_shade };
                 let (mut sum, count) = (Vec3::ZERO, job.sampling.samples().max(1));
                 for sample in 0..count {
@@ -54,7 +54,7 @@ pub(super) fn trace(
         inputs.push(AovInput { covered: true, hit, albedo, counts, illuminance });
     }
     samples.check()?;
-    // Replace NaN and infinity by 0.
+    // Replace NaN and infinity with 0.
     let finite = |value: Vec3| if value.is_finite() { value } else { Vec3::ZERO };
     let values = job.ray_aovs().flat_map(|(_, value)| inputs.iter().map(value).map(finite)).collect();
     let hit = |input: &AovInput| match (input.covered, input.hit.is_some()) {

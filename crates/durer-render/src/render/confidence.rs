@@ -1,16 +1,18 @@
-//! Error bounds for pixels, from noise and bias.
+//! Error bounds for pixels, which include noise and bias.
 //!
-//! The mean of n samples has a standard error. Photon mapping also has a bias, since it averages
+//! The mean of n samples has a standard error. Photon mapping also has a bias, because it averages
 //! over a neighbourhood. The bias is estimated from the same photons with a second-order kernel
 //! (see [`crate::integrator::PhotonTracer::corrected`]). Let M be the mean, C the corrected mean
-//! and s the standard error of C. At some confidence, the true value is within t s of C, where t is
-//! Student's quantile with n - 1 degrees of freedom. It is therefore within |M - C| + t s of M.
+//! and s the standard error of C. At a given confidence level, the true value differs from C by at
+//! most t s, where t is Student's quantile with n - 1 degrees of freedom. It therefore differs from
+//! M by at most |M - C| + t s.
 //!
 //! Source: Hachisuka, Jarosz and Jensen, *A Progressive Error Estimation Framework for Photon
-//! Density Estimation*, 2010. They take the bias from derivatives of a smooth kernel; here it comes
-//! from two kernels over the same photons. Since all pixels have equal radii (Knaus and Zwicker
-//! 2011), it is an ordinary mean over samples. As in the paper, light is assumed to be smooth
-//! within the radius: at the sharp edge of a caustic, about six tenths of the bias are found.
+//! Density Estimation*, 2010. The paper computes the bias from derivatives of a smooth kernel,
+//! whereas this module uses two kernels over the same photons. All pixels have equal radii (Knaus
+//! and Zwicker 2011), so the bias is an ordinary mean over samples. As in the paper, the light is
+//! assumed to be smooth within the radius. At the sharp edge of a caustic, the method finds only
+//! about six tenths of the bias.
 
 use super::part::PartialRender;
 use super::run::render_all;
@@ -25,22 +27,22 @@ use serde::Serialize;
 /// Confidence level of the error bounds.
 pub const CONFIDENCE: f64 = 0.9;
 
-/// Bound on the error of a pixel's luminance, from its noise and from the bias of photon mapping.
+/// Bound on the error of a pixel's luminance. It includes noise and the bias of photon mapping.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ErrorBound {
     /// Estimated luminance.
     pub luminance: f64,
-    /// Estimated bias of the luminance, possibly negative. 0 without photons.
+    /// Estimated bias of the luminance, which can be negative. It is 0 without photons.
     pub bias: f64,
-    /// Standard error of the luminance after subtracting the bias.
+    /// Standard error of the luminance after the bias has been subtracted.
     pub standard_error: f64,
-    /// Bound on the absolute error of the luminance with confidence [`CONFIDENCE`]. Infinite for
-    /// one sample.
+    /// Bound on the absolute error of the luminance with confidence [`CONFIDENCE`]. It is infinite
+    /// for one sample.
     pub bound: f64,
 }
 
 impl ErrorBound {
-    /// Computes the bound from a pixel's samples and from its bias-corrected samples.
+    /// Computes the bound from the samples of a pixel and from its bias-corrected samples.
     pub(super) fn new(own: &PixelStatistics, corrected: &PixelStatistics) -> Self {
         let (luminance, without) = (own.luminance(), corrected.luminance());
         let standard_error = corrected.variance().sqrt();
@@ -57,18 +59,18 @@ impl ErrorBound {
 }
 
 /// Returns the quantile of Student's distribution with upper tail probability (1 - [`CONFIDENCE`])
-/// / 2. Infinite for less than one degree of freedom.
+/// / 2. The quantile is infinite for less than one degree of freedom.
 ///
-/// Source: Abramowitz and Stegun, *Handbook of Mathematical Functions*, 26.7.5. The result is 5 %
-/// too small for one degree of freedom, and accurate to 0.3 % for two or more.
+/// Source: Abramowitz and Stegun, *Handbook of Mathematical Functions*, 26.7.5. The approximation
+/// is 5 % too small for one degree of freedom and accurate to 0.3 % for two or more.
 fn student(freedom: f64) -> f64 {
     if freedom < 1.0 {
         return f64::INFINITY;
     }
-    // 0.95 quantile of the normal distribution.
+    // The 0.95 quantile of the normal distribution.
     let z = 1.644_853_626_951_472_7_f64;
     let (square, mut power) = (z * z, z);
-    // z and its odd powers up to the ninth.
+    // The odd powers of z up to the ninth power.
     let powers = [1.0, square, square, square, square].map(|factor| {
         power *= factor;
         power
@@ -86,7 +88,7 @@ fn student(freedom: f64) -> f64 {
     terms.iter().rev().fold(0.0, |sum, term| sum / freedom + term)
 }
 
-/// Returns the bias-corrected variant of an integrator, or `None` if it is unbiased.
+/// Returns the bias-corrected variant of an integrator, or `None` if the integrator is unbiased.
 pub(super) fn bias_corrected(method: IntegratorKind) -> Option<IntegratorKind> {
     match method {
         IntegratorKind::Photons(photons) => {
@@ -97,13 +99,13 @@ pub(super) fn bias_corrected(method: IntegratorKind) -> Option<IntegratorKind> {
 }
 
 impl PartialRender {
-    /// Computes the error bound of each pixel's luminance with confidence [`CONFIDENCE`]. Returns a
-    /// layer of values and a layer with a heat map of values up to 0.1. Photons are traced a second
-    /// time. The sums and the hash of this part do not change.
+    /// Computes the error bound of each pixel's luminance with confidence [`CONFIDENCE`]. Returns
+    /// one layer with the values and another with a heat map of the values up to 0.1. Photons are
+    /// traced a second time. The sums and the hash of this part do not change.
     ///
     /// # Errors
-    /// [`RenderError`] as for the picture itself. [`RenderError::Diagram`] for photons with a noise
-    /// threshold or a time limit.
+    /// Returns the same [`RenderError`] as for the picture itself, and [`RenderError::Diagram`] for
+    /// photons with a noise threshold or a time limit.
     pub fn error(&self, world: &World, threads: Option<usize>) -> Result<[Layer; 2], RenderError> {
         let made = |job: &Job| render_all(world, job, &Control { threads, ..Control::default() });
         let job = Job { color: true, aovs: Vec::new(), ..self.job.clone() };
@@ -128,8 +130,8 @@ impl PartialRender {
         Ok([Layer::data("error", values), Layer::data("error", shown)])
     }
 
-    /// Returns the error bound of each pixel. `other` has the same samples, bias-corrected. Bounds
-    /// are infinite for pixels without samples.
+    /// Returns the error bound of each pixel. `other` contains the same samples with bias
+    /// correction. The bound is infinite for pixels without samples.
     fn error_bounds(&self, other: Option<&PartialRender>) -> Vec<f32> {
         let (window, gain) = (self.job.window(), self.gain());
         let (state, other) = (self.state(), other.map(PartialRender::state));

@@ -3,43 +3,43 @@
 use std::sync::atomic::{AtomicBool, AtomicU64};
 use std::time::Duration;
 
-/// Execution options, cancellation and progress of a render. They do not affect the finished
-/// picture.
+/// Options, cancellation and progress of a render. They do not affect the finished picture.
 #[derive(Debug, Default)]
 pub struct Control {
-    /// Number of threads; `None` for one per processor.
+    /// Number of threads, or `None` for one thread per processor.
     pub threads: Option<usize>,
-    /// Width and height of a tile in pixels, rounded up to a multiple of 8. Each thread works on
-    /// one tile at a time. `None` for automatic.
+    /// Width and height of a tile in pixels, rounded up to a multiple of 8, or `None` to choose it
+    /// automatically. Each thread works on one tile at a time.
     pub tile_size: Option<u32>,
-    /// Time after which no more samples are taken, provided that every pixel has one.
+    /// Time after which no more samples are taken, provided that every pixel has at least one.
     pub time_limit: Option<Duration>,
-    /// Number of tiles after which the render stops as if cancelled. For tests of resuming.
+    /// Number of tiles after which the render stops as if it had been cancelled. This is used to
+    /// test that a render can be resumed.
     pub max_tiles: Option<u64>,
-    /// Interval at which the callback is asked to save a checkpoint.
+    /// Time between two requests to the callback to save a checkpoint.
     pub save_every: Option<Duration>,
-    /// Memory limit in bytes; `None` for no limit.
+    /// Memory limit in bytes, or `None` for no limit.
     pub memory: Option<u64>,
-    /// Set by the caller to cancel the render.
+    /// True once the caller has cancelled the render.
     pub cancel: AtomicBool,
-    /// Total number of samples and data rays in the render; see [`super::PartialRender::work`].
+    /// Total number of samples and centre rays in the render. See [`super::PartialRender::work`].
     pub total_work: AtomicU64,
-    /// Number of finished samples and data rays.
+    /// Number of samples and centre rays that are finished.
     pub done_work: AtomicU64,
     /// Number of rays traced so far.
     pub rays: AtomicU64,
-    /// True if `total_work` is the total for several renders, whose work accumulates in
-    /// `done_work`.
+    /// True if `total_work` is the total of several renders. The finished work of all these renders
+    /// is then added up in `done_work`.
     pub accumulates: bool,
 }
 
 /// Point at which a call of [`super::PartialRender::render_to`] stops.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum RunLimit {
-    /// When everything is done.
+    /// Stops when all work is done.
     End,
-    /// When all passes with at most this many samples per pixel are done.
+    /// Stops when all passes with at most this many samples per pixel are done.
     Samples(u32),
-    /// After the single pass that ends with this many samples per pixel.
+    /// Stops after the single pass that ends with this many samples per pixel.
     Pass(u32),
 }

@@ -1,4 +1,5 @@
-//! Sampling methods of the course, Fall 2004 and 2012, in which samples also affect other pixels.
+//! Sampling methods of the Fall 2004 and Fall 2012 courses, in which a sample can affect several
+//! pixels.
 
 use super::aim::PixelSample;
 use super::error::MAX_STORED;
@@ -14,10 +15,10 @@ use durer_scene::math::{Color, Vec3};
 use durer_scene::sampler::{SampleId, Sampler};
 use std::cell::Cell;
 
-/// Takes all samples of a job and returns their positions and colours, for a diagram of them.
+/// Takes all samples of a job and returns their positions and colours for a diagram.
 ///
 /// # Errors
-/// [`RenderError`], including [`RenderError::TooManySamples`].
+/// Returns [`RenderError`], including [`RenderError::TooManySamples`].
 pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<StoredSamples, RenderError> {
     let (sampler, samples) = match job.sampling {
         Sampling::Course2004 { sampler, samples, .. } => (sampler, samples),
@@ -37,23 +38,26 @@ pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<Sto
     threads::install(control.threads, work).map_err(|Cancelled| RenderError::Cancelled)
 }
 
-/// Returns the memory in bytes for the samples of a tile, if samples affect other pixels; else 0.
+/// Returns the memory in bytes for the samples of a tile if samples affect other pixels. Otherwise,
+/// returns 0.
 pub(super) fn stored_bytes(job: &Job, side: u32) -> u64 {
     match job.sampling {
         Sampling::Course2004 { sampler, samples, filter: Some(filter) } => {
             let across = u64::from(side) + 2 * u64::from(filter.support());
             across * across * u64::from(sampler.round_up(samples)) * size_of::<StoredSample>() as u64
         }
-        // The picture, its blur along rows, and the blur of that along columns.
+        // Space for the picture, the picture blurred along rows, and that picture blurred along
+        // columns.
         Sampling::Course2012 { .. } => 3 * 9 * 12 * u64::from(side + 2) * u64::from(side + 2),
         _ => 0,
     }
 }
 
-/// Quantity that the course's samples store: colours, or a mask for the coverage.
+/// Values that the samples of the course store: either colours or a mask for the coverage.
 ///
-/// The course's films have no coverage. If the camera has no ray for some sample, a second picture
-/// is therefore rendered as a mask: white where the camera has a ray, black elsewhere.
+/// The films of the course have no coverage. If the camera has no ray for some sample, a second
+/// picture is therefore rendered as a mask. The mask is white where the camera has a ray and black
+/// elsewhere.
 #[derive(Default)]
 struct SubPixelPicture {
     mask: bool,
@@ -61,15 +65,15 @@ struct SubPixelPicture {
     misses_ray: Cell<bool>,
 }
 
-/// Returns a pixel's coverage from its value in the mask. Sums of filter weights are inexact, so
-/// almost full coverage counts as full.
+/// Returns the coverage of a pixel from its value in the mask. Sums of filter weights are inexact,
+/// so almost full coverage counts as full coverage.
 pub(super) fn coverage_of(white: Color) -> f32 {
     if white.x > 1.0 - 1e-6 { 1.0 } else { white.x.max(0.0) }
 }
 
 impl SampleSource<'_> {
     /// Returns the finished pixels of a rectangle with their coverage, for sampling methods whose
-    /// samples affect other pixels. Also takes the samples that it needs around the rectangle.
+    /// samples affect other pixels. Also takes the necessary samples around the rectangle.
     pub(super) fn finished(
         &self,
         part: PixelRect,
@@ -90,7 +94,7 @@ impl SampleSource<'_> {
         Ok(colors.into_iter().zip(mask).map(|(color, white)| (color, coverage_of(white))).collect())
     }
 
-    /// Renders the colours of a rectangle, or its mask.
+    /// Renders the colours or the mask of a rectangle.
     fn shown(
         &self,
         show: &SubPixelPicture,
@@ -114,7 +118,7 @@ impl SampleSource<'_> {
         aim.ray.map_or(Vec3::ZERO, light)
     }
 
-    /// Stores and reconstructs samples as in Fall 2004.
+    /// Stores samples and reconstructs the picture as in the Fall 2004 course.
     fn course_2004(
         &self,
         show: &SubPixelPicture,
@@ -130,8 +134,8 @@ impl SampleSource<'_> {
         stored.try_reconstruct(filter, from, (part.width, part.height), || self.check())
     }
 
-    /// Takes all samples of a rectangle. Counts rays only for the pixels for which `counted` is
-    /// true.
+    /// Takes all samples of a rectangle. Rays are counted only for pixels for which `counted`
+    /// returns true.
     fn stored(
         &self,
         show: &SubPixelPicture,
@@ -153,8 +157,8 @@ impl SampleSource<'_> {
         })
     }
 
-    /// Applies `-jitter` and `-filter` of Fall 2012. Without jitter, the picture is blurred at its
-    /// own size.
+    /// Applies `-jitter` and `-filter` of the Fall 2012 course. Without jitter, the picture is
+    /// blurred at its own size.
     fn course_2012(
         &self,
         show: &SubPixelPicture,

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Rectangle of pixels in a picture, such as the part to render or a block. Coordinates are
-/// measured from the picture's upper left corner.
+/// A rectangle of pixels in a picture, such as a block or the part to render. Coordinates are
+/// measured from the upper left corner of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PixelRect {
     /// First column.
@@ -17,7 +17,7 @@ pub struct PixelRect {
 }
 
 impl PixelRect {
-    /// Returns the rectangle of a single pixel.
+    /// Returns the rectangle that contains a single pixel.
     pub fn pixel((left, top): (u32, u32)) -> PixelRect {
         PixelRect { left, top, width: 1, height: 1 }
     }
@@ -27,7 +27,7 @@ impl PixelRect {
         u64::from(self.width) * u64::from(self.height)
     }
 
-    /// Returns the smallest rectangle that contains both.
+    /// Returns the smallest rectangle that contains both rectangles.
     pub fn union(self, other: PixelRect) -> PixelRect {
         let (left, top) = (self.left.min(other.left), self.top.min(other.top));
         let right = (self.left + self.width).max(other.left + other.width);
@@ -35,7 +35,8 @@ impl PixelRect {
         PixelRect { left, top, width: right - left, height: bottom - top }
     }
 
-    /// Returns the rectangle grown by some pixels on each side, clipped to the picture `within`.
+    /// Returns the rectangle enlarged by a number of pixels on each side and clipped to the picture
+    /// `within`.
     pub fn grown(self, by: u32, within: PixelRect) -> PixelRect {
         let (left, top) = (self.left.saturating_sub(by), self.top.saturating_sub(by));
         let right = self.left.saturating_add(self.width).saturating_add(by).min(within.width);
@@ -48,7 +49,7 @@ impl PixelRect {
         x.wrapping_sub(self.left) < self.width && y.wrapping_sub(self.top) < self.height
     }
 
-    /// Returns the index of a pixel in the rectangle, in reading order.
+    /// Returns the index of a pixel within the rectangle, in reading order.
     pub(super) fn index(self, x: u32, y: u32) -> usize {
         (y - self.top) as usize * self.width as usize + (x - self.left) as usize
     }

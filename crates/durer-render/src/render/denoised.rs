@@ -8,20 +8,20 @@ use durer_image::denoise::{GuideImages, denoise};
 use durer_image::{Image, Layer};
 use durer_scene::math::Vec3;
 
-/// AOVs that guide the denoiser.
+/// AOVs that the denoiser uses as guides.
 const GUIDES: [&str; 3] = ["albedo", "normals", "position"];
 
-/// Noisy colour picture of a render, with the albedo, normals, positions and variances that guide a
-/// denoiser.
+/// The noisy colour picture of a render with the albedo, normals, positions and variances that
+/// guide a denoiser.
 #[derive(Clone, Debug)]
 pub struct NoisyPicture {
-    /// The picture, as rendered.
+    /// The picture as it was rendered.
     pub picture: Image,
     /// Coverage of each pixel.
     pub coverage: Vec<f32>,
     /// Albedo of the surface in each pixel.
     pub albedo: Vec<Vec3>,
-    /// Normal of the surface in each pixel; zero for misses.
+    /// Normal of the surface in each pixel, or zero where the ray hit nothing.
     pub normal: Vec<Vec3>,
     /// World-space position of the surface in each pixel.
     pub position: Vec<Vec3>,
@@ -30,11 +30,11 @@ pub struct NoisyPicture {
 }
 
 impl PartialRender {
-    /// Returns the current colour picture with guides, which are traced with one ray per pixel. The
-    /// sums and the hash of this part do not change.
+    /// Returns the current colour picture with its guides, which are computed from one ray per
+    /// pixel. The sums and the hash of this part do not change.
     ///
     /// # Errors
-    /// [`RenderError`] as for a picture with one ray per pixel.
+    /// Returns the same [`RenderError`] as for a picture with one ray per pixel.
     pub fn noisy(&self, world: &World, threads: Option<usize>) -> Result<NoisyPicture, RenderError> {
         let aovs = GUIDES.iter().filter_map(|name| Aov::from_name(name)).collect();
         let job = Job { color: false, aovs, noise: None, adaptive: false, ..self.job.clone() };
@@ -52,7 +52,7 @@ impl PartialRender {
 }
 
 impl NoisyPicture {
-    /// Denoises the picture with Dürer's own denoiser; see [`denoise`]. The result is bit-identical
+    /// Denoises the picture with Dürer's own denoiser. See [`denoise`]. The result is bit-identical
     /// for any number of threads.
     pub fn denoised(self) -> Layer {
         let NoisyPicture { picture, albedo, normal, position, variance, .. } = &self;
@@ -61,7 +61,7 @@ impl NoisyPicture {
         self.layer(clean)
     }
 
-    /// Wraps a denoised picture as a layer.
+    /// Returns a denoised picture as a layer.
     pub fn layer(self, clean: Image) -> Layer {
         Layer::color("denoised", clean).with_coverage(self.coverage)
     }

@@ -1,32 +1,32 @@
-//! Errors from rendering.
+//! Errors that occur during rendering.
 
 use durer_diag::{format_bytes_down, format_bytes_up};
 use durer_image::ImageError;
 use durer_scene::math::Vec2;
 
-/// Maximum number of samples stored at once for a diagram.
+/// Maximum number of samples that are stored at the same time for a diagram.
 pub(super) const MAX_STORED: u64 = 1 << 27;
 
-/// Error from rendering a picture or a part of it.
+/// Error while rendering a picture or a part of it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
     /// The caller set [`super::Control::cancel`].
     #[error("cancelled")]
     Cancelled,
-    /// The picture is too large, or the crop is outside of it.
+    /// The picture is too large, or the crop rectangle is outside the picture.
     #[error(transparent)]
     Image(#[from] ImageError),
     /// A value of the job is out of range.
     #[error("{0}")]
     Job(String),
-    /// The crop is outside the picture.
+    /// The crop rectangle is outside the picture.
     #[error("the crop must be inside the picture of {0} x {1} pixels")]
     CropOutside(u32, u32),
-    /// A diagram of samples would have to store too many.
+    /// A diagram of samples would have to store too many samples.
     #[error("too many samples for a diagram: {0}, but at most {MAX_STORED} are allowed")]
     TooManySamples(u64),
-    /// The diagram cannot be drawn.
+    /// The diagram cannot be drawn for the given reason.
     #[error("{0}")]
     Diagram(String),
     /// The render cannot be divided in this way.
@@ -35,10 +35,10 @@ pub enum RenderError {
     /// The job cannot be sampled adaptively.
     #[error("{0}")]
     Adaptive(String),
-    /// The picture is too large for memory and cannot be rendered in bands.
+    /// The picture does not fit into memory and cannot be rendered in bands.
     #[error("cannot render a picture of this size in bands of rows: {0}")]
     Bands(String),
-    /// The render needs too much memory.
+    /// The render needs more memory than the limit allows.
     #[error("rendering needs about {} of memory, but the limit is {}", format_bytes_up(*.needed), format_bytes_down(*.allowed))]
     Memory {
         /// Bytes needed.
@@ -46,7 +46,7 @@ pub enum RenderError {
         /// Bytes allowed.
         allowed: u64,
     },
-    /// The system has too little memory for the render.
+    /// The system does not have enough memory for the render.
     #[error("rendering needs about {} of memory, but the system has less", format_bytes_up(*.0))]
     NoMemory(u64),
     /// The saved part belongs to another scene.
@@ -57,7 +57,8 @@ pub enum RenderError {
     Panic(#[from] Panicked),
 }
 
-/// Error that reports a panic and the sample that caused it, which is a bug. Other work is kept.
+/// Error that reports a panic and the sample that caused it. A panic is a bug in Dürer. The work on
+/// other samples is kept.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("internal error: pixel {x},{y}{}: {message}", sample.map(|s| format!(", sample {s}")).unwrap_or_default())]
 pub struct Panicked {
@@ -65,10 +66,10 @@ pub struct Panicked {
     pub x: u32,
     /// Row of the pixel.
     pub y: u32,
-    /// Index of the sample. `None` for the ray through the pixel's centre, and for pixels that
+    /// Index of the sample. It is `None` for the ray through the pixel's centre and for pixels that
     /// share samples.
     pub sample: Option<u32>,
-    /// Message of the panic.
+    /// Message of the panic that occurred.
     pub message: String,
 }
 

@@ -1,4 +1,5 @@
-//! Explanation of a pixel's colour: all samples, each with the tree of terms that it consists of.
+//! Explanation of a pixel's colour. It lists all samples with the tree of terms that each sample
+//! consists of.
 
 pub mod check;
 mod course;
@@ -26,62 +27,62 @@ use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 pub use text::{ExplainOptions, SceneNames, TextLine, ray_text};
 
-/// Explanation of a pixel's colour for `durer explain`: its samples with everything that
-/// contributed to them.
+/// Explanation of the colour of a pixel for `durer explain`. It contains the pixel's samples and
+/// everything that contributed to them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Explanation {
-    /// Column from the left.
+    /// Column of the pixel, counted from the left.
     pub x: u32,
-    /// Row from the top.
+    /// Row of the pixel, counted from the top.
     pub y: u32,
-    /// Colour of the pixel, as in a floating-point file.
+    /// Colour of the pixel as stored in a floating-point file.
     pub color: Color,
     /// Coverage.
     pub coverage: f32,
-    /// How the samples are combined; see [`Explanation::sum`].
+    /// The way in which the samples are combined. See [`Explanation::sum`].
     pub mean: SampleCombination,
-    /// Samples of the pixel, in the order of summation.
+    /// Samples of the pixel in the order in which they are added.
     pub samples: Vec<ExplainedSample>,
-    /// Colour that the quirk `stale-texels` of an official program adds.
+    /// Colour that is added by the quirk `stale-texels` of an official program.
     pub stale_texels: Option<Color>,
-    /// Bound on the pixel's error, for path tracing with more than one sample.
+    /// Bound on the error of the pixel. It exists for path tracing with more than one sample.
     pub error: Option<ErrorBound>,
 }
 
-/// How the samples of an explained pixel are combined into its colour.
+/// The way in which the samples of an explained pixel are combined into its colour.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum SampleCombination {
-    /// Weighted mean of the pixel's own samples, by the film's exact sums.
+    /// Weighted mean of the pixel's own samples, computed with the exact sums of the film.
     Own,
-    /// Fall 2004: weighted mean of the samples of this pixel and its neighbours, summed in double
-    /// precision.
+    /// Combination of the Fall 2004 course. The pixel is the weighted mean of its own samples and
+    /// the samples of its neighbours, summed in double precision.
     #[serde(rename = "around")]
     Neighbors,
-    /// Fall 2012: sub-pixels are blurred along rows, then along columns, and then averaged. The
-    /// samples' weights include all three steps.
+    /// Combination of the Fall 2012 course. The sub-pixels are blurred along rows, then blurred
+    /// along columns, and then averaged. The weights of the samples include all three steps.
     SubPixels(SubPixels),
 }
 
-/// Sample of an explained pixel, with the trace of its light.
+/// A sample of an explained pixel with the trace of its light.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ExplainedSample {
-    /// Column and row of the pixel that the sample belongs to, usually the explained one.
+    /// Column and row of the pixel that the sample belongs to. This is usually the explained pixel.
     pub of: (u32, u32),
-    /// Index in that pixel.
+    /// Index of the sample within that pixel.
     pub sample: u32,
     /// Position in the picture, in pixels from the upper left corner.
     pub place: Vec2,
-    /// Position on the lens, in [0,1)^2.
+    /// Position on the lens in [0,1)^2.
     pub lens: Vec2,
-    /// Weight in the explained pixel, not normalized.
+    /// Weight of the sample in the explained pixel. The weights are not normalized.
     pub weight: f32,
-    /// Trace of the sample's light. `null` in JSON if the camera has no ray there.
+    /// Trace of the sample's light. It is `null` in JSON if the camera has no ray there.
     pub light: Option<Tree>,
 }
 
 impl Explanation {
-    /// Computes the pixel's colour and coverage from the traces, with the same arithmetic as a
+    /// Computes the colour and coverage of the pixel from the traces, with the same arithmetic as a
     /// render.
     pub fn sum(&self) -> (Color, f32) {
         let mut film = Film::window(self.x, self.y, 1, 1);
@@ -105,12 +106,12 @@ impl Explanation {
     }
 }
 
-/// Returns the trace of any ray. `id` selects the random numbers.
+/// Returns the trace of an arbitrary ray. `id` selects the random numbers.
 pub fn explain_ray(world: &World, job: &Job, ray: &Ray, id: SampleId) -> Option<Tree> {
     trace_tree(&job.integrator(world, None), ray, id)
 }
 
-/// Traces a camera ray and returns the tree of its terms.
+/// Traces a camera ray and returns the tree of terms that make up its light.
 fn trace_tree(integrator: &Integrator, ray: &Ray, id: SampleId) -> Option<Tree> {
     let mut account = TraceRecorder::default();
     integrator.radiance(ray, id, &mut account);
@@ -121,15 +122,15 @@ fn trace_tree(integrator: &Integrator, ray: &Ray, id: SampleId) -> Option<Tree> 
 ///
 /// # Errors
 ///
-/// [`RenderError`] if the pixel is outside the picture, or if rendering to find the adaptive sample
-/// count fails.
+/// Returns a [`RenderError`] if the pixel is outside the picture, or if the rendering that
+/// determines the adaptive number of samples fails.
 pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, RenderError> {
     explain_samples(world, job, (x, y), None)
 }
 
-/// Explains a pixel whose number of samples may be known. If it is not, a noise threshold makes it
-/// necessary to render the pixel's block, and adaptive sampling a quarter of all samples of the
-/// picture.
+/// Explains a pixel whose number of samples may already be known. If it is unknown, a noise
+/// threshold requires rendering the block of the pixel, and adaptive sampling requires rendering a
+/// quarter of all samples of the picture.
 ///
 /// # Errors
 /// See [`explain`].
@@ -180,8 +181,8 @@ pub fn explain_samples(
     Ok(explanation)
 }
 
-/// Returns the error bound of a pixel from its samples and, for photons, from their bias-corrected
-/// versions.
+/// Returns the error bound of a pixel. It is computed from the samples of the pixel and, for photon
+/// mapping, from their bias-corrected versions.
 fn error(world: &World, job: &Job, source: &SampleSource, explanation: &Explanation) -> ErrorBound {
     let Explanation { x, y, ref samples, .. } = *explanation;
     let film = |color: &dyn Fn(&ExplainedSample) -> Option<Color>| {
@@ -201,8 +202,8 @@ fn error(world: &World, job: &Job, source: &SampleSource, explanation: &Explanat
     ErrorBound::new(&sums(&own), &sums(twin.as_ref().unwrap_or(&own)))
 }
 
-/// Returns the number of samples of a pixel. With a noise threshold, renders the pixel's block to
-/// find it; with adaptive sampling, renders the pilot of the full picture.
+/// Returns the number of samples of a pixel. To determine it, renders the block of the pixel if
+/// there is a noise threshold, and the pilot samples of the full picture for adaptive sampling.
 fn count(world: &World, job: &Job, (x, y): (u32, u32)) -> Result<u32, RenderError> {
     let samples = job.sampling.samples();
     let window = if job.window().contains(x, y) { job.window() } else { job.whole() };

@@ -1,4 +1,5 @@
-//! Picture of a uniform grid, as in the course's assignment: occupied cells are drawn as boxes.
+//! Picture of a uniform grid whose occupied cells are drawn as boxes, as in the course's
+//! assignment.
 
 use super::{Control, Job, RenderError, center_ray, raster};
 use crate::threads;
@@ -11,8 +12,8 @@ use durer_scene::shape::Primitive;
 use rayon::prelude::*;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Colours of cells by the number of objects in them: white for one, then from cold to hot. The
-/// course does not prescribe them.
+/// Colours of cells by the number of objects in them. A cell with one object is white, and more
+/// objects give colours from cold to hot. The course does not prescribe the colours.
 const COLORS: [Vec3; 8] = [
     Vec3::ONE,
     Vec3::new(1.0, 0.0, 1.0),
@@ -24,8 +25,8 @@ const COLORS: [Vec3; 8] = [
     Vec3::new(1.0, 0.0, 0.0),
 ];
 
-/// Draws the occupied cells of a world's grid, lit like objects. Without a grid, draws only the
-/// background.
+/// Draws the occupied cells of a world's grid and shades them like objects. Without a grid, draws
+/// only the background.
 pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image, RenderError> {
     let count = checked_count(job.width, job.height)?;
     let raster = raster(world, job.width, job.height);
@@ -45,17 +46,18 @@ pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image
     Ok(Image::from_pixels(job.width, job.height, colors)?)
 }
 
-/// Returns the grid with exact overlaps. (The grid that rays use has a margin for rounding errors.)
+/// Returns the grid of cells that exactly overlap objects. (The grid for tracing rays has a margin
+/// for rounding errors.)
 fn occupied(world: &World) -> Option<Grid> {
     let Accel::Grid { grid, parts, .. } = world.accel() else { return None };
     let object = |part: usize| &world.objects()[parts[part].0 as usize];
-    // As in the course's programs, only the distance between the centres decides whether a sphere
-    // occupies a cell, even outside the sphere's bounds.
+    // As in the course's programs, only the distance between the centres determines whether a
+    // sphere occupies a cell. Such a cell can even be outside the bounds of the sphere.
     let half = 0.5 * grid.cell_bounds([0; 3]).size();
     let is_sphere = |object: &Object| {
         object.to_world.is_none() && matches!(object.geometry, Geometry::Primitive(Primitive::Sphere(_)))
     };
-    // The grid contains only bounded objects.
+    // The grid contains only objects with bounds.
     let bounds = |i: usize| match object(i).part_bounds(parts[i].1).unwrap_or(Aabb::EMPTY) {
         own if is_sphere(object(i)) => Aabb { min: own.min - half.length(), max: own.max + half.length() },
         own => own,
@@ -67,7 +69,8 @@ fn occupied(world: &World) -> Option<Grid> {
     })
 }
 
-/// Returns the colour of the first occupied cell along a ray, or of the background.
+/// Returns the colour of the first occupied cell along a ray, or of the background if there is
+/// none.
 fn cell_color(world: &World, grid: &Grid, ray: &Ray) -> Color {
     let mut found = None;
     grid.traverse_cells(ray, |grid, cell, t_max| {

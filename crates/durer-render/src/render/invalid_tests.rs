@@ -1,4 +1,5 @@
-//! Tests that scenes and jobs with invalid values are rejected with a message and never rendered.
+//! Tests that scenes and jobs with invalid values are rejected with a message and are never
+//! rendered.
 
 use super::{Control, Job, PartialRender, RenderError, Sampling, Shard, explain, render};
 use crate::compile::testing::read;
@@ -19,7 +20,7 @@ use durer_scene::sampler::Sampler;
 use durer_scene::scene::{Group, Material, Object, ObjectKind, Scene, Spanned};
 use durer_scene::shape::Sphere;
 
-/// Compiles a scene with a red sphere after a change to it, and returns the messages.
+/// Compiles a scene with a red sphere after applying a change, and returns the messages.
 fn compiled(change: impl FnOnce(&mut Scene, &mut Sphere, &mut PrincipledMaterial)) -> Vec<String> {
     let (mut ball, mut layers) = (Sphere::default(), PrincipledMaterial::default());
     let camera = PerspectiveCamera { center: Vec3::new(0.0, 0.0, 5.0), ..PerspectiveCamera::default() };
@@ -55,7 +56,7 @@ fn invalid_values_of_scenes_are_rejected() {
     assert_eq!(found, ["PerspectiveCamera: angle NaN must be finite"]);
 }
 
-/// Returns the error of an invalid job for a world of mirrors.
+/// Returns the error for an invalid job that renders a world of mirrors.
 fn refused(job: Job) -> String {
     let mirrors = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }
         Lights { DirectionalLight { direction 0 0 -1 color 1 1 1 } }
@@ -66,7 +67,7 @@ fn refused(job: Job) -> String {
         RenderError::Job(message) => message,
         other => panic!("{other}"),
     };
-    // All entry points report it.
+    // All entry points report this error.
     assert!(matches!(PartialRender::new(&world, &job, Shard::WHOLE), Err(RenderError::Job(_))));
     assert!(matches!(explain::explain(&world, &job, 0, 0), Err(RenderError::Job(_))));
     causes(render(&world, &job, &Control::default()).map(|_| ()).unwrap_err())

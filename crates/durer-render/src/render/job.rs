@@ -1,4 +1,4 @@
-//! Render job: everything besides the scene that determines a picture.
+//! A render job. It contains everything that determines a picture, except the scene.
 
 use super::camera_rays::raster;
 use super::crop::PixelRect;
@@ -16,40 +16,44 @@ use durer_scene::sampler::Sampler;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::atomic::AtomicBool;
 
-/// Sampling method of a picture: where samples lie in a pixel, and how they are combined.
+/// Sampling method of a picture. It determines where samples lie in a pixel and how they are
+/// combined.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Sampling {
-    /// One ray through each pixel's centre.
+    /// One ray through the centre of each pixel.
     Center,
-    /// Sobol points, distributed in proportion to the filter. Each sample affects only its own
-    /// pixel.
+    /// Sobol points that are distributed in proportion to the filter. Each sample affects only its
+    /// own pixel.
     Filtered {
-        /// Samples per pixel.
+        /// Number of samples per pixel.
         samples: u32,
         /// Reconstruction filter.
         filter: Filter,
     },
-    /// Fall 2004: samples are stored and then weighted by their offset from a pixel's centre.
+    /// Sampling of the Fall 2004 course. Samples are stored and then weighted by their offset from
+    /// the centre of a pixel.
     Course2004 {
-        /// How samples are distributed in a pixel.
+        /// Distribution of samples in a pixel.
         sampler: Sampler,
-        /// Samples per pixel.
+        /// Number of samples per pixel.
         samples: u32,
-        /// Filter. If `None`, a pixel is the mean of its own samples.
+        /// Reconstruction filter. If it is `None`, a pixel is the mean of its own samples.
         filter: Option<CourseFilter>,
     },
-    /// Fall 2012: 3 x 3 jittered sub-pixels, blurred with five taps and averaged.
+    /// Sampling of the Fall 2012 course, with 3 x 3 jittered sub-pixels that are blurred with five
+    /// taps and averaged.
     Course2012 {
-        /// True for sub-pixels.
+        /// True if pixels are divided into sub-pixels.
         jitter: bool,
-        /// True for the blur.
+        /// True if the picture is blurred.
         blur: bool,
     },
 }
 
 impl Sampling {
-    /// Returns the number of samples per pixel that a finished render adds to the film. It is 1 if
-    /// samples affect several pixels, because the film then gets the finished pixel.
+    /// Returns the number of samples per pixel that a finished render adds to the film. If samples
+    /// affect several pixels, this number is 1, because only the finished pixel is added to the
+    /// film.
     pub fn samples(self) -> u32 {
         match self {
             Sampling::Filtered { samples, .. } => samples.max(1),
@@ -58,8 +62,8 @@ impl Sampling {
         }
     }
 
-    /// Returns the sampling method with another number of samples per pixel, if the number can
-    /// vary.
+    /// Returns the sampling method with a different number of samples per pixel, if the method has
+    /// a variable number.
     pub fn with_samples(self, number: u32) -> Self {
         match self {
             Sampling::Filtered { filter, .. } => Sampling::Filtered { samples: number, filter },
@@ -74,41 +78,42 @@ impl Sampling {
     }
 }
 
-/// Render job: everything besides the scene that determines the pictures. Plain data, independent
-/// of the machine.
+/// A render job. It contains everything that determines the pictures, except the scene. It is plain
+/// data and does not depend on the machine.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Job {
     /// Width of the full picture in pixels.
     pub width: u32,
     /// Height of the full picture in pixels.
     pub height: u32,
-    /// Rectangle to render; `None` for the full picture.
+    /// Rectangle to render, or `None` for the full picture.
     pub crop: Option<PixelRect>,
     /// Seed of the random numbers.
     pub seed: u64,
     /// Sampling method for the colour picture.
     pub sampling: Sampling,
-    /// Noise threshold. A block gets no more samples once its estimated error is below it; see
-    /// [`passes::error`]. `None` for no threshold.
+    /// Noise threshold, or `None` for no threshold. A block gets no more samples once its estimated
+    /// error is below the threshold. See [`passes::error`].
     pub noise: Option<f32>,
     /// True for adaptive sampling. The number of samples is then an average, and pixels with more
-    /// noise in the pilot get more samples.
+    /// noise in their pilot samples get more samples.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub adaptive: bool,
-    /// Integrator and its options.
+    /// Integrator and the options of the integrator.
     #[serde(default)]
     pub method: IntegratorKind,
-    /// Settings shared by all integrators.
+    /// Settings that all integrators share.
     pub settings: RenderSettings,
-    /// True to render the colour picture.
+    /// True if the colour picture is rendered.
     pub color: bool,
     /// AOVs to render.
     #[serde(serialize_with = "aov_names", deserialize_with = "named_aovs")]
     pub aovs: Vec<&'static Aov>,
-    /// Depths shown as black and white. `None` for the minimum and maximum of the picture,
-    /// excluding the horizon of a plane.
+    /// Depths that are shown as black and white. `None` means the minimum and maximum of the
+    /// picture, excluding the horizon of a plane.
     pub depth_range: Option<(f32, f32)>,
-    /// Range of false-colour pictures; `None` for 0 to a percentile of the picture.
+    /// Range of false-colour pictures, or `None` for the range from 0 to a percentile of the
+    /// picture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub light_scale: Option<FalseColorScale>,
 }
@@ -126,7 +131,8 @@ fn named_aovs<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<&'static
 }
 
 impl Default for Job {
-    /// Colour picture of 512 x 512 pixels, one ray per pixel, with shadows and up to eight bounces.
+    /// Returns a job for a colour picture of 512 x 512 pixels with one ray per pixel, shadows and
+    /// up to eight bounces.
     fn default() -> Self {
         let settings = RenderSettings {
             bounces: 8,
@@ -158,17 +164,18 @@ impl Default for Job {
 impl Job {
     /// Maximum number of samples per pixel.
     pub const MAX_SAMPLES: u32 = 1 << 20;
-    /// Maximum radius of a filter in pixels.
+    /// Maximum radius of a filter, in pixels.
     pub const MAX_FILTER_RADIUS: f32 = 64.0;
 
-    /// Checks all values: the size is at least 1 x 1, samples are from 1 to [`Job::MAX_SAMPLES`],
-    /// the filter's radius is above 0 and at most [`Job::MAX_FILTER_RADIUS`], and the depth is at
-    /// most [`RenderSettings::MAX_BOUNCES`]. Also checks thresholds, scales and the integrator's
-    /// options. [`PartialRender::new`](super::PartialRender::new) calls this first.
+    /// Checks all values. The size must be at least 1 x 1, and the number of samples must be from 1
+    /// to [`Job::MAX_SAMPLES`]. The radius of the filter must be above 0 and at most
+    /// [`Job::MAX_FILTER_RADIUS`], and the depth at most [`RenderSettings::MAX_BOUNCES`]. Also
+    /// checks thresholds, scales and the options of the integrator.
+    /// [`PartialRender::new`](super::PartialRender::new) calls this function first.
     ///
     /// # Errors
     ///
-    /// [`RenderError::Job`] with the name of the value.
+    /// Returns [`RenderError::Job`] with the name of the invalid value.
     pub fn validate(&self) -> Result<(), RenderError> {
         let refuse = |message: String| Err(RenderError::Job(message));
         if self.width == 0 || self.height == 0 {
@@ -191,7 +198,7 @@ impl Job {
         {
             return refuse(format!("the filter's sigma {sigma} must be more than 0"));
         }
-        // Unlike other filters, the course's filters can have radius 0.
+        // Unlike other filters, the filters of the course can have a radius of 0.
         if let Sampling::Course2004 { filter: Some(filter), .. } = self.sampling {
             let (CourseFilter::Box { radius: size }
             | CourseFilter::Tent { radius: size }
@@ -230,7 +237,7 @@ impl Job {
         Ok(())
     }
 
-    /// Returns the rectangle to render.
+    /// Returns the rectangle that is rendered.
     pub fn window(&self) -> PixelRect {
         self.crop.unwrap_or(self.whole())
     }
@@ -245,8 +252,8 @@ impl Job {
         self.color.then_some("color").into_iter().chain(self.aovs.iter().map(|aov| aov.name))
     }
 
-    /// Creates the job's integrator for a world. Once `cancel` is set, no more rays are traced and
-    /// results are meaningless.
+    /// Creates the integrator of the job for a world. Once `cancel` is set, no more rays are traced
+    /// and the results are meaningless.
     pub fn integrator<'w>(&self, world: &'w World, cancel: Option<&'w AtomicBool>) -> Integrator<'w> {
         let raster = raster(world, self.width, self.height);
         let area = raster.pixel_area() / self.sampling.samples() as f32;
@@ -254,12 +261,13 @@ impl Job {
         self.method.create(IntegratorContext { world, settings: self.settings, cone, seed: self.seed, cancel })
     }
 
-    /// Returns true if colour samples are needed, for the colour picture or for an AOV.
+    /// Returns true if the colour picture or an AOV needs colour samples.
     pub fn wants_samples(&self) -> bool {
         self.color || self.aovs.iter().any(|aov| matches!(aov.value, AovFunction::Sums(_)))
     }
 
-    /// Returns the AOVs that need rays through the pixels' centres, with their functions.
+    /// Returns the AOVs that need rays through the centres of pixels, with the functions that
+    /// compute their values.
     pub fn ray_aovs(
         &self,
     ) -> impl Iterator<Item = (&'static Aov, fn(&crate::film::aov::AovInput) -> durer_scene::math::Vec3)> {
@@ -269,12 +277,14 @@ impl Job {
         })
     }
 
-    /// Returns the rectangle for these rays: the full picture if an AOV depends on all its pixels.
+    /// Returns the rectangle in which centre rays are traced. This is the full picture if an AOV
+    /// depends on all pixels.
     pub fn ray_window(&self) -> PixelRect {
         if self.ray_aovs().any(|(aov, _)| aov.relative) { self.whole() } else { self.window() }
     }
 
-    /// Returns true if the noise threshold stops a block after `samples` samples per pixel.
+    /// Returns true if a block is below the noise threshold after `samples` samples per pixel, so
+    /// that rendering it can stop.
     pub(super) fn is_done(&self, film: &crate::film::Film, rect: PixelRect, samples: u32, gain: f32) -> bool {
         self.noise
             .is_some_and(|noise| samples >= passes::MIN_SAMPLES && passes::error(film, rect, gain) <= f64::from(noise))

@@ -7,21 +7,21 @@ use crate::film::PackedFilm;
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// Error from merging parts of a render. Parts are identified by name.
+/// Error while merging parts of a render. It identifies the parts by their names.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MergeError {
-    /// There are no parts.
+    /// No parts were given.
     #[error("give at least one part to merge")]
     NoParts,
-    /// A part belongs to another picture than the first part.
+    /// A part does not belong to the same picture as the first part.
     #[error("`{name}` cannot be merged with `{first}`: {error}")]
     Foreign {
         /// Name of the part.
         name: String,
         /// Name of the first part.
         first: String,
-        /// How the pictures differ.
+        /// Difference between the pictures.
         error: PartError,
     },
     /// Two parts contain the same work.
@@ -29,12 +29,12 @@ pub enum MergeError {
     Overlap {
         /// Name of one part.
         first: String,
-        /// Name of the other.
+        /// Name of the other part.
         second: String,
-        /// Description of the work that both contain.
+        /// Description of the work that both parts contain.
         what: String,
     },
-    /// Some work is not in any part.
+    /// Some work is not contained in any part.
     #[error("parts of the picture are missing:\n{0}")]
     Missing(String),
     /// The merged picture would be too large.
@@ -42,14 +42,15 @@ pub enum MergeError {
     PartialRender(#[from] PartError),
 }
 
-/// Maximum number of missing places that an error lists.
+/// Maximum number of missing pieces of work that an error lists.
 const LISTED: usize = 8;
 
-/// Merges parts into the full picture. The result is bit-identical to a single render, whatever the
-/// order of the parts.
+/// Merges parts into the full picture. The result is bit-identical to a single render, regardless
+/// of the order of the parts.
 ///
 /// # Errors
-/// [`MergeError`] if parts belong to different pictures, overlap, or do not contain all work.
+/// Returns [`MergeError`] if the parts belong to different pictures, overlap, or do not contain all
+/// the work.
 pub fn merge(parts: &[(String, PartialRender)]) -> Result<PartialRender, MergeError> {
     let ((first, start), rest) = parts.split_first().ok_or(MergeError::NoParts)?;
     for (name, part) in rest {
@@ -68,7 +69,7 @@ pub fn merge(parts: &[(String, PartialRender)]) -> Result<PartialRender, MergeEr
     }
 }
 
-/// Merges the samples of all parts into `whole`, and describes missing ones in `missing`.
+/// Merges the samples of all parts into `whole`. Describes missing samples in `missing`.
 fn merge_samples(
     parts: &[(String, PartialRender)],
     whole: &PartialRender,
@@ -78,7 +79,7 @@ fn merge_samples(
     let (samples, gain) = (whole.job.sampling.samples(), whole.gain());
     let mut state = whole.state();
     for (index, merged) in state.samples.iter_mut().enumerate() {
-        // The block's data in each part, sorted by sample range.
+        // Data of the block in each part, sorted by the range of samples.
         let mut pieces: Vec<(&str, BlockSamples)> = Vec::new();
         for (name, part) in parts {
             let piece = part.state().samples[index].clone();
@@ -124,7 +125,7 @@ fn merge_samples(
     Ok(())
 }
 
-/// Merges the centre rays of all parts into `whole`, and describes missing ones in `missing`.
+/// Merges the centre rays of all parts into `whole`. Describes missing rays in `missing`.
 fn merge_rays(
     parts: &[(String, PartialRender)],
     whole: &PartialRender,
@@ -151,7 +152,7 @@ fn merge_rays(
     Ok(())
 }
 
-/// Describes missing or unfinished shards, if all parts come from the same division.
+/// Describes missing or unfinished shards if all parts come from the same division into shards.
 fn shards_missing(parts: &[(String, PartialRender)]) -> String {
     let Shard { count, by, .. } = parts[0].1.shard;
     let mut text = String::new();

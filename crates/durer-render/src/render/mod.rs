@@ -1,4 +1,4 @@
-//! Rendering of a world to pictures, as described by a job.
+//! Rendering of a world into the pictures that a job describes.
 
 mod adaptive;
 mod aim;

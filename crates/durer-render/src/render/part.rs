@@ -1,4 +1,4 @@
-//! Partial render: exact sums, with a record of the work they contain.
+//! Partial render, which stores exact sums and a record of the work that they contain.
 
 use super::allocation::{self, count, half, pilot};
 use super::blocks::{Blocks, Shard, ShardBy};
@@ -12,62 +12,63 @@ use durer_scene::math::Vec3;
 use durer_scene::source::Digest;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Picture, or shard of one, while it is being rendered. It can be rendered in steps, saved, loaded
-/// and merged with other parts.
+/// A picture, or a shard of a picture, that is being rendered. It can be rendered in steps, saved,
+/// loaded and merged with other parts.
 ///
-/// It locks internally, so one thread can render while others read it.
+/// The picture is locked internally, so one thread can render it while others read it.
 #[derive(Debug)]
 pub struct PartialRender {
     pub(super) job: Job,
     pub(super) shard: Shard,
     pub(super) scene: Digest,
     pub(super) display: DisplayRules,
-    /// Blocks of the window for colour samples.
+    /// Blocks of the window that are rendered with colour samples.
     pub(super) blocks: Blocks,
-    /// Blocks of the window for centre rays.
+    /// Blocks of the window in which centre rays are traced.
     pub(super) ray_blocks: Blocks,
     state: Mutex<PartialState>,
-    /// Number of times that `state` was locked.
+    /// Number of times that `state` has been locked.
     #[cfg(test)]
     pub(super) locked: std::sync::atomic::AtomicU64,
 }
 
-/// Results of a [`PartialRender`] so far, block by block.
+/// Current results of a [`PartialRender`], stored by block.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PartialState {
     /// Colour samples of each block.
     pub(super) samples: Vec<BlockSamples>,
-    /// Results of the centre rays of each block; `None` if not yet traced.
+    /// Results of the centre rays of each block, or `None` if the rays have not been traced yet.
     pub(super) rays: Vec<Option<Box<BlockAovs>>>,
 }
 
 /// Colour samples of one block of 8 x 8 pixels in a [`PartialRender`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct BlockSamples {
-    /// First sample of each pixel in the film.
+    /// Index of the first sample of each pixel in the film.
     pub(super) from: u32,
-    /// End (exclusive) of each pixel's samples in the film.
+    /// End (exclusive) of the range of each pixel's samples in the film.
     pub(super) to: u32,
-    /// Number of rays traced for the samples.
+    /// Number of rays that were traced for the samples.
     pub(super) rays: u64,
-    /// Sums of the samples; `None` if there are none. Shared, so that readers hold the lock only to
-    /// clone the pointer.
+    /// Sums of the samples, or `None` if there are no samples. The film is shared, so that readers
+    /// hold the lock only while they clone the pointer.
     pub(super) film: Option<Arc<PackedFilm>>,
-    /// Variances of the pixels' means, once the pilot is complete (adaptive sampling).
+    /// Variances of the pixel means, which are known once the pilot samples are complete. They are
+    /// used for adaptive sampling.
     pub(super) variances: Option<Arc<[f32]>>,
-    /// Final number of samples of each pixel, once it is decided (adaptive sampling). `to` is then
-    /// an average over the picture.
+    /// Final number of samples of each pixel once it has been decided. It is used for adaptive
+    /// sampling. `to` is then an average over the picture.
     pub(super) targets: Option<Arc<[u32]>>,
 }
 
 impl BlockSamples {
-    /// Returns the number of samples of a pixel when the average is `end`.
+    /// Returns the number of samples of a pixel when the average over the picture is `end`.
     pub(super) fn count(&self, job: &Job, pixel: usize, end: u32) -> u32 {
         self.targets.as_ref().map_or(end, |targets| count(job.sampling.samples(), targets[pixel], end))
     }
 
-    /// Returns the number of samples of all pixels in the block when the average is `end`, not
-    /// counting those before `from`.
+    /// Returns the number of samples of all pixels in the block when the average over the picture
+    /// is `end`. Samples before `from` are not counted.
     pub(super) fn total(&self, job: &Job, pixels: u64, end: u32) -> u64 {
         match &self.targets {
             None => pixels * u64::from(end - self.from),
@@ -81,35 +82,36 @@ impl BlockSamples {
     }
 }
 
-/// AOV values from the centre rays of one block in a [`PartialRender`].
+/// AOV values from the centre rays of one block of a [`PartialRender`].
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct BlockAovs {
-    /// Outcome of the ray of each pixel.
+    /// Result of tracing the ray of each pixel.
     pub(super) hits: Vec<PrimaryHit>,
     /// Values of all pixels for the first AOV, then for the second, and so on.
     pub(super) values: Vec<Vec3>,
-    /// Number of rays traced for the values.
+    /// Number of rays that were traced for the values.
     pub(super) rays: u64,
 }
 
-/// Outcome of the ray through a pixel's centre.
+/// Result of tracing the ray through the centre of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(super) enum PrimaryHit {
     /// The camera has no ray there.
     NoRay,
-    /// The ray hits nothing.
+    /// The ray hits no surface.
     Nothing,
-    /// The ray hits something.
+    /// The ray hits a surface.
     Hit,
 }
 
-/// Numbers of samples, rays and rejected samples of a picture, independent of how it was rendered.
+/// Numbers of samples, rays and rejected samples of a picture. They do not depend on how the
+/// picture was rendered.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
     /// Number of samples in the picture.
     pub samples: u64,
-    /// Number of rays traced, including secondary rays.
+    /// Number of rays that were traced, including secondary rays.
     pub rays: u64,
     /// Number of samples that were rejected because they were not finite.
     pub rejected: u64,
@@ -133,14 +135,14 @@ impl PartialRender {
     /// Creates an empty part of a picture.
     ///
     /// # Errors
-    /// [`RenderError::Job`], [`RenderError::Image`], [`RenderError::CropOutside`] and
-    /// [`RenderError::NoMemory`]; [`RenderError::Shard`] and [`RenderError::Adaptive`] if the job
-    /// cannot be divided or sampled like this.
+    /// Returns [`RenderError::Job`], [`RenderError::Image`], [`RenderError::CropOutside`] or
+    /// [`RenderError::NoMemory`]. Returns [`RenderError::Shard`] or [`RenderError::Adaptive`] if
+    /// the job cannot be divided or sampled in this way.
     pub fn new(world: &World, job: &Job, shard: Shard) -> Result<Self, RenderError> {
         PartialRender::empty(job.clone(), shard, world.digest(), world.display_rules())
     }
 
-    /// Creates an empty part of a picture of the scene with this hash.
+    /// Creates an empty part of a picture of the scene with the given hash.
     pub(super) fn empty(job: Job, shard: Shard, scene: Digest, display: DisplayRules) -> Result<Self, RenderError> {
         job.validate()?;
         let window = job.window();
@@ -149,7 +151,8 @@ impl PartialRender {
         if !inside(window.left, window.width, job.width) || !inside(window.top, window.height, job.height) {
             return Err(RenderError::CropOutside(job.width, job.height));
         }
-        // Reject oversized windows before any computation. The full picture may be larger.
+        // Reject windows that are too large before computing anything. The full picture may be
+        // larger.
         checked_count(window.width, window.height)?;
         let (blocks, ray_blocks) = (Blocks::new(window), Blocks::new(job.ray_window()));
         check_shard(&job, shard, blocks.count())?;
@@ -190,13 +193,13 @@ impl PartialRender {
         self.shard
     }
 
-    /// Returns the hash of the scene, including the files that it uses.
+    /// Returns the hash of the scene and of the files that it uses.
     pub fn scene(&self) -> Digest {
         self.scene
     }
 
-    /// Returns a hash of everything that determines the picture: the scene, the job and the program
-    /// version.
+    /// Returns a hash of everything that determines the picture, which is the scene, the job and
+    /// the version of the program.
     pub fn identity(&self) -> Digest {
         identity(self.scene, &job_text(&self.job))
     }
@@ -223,8 +226,8 @@ impl PartialRender {
         }
     }
 
-    /// Returns the amounts of total and finished work, in samples and centre rays. A noise
-    /// threshold can end the work early.
+    /// Returns the amounts of total and finished work, in samples and centre rays. With a noise
+    /// threshold, the work can end earlier.
     pub fn work(&self) -> (u64, u64) {
         let range = self.shard.range(self.job.sampling.samples());
         let (mut all, mut done) = (0, 0);
@@ -256,7 +259,7 @@ impl PartialRender {
         samples.all(|(index, block)| self.is_done(index, block, gain)) && rays.all(|(_, block)| block.is_some())
     }
 
-    /// Returns the numbers of samples, rays and rejected samples so far.
+    /// Returns the current numbers of samples, rays and rejected samples.
     pub fn statistics(&self) -> Statistics {
         let state = self.state();
         let mut statistics = Statistics::default();
@@ -278,8 +281,8 @@ impl PartialRender {
         statistics
     }
 
-    /// Returns the visible error so far, as a root mean square over the pixels. It is compared with
-    /// [`Job::noise`]. `None` unless each pixel has at least two samples.
+    /// Returns the current visible error as a root mean square over the pixels. The error is
+    /// compared with [`Job::noise`]. Returns `None` unless each pixel has at least two samples.
     pub fn noise(&self) -> Option<f64> {
         let (gain, state) = (self.gain(), self.state());
         let (mut squares, mut pixels) = (0.0, 0);
@@ -293,16 +296,15 @@ impl PartialRender {
         (pixels > 0).then(|| (squares / pixels as f64).sqrt())
     }
 
-    /// Returns a hash of the film: all sums and AOV values except the cost. Equal pictures have
-    /// equal hashes, however they were rendered.
+    /// Returns a hash of all sums and all AOV values except the cost. Equal pictures have equal
+    /// hashes, regardless of how they were rendered.
     pub fn hash(&self) -> Digest {
         let mut hasher = blake3::Hasher::new();
         self.hash_into(&mut hasher);
         Digest(hasher.finalize().into())
     }
 
-    /// Continues the hash of a picture with this part, which must consist of complete rows of
-    /// blocks.
+    /// Adds this part to the hash of a picture. The part must consist of complete rows of blocks.
     pub(super) fn hash_into(&self, hasher: &mut blake3::Hasher) {
         let (state, mut bytes) = (self.state(), Vec::new());
         for (index, block) in state.samples.iter().enumerate() {
@@ -311,7 +313,7 @@ impl PartialRender {
             hasher.update(&bytes);
             bytes.clear();
         }
-        // Exclude the cost, which depends on the acceleration structure.
+        // Exclude the cost, because it depends on the acceleration structure.
         let names: Vec<&str> = self.job.ray_aovs().map(|(aov, _)| aov.name).collect();
         for block in state.rays.iter().flatten() {
             let values = block.values.chunks(block.hits.len()).zip(&names).filter(|(_, name)| **name != "cost");
@@ -321,21 +323,22 @@ impl PartialRender {
         }
     }
 
-    /// Returns the final number of samples in the sums of a pixel. It is 1 if samples affect
-    /// several pixels, because only finished pixels are stored.
+    /// Returns the final number of samples in the sums of a pixel. If samples affect several
+    /// pixels, the number is 1, because only finished pixels are stored.
     pub(super) fn packed_samples(&self) -> u32 {
         if self.job.sampling.is_local() { self.job.sampling.samples() } else { 1 }
     }
 
-    /// Returns the peak memory in bytes, including that of the finished pictures.
+    /// Returns the maximum memory in bytes, including the memory for the finished pictures.
     pub fn bytes_needed(job: &Job, shard: Shard) -> u64 {
         let share = if shard.by == ShardBy::Tiles { u64::from(shard.count) } else { 1 };
         let (pixels, rays) = (job.window().pixels(), job.ray_window().pixels());
         let sums = if job.wants_samples() { PackedFilm::pixel_bytes(job.sampling.samples()) } else { 0 };
-        // Sample counts and variances of each pixel.
+        // Add the number of samples and the variance of each pixel.
         let sums = if job.adaptive { sums + 24 } else { sums };
         let values = 12 * job.ray_aovs().count() as u64 + 1;
-        // Colours with coverage, an eight-bit copy and the file. AOVs have both values and colours.
+        // Count colours with coverage, an eight-bit copy and the file. Each AOV has both values and
+        // colours.
         let pictures = 24 * u64::from(job.color) + 40 * job.aovs.len() as u64;
         let stored = pixels.saturating_mul(sums).saturating_add(rays.saturating_mul(values));
         (stored / share).saturating_add(pixels.saturating_mul(pictures))
@@ -352,7 +355,7 @@ pub(super) fn identity(scene: Digest, job: &str) -> Digest {
     Digest::of(format!("durer {} {scene} {job}", env!("CARGO_PKG_VERSION")).as_bytes())
 }
 
-/// Returns an error if the job cannot be divided into shards like this.
+/// Returns an error if the job cannot be divided into shards in this way.
 fn check_shard(job: &Job, shard: Shard, blocks: usize) -> Result<(), RenderError> {
     let refuse = |why: String| Err(RenderError::Shard(why));
     let samples = job.sampling.samples();
@@ -382,8 +385,8 @@ pub(super) fn film_of(part: PixelRect) -> Film {
     Film::window(part.left, part.top, part.width, part.height)
 }
 
-/// Returns the passes of a shard, given by the numbers of samples at which they end. With photon
-/// mapping, each sample is a pass, because it needs its own photons.
+/// Returns the passes of a shard as the numbers of samples at which they end. With photon mapping,
+/// each sample is a separate pass, because it needs its own photons.
 pub(super) fn passes_of(job: &Job, shard: Shard) -> Passes<impl Iterator<Item = u32> + Send + use<>> {
     let samples = job.sampling.samples();
     let (from, to) = shard.range(samples);

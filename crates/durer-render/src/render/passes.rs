@@ -1,4 +1,5 @@
-//! Passes of a render, which determine the order of samples, and the noise estimate that stops it.
+//! Passes of a render, which determine the order of samples, and the noise estimate that ends a
+//! render.
 
 use super::crop::PixelRect;
 use crate::clock::{Duration, Instant};
@@ -8,39 +9,40 @@ use std::iter::Peekable;
 /// Minimum number of samples per pixel before the noise threshold can stop a block.
 pub const MIN_SAMPLES: u32 = 16;
 
-/// Returns the number of samples per pixel after each pass: 1, 2, 4, 8, 16, 24, 32, 48, 64, 96 and
-/// so on, up to `samples`.
+/// Returns the numbers of samples per pixel at the ends of the passes: 1, 2, 4, 8, 16, 24, 32, 48,
+/// 64, 96 and so on, up to `samples`.
 ///
-/// The passes depend only on the number of samples. Decisions at the end of a pass therefore do not
-/// depend on how the picture is rendered.
+/// The passes depend only on the number of samples. Decisions at the end of a pass are therefore
+/// independent of how the picture is rendered.
 pub fn ends(samples: u32) -> impl Iterator<Item = u32> {
     let powers = (0..32).flat_map(|k| {
         let power = 1_u32 << k;
-        // For large steps, also stop halfway to the next power of two.
+        // For large steps, a pass also ends halfway to the next power of two.
         [Some(power), (power >= MIN_SAMPLES).then(|| power.saturating_add(power / 2))]
     });
     powers.flatten().take_while(move |&end| end < samples).chain([samples])
 }
 
-/// Iterator over the passes of a render: the number of samples per pixel at the end of each.
+/// Iterator over the passes of a render. Each item is the number of samples per pixel at the end of
+/// a pass.
 ///
-/// Each pass packs and unpacks every block. If the result does not change, passes that are too
-/// short to be visible are therefore joined.
+/// Each pass unpacks and packs every block. Passes that are too short to be visible are therefore
+/// joined, unless this would change the result.
 pub struct Passes<I: Iterator<Item = u32>> {
     ends: Peekable<I>,
     joins: bool,
-    /// Ends of passes that must not be skipped.
+    /// Ends of passes that must be kept.
     kept: [u32; 2],
-    /// End and number of samples of the latest pass, and the time when it started.
+    /// End and number of samples of the latest pass and the time when it started.
     last: (u32, u32, Instant),
 }
 
-/// Duration below which passes are joined.
+/// Passes that are shorter than this are joined.
 const MIN_DURATION: Duration = Duration::from_millis(100);
 
 impl<I: Iterator<Item = u32>> Passes<I> {
-    /// Creates passes that end at `ends` and start at sample `from`. Passes are joined if `joins`
-    /// is true, but not across the ends in `kept`.
+    /// Creates passes that end at `ends` and start at sample `from`. If `joins` is true, passes can
+    /// be joined, but not across the ends in `kept`.
     pub fn new(ends: I, from: u32, joins: bool, kept: [u32; 2]) -> Self {
         Passes { ends: ends.peekable(), joins, kept, last: (from, 0, Instant::now()) }
     }
@@ -68,13 +70,13 @@ impl<I: Iterator<Item = u32>> Iterator for Passes<I> {
     }
 }
 
-/// Estimates the visible error of a block: the standard error of sqrt(Y), as a root mean square
-/// over the block's pixels.
+/// Estimates the visible error of a block as the standard error of sqrt(Y). The result is the root
+/// mean square over the pixels of the block.
 ///
-/// Y is a pixel's luminance, at least 1/256, where 1 is white. The square root approximates
-/// perception, and the error of sqrt(Y) is the error of Y divided by 2 sqrt(Y). Source: Dammertz et
-/// al., *A Hierarchical Automatic Stopping Condition for Monte Carlo Global Illumination*, WSCG
-/// 2010. Computed from exact sums in a fixed order.
+/// Y is the luminance of a pixel, but at least 1/256, where 1 is white. The square root
+/// approximates human perception, and the error of sqrt(Y) is the error of Y divided by 2 sqrt(Y).
+/// Source: Dammertz et al., *A Hierarchical Automatic Stopping Condition for Monte Carlo Global
+/// Illumination*, WSCG 2010. The estimate is computed from exact sums in a fixed order.
 pub fn error(film: &Film, rect: PixelRect, gain: f32) -> f64 {
     let square = |(x, y)| {
         let luminance = luminance_of(film.resolve(x, y)).max(1.0 / 256.0);
@@ -102,7 +104,7 @@ mod tests {
     fn short_passes_are_joined_unless_they_make_decisions() {
         let of = |joins| Passes::new(ends(100), 0, joins, [0; 2]).collect::<Vec<_>>();
         assert_eq!(of(false), ends(100).collect::<Vec<_>>());
-        // These passes take no time.
+        // These passes take no measurable time.
         assert_eq!(of(true), [1, 100]);
         assert_eq!(Passes::new(ends(100), 0, true, [8, 24]).collect::<Vec<_>>(), [1, 8, 24, 100]);
         let mut slow = Passes::new(ends(8), 0, true, [0; 2]);
@@ -113,8 +115,8 @@ mod tests {
         assert_eq!([next(), next(), next(), next(), next()], [Some(1), Some(2), Some(4), Some(8), None]);
     }
 
-    /// Compares the estimate with the true error: the mean of n uniform numbers has variance 1 /
-    /// (12 n).
+    /// Compares the estimate with the true error. The mean of n uniform numbers has the variance 1
+    /// / (12 n).
     #[test]
     fn error_estimate_matches_the_error_of_the_mean() {
         let rect = PixelRect { left: 0, top: 0, width: 8, height: 8 };

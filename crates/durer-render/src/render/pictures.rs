@@ -1,4 +1,4 @@
-//! Conversion of a render's sums and AOV values to pictures.
+//! Conversion of the sums and AOV values of a render to pictures.
 
 use super::error::RenderError;
 use super::part::{PartialRender, PartialState, PrimaryHit, Statistics, job_text};
@@ -13,29 +13,28 @@ use std::io::Write;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Number of rows of blocks per thread that are converted at once when a picture is written in
-/// strips.
+/// Number of rows of blocks that each thread converts at once when a picture is written in strips.
 const ROWS_PER_THREAD: usize = 4;
 
-/// Finished pictures of a render, with statistics and file attributes.
+/// Finished pictures of a render with statistics and file attributes.
 #[derive(Debug)]
 pub struct Rendered {
-    /// Pictures with the values for floating-point files: colour first, if requested, then the AOVs
-    /// in the job's order. See also [`Rendered::pictures`].
+    /// Pictures with the values for floating-point files. The colour picture comes first, if it was
+    /// requested, followed by the AOVs in the order of the job. See also [`Rendered::pictures`].
     pub layers: Vec<Layer>,
-    /// Pictures of the same layers with display values from 0 to 1.
+    /// Pictures of the same layers as display values from 0 to 1.
     pub pictures: Vec<Layer>,
     /// Numbers of samples and rays.
     pub statistics: Statistics,
-    /// Names and texts of attributes for picture files.
+    /// Names and values of attributes for picture files.
     pub attributes: Vec<(&'static str, String)>,
 }
 
 impl PartialRender {
-    /// Returns the pictures so far. Pixels without samples are black.
+    /// Returns the current pictures. Pixels without samples are black.
     ///
     /// # Errors
-    /// [`RenderError::Image`].
+    /// Returns [`RenderError::Image`].
     pub fn pictures(&self) -> Result<Rendered, RenderError> {
         let statistics = self.statistics();
         let (job, window) = (&self.job, self.job.window());
@@ -75,7 +74,8 @@ impl PartialRender {
         Ok(rendered)
     }
 
-    /// Returns attributes for picture files. They do not depend on how the picture was rendered.
+    /// Returns attributes for picture files. The attributes do not depend on how the picture was
+    /// rendered.
     fn attributes(&self, statistics: &Statistics) -> Vec<(&'static str, String)> {
         let Statistics { samples, rays, rejected, .. } = statistics;
         vec![
@@ -86,12 +86,13 @@ impl PartialRender {
         ]
     }
 
-    /// Writes the current colour picture row by row, in a format that supports this. The full
-    /// picture is never in memory. Calls `visit` with a few rows at a time, until all have been
+    /// Writes the current colour picture row by row in a format that supports this. The full
+    /// picture is never in memory. Calls `visit` with a few rows at a time until all rows have been
     /// written.
     ///
     /// # Errors
-    /// Errors from writing, and [`BandsError::Image`] for formats that need all rows at once.
+    /// Returns errors from writing, and [`BandsError::Image`] for formats that need all rows at
+    /// once.
     pub fn write_colors(
         &self,
         format: &Format,
@@ -115,12 +116,12 @@ impl PartialRender {
         state.samples.iter().all(|block| block.film.as_ref().is_some_and(|film| film.has_full_coverage()))
     }
 
-    /// Calls `strip` with the colours of some complete rows at a time, and with the coverage of
-    /// each pixel (empty if all are fully covered). Starts with the bottom rows if `bottom_up`.
-    /// Missing pixels are transparent.
+    /// Calls `strip` with the colours of some complete rows at a time and with the coverage of each
+    /// pixel (empty if all pixels are fully covered). Starts with the bottom rows if `bottom_up` is
+    /// true. Missing pixels are transparent.
     ///
     /// # Errors
-    /// The first error that `strip` returns.
+    /// Returns the first error that `strip` returns.
     pub(super) fn try_strips<E>(
         &self,
         bottom_up: bool,
@@ -136,13 +137,13 @@ impl PartialRender {
         if bottom_up { parts.rev().try_for_each(&mut offer) } else { parts.try_for_each(&mut offer) }
     }
 
-    /// Returns colours and coverage of all pixels. Missing pixels are transparent. The coverage is
-    /// empty if all pixels are fully covered.
+    /// Returns the colour and coverage of all pixels. Missing pixels are transparent. The list of
+    /// coverages is empty if all pixels are fully covered.
     fn colors(&self, state: &PartialState) -> (Vec<Color>, Vec<f32>) {
         self.colors_of(state, &self.blocks.rows().collect::<Vec<_>>(), self.has_full_coverage(state))
     }
 
-    /// Returns colours and coverage of some rows of blocks.
+    /// Returns the colour and coverage of the pixels in some rows of blocks.
     fn colors_of(&self, state: &PartialState, rows: &[Range<usize>], is_seen: bool) -> (Vec<Color>, Vec<f32>) {
         let window = self.job.window();
         // A row of blocks consists of complete rows of pixels.
@@ -177,7 +178,8 @@ impl PartialRender {
         let state = self.state();
         let (colors, coverage) = self.colors(&state);
         let variance = self.summed(&state, |sums| Vec3::splat(sums.variance() as f32));
-        // If there are too few samples for a variance, use the pixel's brightness as its error.
+        // If there are too few samples for a variance, use the brightness of the pixel as its
+        // error.
         let sure = |(value, color): (&(Vec3, PrimaryHit), &Color)| match value.0.x.is_finite() {
             true => value.0.x,
             false => color.max_element() * color.max_element(),
@@ -186,7 +188,7 @@ impl PartialRender {
         (colors, coverage, variance)
     }
 
-    /// Returns the values of an AOV that uses the colour samples.
+    /// Returns the values of an AOV that is computed from the colour samples.
     fn summed(&self, state: &PartialState, value: fn(&PixelStatistics) -> Vec3) -> Vec<(Vec3, PrimaryHit)> {
         let (gain, lumens) = (self.gain(), self.display.lumens);
         let none = value(&PixelStatistics { pixel: None, gain, lumens });
@@ -214,7 +216,7 @@ impl PartialRender {
         }
     }
 
-    /// Returns the values of an AOV that uses the centre rays.
+    /// Returns the values of an AOV that is computed from the centre rays.
     fn traced(&self, state: &PartialState, number: usize) -> Vec<(Vec3, PrimaryHit)> {
         let (window, blocks): (PixelRect, &Blocks) = (self.job.ray_window(), &self.ray_blocks);
         let mut pixels = vec![(Vec3::ZERO, PrimaryHit::NoRay); window.pixels() as usize];
@@ -228,7 +230,7 @@ impl PartialRender {
         pixels
     }
 
-    /// Converts an AOV's values to display colours. Also returns the scale of false colours.
+    /// Converts the values of an AOV to display colours. Also returns the scale of false colours.
     fn shown(&self, aov: &Aov, values: &[(Vec3, PrimaryHit)]) -> (Vec<Color>, FalseColorScale) {
         let light = aov.unit.map_or(&[][..], |_| values);
         let display = Display {
@@ -254,16 +256,17 @@ impl PartialRender {
     }
 }
 
-/// Ratio to the 95th percentile above which depths are part of a horizon.
+/// Depths are considered part of a horizon if their ratio to the 95th percentile is above this
+/// value.
 const HORIZON: f32 = 4.0;
 
-/// Iterates over the values at pixels with a hit.
+/// Iterates over the values of pixels with a hit.
 fn of_hits(values: &[(Vec3, PrimaryHit)]) -> impl Iterator<Item = Vec3> {
     values.iter().filter(|value| value.1 == PrimaryHit::Hit).map(|value| value.0)
 }
 
-/// Returns the range of depths at hits, excluding the horizon of a plane. With it, everything else
-/// would be the same grey.
+/// Returns the range of the depths at hits, excluding the horizon of a plane. If the horizon were
+/// included, everything else would have the same shade of grey.
 fn visible_depth_range(values: &[(Vec3, PrimaryHit)]) -> Aabb {
     let mut bounds = Aabb::around(of_hits(values));
     let mut depths: Vec<f32> = of_hits(values).map(|value| value.x).collect();
@@ -277,7 +280,7 @@ fn visible_depth_range(values: &[(Vec3, PrimaryHit)]) -> Aabb {
     bounds
 }
 
-/// Crops a picture from one rectangle to another.
+/// Crops a picture of one rectangle to another rectangle.
 fn crop_pixels<T: Copy>(pixels: Vec<T>, from: PixelRect, to: PixelRect) -> Vec<T> {
     if from == to { pixels } else { to.pixel_positions().map(|(x, y)| pixels[from.index(x, y)]).collect() }
 }

@@ -1,4 +1,5 @@
-//! Profiling: times the samples of some pixels, and the intersections of their rays alone.
+//! Profiling, which measures the time for the samples of some pixels and for the intersections of
+//! their rays alone.
 
 use super::samples::SampleSource;
 use super::{Job, RenderError};
@@ -12,16 +13,16 @@ use durer_scene::sampler::SampleId;
 use std::hint::black_box;
 use std::sync::atomic::AtomicBool;
 
-/// Cost of some samples of a render: number of rays, and time with and without shading.
+/// Cost of some samples of a render: the number of rays and the time with and without shading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Profile {
     /// Number of samples.
     pub samples: u64,
-    /// Number of rays of each kind, with its name. The last kind is shadow rays.
+    /// Name and number of rays of each kind. The last kind is shadow rays.
     pub rays: [(&'static str, u64); 5],
-    /// Time for the samples on one thread.
+    /// Time that one thread needs for the samples.
     pub time: Duration,
-    /// Part of the time that is needed to intersect the rays.
+    /// Part of the time that is spent on intersecting the rays.
     pub intersection_time: Duration,
 }
 
@@ -46,11 +47,12 @@ impl TraceListener for RayLog {
     }
 }
 
-/// Measures the first sample of up to `most` evenly spread pixels of a job, once completely and
-/// once with only the intersections of its rays. `None` if samples affect several pixels.
+/// Measures the first sample of up to `most` evenly spread pixels of a job. It measures the
+/// complete samples and, separately, only the intersections of their rays. Returns `None` if
+/// samples affect several pixels.
 ///
 /// # Errors
-/// [`RenderError`] for invalid jobs.
+/// Returns [`RenderError`] for invalid jobs.
 pub fn profile(world: &World, job: &Job, most: u64) -> Result<Option<Profile>, RenderError> {
     super::PartialRender::new(world, job, super::Shard::WHOLE)?;
     if !job.sampling.is_local() || !job.color {
@@ -59,7 +61,7 @@ pub fn profile(world: &World, job: &Job, most: u64) -> Result<Option<Profile>, R
     let never = AtomicBool::new(false);
     let samples = SampleSource::without_quirks(world, job, &never);
     samples.integrator.prepare(0);
-    // An odd step rarely has a common factor with the width, so it reaches all columns.
+    // An odd step rarely has a common factor with the width, so the steps reach all columns.
     let step = (job.window().pixels() / most.max(1)).max(1) | 1;
     let pixels: Vec<(u32, u32)> = job.window().pixel_positions().step_by(step as usize).collect();
     let mut log = RayLog::default();
@@ -103,7 +105,7 @@ pub fn profile(world: &World, job: &Job, most: u64) -> Result<Option<Profile>, R
     }))
 }
 
-/// Returns the minimum time of three runs, because disturbances only add time.
+/// Returns the shortest time of three runs, because disturbances can only increase the time.
 fn fastest(work: impl Fn()) -> Duration {
     let time = || {
         let start = Instant::now();

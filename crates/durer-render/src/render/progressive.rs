@@ -1,4 +1,4 @@
-//! Progressive rendering, for callers that show intermediate pictures.
+//! Progressive rendering for callers that show intermediate pictures.
 
 use super::control::RunLimit;
 use super::part::passes_of;
@@ -10,16 +10,16 @@ use std::sync::atomic::Ordering::Relaxed;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
-    /// Number of samples per pixel so far. Blocks below the noise threshold have fewer.
+    /// Current number of samples per pixel. Blocks below the noise threshold have fewer samples.
     pub samples: u32,
     /// Maximum number of samples per pixel.
     pub all_samples: u32,
-    /// Number of rays traced so far.
+    /// Number of rays that have been traced so far.
     pub rays: u64,
 }
 
-/// Render of a picture in passes, controlled by the caller. The passes and the final bits are those
-/// of [`PartialRender::render`].
+/// Render of a picture in passes that the caller controls. The passes and all bits of the result
+/// are the same as those of [`PartialRender::render`].
 pub struct ProgressiveRender {
     part: PartialRender,
     ends: Box<dyn Iterator<Item = u32> + Send>,
@@ -45,14 +45,14 @@ impl ProgressiveRender {
         Ok(ProgressiveRender { part, ends: Box::new(passes_of(job, Shard::WHOLE)), stopped: None, is_over: false })
     }
 
-    /// Renders the next pass. Returns `None` once the picture is finished, or after a pass that
+    /// Renders the next pass. Returns `None` if the picture is finished or if the previous pass
     /// exceeded [`Control::time_limit`].
     ///
     /// # Errors
     ///
-    /// [`RenderError::Cancelled`] after [`Control::cancel`] or [`Control::max_tiles`],
-    /// [`RenderError::OtherScene`], [`RenderError::Memory`] and [`RenderError::Panic`]. Finished
-    /// work is kept, and the next call continues it.
+    /// Returns [`RenderError::Cancelled`] after [`Control::cancel`] or [`Control::max_tiles`].
+    /// Returns [`RenderError::OtherScene`], [`RenderError::Memory`] or [`RenderError::Panic`] for
+    /// other errors. Finished work is kept, and the next call continues it.
     pub fn next_pass(&mut self, world: &World, control: &Control) -> Result<Option<Progress>, RenderError> {
         if self.is_over {
             return Ok(None);
@@ -74,12 +74,12 @@ impl ProgressiveRender {
             RenderOutcome::Cancelled => RenderError::Cancelled,
             RenderOutcome::Panicked(panicked) => panicked.into(),
         };
-        // The next call repeats the pass for the blocks that are missing.
+        // The next call repeats the pass for the missing blocks.
         self.stopped = Some(samples);
         Err(failed)
     }
 
-    /// Returns the picture so far.
+    /// Returns the current state of the picture.
     pub fn part(&self) -> &PartialRender {
         &self.part
     }

@@ -1,4 +1,4 @@
-//! Replay of a single pixel or sample, to debug a panic or a rejected sample.
+//! Repetition of a single pixel or sample, to debug a panic or a rejected sample.
 
 use super::allocation::max_samples;
 use super::error::RenderError;
@@ -12,12 +12,14 @@ use std::cell::Cell;
 use std::sync::atomic::AtomicBool;
 
 /// Takes one sample of a job again and returns its colour, or `None` if the camera has no ray
-/// there. If `sample` is `None`, repeats the work of the pixel that does not belong to a sample.
+/// there. If the argument `sample` is `None`, repeats the work for the pixel that is not part of
+/// any sample.
 ///
-/// Panics if that work panics.
+/// This function panics if the repeated work panics.
 ///
 /// # Errors
-/// [`RenderError`], including [`RenderError::Shard`] for pixels or samples that are not in the job.
+/// Returns [`RenderError`], which includes [`RenderError::Shard`] for pixels or samples that are
+/// not in the job.
 pub fn replay(
     world: &World,
     job: &Job,
@@ -25,7 +27,7 @@ pub fn replay(
     (x, y): (u32, u32),
     sample: Option<u32>,
 ) -> Result<Option<Color>, RenderError> {
-    // This validates the job.
+    // This call validates the job.
     PartialRender::new(world, job, Shard::WHOLE)?;
     if !job.window().contains(x, y) {
         return Err(RenderError::Shard(format!("the pixel {x},{y} is not in the picture")));

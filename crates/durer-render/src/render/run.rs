@@ -1,4 +1,4 @@
-//! Execution of a render: threads work on tiles, pass after pass, until the end or until they are
+//! Execution of a render. Threads work on tiles, pass after pass, until the render is finished or
 //! stopped.
 
 use super::allocation::{half, pilot, variances};
@@ -21,15 +21,15 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 
-/// Default tile width and height in pixels.
+/// Default width and height of a tile in pixels.
 const TILE: u32 = 16;
-/// Default tile width and height if samples affect several pixels, so that tiles need samples
-/// around them. Smaller if these take more than [`MAX_BYTES`].
+/// Default width and height of a tile if samples affect several pixels, so that a tile needs
+/// samples around it. The tile is smaller if these samples take more than [`MAX_BYTES`].
 const TILE_WITH_BORDER: u32 = 64;
-/// Maximum memory for the samples of one tile, in bytes.
+/// Maximum memory for the samples of a tile, in bytes.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// Returns the default tile width and height for a job.
+/// Returns the default width and height of a tile for a job.
 fn usual_tile(job: &Job) -> u32 {
     if job.sampling.is_local() {
         return TILE;
@@ -41,7 +41,8 @@ fn usual_tile(job: &Job) -> u32 {
 /// Interval at which the calling thread checks for cancellation and time limits.
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
-/// How a call of [`PartialRender::render`] ended: finished, cancelled, out of time or panicked.
+/// The way in which a call of [`PartialRender::render`] ended: finished, cancelled, out of time or
+/// panicked.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RenderOutcome {
     /// All work is done.
@@ -54,25 +55,25 @@ pub enum RenderOutcome {
     Panicked(Panicked),
 }
 
-/// Event reported to the callback of [`PartialRender::render`].
+/// Event that is reported to the callback of [`PartialRender::render`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RenderEvent {
     /// A pass has ended.
     PassDone,
-    /// [`Control::save_every`] has passed since the last save.
+    /// A save is due, because the interval [`Control::save_every`] has passed since the last one.
     SaveDue,
 }
 
 /// Renders all pictures of a job.
 ///
 /// # Errors
-/// [`RenderError`]. Partial results are lost.
+/// Returns [`RenderError`]. Partial results are lost.
 pub fn render(world: &World, job: &Job, control: &Control) -> Result<Rendered, RenderError> {
     render_all(world, job, control)?.pictures()
 }
 
-/// Renders all work of a job without converting it to pictures.
+/// Renders all work of a job but does not convert it to pictures.
 pub(super) fn render_all(world: &World, job: &Job, control: &Control) -> Result<PartialRender, RenderError> {
     let part = PartialRender::new(world, job, Shard::WHOLE)?;
     match part.render(world, control, &mut |_, _| {})? {
@@ -83,7 +84,7 @@ pub(super) fn render_all(world: &World, job: &Job, control: &Control) -> Result<
 }
 
 impl PartialRender {
-    /// Returns the numbers of samples at which passes end.
+    /// Returns the numbers of samples at which the passes end.
     fn ends(&self, until: RunLimit) -> Box<dyn Iterator<Item = u32>> {
         match until {
             RunLimit::End => Box::new(passes_of(&self.job, self.shard)),
@@ -92,15 +93,15 @@ impl PartialRender {
         }
     }
 
-    /// Continues the work until it is finished or stopped. The results of each finished tile are
+    /// Continues the work until it is finished or stopped. The results of all finished tiles are
     /// kept.
     ///
     /// Calls `watch` in the calling thread at the end of each pass and when a save is due, while
-    /// the work continues. After a slow call, ends of passes are not reported for ten times as
-    /// long.
+    /// other threads continue the work. After a slow call, the ends of passes are not reported
+    /// until ten times the duration of the call has passed.
     ///
     /// # Errors
-    /// [`RenderError::OtherScene`], [`RenderError::Memory`], [`RenderError::NoMemory`].
+    /// Returns [`RenderError::OtherScene`], [`RenderError::Memory`] or [`RenderError::NoMemory`].
     pub fn render(
         &self,
         world: &World,
@@ -110,7 +111,7 @@ impl PartialRender {
         self.render_to(world, control, watch, RunLimit::End)
     }
 
-    /// Continues the work up to `until`; see [`PartialRender::render`].
+    /// Continues the work up to `until`. See [`PartialRender::render`].
     pub(super) fn render_to(
         &self,
         world: &World,
@@ -160,7 +161,7 @@ impl PartialRender {
                     work.rays(None);
                     for end in self.ends(until) {
                         work.pass(end, None);
-                        // The receiver may already be gone.
+                        // The receiver may no longer exist.
                         let _ = finished.send(());
                     }
                 });
@@ -173,7 +174,7 @@ impl PartialRender {
                     }
                 }
             }),
-            // Without threads, the calling thread does all the work and polls between tiles.
+            // Without other threads, the calling thread does all the work and polls between tiles.
             None => {
                 work.rays(Some(&mut || clock.poll(self, watch)));
                 for end in self.ends(until) {
@@ -192,23 +193,24 @@ impl PartialRender {
     }
 }
 
-/// State of the calling thread while others render: it enforces limits and calls the callback.
+/// State of the calling thread while other threads render. The calling thread enforces limits and
+/// calls the callback.
 struct Watcher<'a> {
     start: Instant,
-    /// Time of the last callback.
+    /// Time of the latest callback.
     last: Instant,
-    /// Minimum time between the last callback and the next one for a pass.
+    /// Minimum time between the latest callback and the next callback for a pass.
     pause: Duration,
     control: &'a Control,
     stop: &'a AtomicBool,
-    /// True if every pixel has a sample, or if pixels get all their samples at once. Until then, a
-    /// time limit would leave holes in the picture.
+    /// True if every pixel has a sample, or if pixels get all their samples at once. As long as
+    /// this is false, a time limit would leave holes in the picture.
     whole: bool,
     out_of_time: bool,
 }
 
 impl Watcher<'_> {
-    /// Stops the render on cancellation or at the time limit, and reports that a save is due.
+    /// Stops the render if it was cancelled or reached the time limit. Reports when a save is due.
     fn poll(&mut self, part: &PartialRender, watch: &mut dyn FnMut(&PartialRender, RenderEvent)) {
         if self.control.cancel.load(Relaxed) {
             self.stop.store(true, Relaxed);
@@ -233,7 +235,8 @@ impl Watcher<'_> {
 
     /// Calls the callback and measures how long it takes.
     fn call(&mut self, part: &PartialRender, watch: &mut dyn FnMut(&PartialRender, RenderEvent), moment: RenderEvent) {
-        // Do not call back after cancellation; the caller saves the final state anyway.
+        // Do not call the callback after cancellation, because the caller saves the final state in
+        // any case.
         if self.stop.load(Relaxed) {
             return;
         }
@@ -244,7 +247,7 @@ impl Watcher<'_> {
     }
 }
 
-/// Function to call between tiles, if the calling thread is the only one.
+/// Function to call between tiles if there are no threads besides the calling thread.
 type PollFn<'a> = Option<&'a mut dyn FnMut()>;
 
 /// Data that all threads of a render share.
@@ -255,13 +258,13 @@ struct Work<'a> {
     samples: SampleSource<'a>,
     stop: &'a AtomicBool,
     tile: u32,
-    /// Number of tiles that were started.
+    /// Number of tiles that have been started.
     tiles: AtomicU64,
     panicked: Mutex<Option<Panicked>>,
 }
 
 impl Work<'_> {
-    /// Traces the centre rays that are missing.
+    /// Traces the centre rays that have not been traced yet.
     fn rays(&self, alone: PollFn) {
         let part = self.part;
         let open = |(index, block): (usize, &Option<Box<BlockAovs>>)| {
@@ -285,7 +288,7 @@ impl Work<'_> {
         });
     }
 
-    /// Takes samples until every pixel has `end` samples, unless it needs fewer.
+    /// Takes samples until every pixel has `end` samples, or fewer if it needs fewer.
     fn pass(&self, end: u32, alone: PollFn) {
         if !self.stop.load(Relaxed) {
             self.samples.integrator.prepare(end - 1);
@@ -331,8 +334,9 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Computes the finished pixels of a tile, for sampling methods in which a sample affects
-    /// several pixels. If the tile is a rectangle, computes all of it at once, else block by block.
+    /// Computes the finished pixels of a tile for sampling methods in which a sample affects
+    /// several pixels. If the tile is a rectangle, all of it is computed at once, and otherwise
+    /// block by block.
     fn finish(&self, tile: &[usize], at: &SampleCursor) -> Result<(), Cancelled> {
         let blocks = &self.part.blocks;
         let rects: Vec<_> = tile.iter().map(|&index| blocks.rect(index)).collect();
@@ -372,13 +376,13 @@ impl Work<'_> {
         tile.iter().map(|&index| state.samples[index].clone()).collect()
     }
 
-    /// Stores the blocks of a tile after more work was done on them.
+    /// Stores the blocks of a tile after more work has been done on them.
     fn store(&self, tile: &[usize], mut finished_blocks: Vec<BlockSamples>, done: u64, rays: u64) {
         let mut state = self.part.state();
         for (&index, block) in tile.iter().zip(&mut finished_blocks) {
             std::mem::swap(&mut state.samples[index], block);
         }
-        // Free the replaced blocks after the lock is released.
+        // Free the replaced blocks only after the lock has been released.
         drop(state);
         self.count(done, rays);
     }
@@ -389,8 +393,8 @@ impl Work<'_> {
         self.control.rays.fetch_add(rays, Relaxed);
     }
 
-    /// Renders tiles, in parallel if there are threads, until something stops the render. Turns a
-    /// panic into an error that names the sample.
+    /// Renders tiles until something stops the render. Tiles are rendered in parallel if there are
+    /// threads. A panic is converted to an error that names the sample.
     fn for_each_tile(
         &self,
         tiles: &[Vec<usize>],
@@ -413,7 +417,7 @@ impl Work<'_> {
                 Err(Cancelled)
             })
         };
-        // The error only ends the loop; its cause is stored in `panicked` or `stop`.
+        // The error only ends the loop. Its cause is stored in `panicked` or `stop`.
         let _ = match alone {
             None => tiles.par_iter().with_max_len(1).try_for_each(one),
             Some(poll) => tiles.iter().try_for_each(|tile| {

@@ -1,4 +1,4 @@
-//! Sampling of blocks, for all sampling methods.
+//! Sampling of pixel blocks with any of the sampling methods.
 
 use super::aim::{BATCH, Batch, CameraRays, Pixel, PixelRun, PixelSample, SampleGroup};
 use super::error::center;
@@ -15,16 +15,16 @@ use std::cell::{Cell, RefCell};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// Error of a function that stopped because the render was cancelled.
+/// Error of a function that stopped because the render had been cancelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Cancelled;
 
-/// Column, row and index of the sample that a thread is working on, for panic messages.
+/// Column, row and index of the sample that a thread is working on. Panic messages use them.
 pub(super) type SampleCursor = Cell<(u32, u32, Option<u32>)>;
 
-/// Returns a function that visits the samples of a pixel with their position in the picture,
-/// position on the lens, and weight. If samples affect several pixels, it visits only the pixel's
-/// own.
+/// Returns a function that visits the samples of a pixel. It passes their position in the picture,
+/// their position on the lens, and their weight. If samples affect several pixels, it visits only
+/// the samples of the pixel itself.
 pub fn sample_places(world: &World, job: &Job) -> impl Fn(u32, u32, &mut dyn FnMut(Vec2, Vec2, f32)) + Sync {
     let (aperture, seed, sampling) = (world.camera().has_aperture(), job.seed, job.sampling);
     let warp = match sampling {
@@ -59,29 +59,29 @@ pub fn sample_places(world: &World, job: &Job) -> impl Fn(u32, u32, &mut dyn FnM
 struct Run {
     x: u32,
     y: u32,
-    /// Id of the pixel's first sample.
+    /// Id of the first sample of the pixel.
     id: SampleId,
-    /// Index of the first of these samples in its pixel.
+    /// Index of the first sample of the run within its pixel.
     first: u32,
-    /// Index of its weight in [`SampleRays::weights`].
+    /// Index of the weight of the first sample in [`SampleRays::weights`].
     start: usize,
 }
 
 /// Maximum number of samples that are generated before they are traced.
 const CAPACITY: usize = MAX_BATCH + BATCH;
 
-/// Buffer of samples with their camera rays, generated before they are traced together.
+/// Buffer of generated samples with their camera rays, which are traced together.
 struct SampleRays {
     runs: Vec<Run>,
-    /// Number of samples.
+    /// Number of samples in the buffer.
     count: usize,
     /// Weight of each sample.
     weights: [f32; CAPACITY],
     /// Number of samples that have a camera ray.
     ray_count: usize,
-    /// Camera ray of each of these samples.
+    /// Camera ray of each sample that has one.
     rays: [Ray64; CAPACITY],
-    /// Index of the run and index in the pixel, for each of these samples.
+    /// Index of the run and index within the pixel for each sample that has a camera ray.
     of: [(u32, u32); CAPACITY],
     colors: [Color; CAPACITY],
 }
@@ -107,8 +107,8 @@ impl SampleRays {
         (self.count, self.ray_count) = (0, 0);
     }
 
-    /// Returns the index of the run for a sample whose weight will be at index `place`. Starts a
-    /// new run unless the sample continues the last one.
+    /// Returns the index of the run for a sample whose weight will be stored at the index `place`.
+    /// Starts a new run unless the sample continues the last run.
     fn run_of(&mut self, pixel: &Pixel, number: u32, place: usize) -> u32 {
         let goes_on = |run: &Run| (run.x, run.y, run.first + (place - run.start) as u32) == (pixel.x, pixel.y, number);
         if !self.runs.last().is_some_and(goes_on) {
@@ -123,16 +123,16 @@ thread_local! {
     static SAMPLE_RAYS: RefCell<Option<Box<SampleRays>>> = RefCell::default();
 }
 
-/// Source of the samples of a job: generates their camera rays, traces them and adds them to a
-/// film.
+/// Source of the samples of a job. It generates their camera rays, traces the rays and adds the
+/// samples to a film.
 pub(super) struct SampleSource<'a> {
     pub(super) world: &'a World,
     pub(super) job: &'a Job,
     pub(super) aim: CameraRays<'a>,
     pub(super) whitted: Whitted<'a>,
     pub(super) integrator: Integrator<'a>,
-    /// Contribution of the quirk in [`stale`] to each pixel of the full picture. Empty if it does
-    /// not apply.
+    /// Contribution of the quirk in [`stale`] to each pixel of the full picture. The list is empty
+    /// if the quirk does not apply.
     stale: Vec<Color>,
     stop: &'a AtomicBool,
 }
@@ -146,7 +146,7 @@ impl<'a> SampleSource<'a> {
         samples
     }
 
-    /// Creates the source without the [`stale`] quirk, which needs a pass over the full picture.
+    /// Creates the source without the quirk in [`stale`], which needs a pass over the full picture.
     pub(super) fn without_quirks(world: &'a World, job: &'a Job, stop: &'a AtomicBool) -> Self {
         let whitted = Whitted { world, settings: job.settings, cancel: Some(stop) };
         let integrator = job.integrator(world, Some(stop));
@@ -158,13 +158,13 @@ impl<'a> SampleSource<'a> {
         self.aim.gain()
     }
 
-    /// Returns an error if the render was cancelled.
+    /// Returns an error if the render has been cancelled.
     pub(super) fn check(&self) -> Result<(), Cancelled> {
         if self.stop.load(Relaxed) { Err(Cancelled) } else { Ok(()) }
     }
 
-    /// Adds samples to the pixels of a film's rectangle. `ranges` returns the range of samples for
-    /// each pixel, numbered in reading order.
+    /// Adds samples to the pixels in the rectangle of a film. `ranges` returns the range of samples
+    /// for each pixel. Pixels are numbered in reading order.
     pub(super) fn add(
         &self,
         film: &mut Film,
@@ -182,7 +182,7 @@ impl<'a> SampleSource<'a> {
                 let first = numbers.start;
                 at.set((x, y, Some(first)));
                 if batch.len() == 0 && numbers.len() >= BATCH {
-                    // Fast path: consecutive samples of one pixel share their data.
+                    // This is the fast path. Consecutive samples of one pixel share their data.
                     self.aim_several(&PixelRun { pixel: &pixel, first }, &mut buffer);
                     numbers.start += BATCH as u32;
                 } else {
@@ -201,7 +201,7 @@ impl<'a> SampleSource<'a> {
         self.aim_several(&batch, &mut buffer);
         self.add_aimed(film, &mut buffer, at, rays)?;
         SAMPLE_RAYS.set(Some(buffer));
-        // Results are meaningless after cancellation.
+        // The results are meaningless after cancellation.
         self.check()
     }
 
@@ -222,7 +222,7 @@ impl<'a> SampleSource<'a> {
         buffer.count += of.len();
     }
 
-    /// Traces the generated samples, adds them to the film and clears the buffer.
+    /// Traces the generated samples, adds their colours to the film and clears the buffer.
     fn add_aimed(
         &self,
         film: &mut Film,
@@ -264,7 +264,7 @@ impl<'a> SampleSource<'a> {
         Ok(())
     }
 
-    /// Takes one sample of a pixel. Returns its weight and its colour, which is `None` if the
+    /// Takes one sample of a pixel. Returns its weight and its colour. The colour is `None` if the
     /// camera has no ray there.
     pub(super) fn sample(&self, x: u32, y: u32, sample: u32, rays: &mut RayCount) -> (Option<Color>, f32) {
         let pixel = self.aim.pixel(x, y);
@@ -273,13 +273,14 @@ impl<'a> SampleSource<'a> {
         (color.map(|color| self.with_stale((x, y), color)), weight)
     }
 
-    /// Adds the contribution of the [`stale`] quirk to a colour.
+    /// Adds the contribution of the quirk in [`stale`] to a colour.
     fn with_stale(&self, (x, y): (u32, u32), color: Color) -> Color {
         let stale = self.stale.get(y as usize * self.job.width as usize + x as usize);
         stale.map_or(color, |&stale| color + stale)
     }
 
-    /// Generates a sample. Only for sampling methods whose samples affect their own pixel alone.
+    /// Generates a sample. This works only for sampling methods in which a sample affects a single
+    /// pixel.
     pub(super) fn aim(&self, x: u32, y: u32, sample: u32) -> PixelSample {
         self.aim.sample(&self.aim.pixel(x, y), sample)
     }

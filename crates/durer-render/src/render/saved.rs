@@ -31,20 +31,20 @@ use std::sync::Arc;
 const FORMAT: u32 = 1;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Error from reading a saved part of a render, or from combining it with another part.
+/// Error while reading a saved part of a render or combining it with another part.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PartError {
-    /// The bytes are not a saved part.
+    /// The bytes are not a saved part of a render.
     #[error("it is not a part file")]
     NotAPart,
-    /// The bytes are truncated or damaged.
+    /// The data is truncated or damaged.
     #[error("it is truncated or damaged: its checksum is wrong")]
     Damaged,
-    /// Another version of Dürer wrote the part.
+    /// The part was written by another version of Dürer.
     #[error("it was written by Dürer {0}, but this is {VERSION}, so the pictures could differ")]
     OtherVersion(String),
-    /// The checksum is right, but the content is invalid.
+    /// The checksum is correct, but the content is invalid.
     #[error("it is malformed: {0}")]
     Malformed(String),
     /// The job in the file is invalid.
@@ -68,7 +68,7 @@ fn text<'a>(bytes: &mut ByteReader<'a>) -> Option<&'a str> {
     std::str::from_utf8(bytes.take(length)?).ok()
 }
 
-/// Number of blocks that are written at once. It limits how long the lock is held.
+/// Number of blocks that are written at once. The number limits how long the lock is held.
 const CHUNK: usize = 256;
 
 impl Content for PartialRender {
@@ -81,7 +81,7 @@ impl Content for PartialRender {
             bytes.clear();
             io::Result::Ok(())
         };
-        // Lock twice: both locks in one expression would deadlock.
+        // Lock twice, because taking both locks in one expression would cause a deadlock.
         let samples = self.state().samples.len();
         let rays = self.state().rays.len();
         let chunks = |count: usize| (0..count).step_by(CHUNK).map(move |start| start..count.min(start + CHUNK));
@@ -107,17 +107,17 @@ impl Content for &PartialRender {
 }
 
 impl PartialRender {
-    /// First bytes of a saved part.
+    /// The first bytes of a saved part.
     pub const MAGIC: &[u8; 8] = b"DURERPRT";
 
-    /// Serializes the part. Equal work gives equal bytes.
+    /// Serializes the part. Equal work produces equal bytes.
     pub fn write(&self) -> Vec<u8> {
         let mut out = Vec::new();
         self.write_to(&mut out).expect("writing to memory never fails");
         out
     }
 
-    /// Returns everything that comes before the blocks.
+    /// Returns all data that comes before the blocks.
     fn header(&self) -> Vec<u8> {
         let mut out = PartialRender::MAGIC.to_vec();
         write_unsigned(&mut out, FORMAT.into());
@@ -129,7 +129,7 @@ impl PartialRender {
         out
     }
 
-    /// Appends the samples of some blocks.
+    /// Appends the samples of some blocks to the output.
     fn put_samples(&self, blocks: Range<usize>, out: &mut Vec<u8>) {
         let state = self.state();
         for index in blocks {
@@ -146,7 +146,7 @@ impl PartialRender {
         }
     }
 
-    /// Appends the centre-ray results of some blocks.
+    /// Appends the results of the centre rays of some blocks to the output.
     fn put_rays(&self, blocks: Range<usize>, out: &mut Vec<u8>) {
         let state = self.state();
         for index in blocks {
@@ -162,7 +162,8 @@ impl PartialRender {
     /// Reads a saved part.
     ///
     /// # Errors
-    /// [`PartError`] for anything but the output of [`PartialRender::write`] of this version.
+    /// Returns [`PartError`] for data that was not written by [`PartialRender::write`] of this
+    /// version.
     pub fn read(bytes: &[u8]) -> Result<PartialRender, PartError> {
         if !bytes.starts_with(PartialRender::MAGIC) {
             return Err(if PartialRender::MAGIC.starts_with(bytes) { PartError::Damaged } else { PartError::NotAPart });
@@ -192,14 +193,15 @@ impl PartialRender {
         if part.job.adaptive {
             part.allocate();
         }
-        // Reject encodings that `write` does not produce.
+        // Reject encodings that `write` would not produce.
         if part.write() != bytes {
             return Err(malformed("Dürer would encode it differently"));
         }
         Ok(part)
     }
 
-    /// Reads the samples and centre-ray results of all blocks; `None` if they are invalid.
+    /// Reads the samples and the results of the centre rays of all blocks. Returns `None` if the
+    /// data is invalid.
     fn read_blocks(&self, mut rest: ByteReader) -> Option<()> {
         let (mut state, range) = (self.state(), self.shard.range(self.job.sampling.samples()));
         while let number @ 1.. = rest.read_unsigned::<usize>()? {
@@ -241,10 +243,11 @@ impl PartialRender {
         rest.0.is_empty().then_some(())
     }
 
-    /// Checks that another part continues this one's work, with the same scene, job and shard.
+    /// Checks that another part continues the work of this part, with the same scene, job and
+    /// shard.
     ///
     /// # Errors
-    /// [`PartError::OtherScene`], [`PartError::OtherJob`].
+    /// Returns [`PartError::OtherScene`] or [`PartError::OtherJob`].
     pub fn same_work(&self, other: &PartialRender) -> Result<(), PartError> {
         self.same_picture(other)?;
         if self.shard != other.shard {
@@ -253,7 +256,7 @@ impl PartialRender {
         Ok(())
     }
 
-    /// Checks that another part belongs to the same picture.
+    /// Checks that another part belongs to the same picture as this part.
     pub(super) fn same_picture(&self, other: &PartialRender) -> Result<(), PartError> {
         if self.scene != other.scene || self.display != other.display {
             return Err(PartError::OtherScene);
@@ -263,7 +266,7 @@ impl PartialRender {
     }
 }
 
-/// Describes the first field in which two jobs differ.
+/// Describes the first parameter in which two jobs differ.
 fn first_difference(own: &str, other: &str) -> String {
     let fields = |text: &str| serde_json::from_str::<serde_json::Map<_, _>>(text).unwrap_or_default();
     let (own, other) = (fields(own), fields(other));

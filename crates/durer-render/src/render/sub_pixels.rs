@@ -1,4 +1,5 @@
-//! Sub-pixels of Fall 2012, assignment 5: 3 x 3 per pixel, jittered, blurred and averaged.
+//! Sub-pixels for assignment 5 of the Fall 2012 course. Each pixel has 3 x 3 sub-pixels, which are
+//! jittered, blurred and averaged.
 
 use super::{Job, PixelRect, raster};
 use crate::film::course::{average_3x3, blur, jittered_position};
@@ -7,16 +8,16 @@ use durer_scene::camera::Raster;
 use durer_scene::math::{Color, Vec2};
 use serde::Serialize;
 
-/// Sub-pixels that are needed for a rectangle of a picture, as in assignment 5 of Fall 2012.
+/// Sub-pixels that are needed to render a rectangle of a picture, as in assignment 5 of Fall 2012.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SubPixels {
-    /// True for 3 x 3 sub-pixels per pixel, false for one.
+    /// True for 3 x 3 sub-pixels per pixel, false for one sub-pixel per pixel.
     pub jitter: bool,
-    /// True if they are blurred.
+    /// True if the sub-pixels are blurred.
     pub blurred: bool,
     /// Sub-pixels inside the rectangle.
     pub inner: PixelRect,
-    /// Sub-pixels that affect the rectangle's pixels.
+    /// Sub-pixels that affect the pixels of the rectangle.
     pub around: PixelRect,
     /// Sub-pixels of the full picture.
     pub whole: PixelRect,
@@ -41,7 +42,7 @@ impl SubPixels {
         raster(world, self.whole.width, self.whole.height)
     }
 
-    /// Returns the number of sub-pixels across a pixel, 1 or 3.
+    /// Returns the number of sub-pixels along each side of a pixel, which is 1 or 3.
     pub(super) fn scale(&self) -> u32 {
         if self.jitter { 3 } else { 1 }
     }
@@ -51,7 +52,7 @@ impl SubPixels {
         (x / self.scale(), y / self.scale())
     }
 
-    /// Returns the index of a sub-pixel in its pixel.
+    /// Returns the index of a sub-pixel within its pixel.
     pub(super) fn number(&self, (x, y): (u32, u32)) -> u32 {
         y % self.scale() * self.scale() + x % self.scale()
     }
@@ -63,8 +64,8 @@ impl SubPixels {
         corner + 0.5
     }
 
-    /// Blurs and averages the colours of all sub-pixels in `around`. Returns the rectangle's pixels
-    /// in reading order.
+    /// Blurs and averages the colours of all sub-pixels in `around`. Returns the pixels of the
+    /// rectangle in reading order.
     pub(super) fn blurred_mean(&self, mut colors: Vec<Color>) -> Vec<Color> {
         let (inner, around) = (self.inner, self.around);
         if self.blurred {

@@ -1,4 +1,4 @@
-//! Tests that the film does not depend on how it is rendered, and tests of errors.
+//! Tests that the film does not depend on how it is rendered, and tests of errors that can occur.
 
 use super::verify::{RenderVariant, compare};
 use super::*;
@@ -82,7 +82,7 @@ fn film_does_not_depend_on_how_it_is_rendered() {
             let other = way.render_job(&world, &job, &AtomicBool::new(false)).unwrap();
             let difference = compare(&plain, &other);
             assert!(difference.is_none(), "{:?}, {way}: {difference:?}", job.sampling);
-            // Compare the pictures and attributes too, not only the sums.
+            // Compare the pictures and attributes as well as the sums.
             let (a, b) = (plain.pictures().unwrap(), other.pictures().unwrap());
             assert_eq!((a.statistics, &a.attributes), (b.statistics, &b.attributes), "{way}");
             let bits = |layers: &[durer_image::Layer]| -> Vec<u32> {
@@ -94,7 +94,8 @@ fn film_does_not_depend_on_how_it_is_rendered() {
     assert_ne!(one_ray(1), one_ray(2));
 }
 
-/// Samples are generated and shaded in batches, but explained and replayed one by one.
+/// Tests that samples give the same film when they are traced in batches and when they are traced
+/// one by one, as explanations and replays do.
 #[test]
 fn film_equals_the_sum_of_single_samples() {
     let folder = tempfile::tempdir().unwrap();
@@ -112,7 +113,7 @@ fn film_equals_the_sum_of_single_samples() {
         "Transform { Translate 0 0.5 0 TriangleMesh { obj_file ball.obj } }",
         &format!("Sphere {{ center 0 0.5 0 radius 0.9 }} {balls}"),
     );
-    // There are enough objects for a BVH.
+    // There are enough objects to build a BVH.
     let many = |i: u8| {
         let [x, y] = [f32::from(i % 5) - 2.0, f32::from(i / 5) - 1.0];
         format!("MaterialIndex {} Sphere {{ center {x} {y} 1 radius 0.4 }} ", i % 4)
@@ -128,7 +129,7 @@ fn film_equals_the_sum_of_single_samples() {
     let mut deep = RenderSettings { bounces: 7, ..through };
     (deep.reflection, deep.refraction) = (true, true);
     let own_rules = || Dialect::Durer.rules();
-    // The camera has no rays at the corners.
+    // The camera has no rays at the corners of the picture.
     let blind = TEXT.replace("PerspectiveCamera", "FisheyeCamera").replace("angle 40", "angle 180");
     let worlds = [
         (TEXT.to_string(), own_rules(), small().settings),
@@ -156,7 +157,7 @@ fn film_equals_the_sum_of_single_samples() {
             let films = [(); 2].map(|()| Film::window(part.left, part.top, part.width, part.height));
             let [mut together, mut alone] = films;
             let (at, mut rays) = (Cell::new((0, 0, None)), [RayCount::default(); 2]);
-            // Some pixels have fewer samples than a batch, others have more.
+            // Some pixels have fewer samples than a batch, and others have more.
             let all = |pixel: usize| match job.sampling {
                 Sampling::Filtered { .. } => 1..[3, 9, 7, 21][pixel % 4],
                 sampling => 1..sampling.samples().clamp(2, 7),
@@ -192,8 +193,8 @@ fn crop_equals_that_part_of_the_whole_picture() {
         let job = Job { light_scale: Some(scale), ..job };
         let whole = all(&world, &job).pictures().unwrap();
         let part = all(&world, &Job { crop: Some(crop), ..job.clone() }).pictures().unwrap();
-        // The maxima of sample count and luminance are those of the crop. Here they equal those of
-        // the full picture.
+        // The maximum sample count and the maximum luminance are those of the crop. Here, they
+        // equal the maxima of the full picture.
         for (whole, part) in whole.pictures.iter().zip(&part.pictures) {
             for ((x, y), pixel) in crop.pixel_positions().zip(&part.image.pixels) {
                 assert_eq!(whole.image.get(x, y), Some(*pixel), "{} {:?} {x},{y}", whole.name, job.sampling);
@@ -212,8 +213,8 @@ fn noise_threshold_controls_the_number_of_samples() {
     let counts: Vec<f32> = part.pictures().unwrap().layers[1].image.pixels.iter().map(|p| p.x).collect();
     let (least, most) = counts.iter().fold((f32::MAX, 0.0_f32), |(a, b), &n| (a.min(n), b.max(n)));
     assert!(least == passes::MIN_SAMPLES as f32 && most >= 3.0 * least, "{least} {most}");
-    // The true error must be below the threshold. It is measured in sqrt(Y) against a picture with
-    // many more samples.
+    // The true error must be below the threshold. It is measured in sqrt(Y) by comparing with a
+    // picture that has many more samples.
     let truth = all(&world, &Job { sampling: filtered(1024), noise: None, ..job.clone() }).pictures().unwrap();
     let (ours, truth) = (&part.pictures().unwrap().layers[0].image, &truth.layers[0].image);
     let seen = |p: &Vec3| (0.2126 * p.x + 0.7152 * p.y + 0.0722 * p.z).max(1.0 / 256.0).sqrt();
@@ -242,7 +243,7 @@ fn inconsistent_parts_are_not_merged() {
         assert!(
             matches!(merge(&twice), Err(MergeError::Overlap { first, second, .. }) if first == "2/3" && second == "2/3")
         );
-        // Halves and thirds leave gaps or overlap.
+        // Combining halves and thirds leaves gaps or causes overlaps.
         let mixed = [make(&job, 1, 2, by), make(&job, 2, 3, by), make(&job, 3, 3, by)];
         assert!(merge(&mixed).is_err());
     }
@@ -278,7 +279,7 @@ fn parts_survive_serialization_and_invalid_bytes_are_rejected() {
     let bytes = part.write();
     let back = PartialRender::read(&bytes).unwrap();
     assert_eq!((back.hash(), back.write() == bytes, back.identity()), (part.hash(), true, part.identity()));
-    // The checksum detects all truncations and changes.
+    // The checksum detects all truncations and all changes.
     for length in 0..bytes.len() {
         assert!(matches!(PartialRender::read(&bytes[..length]), Err(PartError::Damaged)), "{length}");
     }
@@ -288,7 +289,7 @@ fn parts_survive_serialization_and_invalid_bytes_are_rejected() {
         assert!(matches!(PartialRender::read(&changed), Err(PartError::Damaged)), "{at}");
     }
     assert!(matches!(PartialRender::read(b"P6 1 1 255 ..."), Err(PartError::NotAPart)));
-    // If the checksum is valid, the content can be anything. Reading it must give an error, or a
+    // If the checksum is valid, the content can be arbitrary. Reading it must return an error or a
     // canonical part that can be converted to pictures.
     for at in (8..bytes.len() - 32).filter(|at| *at < 1500 || at % 7 == 0) {
         for new in [0, 0x80, 0xff, bytes[at] ^ 4] {
@@ -297,7 +298,7 @@ fn parts_survive_serialization_and_invalid_bytes_are_rejected() {
             changed.extend(Digest::of(&changed).0);
             if let Ok(read) = PartialRender::read(&changed) {
                 assert!(read.write() == changed, "{at}: written differently");
-                // All values are finite, except the variance of a single sample.
+                // All values are finite, except for the variance of a single sample.
                 let rendered = read.pictures().unwrap();
                 let finite =
                     |layer: &durer_image::Layer| layer.name == "variance" || layer.image.first_non_finite().is_none();
@@ -321,7 +322,7 @@ fn only_the_same_work_is_resumed() {
     assert!(matches!(other(&world, &more, Shard::WHOLE), Err(PartError::OtherJob(why)) if why.contains("sampling")));
     let half = Shard { index: 1, count: 2, by: ShardBy::Tiles };
     assert!(matches!(other(&world, &job, half), Err(PartError::OtherJob(why)) if why.contains("1/2")));
-    // Change the character at which the version starts.
+    // Change the first character of the version.
     let mut bytes = part.write();
     let version = env!("CARGO_PKG_VERSION").len();
     bytes[9 + version] = b'x';
@@ -334,7 +335,8 @@ fn only_the_same_work_is_resumed() {
 #[test]
 fn panic_is_an_error_with_its_sample_and_other_work_is_kept() {
     let mut broken = world();
-    // This BVH refers to an object that does not exist, so rays that hit the sphere's bounds panic.
+    // This BVH refers to an object that does not exist, so rays that hit the bounds of the sphere
+    // panic.
     let mut boxes = vec![Aabb::EMPTY; 1000];
     boxes[999] = broken.objects()[0].bounds().unwrap();
     broken.accel = crate::world::Accel::Bvh(durer_bvh::Bvh::build(&boxes));
@@ -347,14 +349,14 @@ fn panic_is_an_error_with_its_sample_and_other_work_is_kept() {
     };
     assert_eq!(panicked.sample, Some(0), "{panicked}");
     assert!(panicked.message.contains("index out of bounds") && panicked.to_string().contains("pixel "), "{panicked}");
-    // Replaying the sample panics too, but pixels far away do not.
+    // Replaying this sample also panics, but replaying pixels far away does not.
     let alone = |x, y| {
         let one = || replay(&broken, &job, &Control::default(), (x, y), Some(0)).map(|color| color.is_some());
         std::panic::catch_unwind(std::panic::AssertUnwindSafe(one))
     };
     assert!(alone(panicked.x, panicked.y).is_err());
     assert!(alone(0, 0).unwrap().unwrap());
-    // Tiles finished before are kept. Without the bug, the final film is correct.
+    // Tiles that were finished earlier are kept. Without the bug, the final film is correct.
     assert!(part.work().1 > 0);
     let mended = PartialRender::read(&part.write()).unwrap();
     mended.render(&world(), &control, &mut |_, _| {}).unwrap();
@@ -377,7 +379,8 @@ fn time_limit_and_cancel_stop_soon_and_the_callback_is_called() {
     }
     assert!(passes > 0 && saves > 0, "{passes} {saves}");
     assert!(part.is_whole() && !part.is_finished());
-    // A time limit of zero gives a picture without holes, and no more than that.
+    // With a time limit of zero, the picture has no holes, but no more samples are taken than this
+    // requires.
     let hasty = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
     let control = Control { time_limit: Some(Duration::ZERO), ..Control::default() };
     assert_eq!(hasty.render(&world, &control, &mut |_, _| {}).unwrap(), RenderOutcome::OutOfTime);
@@ -392,7 +395,8 @@ fn time_limit_and_cancel_stop_soon_and_the_callback_is_called() {
         (stop, after.saturating_duration_since(before))
     });
     assert_eq!(stopped.0, RenderOutcome::Cancelled);
-    // The goal is 100 ms (measured by `cargo xtask cost`), but the machine may be busy.
+    // The goal is 100 ms (measured by `cargo xtask cost`), but the machine may be busy during the
+    // test.
     assert!(stopped.1 < Duration::from_secs(2), "{:?}", stopped.1);
 }
 
@@ -403,10 +407,10 @@ fn memory_is_estimated_before_it_is_allocated() {
     let control = Control { memory: Some(1 << 30), ..Control::default() };
     let error = part.render(&world, &control, &mut |_, _| {}).unwrap_err();
     assert!(matches!(error, RenderError::Memory { needed, .. } if needed > 1 << 30), "{error}");
-    // A shard by tiles stores only the sums of its own tiles.
+    // If the work is divided by tiles, a shard stores only the sums of its own tiles.
     let shard = Shard { index: 1, count: 100, by: ShardBy::Tiles };
     assert!(PartialRender::bytes_needed(&job, shard) < PartialRender::bytes_needed(&job, Shard::WHOLE));
-    // The samples that the course's film stores also count.
+    // The samples that the film of the course stores are also counted.
     let filter = Some(CourseFilter::Gaussian { sigma: 30.0 });
     let course = Sampling::Course2004 { sampler: Sampler::Random, samples: 65536, filter };
     let part = PartialRender::new(&world, &Job { sampling: course, ..small() }, Shard::WHOLE).unwrap();
@@ -454,7 +458,7 @@ fn bands_give_the_same_picture() {
         );
         let whole = all(&world, &job);
         let layer = whole.pictures().unwrap().pictures;
-        // Bands of two rows of blocks, and a single band.
+        // Test bands of two rows of blocks, and a single band.
         for memory in [16 * one, u64::MAX] {
             let bands = BandedRender::new(&job, memory).unwrap();
             for format in FORMATS.iter().filter(|format| format.rows.is_some()) {
@@ -463,7 +467,8 @@ fn bands_give_the_same_picture() {
                 let made = bands.write(&world, &Control::default(), format, &options, &mut in_bands).unwrap();
                 format.write(&layer, &options, &mut at_once).unwrap();
                 let name = format!("x.{}", format.extensions[0]);
-                // In bands, PNG is compressed differently, and OpenEXR is not compressed.
+                // If a picture is written in bands, PNG is compressed differently, and OpenEXR is
+                // not compressed.
                 assert_eq!(read(&in_bands, &name).unwrap(), read(&at_once, &name).unwrap(), "{name} {memory}");
                 assert!(matches!(format.name, "PNG" | "OpenEXR") || in_bands == at_once, "{name} {memory}");
                 assert_eq!(made.0, whole.statistics());
@@ -486,7 +491,7 @@ fn writing_row_by_row_gives_the_same_file() {
         (TEXT, small(), None),
         (TEXT, Job { sampling: filtered(3), crop, ..small() }, None),
         (TEXT, tall, None),
-        // Some pixels have no camera ray, and some are not rendered.
+        // In this picture, some pixels have no camera ray, and some are not rendered.
         (&fisheye, Job { sampling: filtered(4), ..small() }, None),
         (TEXT, small(), Some(2)),
     ] {
@@ -504,7 +509,7 @@ fn writing_row_by_row_gives_the_same_file() {
             format.write(&layers, &WriteOptions::default(), &mut at_once).unwrap();
             let name = format!("x.{}", format.extensions[0]);
             assert_eq!(read(&by_rows, &name).unwrap(), read(&at_once, &name).unwrap(), "{name}");
-            // OpenEXR is compressed only when written all at once.
+            // OpenEXR is compressed only if it is written all at once.
             assert!(format.name == "OpenEXR" || by_rows == at_once, "{name}");
             assert_eq!(seen.len() as u64, job.window().pixels());
         }

@@ -1,5 +1,5 @@
-//! Renders a picture in many ways (threads, tiles, shards, interruptions, acceleration structures)
-//! to verify that the result is always the same.
+//! Rendering of a picture in many ways to verify that the result is always the same. The renders
+//! differ in threads, tiles, shards, interruptions and acceleration structures.
 
 use super::{Control, Job, MergeError, PartError, PartialRender, RenderError, RenderOutcome, Shard, ShardBy, merge};
 use crate::world::World;
@@ -8,12 +8,12 @@ use durer_scene::source::Digest;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// One way of rendering a picture, which must not affect the result: threads, tiles, shards and
-/// interruptions.
+/// One way of rendering a picture, which must not affect the result. It determines the threads,
+/// tiles, shards and interruptions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RenderVariant {
-    /// Index of the world to render. All worlds have the same scene but different acceleration
-    /// structures.
+    /// Index of the world to render. All worlds contain the same scene but use different
+    /// acceleration structures.
     pub world: usize,
     /// Number of threads.
     pub threads: usize,
@@ -21,11 +21,11 @@ pub struct RenderVariant {
     pub tile: u32,
     /// Number of shards.
     pub shards: u32,
-    /// How the work is divided into shards.
+    /// The way in which the work is divided into shards.
     pub by: ShardBy,
-    /// Number of times that the render of each shard is interrupted, saved and loaded again.
+    /// Number of times that the rendering of each shard is interrupted, saved and loaded again.
     pub interruptions: u32,
-    /// Seed for the points of interruption and for the order of merging.
+    /// Seed that determines when the render is interrupted and in which order parts are merged.
     pub seed: u64,
 }
 
@@ -37,7 +37,7 @@ impl fmt::Display for RenderVariant {
     }
 }
 
-/// Error from rendering a picture as a [`RenderVariant`] specifies.
+/// Error while rendering a picture as a [`RenderVariant`] specifies.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum VariantError {
@@ -60,7 +60,8 @@ impl RenderVariant {
     pub const PLAIN: RenderVariant =
         RenderVariant { world: 0, threads: 1, tile: 16, shards: 1, by: ShardBy::Tiles, interruptions: 0, seed: 0 };
 
-    /// Returns a pseudo-random variant for a number, suitable for the job and the number of worlds.
+    /// Returns the pseudo-random variant with the given number. The variant is suitable for the job
+    /// and the number of worlds.
     pub fn numbered(number: u64, job: &Job, worlds: usize) -> RenderVariant {
         let pick = |dimension: u32, count: u64| hash(number, 0, 0, 0, dimension) % count.max(1);
         let samples = u64::from(job.sampling.samples());
@@ -80,10 +81,10 @@ impl RenderVariant {
         }
     }
 
-    /// Renders a job's picture in the way of this variant.
+    /// Renders the picture of a job as this variant specifies.
     ///
     /// # Errors
-    /// [`VariantError`].
+    /// Returns [`VariantError`].
     pub fn render_job(&self, world: &World, job: &Job, cancel: &AtomicBool) -> Result<PartialRender, VariantError> {
         let mut parts = Vec::new();
         for index in 1..=self.shards {
@@ -95,8 +96,8 @@ impl RenderVariant {
         Ok(if self.shards == 1 { parts.swap_remove(0).1 } else { merge(&parts)? })
     }
 
-    /// Renders a shard. Interrupts it several times after some tiles, and continues from the saved
-    /// part.
+    /// Renders a shard. Interrupts the render several times after some tiles and continues from the
+    /// saved part.
     fn shard(
         &self,
         world: &World,
@@ -111,7 +112,7 @@ impl RenderVariant {
             }
             let some = hash(self.seed, 2, shard.index, round, 0) % 24;
             let control = Control {
-                // Use a different number of threads each time.
+                // Use a different number of threads after each interruption.
                 threads: Some(1 + (self.threads + round as usize - 1) % 7),
                 tile_size: Some(self.tile),
                 max_tiles: (round > 0).then_some(some),
@@ -131,9 +132,9 @@ impl RenderVariant {
 pub struct FilmDifference {
     /// Hash of the expected film.
     pub expected: Digest,
-    /// Hash of the variant's film.
+    /// Hash of the film that the variant rendered.
     pub actual: Digest,
-    /// Description of the first pixel that differs, if a picture shows the difference.
+    /// Description of the first pixel that differs, if the difference is visible in a picture.
     pub place: String,
 }
 

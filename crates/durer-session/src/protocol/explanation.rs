@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 #[cfg(test)]
 use ts_rs::TS;
 
-/// A line of an explanation: a formula in symbols and in numbers, with its result.
+/// A line of an explanation. It contains a formula in symbols and in numbers, and the result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct FormulaRow {
@@ -54,8 +54,8 @@ pub enum SegmentKind {
     Shadowed,
 }
 
-/// A term of the sum that gives the colour of a pixel, with its formulas and the terms that it
-/// consists of.
+/// A term of the sum that gives the colour of a pixel. It contains its formulas and the terms that
+/// it consists of.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Term {
@@ -87,7 +87,7 @@ pub struct Term {
     pub terms: Vec<Term>,
 }
 
-/// Explanation of a pixel's colour, as a tree of terms for one of its samples.
+/// Explanation of the colour of a pixel as a tree of terms for one of its samples.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct PixelExplanation {
@@ -111,24 +111,25 @@ pub struct PixelExplanation {
     pub tree: Option<Term>,
 }
 
-/// Result of testing a ray against one object: the closest hit, a farther one, or none.
+/// Result of testing a ray against one object. The object is the closest hit, a farther hit, or not
+/// hit at all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// The object is the closest hit.
     Closest,
-    /// The ray hits the object behind another one.
+    /// The ray hits the object, but it hits another object first.
     Farther,
-    /// The line meets the object only before the ray's start.
+    /// The line crosses the object only before the start of the ray.
     Behind,
-    /// The line meets the object only beyond the ray's end.
+    /// The line crosses the object only beyond the end of the ray.
     Beyond,
     /// The line misses the object.
     Missed,
 }
 
-/// Intersection test of a ray with one object, with its formulas and result.
+/// Intersection test between a ray and one object, with the formulas and the result.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ObjectTest {
@@ -148,7 +149,8 @@ pub struct ObjectTest {
     pub rows: Vec<FormulaRow>,
 }
 
-/// Result of [`Request::Cast`](super::Request::Cast): intersection tests of a ray with each object.
+/// Result of [`Request::Cast`](super::Request::Cast), with the intersection tests between a ray and
+/// each object.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct CastResult {
@@ -164,7 +166,7 @@ pub struct CastResult {
     pub hit: Option<CastHit>,
 }
 
-/// Closest hit of a ray that was cast, with its position, normals, and texture coordinates.
+/// Closest hit of a ray, with its position, normals and texture coordinates.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct CastHit {
@@ -186,7 +188,8 @@ pub struct CastHit {
     pub barycentric: [f32; 3],
 }
 
-/// Outline of an object as polylines in world space, for a page's line drawing of the scene.
+/// Outline of an object as polylines in world space. A page uses outlines for a line drawing of the
+/// scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Outline {
@@ -196,7 +199,7 @@ pub struct Outline {
     pub lines: Vec<Vec<f32>>,
 }
 
-/// Position and name of a light, for a page's line drawing of the scene.
+/// Position and name of a light. A page uses them for a line drawing of the scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct LightMarker {

@@ -1,11 +1,11 @@
-//! Answers to requests about rays, structures and models.
+//! Answers to requests about rays, acceleration structures and models.
 
 use super::scene::{FieldState, TextPosition};
 use serde::{Deserialize, Serialize};
 #[cfg(test)]
 use ts_rs::TS;
 
-/// Acceleration structure over the objects of a scene whose traversal a page shows.
+/// Acceleration structure for the objects of a scene. A page shows how rays traverse it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
@@ -14,11 +14,11 @@ pub enum Structure {
     Tree,
     /// A uniform grid.
     Grid,
-    /// No structure: every object is tested.
+    /// No acceleration structure, so every object is tested.
     Nothing,
 }
 
-/// A camera ray through a pixel centre, and its first hit.
+/// A camera ray through the centre of a pixel, with its first hit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct CameraRay {
@@ -32,7 +32,7 @@ pub struct CameraRay {
     pub object: Option<u32>,
 }
 
-/// Test of an object during a traversal, with the `t` of its first hit.
+/// Test of an object during a traversal, with the value of `t` at its first hit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct TraversalTest {
@@ -42,8 +42,8 @@ pub struct TraversalTest {
     pub t: Option<f32>,
 }
 
-/// One step of a traversal: the box or cell that the ray visits, and the objects that are tested
-/// there.
+/// One step of a traversal. It contains the box or cell that the ray visits and the tests of
+/// objects there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct TraversalStep {
@@ -57,7 +57,7 @@ pub struct TraversalStep {
     pub closest: Option<f32>,
 }
 
-/// Traversal of an acceleration structure by a ray, step by step.
+/// Traversal of an acceleration structure by a ray, as a list of steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Traversal {
@@ -75,7 +75,7 @@ pub struct Traversal {
     pub boxes: Vec<TreeBox>,
 }
 
-/// Bounding box of a BVH node or grid cell, for drawing.
+/// Bounding box of a BVH node or a grid cell, which a page draws.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct TreeBox {
@@ -86,7 +86,7 @@ pub struct TreeBox {
     pub corners: Vec<f32>,
 }
 
-/// Node of the tree of groups and objects that a scene consists of.
+/// A node in the tree of groups and objects that a scene consists of.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct SceneNode {

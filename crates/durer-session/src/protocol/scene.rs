@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 #[cfg(test)]
 use ts_rs::TS;
 
-/// An option of the render job and its value, as on the command line.
+/// An option of the render job and its value, as they are written on the command line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Setting {
@@ -19,26 +19,26 @@ pub struct Setting {
 #[cfg_attr(test, derive(TS))]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Motion {
-    /// Orbits around the target, in radians.
+    /// Orbits around the target. Angles are in radians.
     Orbit {
         /// To the right.
         right: f32,
         /// Upwards.
         up: f32,
     },
-    /// Moves sideways, in units of the visible height at the target.
+    /// Moves the camera sideways, in units of the visible height at the target.
     Pan {
         /// To the right.
         right: f32,
         /// Upwards.
         up: f32,
     },
-    /// Moves towards the target.
+    /// Moves the camera towards the target.
     Dolly {
         /// Factor on the distance to the target, 0.01 to 100.
         factor: f32,
     },
-    /// Walks, in units of the distance to the target.
+    /// Walks through the scene, in units of the distance to the target.
     Walk {
         /// Forwards.
         forward: f32,
@@ -47,20 +47,20 @@ pub enum Motion {
         /// Upwards.
         up: f32,
     },
-    /// Turns around the eye, in radians.
+    /// Turns the camera around the eye. Angles are in radians.
     Turn {
         /// To the right.
         right: f32,
         /// Upwards.
         up: f32,
     },
-    /// Restores the camera of the text.
+    /// Restores the camera that is defined in the text.
     Home,
-    /// Moves back along the view direction until the full scene is visible.
+    /// Moves the camera back along the view direction until the full scene is visible.
     Frame,
 }
 
-/// An item from which a page lets the user choose, such as an integrator, with its description.
+/// An item that a page offers for selection, such as an integrator, with its description.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct NamedChoice {
@@ -84,20 +84,20 @@ pub struct TextPosition {
     pub end: u32,
 }
 
-/// Severity of a [`Finding`]: note, warning, or error.
+/// Severity of a [`Finding`]: a note, a warning or an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Severity {
-    /// The finding is only for information.
+    /// The finding is only informative.
     Note,
-    /// The picture may differ from the author's intent.
+    /// The picture may differ from what the author intended.
     Warning,
     /// The scene cannot be rendered.
     Error,
 }
 
-/// An error, warning, or note about the text of a scene.
+/// An error, a warning or a note about the text of a scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Finding {
@@ -131,7 +131,7 @@ pub struct TextEdit {
     pub text: String,
 }
 
-/// Summary of a scene: its camera, objects, lights, bounds, and job options.
+/// Summary of a scene with its camera, objects, lights, bounds and job options.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct SceneSummary {
@@ -179,7 +179,7 @@ pub struct SceneItem {
     pub place: Option<TextPosition>,
 }
 
-/// The current camera of a session: its position, directions, and fields.
+/// The current camera of a session with its position, directions and fields.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct CameraState {
@@ -223,7 +223,7 @@ pub struct FieldState {
     pub most: Option<f32>,
 }
 
-/// Description of a picture that is sent to a page: its size, progress, and timing.
+/// Description of a picture that is sent to a page, including its size, progress and timing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct PictureInfo {

@@ -2,7 +2,7 @@ use super::*;
 use std::path::Path;
 use ts_rs::TS;
 
-/// Returns the types in TypeScript, in the order of the protocol's files.
+/// Returns the TypeScript types in the order of the protocol's files.
 fn typescript() -> String {
     macro_rules! declarations {
         ($($type:ty),+ $(,)?) => { [$(<$type>::decl()),+] };

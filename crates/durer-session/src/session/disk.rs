@@ -1,4 +1,4 @@
-//! The scene file on disk: saving it, and noticing changes by other programs.
+//! The scene file on disk. The session saves it and notices when other programs change it.
 
 use super::Session;
 #[cfg(feature = "fs")]
@@ -27,8 +27,9 @@ impl Session {
         Err("files cannot be saved here".into())
     }
 
-    /// Reads the scene file again if it has changed on disk. If the text was edited in the session
-    /// too, it is kept, and the page is notified of the conflict when it saves.
+    /// Reads the scene file again if it has changed on disk. If the text was also edited in the
+    /// session, the edited text is kept, and the page is notified of the conflict when it saves the
+    /// text.
     #[cfg(feature = "fs")]
     pub(crate) fn check_disk(&mut self, send_message: &mut dyn FnMut(Message)) {
         let Some(document) = self.document.as_ref().filter(|_| self.on_disk) else { return };
@@ -46,7 +47,8 @@ impl Session {
         }
     }
 
-    /// If the scene file contains `text`, records its current version as the one that was read.
+    /// If the scene file contains `text`, records the current version of the file as the one that
+    /// was read.
     #[cfg(feature = "fs")]
     pub(crate) fn accept_disk_version(&mut self, text: &str) {
         if let Some(document) = self.document.as_ref().filter(|_| self.on_disk)

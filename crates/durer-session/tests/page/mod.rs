@@ -1,4 +1,4 @@
-//! The page's side of the protocol, for tests.
+//! The side of the protocol that a web page implements, for tests.
 
 #![allow(dead_code, reason = "each test uses a part")]
 
@@ -8,8 +8,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// A simulated page with its own [`Host`], whose clock advances by one millisecond each time it is
-/// read.
+/// A simulated page with its own [`Host`]. The clock of the host advances by one millisecond each
+/// time it is read.
 pub struct Page(Host);
 
 impl Page {
@@ -29,7 +29,7 @@ impl Page {
         all
     }
 
-    /// Returns the pictures that the session sends until it is idle.
+    /// Returns the pictures that the session sends until it becomes idle.
     pub fn pictures(&mut self) -> Vec<(PictureInfo, Vec<u8>)> {
         let mut all = Vec::new();
         while self.0.is_busy() {

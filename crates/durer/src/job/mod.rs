@@ -1,9 +1,9 @@
-//! Options that determine a picture, and their defaults.
+//! Options that determine a picture, with their defaults.
 //!
-//! [`RenderJob`] holds the options that are set. The options are defined only once, in
-//! [`RenderJob::OPTIONS`], which the command line, the text that reproduces a job
-//! ([`RenderJob::spelled`]), JSON and Python use. [`RenderJob::resolve`] turns the options into a
-//! [`Job`], with defaults from the scene.
+//! [`RenderJob`] contains the options that are set. The options are defined in a single place,
+//! [`RenderJob::OPTIONS`]. The command line, the text that reproduces a job
+//! ([`RenderJob::spelled`]), JSON and Python use these definitions. [`RenderJob::resolve`] turns
+//! the options into a [`Job`], with defaults from the scene.
 
 mod option_form;
 
@@ -22,12 +22,12 @@ pub(crate) use option_form::unknown_option;
 pub use option_form::{JobOption, OptionForm};
 use option_form::{OptionValue, one_of};
 
-/// Maximum number of samples per pixel with a noise threshold.
+/// Maximum number of samples per pixel if there is a noise threshold.
 const MAX_FOR_NOISE: u32 = 4096;
 /// Minimum throughput of a ray.
 const MIN_THROUGHPUT: f32 = 1.0 / 256.0;
 
-/// Default number of scattering events after a path's first hit.
+/// Default number of scattering events after the first hit of a path.
 pub const PATH_BOUNCES: u32 = 16;
 
 macro_rules! options {
@@ -46,7 +46,7 @@ macro_rules! options {
         }
 
         impl $name {
-            /// Every option except those of the integrators, which define their own: see
+            /// All options except those of the integrators, which define their own options. See
             /// [`IntegratorKind`].
             pub const OPTIONS: &'static [JobOption] =
                 &[$(JobOption { name: $word, doc: concat!($($fdoc, "\n"),+), form: $form },)*];
@@ -58,12 +58,12 @@ macro_rules! options {
                 self
             })*
 
-            /// Sets an option by its name on the command line. `text` is its value, or empty for a
-            /// flag.
+            /// Sets an option by its name on the command line. `text` is the value of the option,
+            /// or empty for a flag.
             ///
             /// # Errors
             ///
-            /// A message, if the option is unknown or the text is not a valid value.
+            /// Returns a message if the option is unknown or the text is not a valid value.
             pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
                 let option = RenderJob::OPTIONS.iter().find(|option| option.name == name);
                 match option.map(|option| option.form) {
@@ -78,7 +78,7 @@ macro_rules! options {
                 Ok(())
             }
 
-            /// Returns an option's value as text; `None` if it is not set.
+            /// Returns the value of an option as text, or `None` if it is not set.
             pub fn get(&self, name: &str) -> Option<String> {
                 match name {
                     $($word => self.$field.as_ref().map(OptionValue::to_text),)*
@@ -90,8 +90,8 @@ macro_rules! options {
 }
 
 options! {
-    /// Options of a render that determine the picture, such as size, integrator, and samples.
-    /// Options that are not set have the scene's defaults: see [`RenderJob::resolve`].
+    /// Options of a render that determine the picture, such as size, integrator and samples.
+    /// Options that are not set get the scene's defaults. See [`RenderJob::resolve`].
     ///
     /// ```
     /// use durer::job::RenderJob;
@@ -157,42 +157,43 @@ options! {
     }
 }
 
-/// Returns the default integrator of a scene: path tracing for layered materials, environments, fog
-/// and emissive surfaces, otherwise Whitted's.
+/// Returns the default integrator of a scene. This is path tracing for layered materials,
+/// environments, fog and emissive surfaces, and Whitted's integrator otherwise.
 pub fn default_integrator(scene: &Scene) -> IntegratorKind {
     if scene.is_physical() { IntegratorKind::PATH } else { IntegratorKind::WHITTED }
 }
 
-/// Returns the name of an integrator's option on the command line.
+/// Returns the command-line name of an option of an integrator.
 pub fn option_name(field: &Field) -> &'static str {
     field.keyword(Dialect::Durer).unwrap_or(field.name)
 }
 
-/// Returns the index of an option among the fields of an integrator; `None` if the integrator does
-/// not have it.
+/// Returns the index of an option among the fields of an integrator, or `None` if the integrator
+/// does not have this option.
 pub fn option_index(method: &IntegratorKind, option: &str) -> Option<usize> {
     method.fields().iter().position(|field| option_name(field) == option)
 }
 
-/// Scene and rules that determine the defaults of a job's options; see [`RenderJob::resolve`].
+/// Scene and rules that determine the defaults of the options of a job. See [`RenderJob::resolve`].
 #[derive(Clone, Copy, Debug)]
 pub struct JobContext<'a> {
     /// The scene.
     pub scene: &'a Scene,
     /// Rules of the scene's dialect.
     pub rules: &'a DialectRules,
-    /// True if a dialect was requested, so that its program is emulated with all quirks.
+    /// True if a dialect was requested. Its program is then emulated with all quirks.
     pub emulates: bool,
     /// True if a time limit ends the sampling.
     pub timed: bool,
 }
 
-/// Selection of the pictures that a render writes, and of the part of the picture to render.
+/// Selection of the pictures that a render writes and of the part of the picture to render.
 #[derive(Clone, Debug)]
 pub struct OutputSelection {
-    /// Crop of the picture: left, top, width, height; `None` for the scene's own crop.
+    /// Crop of the picture (left, top, width and height), or `None` for the crop of the scene.
     pub crop: Option<(u32, u32, u32, u32)>,
-    /// Names of the pictures to write: `color`, or names from [`durer_render::film::aov::AOVS`].
+    /// Names of the pictures to write, which are `color` or names from
+    /// [`durer_render::film::aov::AOVS`].
     pub show: Vec<String>,
 }
 
@@ -214,7 +215,7 @@ impl RenderJob {
     ///
     /// # Errors
     ///
-    /// A message, if no integrator has this option.
+    /// Returns a message if no integrator has this option.
     pub fn set_integrator_option(&mut self, name: &str, value: Value) -> Result<(), String> {
         let kinds = IntegratorKind::kinds();
         let fields = kinds.iter().flat_map(|kind| kind.fields());
@@ -249,17 +250,17 @@ impl RenderJob {
         unknown_option(name, RenderJob::OPTIONS.iter().map(|option| option.name))
     }
 
-    /// Returns the requested integrator with its options; `usual` if none is requested.
+    /// Returns the requested integrator with its options, or `usual` if none is requested.
     ///
     /// # Errors
     ///
-    /// A message, if the integrator is unknown, or an option does not apply to it or is out of
-    /// range.
+    /// Returns a message if the integrator is unknown, or if an option does not apply to it or is
+    /// out of range.
     pub fn resolve_integrator(&self, usual: IntegratorKind) -> Result<IntegratorKind, String> {
         let has = |kind: &IntegratorKind, (option, _): &(&str, Value)| option_index(kind, option).is_some();
         let mut methods = std::iter::once(usual).chain(IntegratorKind::kinds());
-        // Without a requested integrator, find one with all options that are set, or at least the
-        // last one.
+        // If no integrator is requested, find one that has all options that are set, or at least
+        // the last of them.
         let fitting = methods.clone().find(|kind| self.integrator_option_values.iter().all(|option| has(kind, option)));
         let last = self.integrator_option_values.last();
         let kind = match &self.integrator_name {
@@ -282,18 +283,17 @@ impl RenderJob {
         Ok(method)
     }
 
-    /// Returns the picture's size, if it is set.
+    /// Returns the size of the picture if it is set.
     pub fn requested_size(&self) -> Option<(u32, u32)> {
         self.size
     }
 
-    /// Resolves the options into a job. Options that are not set have defaults from the scene and
-    /// its rules. Without a view, the job renders the full picture in colour, and no other
-    /// pictures.
+    /// Resolves the options into a job. Options that are not set get defaults from the scene and
+    /// its rules. Without a view, the job renders the full picture in colour and no other pictures.
     ///
     /// # Errors
     ///
-    /// A message, if options contradict each other or the scene.
+    /// Returns a message if options contradict each other or the scene.
     pub fn resolve(&self, context: &JobContext, view: Option<&OutputSelection>) -> Result<Job, String> {
         let JobContext { scene, rules, emulates, .. } = *context;
         let camera = scene.camera.as_ref();
@@ -301,7 +301,8 @@ impl RenderJob {
         let natural = || Raster::natural_size(camera.and_then(|camera| camera.proportions()), rules.size);
         let (width, height) = self.size.or(render_defaults.size).unwrap_or_else(natural);
         let method = self.resolve_integrator(default_integrator(scene))?;
-        // Blur from an aperture, and random integrators, need more samples than antialiasing.
+        // Blur caused by an aperture and integrators that use random numbers need more samples than
+        // antialiasing.
         let default_samples =
             if camera.is_some_and(|camera| camera.has_aperture()) || method.is_stochastic() { 64 } else { 16 };
         let default_samples = render_defaults.samples.unwrap_or(default_samples);
@@ -328,7 +329,7 @@ impl RenderJob {
             }
             None => None,
         };
-        // The crop in the scene applies only if the picture has the size in the scene.
+        // The crop of the scene applies only if the picture has the size that the scene defines.
         let scene_crop = render_defaults.crop.filter(|_| render_defaults.size == Some((width, height)));
         let crop = view.and_then(|view| view.crop.or(scene_crop));
         let pictures = view.map_or(&[][..], |view| &view.show);
@@ -422,8 +423,8 @@ impl RenderJob {
         Ok(Sampling::Course2004 { sampler, samples, filter })
     }
 
-    /// Returns the options in which a job differs from the scene's defaults, except size and view:
-    /// the inverse of [`RenderJob::resolve`].
+    /// Returns the options in which a job differs from the defaults of the scene, except the size
+    /// and the view. This is the inverse of [`RenderJob::resolve`].
     pub fn of(job: &Job, context: &JobContext) -> RenderJob {
         let JobContext { scene, rules, emulates, .. } = *context;
         let settings = &job.settings;
@@ -479,7 +480,7 @@ impl RenderJob {
         options
     }
 
-    /// Returns the options that are set, as arguments of the command line.
+    /// Returns the options that are set as command-line arguments.
     pub fn to_arguments(&self) -> Vec<String> {
         let mut words: Vec<String> = self.integrator_name.iter().map(|name| format!("--integrator {name}")).collect();
         words.extend(self.integrator_option_values.iter().filter_map(|(name, value)| match value {

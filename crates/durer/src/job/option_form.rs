@@ -1,41 +1,40 @@
-//! Forms of option values: how their texts are checked, parsed and printed.
+//! Forms of option values, which define how their text is checked, parsed and printed.
 
 use durer_diag::did_you_mean;
 
-/// Form of the value that an option takes, such as a flag, a number in a range, or one of several
-/// words.
+/// Form of the value of an option, such as a flag, a number in a range, or one of several words.
 #[derive(Clone, Copy, Debug)]
 pub enum OptionForm {
     /// No value.
     Flag,
-    /// `on` or `off`; without a value, `on`.
+    /// The word `on` or `off`. Without a value, the option is on.
     Switch,
-    /// A whole number in a range, both ends included.
+    /// An integer in a range that includes both ends.
     Whole(u32, u32),
-    /// A number, or several that are joined by a letter. Contains the name of the value.
+    /// A number, or several numbers joined by a letter. Contains the name of the value.
     Value(&'static str),
-    /// A number that must pass a test. Contains the name of the value, the test, and the message if
-    /// it fails.
+    /// A number that must pass a test. Contains the name of the value, the test, and the message
+    /// that is shown if the test fails.
     Number(&'static str, fn(f32) -> bool, &'static str),
-    /// Two numbers separated by a space. Contains their names.
+    /// Two numbers separated by a space. Contains the names of the numbers.
     Two(&'static str, &'static str),
     /// One of several words.
     Words(fn() -> Vec<&'static str>),
 }
 
-/// Definition of an option of a render: its name, documentation, and form of value.
+/// Definition of a render option, with its name, its documentation and the form of its value.
 #[derive(Clone, Copy, Debug)]
 pub struct JobOption {
-    /// Name on the command line, without dashes.
+    /// Name on the command line without dashes.
     pub name: &'static str,
-    /// Meaning, unit and default.
+    /// Meaning, unit and default of the option.
     pub doc: &'static str,
     /// Form of the value.
     pub form: OptionForm,
 }
 
 impl OptionForm {
-    /// Checks that the text of a value has this form. Numbers of a free form are not checked.
+    /// Checks that the text of a value has this form. Numbers without a fixed form are not checked.
     pub(crate) fn check(self, text: &str) -> Result<(), String> {
         match self {
             OptionForm::Whole(least, most) => match text.parse::<u32>() {
@@ -50,12 +49,13 @@ impl OptionForm {
     }
 }
 
-/// Checks that a text is one of the words.
+/// Checks that a text is one of the allowed words.
 pub(super) fn one_of(text: &str, words: &[&str]) -> Result<(), String> {
     if words.contains(&text) { Ok(()) } else { Err(format!("expected one of {}", words.join(", "))) }
 }
 
-/// Returns the message for an option that does not exist, with the nearest name.
+/// Returns the message for an option that does not exist. The message suggests the most similar
+/// name.
 pub(crate) fn unknown_option<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     match did_you_mean(name, known) {
         Some(near) => format!("unknown option `{name}`; did you mean `{near}`?"),
@@ -63,7 +63,7 @@ pub(crate) fn unknown_option<'a>(name: &str, known: impl IntoIterator<Item = &'a
     }
 }
 
-/// Type of an option's value, which is parsed from text and printed as text.
+/// Type of the value of an option. The value is parsed from text and printed as text.
 pub(super) trait OptionValue: Sized {
     fn parse(text: &str) -> Result<Self, String>;
     fn to_text(&self) -> String;

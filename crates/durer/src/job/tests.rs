@@ -65,7 +65,7 @@ fn options_are_set_by_name_and_printed_back() {
     assert_eq!(RenderJob::of(&adaptive, &context(&scene, rules)).to_arguments(), ["--samples 32", "--adaptive"]);
     let both = RenderJob::default().adaptive(true).noise_threshold(0.5_f32).resolve(&context(&scene, rules), None);
     assert!(both.unwrap_err().contains("remove one of them"));
-    // For a job with default options, only the number of samples is spelled out.
+    // For a job with default options, only the number of samples is written.
     let usual = RenderJob::default().resolve(&context(&scene, rules), None).unwrap();
     assert_eq!(RenderJob::of(&usual, &context(&scene, rules)).to_arguments(), ["--samples 16"]);
 }

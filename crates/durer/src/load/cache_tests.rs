@@ -1,4 +1,4 @@
-//! Tests of the cache: unchanged files are neither read nor built again.
+//! Tests that unchanged files in the cache are neither read nor built again.
 
 use super::*;
 use durer_render::compile::CacheStatistics;
@@ -13,7 +13,8 @@ Materials { PhongMaterial { diffuseColor 1 1 1 texture a.ppm } PrincipledMateria
 Group { MaterialIndex 0 TriangleMesh { obj_file a.obj } MaterialIndex 1 TriangleMesh { obj_file b.obj } }";
 const MESH: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
 
-/// A temporary folder with a scene, its meshes and pictures, and a cache for loading it.
+/// A temporary folder that contains a scene with its meshes and pictures, together with a cache for
+/// loading the scene.
 struct TestFolder {
     folder: tempfile::TempDir,
     cache: Option<Arc<AssetCache>>,
@@ -36,7 +37,7 @@ impl TestFolder {
         fs::write(self.path(name), content).unwrap();
     }
 
-    /// Replaces a file by one of the same size and age.
+    /// Replaces a file with one of the same size and modification time.
     fn replace(&self, name: &str, content: &[u8]) {
         let old = fs::metadata(self.path(name)).unwrap();
         assert_eq!(old.len(), content.len() as u64);
@@ -48,7 +49,7 @@ impl TestFolder {
         fs::File::options().write(true).open(self.path(name)).unwrap().set_modified(when).unwrap();
     }
 
-    /// Returns the digest of the world, and the files that were read; `None` after errors.
+    /// Returns the digest of the world and the files that were read, or `None` if there are errors.
     fn world(&self, scene: &str, cache: bool) -> Option<(Digest, BTreeSet<PathBuf>)> {
         let options =
             LoadOptions { cache: self.cache.clone().filter(|_| cache), dialect: None, ..LoadOptions::default() };
@@ -58,7 +59,7 @@ impl TestFolder {
         Some((world.digest(), loaded.files().into_iter().collect()))
     }
 
-    /// Checks that the cache does not change the world, and returns the reuse counts.
+    /// Checks that the cache does not change the world. Returns the numbers of reused items.
     #[track_caller]
     fn watched(&self, scene: &str) -> (usize, usize) {
         assert_eq!(self.world(scene, true).unwrap(), self.world(scene, false).unwrap());
@@ -77,12 +78,12 @@ fn unchanged_files_are_not_read_again() {
     assert_eq!(place.watched("scene.txt"), (4, 0));
     place.put("scene.txt", SCENE.replace("color 1 1 1 }", "color 1 0 0 }").as_bytes());
     assert_eq!(place.watched("scene.txt"), (0, 4));
-    // A mesh whose size and time have not changed is not even read.
+    // A mesh file whose size and time have not changed is not even read.
     place.replace("a.obj", format!("{:1$}", "f 7 8 9", MESH.len()).as_bytes());
     assert!(place.world("scene.txt", true).is_some() && place.reuse() == (0, 4));
     assert!(place.world("scene.txt", false).is_none());
     place.replace("a.obj", MESH.as_bytes());
-    // Change the size of one file and the time of another.
+    // Change the size of one file and the modification time of another.
     place.put("b.obj", [MESH, MESH].concat().as_bytes());
     place.date("b.ppm", SystemTime::UNIX_EPOCH);
     assert_eq!(place.watched("scene.txt"), (2, 2));

@@ -1,4 +1,4 @@
-//! Tests of models as scenes: contents, errors and their positions.
+//! Tests of models that are used as scenes, including their contents, errors and positions.
 
 use super::*;
 use durer_diag::Diagnostic;
@@ -10,8 +10,8 @@ use durer_scene::source::Digest;
 use durer_scene::texture::Channel;
 use std::fs;
 
-/// Loads a file in a folder. Returns the scene, if there were no errors, and the diagnostics as
-/// `code: message`.
+/// Loads a file in a folder. Returns the scene if there were no errors, and the diagnostics in the
+/// form `code: message`.
 fn read(folder: &Path, name: &str, options: &LoadOptions) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let loaded = load(&folder.join(name), options, &mut files, &mut diagnostics).unwrap();
@@ -41,7 +41,7 @@ fn principled(scene: &Scene, number: usize) -> &PrincipledMaterial {
 const TETRAHEDRON: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.25], [0.5, 1.0, 0.5], [0.25, 0.125, 1.0]];
 const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
 
-/// Writes the same tetrahedron into a folder in every format.
+/// Writes the same tetrahedron to a folder in every format.
 fn tetrahedra() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let put = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
@@ -97,7 +97,7 @@ const GLTF: &str = r#"{
   "scenes": [{ "nodes": [0] }]
 }"#;
 
-/// Returns a folder with the tetrahedron's glTF changed in one place.
+/// Returns a folder with the glTF file of the tetrahedron after one change.
 fn changed(from: &str, to: &str) -> tempfile::TempDir {
     let folder = tetrahedra();
     assert!(GLTF.contains(from), "{from}");
@@ -117,12 +117,12 @@ fn model_renders_the_same_in_every_format() {
     for name in ["a.ply", "a.stl"] {
         assert_eq!(hash(folder.path(), name, &up), obj, "{name}");
     }
-    // Without normals, glTF means flat shading, and the other formats smooth shading up to a
-    // crease.
+    // Without normals, glTF requires flat shading. The other formats use smooth shading up to a
+    // crease angle.
     assert_eq!(hash(folder.path(), "a.gltf", &up), hash(folder.path(), "a.glb", &up));
-    // STL files are z-up by default.
+    // STL files have z as the up axis by default.
     assert_ne!(hash(folder.path(), "a.stl", &options), obj);
-    // A different view gives a different picture and digest.
+    // A different view gives a different picture and a different digest.
     let front = LoadOptions {
         scene_defaults: SceneDefaults { view: Some(PresetView::Front), ..SceneDefaults::default() },
         ..options.clone()
@@ -169,7 +169,7 @@ fn meshes_are_equal_after_writing_and_reading() {
     let options = LoadOptions::default();
     let loaded = load(&folder.path().join("a.ply"), &options, &mut files, &mut diagnostics).unwrap().unwrap();
     let (mesh, left_out) = loaded.compile(&options, &mut files, &mut diagnostics).unwrap().merged_mesh();
-    // The ground is not a mesh.
+    // The ground plane is not a mesh.
     assert_eq!((mesh.triangles.len(), left_out), (4, 1));
     for format in durer_formats::MESH_FORMATS {
         let bytes = (format.write)(&mesh);
@@ -233,7 +233,7 @@ fn gltf_errors_name_the_place_and_the_fault() {
         ("\"asset\"", "\"extensionsRequired\": [\"KHR_texture_basisu\"], \"asset\"", "UNSUPPORTED_EXTENSION"),
         ("[0] }]", "[0] }", "INVALID_JSON"),
     ] {
-        // The size of an accessor without a buffer, which is all zeros, is limited too.
+        // The size of an accessor without a buffer, whose elements are all zero, is also limited.
         let to = if to.is_empty() { "\"normalized\": false, " } else { to };
         let folder = match wanted {
             "too-large: /meshes/0/primitives/0/indices" => {
@@ -269,7 +269,7 @@ fn gltf_materials_become_openpbr_parameters() {
     assert_eq!((m.coat_weight, m.coat_roughness, m.coat_ior, m.coat_darkening), (0.5, 0.125, 1.5, 0.0));
     assert_eq!((m.fuzz_weight, m.fuzz_color), (0.5, Vec3::new(1.0, 0.5, 0.0)));
     assert_eq!((m.transmission_weight, m.transmission_depth, m.transmission_color), (0.75, 2.0, Vec3::Y));
-    // The default material of glTF is a rough white metal.
+    // The default material of glTF is a rough, white metal.
     let m = principled(&scene, 1);
     assert_eq!((m.base_color, m.base_metalness, m.specular_roughness, m.opacity), (Vec3::ONE, 1.0, 1.0, 1.0));
 }
@@ -294,7 +294,7 @@ fn gltf_camera_is_chosen_by_name() {
         panic!("no camera")
     };
     assert_eq!((left.center, left.direction), (Vec3::new(1.0, 2.0, 3.0), Vec3::NEG_Z));
-    // Twice as wide as high: tan(angle / 2) = 2 tan(1/2).
+    // The picture is twice as wide as high, so tan(angle / 2) = 2 tan(1/2).
     assert!((left.angle - 2.0 * fp::atan_f64(2.0 * fp::tan_f64(0.5)).to_degrees() as f32).abs() < 1e-4);
     assert_eq!(seen("right").0.unwrap().camera, seen("1").0.unwrap().camera);
     assert!(seen("rigth").1[0].contains("did you mean `right`?"));
@@ -318,7 +318,8 @@ fn obj_is_split_by_material_and_reads_mtl() {
     let (scene, found) = read(folder.path(), "m.obj", &LoadOptions::default());
     assert!(found[0].starts_with("no-material: no material file has `gone`") && found.len() == 1, "{found:?}");
     let scene = scene.unwrap();
-    // Three meshes in the order of each material's first triangle, then the ground.
+    // There are three meshes, in the order of the first triangle of each material, followed by the
+    // ground.
     let objects = &scene.root.as_ref().unwrap().objects;
     let triangles = objects.iter().filter_map(|object| match &object.node {
         ObjectKind::Mesh(mesh) => Some((scene.assets.meshes[&mesh.obj_file.path].triangles.len(), object.material)),
@@ -329,7 +330,7 @@ fn obj_is_split_by_material_and_reads_mtl() {
     assert_eq!((red.base_color, red.base_metalness, red.specular_roughness), (Vec3::X, 1.0, 0.25));
     let picture = &scene.assets.pictures[&red.base_color_texture.as_ref().unwrap().path];
     assert_eq!(picture.mapping.wrap, [durer_scene::texture::Wrap::Clamp; 2]);
-    // v upwards: 3 v + 0.25; downwards: 3 w + 1 - 3 - 0.25.
+    // With v upwards, the coordinate is 3 v + 0.25. With v downwards, it is 3 w + 1 - 3 - 0.25.
     assert_eq!(picture.mapping.transform, [[2.0, 0.0, 0.5], [0.0, 3.0, -2.25]]);
     let glass = principled(&scene, 1);
     assert_eq!((glass.transmission_weight, glass.specular_ior, glass.emission_luminance), (0.75, 1.25, 4.0));
@@ -352,9 +353,9 @@ fn mtl_pictures_set_their_parameters() {
     assert_eq!(mapping(&m.specular_roughness_texture).channel, Some(Channel::Green));
     assert_eq!(mapping(&m.base_metalness_texture).range, [0.25, 0.75]);
     assert!(m.specular_color_texture.is_some() && m.opacity_texture.is_some() && m.emission_texture.is_some());
-    // If a parameter has only a texture, the texture is not scaled.
+    // If a parameter is given only by a texture, the texture is not scaled.
     assert_eq!((m.specular_roughness, m.base_metalness, m.coat_weight, m.emission_luminance), (1.0, 1.0, 1.0, 1.0));
-    // A bump map's height is relative to the size of the model, here 5.
+    // The height of a bump map is relative to the size of the model, which is 5 here.
     assert!(m.bump_texture.is_some() && (m.bump_height - 3.0 * 0.002 * 5.0).abs() < 1e-6, "{}", m.bump_height);
     assert!(other.bump_texture.is_none() && other.normal_texture.is_some());
 }

@@ -1,4 +1,5 @@
-//! Tests that textures keep sixteen-bit and floating-point values and opacity from their files.
+//! Tests that textures keep the sixteen-bit and floating-point values and the opacity of their
+//! files.
 
 use super::*;
 use ::image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
@@ -8,7 +9,7 @@ use durer_render::render::{Control, Job, Sampling, render};
 use durer_scene::math::{Color, Vec2};
 use durer_scene::texture::{Mapping, Texture};
 
-/// Returns the texture compiled from a picture, or the error.
+/// Returns the texture that is compiled from a picture, or the error.
 fn texture(field: &str, name: &str, bytes: &[u8], memory: Option<u64>) -> Result<Texture, String> {
     let text = format!(
         "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }} Materials {{ PrincipledMaterial {{ {field} {name} }} }}
@@ -23,7 +24,7 @@ fn texture(field: &str, name: &str, bytes: &[u8], memory: Option<u64>) -> Result
     world.map(|world| world.textures()[0].clone()).ok_or_else(messages)
 }
 
-/// Encodes one floating-point pixel as PFM.
+/// Encodes one floating-point pixel as a PFM file.
 fn pfm(pixel: [f32; 3]) -> Vec<u8> {
     [b"PF\n1 1\n-1.0\n".to_vec(), pixel.iter().flat_map(|x| x.to_le_bytes()).collect()].concat()
 }
@@ -34,7 +35,7 @@ fn values_above_white_are_kept() {
     for field in ["emissionTexture", "baseColorTexture", "specularRoughnessTexture"] {
         assert_eq!(texture(field, [3.0, 0.5, 0.25]).unwrap().at(Vec2::ZERO), Color::new(3.0, 0.5, 0.25), "{field}");
     }
-    // A texel that is not finite is replaced; see the tests of `durer-formats` for the warning.
+    // A texel that is not finite is replaced. The tests of `durer-formats` check the warning.
     assert_eq!(texture("emissionTexture", [f32::NAN, 0.0, 0.0]).unwrap().at(Vec2::ZERO), Color::ZERO);
 }
 
@@ -56,18 +57,18 @@ fn sixteen_bit_textures_keep_precision_and_opacity() {
 fn memory_is_checked_before_allocation() {
     let large = [b"PF\n400 400\n-1.0\n".to_vec(), vec![0; 400 * 400 * 12]].concat();
     let read = |memory| texture("emissionTexture", "a.pfm", &large, Some(memory)).map(|texture| texture.bytes());
-    // The memory limit includes both the picture and the texture that is created from it.
+    // The memory limit includes both the picture and the texture that is made from it.
     assert_eq!(read(6_000_000), Ok(400 * 400 * 12));
     let messages = read(3_000_000).unwrap_err();
     assert!(messages.contains("memory"), "{messages}");
 }
 
-/// Returns the mean and variance of the pixels of a distant wall with thin emissive stripes, seen
-/// directly or in a mirror, with 16 samples each.
+/// Returns the mean and variance of the pixels of a distant wall with thin emissive stripes. The
+/// wall is seen directly or in a mirror, with 16 samples per pixel.
 fn stripes(minified: &str, mirrored: bool) -> (f64, f64) {
     let picture =
         [b"P6 64 64 255\n".to_vec(), (0..64 * 64).flat_map(|i| [255 * (i / 4 % 2) as u8; 3]).collect()].concat();
-    // The mirror shows the left side in front.
+    // The mirror shows the left side of the wall in front of the camera.
     let (wall, mirror) = match mirrored {
         false => ("corner -20 -20 -90 edge0 40 0 0 edge1 0 40 0", ""),
         true => (
@@ -105,7 +106,7 @@ fn stripes(minified: &str, mirrored: bool) -> (f64, f64) {
 fn mipmaps_reduce_noise_and_keep_the_mean_also_in_mirrors() {
     for mirrored in [false, true] {
         let [(plain, noise), (mean, less)] = ["texels", "mipmaps"].map(|minified| stripes(minified, mirrored));
-        // Half of the wall emits.
+        // Half of the wall emits light.
         let error = (noise / f64::from(48 * 48)).sqrt();
         assert!((plain - 0.5).abs() < 4.0 * error + 0.005, "{mirrored}: {plain} +- {error}");
         assert!((mean - 0.5).abs() < 0.005, "{mirrored}: {mean}");

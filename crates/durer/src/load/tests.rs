@@ -7,7 +7,7 @@ const LIGHT: &str = "Lights { numLights 1 DirectionalLight { direction 0 0 -1 co
 const MATERIAL: &str = "Materials { numMaterials 1 PhongMaterial { diffuseColor 1 1 1 } }\n";
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
-/// Writes a scene with these objects into a folder `scene`, with a mesh `tri.obj`.
+/// Writes a scene with these objects and a mesh `tri.obj` to a folder `scene`.
 fn house(objects: &str) -> tempfile::TempDir {
     let root = tempfile::tempdir().unwrap();
     fs::create_dir(root.path().join("scene")).unwrap();
@@ -18,8 +18,8 @@ fn house(objects: &str) -> tempfile::TempDir {
     root
 }
 
-/// Loads and compiles the scene. Returns the world and the diagnostics as `file:line:column
-/// severity: message (help)`, with paths relative to `root`.
+/// Loads and compiles the scene. Returns the world and the diagnostics in the form
+/// `file:line:column severity: message (help)`, with paths relative to `root`.
 fn load_world(root: &tempfile::TempDir, options: &LoadOptions) -> (Option<World>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let path = root.path().join("scene/scene.txt");
@@ -163,8 +163,8 @@ fn digest_covers_everything_that_the_picture_depends_on() {
     let (root, again) = (house(&mesh("tri.obj")), house(&mesh("tri.obj")));
     let options = LoadOptions::default();
     let first = digest(&root, &options);
-    // The digest does not depend on the folder, the acceleration structure, or other files in the
-    // folder.
+    // The digest does not depend on the folder, on the acceleration structure, or on other files in
+    // the folder.
     fs::write(again.path().join("scene/other.obj"), "v 1 2 3\n").unwrap();
     assert_eq!(digest(&again, &LoadOptions { accel: AccelKind::None, ..options.clone() }), first);
     assert_eq!(digest(&again, &LoadOptions { threads: Some(1), ..options.clone() }), first);

@@ -1,4 +1,4 @@
-//! Memory limits: bytes, or a percentage of the memory available to the process.
+//! Memory limits, in bytes or as a percentage of the memory that is available to the process.
 
 use std::path::{Path, PathBuf};
 use sysinfo::System;
@@ -9,8 +9,9 @@ use sysinfo::System;
 pub enum Memory {
     /// Bytes.
     Bytes(u64),
-    /// Percentage of the memory that is available to the process: the least of the machine's
-    /// memory, the limits of its control groups, and its remaining address space.
+    /// Percentage of the memory that is available to the process. The available memory is the
+    /// minimum of the memory of the machine, the limits of the control groups of the process, and
+    /// its remaining address space.
     Percent(f64),
 }
 
@@ -21,11 +22,11 @@ impl Default for Memory {
 }
 
 impl Memory {
-    /// Reads `80%`, `8G`, `512M`, or a number of bytes.
+    /// Parses `80%`, `8G`, `512M`, or a number of bytes.
     ///
     /// # Errors
     ///
-    /// A message, for any other text.
+    /// Returns a message for any other text.
     pub fn parse(text: &str) -> Result<Self, String> {
         let wrong = || "expected a size or percentage, for example 8G, 512M or 80%".to_string();
         if let Some(percent) = text.strip_suffix('%') {
@@ -45,7 +46,7 @@ impl Memory {
         Ok(Memory::Bytes((number * (1_u64 << shift) as f64) as u64))
     }
 
-    /// Returns the limit in bytes; `None` if the size of the machine's memory is unknown.
+    /// Returns the limit in bytes, or `None` if the memory size of the machine is unknown.
     pub fn bytes(self) -> Option<u64> {
         let percent = match self {
             Memory::Bytes(bytes) => return Some(bytes),
@@ -60,17 +61,17 @@ impl Memory {
     }
 }
 
-/// Returns the lowest memory limit of the control groups that contain this process, as set by
-/// containers and Slurm.
+/// Returns the lowest memory limit of the control groups that contain this process. Containers and
+/// Slurm set such limits.
 fn of_groups() -> Option<u64> {
     let groups = std::fs::read_to_string("/proc/self/cgroup").ok()?;
     let limit = |file: &PathBuf| std::fs::read_to_string(file).ok()?.trim().parse().ok();
     limit_files(&groups, Path::new("/sys/fs/cgroup")).iter().filter_map(limit).filter(|&bytes| bytes > 0).min()
 }
 
-/// Returns the files that can limit memory, given the text of `/proc/self/cgroup`: those of each
-/// group and of all enclosing groups. In a container, the paths can be those of the host, of which
-/// only the root exists.
+/// Returns the files that can limit memory, given the text of `/proc/self/cgroup`. These are the
+/// files of each group and of all enclosing groups. In a container, the paths can refer to the
+/// host, and then only the root exists.
 ///
 /// Source: *Control Group v2* and *Memory Resource Controller*, Linux kernel documentation.
 fn limit_files(groups: &str, root: &Path) -> Vec<PathBuf> {
@@ -89,7 +90,7 @@ fn limit_files(groups: &str, root: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Returns the remaining address space if it is limited, for example with `ulimit -v`.
+/// Returns the remaining address space if it is limited, for example by `ulimit -v`.
 #[cfg(unix)]
 fn address_space() -> Option<u64> {
     let limit = rustix::process::getrlimit(rustix::process::Resource::As).current?;

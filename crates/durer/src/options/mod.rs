@@ -1,8 +1,8 @@
-//! Options of a render as pairs of name and text, for the command line and Python.
+//! Options of a render as pairs of a name and a text, for the command line and Python.
 //!
 //! [`option_descriptions`] lists all options with their meaning, and [`RenderOptions::set`] parses
-//! one. Options that are not set have the same defaults as on the command line, so equal options
-//! give the same bits from every language.
+//! a single option. Options that are not set have the same defaults as on the command line. Equal
+//! options therefore give bit-identical pictures in every language.
 //!
 //! ```
 //! use durer::options::RenderOptions;
@@ -28,26 +28,26 @@ use rows::{EXECUTION, LOADING, VIEW};
 pub use rows::{compat, crop, doc, grid_cells};
 use std::time::Duration;
 
-/// The options of `durer render`, parsed from text: for loading, for the picture, and for
-/// execution.
+/// The options of `durer render`, parsed from text. They include options for loading, for the
+/// picture and for execution.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct RenderOptions {
     /// Options for reading and compiling the scene.
     pub load: LoadOptions,
-    /// Options of the picture: size, samples, integrator.
+    /// Options of the picture, such as size, samples and integrator.
     pub job: RenderJob,
-    /// Crop and selection of output pictures.
+    /// Crop and selection of the pictures to write.
     pub view: OutputSelection,
     /// Memory limit for the scene and the picture.
     pub memory: Memory,
-    /// Number of threads; `None`: one per processor.
+    /// Number of threads, or `None` for one thread per processor.
     pub threads: Option<usize>,
-    /// Width and height of a tile in pixels; `None`: based on the picture's size.
+    /// Width and height of a tile in pixels, or `None` to choose them from the size of the picture.
     pub tile: Option<u32>,
-    /// Time after which no more samples are taken; `None`: unlimited.
+    /// Time after which no more samples are taken, or `None` for no limit.
     pub time_limit: Option<Duration>,
-    /// Part of the work to do, if the render is split into shards.
+    /// Part of the work that is done if the render is divided into shards.
     pub shard: Shard,
 }
 
@@ -67,12 +67,12 @@ impl Default for RenderOptions {
 }
 
 impl RenderOptions {
-    /// Sets an option by its name without dashes. `text` is empty for a flag. For options that can
-    /// be repeated (`assets`, `compat`), the value is added to the previous ones.
+    /// Sets an option by its name without dashes. `text` is empty for a flag. If an option can be
+    /// repeated (`assets`, `compat`), the value is added to the previous values.
     ///
     /// # Errors
     ///
-    /// A message, if the option is unknown or the text is not a valid value.
+    /// Returns a message if the option is unknown or the text is not a valid value.
     pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
         let mut rows = LOADING.iter().chain(VIEW).chain(EXECUTION);
         let set = match rows.find(|row| row.option.name == name) {
@@ -88,7 +88,7 @@ impl RenderOptions {
         })
     }
 
-    /// Returns the options for loading, with the threads, memory and aspect ratio filled in.
+    /// Returns the options for loading, including the threads, the memory and the aspect ratio.
     pub fn load_options(&self) -> LoadOptions {
         let mut load = self.load.clone();
         load.threads = self.threads;
@@ -102,7 +102,7 @@ impl RenderOptions {
     ///
     /// # Errors
     ///
-    /// A message, if options contradict each other or the scene.
+    /// Returns a message if options contradict each other or the scene.
     pub fn resolve(&self, loaded: &LoadedScene) -> Result<Job, String> {
         self.job.resolve(&loaded.job_context(self.time_limit.is_some()), Some(&self.view))
     }
@@ -119,28 +119,30 @@ impl RenderOptions {
     }
 }
 
-/// Category of an option of a render, by its effect on the picture.
+/// Category of a render option by its effect on the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OptionGroup {
-    /// Reading and compiling the scene.
+    /// Options for reading and compiling the scene.
     Loading,
-    /// The picture. Together with the scene, these options determine every bit of it.
+    /// Options of the picture. Together with the scene, these options determine every bit of the
+    /// picture.
     Picture,
-    /// Execution: threads, time and shards. These options do not change a finished picture.
+    /// Options for execution, such as threads, time and shards. These options do not change a
+    /// finished picture.
     Execution,
 }
 
-/// Documentation of an option of a render, from which help and bindings are generated.
+/// Documentation of a render option, from which help texts and bindings are generated.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct OptionDescription {
-    /// Name without dashes.
+    /// Name of the option without dashes.
     pub name: &'static str,
-    /// Meaning, unit and default value.
+    /// Meaning, unit and default value of the option.
     pub help: String,
-    /// Name of the value; `None` for a flag.
+    /// Name of the value, or `None` for a flag.
     pub value: Option<String>,
-    /// Allowed words, if the choice is limited.
+    /// Allowed words, if only certain words are allowed.
     pub words: Vec<&'static str>,
     /// Category of the option.
     pub group: OptionGroup,
@@ -188,7 +190,7 @@ fn is_known(name: &str) -> bool {
         || IntegratorKind::kinds().iter().any(|kind| option_index(kind, name).is_some())
 }
 
-/// Returns the help of `--integrator`: each integrator with its meaning.
+/// Returns the help text of `--integrator`, which lists each integrator with its meaning.
 pub fn integrator_help() -> String {
     let kinds = IntegratorKind::kinds();
     let listed: Vec<String> = kinds.iter().map(|kind| format!("{} ({})", kind.name(), one_line(kind.doc()))).collect();
@@ -199,7 +201,7 @@ pub fn integrator_help() -> String {
     )
 }
 
-/// Returns the options of all integrators, each listed once, with their help.
+/// Returns the options of all integrators with their help texts. Each option is listed once.
 pub fn integrator_options() -> Vec<(Field, String)> {
     let kinds = IntegratorKind::kinds();
     let mut all: Vec<(Field, String)> = Vec::new();

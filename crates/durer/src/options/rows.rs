@@ -1,4 +1,4 @@
-//! Tables of the options for loading, output pictures, and execution.
+//! Tables of the options for loading, for output pictures and for execution.
 
 #![allow(clippy::unit_arg, reason = "each row assigns and succeeds in one expression")]
 
@@ -12,7 +12,8 @@ use durer_render::render::ShardBy;
 use durer_scene::dialect::{Dialect, Quirk};
 use durer_scene::scene::{Axis, DefaultLighting, PresetView};
 
-/// Row of a table of options: the definition of the option, and a function that parses and sets it.
+/// A row of a table of options. It contains the definition of the option and a function that parses
+/// and sets the option.
 pub(super) struct Row {
     pub option: JobOption,
     pub set: fn(&mut RenderOptions, &str) -> Result<(), String>,
@@ -185,7 +186,7 @@ pub(super) const VIEW: &[Row] = &[
     ),
 ];
 
-/// Options for execution: threads, time, shards.
+/// Options for execution, such as threads, time and shards.
 pub(super) const EXECUTION: &[Row] = &[
     row(
         "threads",
@@ -228,7 +229,7 @@ pub(super) const EXECUTION: &[Row] = &[
     ),
 ];
 
-/// Names of the views from which a model can be rendered.
+/// Names of the views in which a model can be rendered.
 const VIEWS: [(&str, PresetView); 5] = [
     ("three-quarter", PresetView::ThreeQuarter),
     ("front", PresetView::Front),
@@ -237,7 +238,7 @@ const VIEWS: [(&str, PresetView); 5] = [
     ("iso", PresetView::Iso),
 ];
 
-/// Names of the sets of lights for models.
+/// Names of the light setups for models.
 const STUDIOS: [(&str, DefaultLighting); 3] =
     [("none", DefaultLighting::None), ("soft", DefaultLighting::Soft), ("sun", DefaultLighting::Sun)];
 
@@ -253,17 +254,17 @@ fn flag(text: &str) -> Result<bool, String> {
     }
 }
 
-/// Returns the help of an option in these tables; empty for other names.
+/// Returns the help text of an option in these tables, or an empty text for other names.
 pub fn doc(name: &str) -> &'static str {
     let mut rows = LOADING.iter().chain(VIEW).chain(EXECUTION);
     rows.find(|row| row.option.name == name).map_or("", |row| row.option.doc)
 }
 
-/// Parses the name of a quirk to enable, or to disable if it has the prefix `no-`.
+/// Parses the name of a quirk to turn on, or to turn off if the name has the prefix `no-`.
 ///
 /// # Errors
 ///
-/// A message, if the quirk is unknown.
+/// Returns a message if the quirk is unknown.
 pub fn compat(text: &str) -> Result<(Quirk, bool), String> {
     let (name, on) = text.strip_prefix("no-").map_or((text, true), |name| (name, false));
     Quirk::from_name(name).map(|compat| (compat, on)).ok_or_else(|| {
@@ -275,11 +276,11 @@ pub fn compat(text: &str) -> Result<(Quirk, bool), String> {
     })
 }
 
-/// Parses a part of a picture: left, top, width and height, for example `10,20,64x48`.
+/// Parses a part of a picture as left, top, width and height, for example `10,20,64x48`.
 ///
 /// # Errors
 ///
-/// A sentence, for any other text.
+/// Returns a message for any other text.
 pub fn crop(text: &str) -> Result<(u32, u32, u32, u32), String> {
     let numbers = || {
         let mut parts = text.splitn(3, ',');
@@ -297,7 +298,7 @@ pub fn crop(text: &str) -> Result<(u32, u32, u32, u32), String> {
 ///
 /// # Errors
 ///
-/// A sentence, for any other text.
+/// Returns a message for any other text.
 pub fn grid_cells(text: &str) -> Result<[u32; 3], String> {
     let numbers: Option<Vec<u32>> = text.split(['x', 'X']).map(|n| n.parse().ok()).collect();
     let cells: Option<[u32; 3]> = numbers.and_then(|n| n.try_into().ok());

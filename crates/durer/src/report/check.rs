@@ -1,15 +1,15 @@
-//! Diagnostics and findings of `durer check` as JSON.
+//! Conversion of diagnostics and of the findings of `durer check` to JSON.
 
 use durer_diag::{Files, Severity, Span};
 use durer_teach::check::Finding;
 use serde_json::{Value, json};
 
-/// Creates the list of findings in the output of `durer check --json`.
+/// Returns the list of findings in the output of `durer check --json`.
 pub fn findings(findings: &[Finding], files: &Files) -> Value {
     findings.iter().map(|item| finding(item, files)).collect()
 }
 
-/// Creates the entry of a finding in the output of `durer check --json`.
+/// Returns the entry of a finding in the output of `durer check --json`.
 pub fn finding(finding: &Finding, files: &Files) -> Value {
     let d = &finding.diagnostic;
     json!({
@@ -30,7 +30,8 @@ pub fn finding(finding: &Finding, files: &Files) -> Value {
     })
 }
 
-/// Creates the entry of a position in a file. Lines and columns are counted from 1, bytes from 0.
+/// Returns the JSON entry of a position in a file. Lines and columns are counted from 1, and bytes
+/// from 0.
 pub fn place(files: &Files, span: Span) -> Value {
     let end = Span { start: span.end, ..span };
     let ((line, column), (end_line, end_column)) =

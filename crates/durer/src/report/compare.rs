@@ -1,10 +1,11 @@
-//! Comparisons of pictures as JSON.
+//! Conversion of picture comparisons to JSON.
 
 use durer_image::compare::Comparison;
 use serde_json::{Value, json};
 
-/// Creates the entry of a pair of pictures in the output of `durer compare --json`. `there` lists
-/// the objects of the scene at each region, in the order of the regions, and can be shorter.
+/// Returns the entry of a pair of pictures in the output of `durer compare --json`. `there` lists
+/// the objects of the scene in each region. Its entries are in the order of the regions, and it can
+/// have fewer entries than there are regions.
 pub fn comparison(comparison: &Comparison, there: &[Value]) -> Value {
     let m = &comparison.measures;
     json!({

@@ -1,4 +1,4 @@
-//! Explanations of a pixel or ray as JSON.
+//! Conversion of explanations of a pixel or ray to JSON.
 
 use durer_render::integrator::trace::TermKind;
 use durer_render::integrator::{TraceNode, Tree};
@@ -7,19 +7,19 @@ use durer_scene::math::Vec3;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 
-/// Version of the document's format.
+/// Version of the document format.
 const VERSION: u32 = 2;
 
-/// A traced pixel or ray, of which [`explanation`] creates the JSON document.
+/// A traced pixel or ray from which [`explanation`] creates a JSON document.
 pub enum Explained {
-    /// A pixel with all its samples.
+    /// A pixel with all of its samples.
     Pixel(Explanation),
     /// A single ray.
     Ray(Box<Tree>),
 }
 
-/// Creates the output of `durer explain --json`: the tree of terms, and the names of the objects,
-/// materials and lights to which it refers by index.
+/// Returns the output of `durer explain --json`. It contains the tree of terms and the names of the
+/// objects, materials and lights to which the tree refers by index.
 pub fn explanation(subject: &Explained, names: &SceneNames) -> Value {
     let (mut objects, mut lights, mut materials) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
     let mut note = |node: &TraceNode| match &node.kind {
@@ -66,8 +66,8 @@ pub fn explanation(subject: &Explained, names: &SceneNames) -> Value {
     json
 }
 
-/// Adds to each term the lines that derive its numbers. `at` is the direction of its ray, and the
-/// normal at the hit.
+/// Adds to each term the lines that derive its numbers. `at` contains the direction of the ray and
+/// the normal at its hit.
 fn annotate(node: &TraceNode, json: &mut Value, at: (Vec3, Vec3), names: &SceneNames) {
     let lines = names.origins(node, at.0, at.1);
     if !lines.is_empty() {

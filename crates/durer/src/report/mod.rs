@@ -1,9 +1,9 @@
-//! Reports as JSON, as the command-line option `--json` prints them: explanations, findings,
-//! comparisons.
+//! Explanations, findings and comparisons as JSON reports, which the command-line option `--json`
+//! prints.
 //!
 //! [`explanation`] shows why a pixel has its colour, [`findings`] lists likely mistakes in a scene,
-//! and [`comparison`] shows how two pictures differ. [`outlines`] and [`lights`] are for drawing
-//! the scene.
+//! and [`comparison`] shows how two pictures differ. [`outlines`] and [`lights`] are used for
+//! drawing the scene.
 
 mod check;
 mod compare;

@@ -6,32 +6,33 @@ use durer_scene::math::{Aabb, Vec3};
 use durer_scene::shape::Shape;
 use serde_json::{Value, json};
 
-/// Maximum number of objects that are drawn. More would obscure each other.
+/// Maximum number of objects that are drawn. More objects would hide each other.
 const MAX_OBJECTS: usize = 400;
-/// Maximum number of triangles drawn per mesh.
+/// Maximum number of triangles that are drawn for each mesh.
 const MAX_TRIANGLES: usize = 600;
 
-/// Returns polylines that outline the objects, in world space.
+/// Returns polylines in world space that outline the objects.
 pub fn outlines(world: &World) -> Vec<Vec<Vec3>> {
     object_outlines(world).flatten().collect()
 }
 
-/// Returns the polylines in world space of each of the first 400 objects, by the object's number.
+/// Returns the polylines of each of the first 400 objects in world space, in the order of the
+/// object numbers.
 pub fn object_outlines(world: &World) -> impl Iterator<Item = Vec<Vec<Vec3>>> {
     let ends = with_camera(world);
     world.objects().iter().take(MAX_OBJECTS).map(move |object| outline(object, &ends))
 }
 
-/// Position at which a line drawing of a scene marks a light.
+/// Position at which a line drawing of a scene shows a light.
 pub struct LightMark {
-    /// Position of the light in world space; for a directional light, a point outside the scene in
-    /// the direction from which its light comes.
+    /// Position of the light in world space. For a directional light, this is a point outside the
+    /// scene in the direction from which the light comes.
     pub at: Vec3,
     /// True for a light at infinity, such as a directional light.
     pub is_far: bool,
 }
 
-/// Returns a mark for each light, by the light's number.
+/// Returns a mark for each light, in the order of the light numbers.
 pub fn light_marks(world: &World) -> impl Iterator<Item = LightMark> {
     let bounds = with_camera(world);
     let reach = 0.6 * bounds.size().length();
@@ -42,13 +43,13 @@ pub fn light_marks(world: &World) -> impl Iterator<Item = LightMark> {
     })
 }
 
-/// Returns the first 16 lights with name and position as JSON; see [`light_marks`].
+/// Returns the names and positions of the first 16 lights as JSON. See [`light_marks`].
 pub fn lights(world: &World) -> Vec<Value> {
     let one = |(i, mark): (usize, LightMark)| json!({ "at": mark.at, "name": format!("{} {i}", if mark.is_far { "from light" } else { "light" }) });
     light_marks(world).enumerate().take(16).map(one).collect()
 }
 
-/// Bounding box of the scene and the eye of its camera.
+/// Returns the bounding box of the scene and the eye of its camera.
 fn with_camera(world: &World) -> Aabb {
     world.bounds().union(Aabb::around([world.camera_frame().eye]))
 }

@@ -25,11 +25,11 @@ fn point_lights_attenuate_by_their_dialect() {
         assert_eq!(arriving(dialect, None, Some(0.0)), 1.0);
     }
     assert_eq!(arriving(Dialect::F12a4, a, Some(0.75)), 1.0);
-    // These dialects have no constant 1 in the divisor.
+    // In these dialects, the divisor has no constant term of 1.
     assert_eq!(arriving(Dialect::F16, None, Some(0.5)), 0.5);
     assert_eq!(arriving(Dialect::F23, None, Some(0.5)), 0.5);
     assert_eq!(arriving(Dialect::F23, None, None), 1.0 / 80.0);
-    // The official program of 2016 divides by zero; without its bugs there is no attenuation.
+    // The official program of 2016 divides by zero. Without its bugs, there is no attenuation.
     assert!(!arriving(Dialect::F16, None, None).is_finite());
     let light = super::light(&PointLight::default().into(), &Dialect::F16.rules().without_quirks());
     assert_eq!(light.illuminate((Vec3::X * 7.0).as_dvec3()).color, Vec3::ONE);

@@ -1,6 +1,6 @@
-//! Diagrams of the 2004 course: sample positions within pixels, and filter weights.
+//! Diagrams of the 2004 course, which show sample positions within pixels or filter weights.
 //!
-//! Both show each pixel enlarged to `zoom` times `zoom` pixels.
+//! Both diagrams enlarge each pixel to `zoom` times `zoom` pixels.
 
 use super::stored::{CourseFilter, StoredSamples};
 use durer_scene::math::{Color, Vec2, Vec3};
@@ -8,14 +8,15 @@ use durer_scene::math::{Color, Vec2, Vec3};
 #[cfg(test)]
 mod tests;
 
-/// Picture of sample positions or filter weights, as the 2004 course draws them; row 0 at the top.
+/// Diagram of sample positions or filter weights in the style of the 2004 course. Row 0 is at the
+/// top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagram {
     /// Number of columns.
     pub width: u32,
     /// Number of rows.
     pub height: u32,
-    /// Colours from 0 to 1; a byte of the file is trunc(255 c).
+    /// Colours with components from 0 to 1. A byte of the image file is trunc(255 c).
     pub pixels: Vec<Color>,
 }
 
@@ -26,11 +27,11 @@ impl Diagram {
     }
 }
 
-/// Draws each sample as a dot of its colour. The background is a checkerboard of black and dark
-/// grey pixels; the bottom left pixel is grey.
+/// Draws each sample as a dot in the colour of the sample. The background is a checkerboard of
+/// black and dark grey pixels, and the pixel at the bottom left is grey.
 ///
-/// This is the course's `-render_samples`. The diagram has `width * zoom` columns. A `zoom` of 0 is
-/// treated as 1; the caller must limit the size.
+/// This diagram corresponds to the course's option `-render_samples`. It has `width * zoom`
+/// columns. A `zoom` of 0 is treated as 1, and the caller must limit the size.
 pub fn samples(samples: &StoredSamples, zoom: u32) -> Diagram {
     let zoom = zoom.max(1);
     let (width, height) = samples.size();
@@ -40,7 +41,8 @@ pub fn samples(samples: &StoredSamples, zoom: u32) -> Diagram {
     });
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
         for sample in samples.pixel(x, y) {
-            // The course counts rows upwards, so a dot between two rows belongs to the upper one.
+            // The course counts rows from the bottom, so a dot on the border of two rows belongs to
+            // the upper row.
             let across = (sample.position.x * zoom as f32) as u32;
             let up = ((1.0 - sample.position.y) * zoom as f32) as u32;
             let (column, row) = (x * zoom + across.min(zoom - 1), y * zoom + (zoom - 1 - up.min(zoom - 1)));
@@ -51,22 +53,22 @@ pub fn samples(samples: &StoredSamples, zoom: u32) -> Diagram {
     diagram
 }
 
-/// Draws a filter's weights in grey over its support around the middle pixel. Other pixels are dark
-/// blue, and blue lines separate the pixels.
+/// Draws the weights of a filter in grey over its support around the middle pixel. All other pixels
+/// are dark blue, and blue lines separate the pixels.
 ///
-/// This is the course's `-render_filter`. The diagram has `width * zoom + 1` columns. A `zoom` of 0
-/// is treated as 1; the caller must limit the size.
+/// This diagram corresponds to the course's option `-render_filter`. It has `width * zoom + 1`
+/// columns. A `zoom` of 0 is treated as 1, and the caller must limit the size.
 pub fn filter(width: u32, height: u32, zoom: u32, filter: CourseFilter) -> Diagram {
     weights(width, height, zoom, filter.support(), |offset| filter.weight(offset))
 }
 
-/// Draws a function of the offset from the middle pixel (right and down, in pixels) with a maximum
-/// of 1, like [`filter`].
+/// Draws a weight function in the style of [`filter`]. The function has a maximum of 1, and its
+/// argument is the offset from the middle pixel, in pixels to the right and down.
 pub fn weights(width: u32, height: u32, zoom: u32, support: u32, weight: impl Fn(Vec2) -> f32) -> Diagram {
     let zoom = zoom.max(1);
-    // Middle pixel, counted from the left and from the bottom.
+    // The middle pixel, counted from the left and from the bottom.
     let (middle_x, middle_y) = (width / 2, height / 2);
-    // Twice the offset in diagram pixels is an integer, so only the division rounds.
+    // Twice the offset is an integer number of diagram pixels, so only the division rounds.
     let offset = |at: u32, middle: u32| {
         let doubled = 2 * i64::from(at) - i64::from(zoom) * (2 * i64::from(middle) + 1);
         doubled as f32 / (2 * zoom) as f32

@@ -1,7 +1,7 @@
 //! Films, filters and diagrams that reproduce the course's assignments exactly.
 //!
-//! They are plain functions of samples and pixels, selected by the render job. They do not depend
-//! on the dialect.
+//! These modules are plain functions of samples and pixels. The render job selects them,
+//! independently of the dialect.
 
 pub mod diagram;
 mod jitter;

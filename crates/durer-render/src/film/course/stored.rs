@@ -1,8 +1,8 @@
-//! Film of Fall 2004, assignment 7. It stores all samples; a pixel is the weighted mean of its own
-//! samples and those of neighbouring pixels.
+//! Film for assignment 7 of the Fall 2004 course. It stores all samples. Each pixel is the weighted
+//! mean of its own samples and the samples of neighbouring pixels.
 //!
-//! Each pixel is summed in a fixed order, so the result is the same when only a part of the picture
-//! is rendered.
+//! The samples of a pixel are added in a fixed order. The result is therefore the same if only a
+//! part of the picture is rendered.
 
 use durer_scene::math::{Color, Vec2, fp};
 use glam::DVec3;
@@ -15,13 +15,14 @@ mod tests;
 /// Position and colour of one sample on the film of the 2004 course.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoredSample {
-    /// Position in its pixel, in [0,1)^2, right and down.
+    /// Position within the pixel, in [0,1)^2. The axes point right and down.
     pub position: Vec2,
     /// Colour of the sample.
     pub color: Color,
 }
 
-/// All samples of a picture on the film of the 2004 course, the same number in each pixel.
+/// All samples of a picture on the film of the 2004 course. Each pixel has the same number of
+/// samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StoredSamples {
     width: u32,
@@ -32,15 +33,15 @@ pub struct StoredSamples {
 }
 
 impl StoredSamples {
-    /// Takes all samples by calling `sample(x, y, number)`, row by row from the top. `per_pixel` is
-    /// at least 1.
+    /// Takes all samples by calling `sample(x, y, number)`, row by row from the top. `per_pixel`
+    /// must be at least 1.
     pub fn take(width: u32, height: u32, per_pixel: u32, sample: impl Fn(u32, u32, u32) -> StoredSample) -> Self {
         let sample = |x, y, number| Ok::<_, Infallible>(sample(x, y, number));
         let Ok(all) = StoredSamples::try_take(width, height, per_pixel, sample);
         all
     }
 
-    /// Takes samples like [`StoredSamples::take`], but stops at the first that fails.
+    /// Takes samples like [`StoredSamples::take`] but stops at the first sample that fails.
     pub fn try_take<E>(
         width: u32,
         height: u32,
@@ -54,33 +55,33 @@ impl StoredSamples {
         Ok(StoredSamples { width, height, per_pixel, rows: rows? })
     }
 
-    /// Returns width and height in pixels.
+    /// Returns the width and height in pixels.
     pub fn size(&self) -> (u32, u32) {
         (self.width, self.height)
     }
 
-    /// Returns the samples of a pixel. Panics outside the picture.
+    /// Returns the samples of a pixel. Panics if the pixel is outside the picture.
     pub fn pixel(&self, x: u32, y: u32) -> &[StoredSample] {
         assert!(x < self.width && y < self.height, "the pixel must be in the picture");
         let n = self.per_pixel as usize;
         &self.rows[y as usize][x as usize * n..][..n]
     }
 
-    /// Reconstructs the picture, row 0 at the top. Each pixel is the weighted mean of the samples
-    /// in all pixels within the filter's support.
+    /// Reconstructs the picture with row 0 at the top. Each pixel is the weighted mean of the
+    /// samples in all pixels within the support of the filter.
     ///
-    /// If all weights are zero (when the filter is narrower than the gaps between samples), the
-    /// pixel is the mean of its own samples.
+    /// All weights can be zero if the filter is narrower than the gaps between the samples. The
+    /// pixel is then the mean of its own samples.
     pub fn reconstruct(&self, filter: CourseFilter) -> Vec<Color> {
         let Ok(pixels) = self.try_reconstruct(filter, (0, 0), self.size(), || Ok::<_, Infallible>(()));
         pixels
     }
 
-    /// Reconstructs a rectangle of the picture. Calls `go_on` regularly and stops at its first
+    /// Reconstructs a rectangle of the picture. Calls `go_on` regularly and stops if it returns an
     /// error.
     ///
-    /// The result equals that part of the full picture if there are samples around the rectangle as
-    /// far as the filter's support or the picture's edge.
+    /// The result equals the same part of the full picture, provided that there are samples around
+    /// the rectangle as far as the support of the filter or the edge of the picture.
     pub fn try_reconstruct<E>(
         &self,
         filter: CourseFilter,
@@ -103,7 +104,7 @@ impl StoredSamples {
         (sum / f64::from(self.per_pixel)).as_vec3()
     }
 
-    /// Returns the weighted mean around a pixel, or `None` if all weights are zero.
+    /// Returns the weighted mean of the samples around a pixel, or `None` if all weights are zero.
     fn filtered<E>(
         &self,
         filter: CourseFilter,
@@ -127,13 +128,13 @@ impl StoredSamples {
     }
 }
 
-/// Reconstruction filter of the 2004 course. Lengths are in pixels. The maximum weight is 1;
-/// weights are not normalized.
+/// Reconstruction filter of the 2004 course. Lengths are in pixels. The maximum weight is 1, and
+/// the weights are not normalized.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum CourseFilter {
-    /// 1 if the offset along both axes is at most the radius, else 0.
+    /// A weight of 1 if the offset along both axes is at most the radius, and 0 otherwise.
     Box {
-        /// Half the width.
+        /// Half the width of the box.
         radius: f32,
     },
     /// A cone that falls from 1 at the centre to 0 at the radius.
@@ -141,7 +142,8 @@ pub enum CourseFilter {
         /// Radius of the cone's base.
         radius: f32,
     },
-    /// exp(-d^2 / (2 sigma^2)). Cut off at the border of the support's pixels, not at 2 sigma.
+    /// The Gaussian exp(-d^2 / (2 sigma^2)), which is cut off at the border of the pixels in its
+    /// support, not at 2 sigma.
     Gaussian {
         /// Standard deviation.
         sigma: f32,
@@ -153,7 +155,7 @@ impl CourseFilter {
     pub fn weight(self, offset: Vec2) -> f32 {
         match self {
             CourseFilter::Box { radius } => f32::from(offset.abs().max_element() <= radius),
-            // A radius of 0 keeps only samples at the centre.
+            // With a radius of 0, only samples at the centre count.
             CourseFilter::Tent { radius } => (1.0 - offset.length() / radius.max(f32::MIN_POSITIVE)).max(0.0),
             CourseFilter::Gaussian { sigma } => {
                 fp::exp(-offset.length_squared() / (2.0 * sigma * sigma).max(f32::MIN_POSITIVE))
@@ -161,20 +163,21 @@ impl CourseFilter {
         }
     }
 
-    /// Returns the weight, in pixel (x, y), of a sample in pixel (column, row).
+    /// Returns the weight in pixel (x, y) of a sample in pixel (column, row).
     pub fn weight_between(self, (column, row): (u32, u32), position: Vec2, (x, y): (u32, u32)) -> f32 {
-        // Offset from the centre of the target pixel to the corner of the sample's pixel.
+        // Offset from the centre of the target pixel to the corner of the pixel that contains the
+        // sample.
         let corner = Vec2::new(column as f32 - x as f32, row as f32 - y as f32) - 0.5;
         self.weight(corner + position)
     }
 
-    /// Returns how many pixels the support extends beyond the pixel on each side.
+    /// Returns the number of pixels by which the support extends beyond the pixel on each side.
     pub fn support(self) -> u32 {
         let reach = match self {
             CourseFilter::Box { radius } | CourseFilter::Tent { radius } => radius,
             CourseFilter::Gaussian { sigma } => 2.0 * sigma,
         };
-        // The cast turns negative numbers into 0.
+        // The cast converts negative numbers to 0.
         (reach - 0.5).ceil() as u32
     }
 }

@@ -30,7 +30,8 @@ fn samples() -> impl Strategy<Value = Vec<Sample>> {
 proptest! {
     #[test]
     fn packing_preserves_films(samples in samples()) {
-        // Films with all samples, with usual ones, and with one usual sample in each pixel.
+        // Films with all samples, with only the usual samples, and with one usual sample in each
+        // pixel.
         let usual = samples.iter().copied().filter(|s| s.3.is_finite() && s.2 % 4 != 3);
         let usual: Vec<Sample> = usual.map(|s| Sample(s.0, s.1, s.2, s.3.clamp(Vec3::splat(-7.0), Vec3::splat(7.0)), 1.0)).collect();
         let single: Vec<Sample> = (0..6).zip(&usual).map(|(i, &Sample(_, _, s, color, weight))| Sample(i % 3, i / 3, s, color, weight)).collect();
@@ -59,7 +60,7 @@ proptest! {
     ) {
         let whole = film(&given);
         prop_assert_eq!(&whole, &film(&shuffled));
-        // Merge parts of the shuffled samples in reverse order.
+        // Merge the parts of the shuffled samples in reverse order.
         let mut ends: Vec<usize> = cuts.iter().map(|c| (c * shuffled.len() as f64) as usize).collect();
         ends.extend([0, shuffled.len()]);
         ends.sort_unstable();
@@ -93,7 +94,7 @@ fn misses_are_transparent_black_by_their_weight() {
     film.add_optional(1, 0, 0, None, 1.0);
     assert_eq!((film.coverage(1, 0), film.resolve(1, 0)), (0.0, Vec3::ZERO));
     assert_eq!((film.coverage(2, 0), film.resolve(2, 0)), (1.0, Vec3::ZERO));
-    // The weights sum to zero, and one of the samples is transparent.
+    // The sum of the weights is zero, and one of the samples is transparent.
     film.add(2, 0, 0, Vec3::ONE, 1.0);
     film.add_optional(2, 0, 1, None, -1.0);
     assert_eq!((film.coverage(2, 0), film.resolve(2, 0)), (1.0, Vec3::ZERO));

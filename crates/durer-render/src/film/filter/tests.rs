@@ -6,8 +6,8 @@ fn sizes() -> impl Iterator<Item = Filter> {
     Filter::NAMES.into_iter().flat_map(|(_, f)| [f, f.with_radius(0.7), f.with_radius(3.3)])
 }
 
-/// Returns the integral of the absolute filter over cell (i, j) of a grid on its support, by the
-/// midpoint rule.
+/// Returns the integral of the absolute filter over cell (i, j) of a grid on its support, computed
+/// with the midpoint rule.
 fn mass(filter: Filter, cells: usize, i: usize, j: usize) -> f64 {
     let at = |cell: usize, k: usize| {
         let u = (cell as f32 + (k as f32 + 0.5) / 16.0) / cells as f32;
@@ -47,7 +47,7 @@ fn offsets_follow_the_filter() {
             assert!(o[0] < 20, "{filter:?}: {} where {} are expected", o[0], e[0]);
             (o, e) = (o[1..].to_vec(), e[1..].to_vec());
         }
-        // Quantile for a significance level of 1e-4.
+        // The quantile is for a significance level of 1e-4.
         let (statistic, limit) = (chi_squared(&o, &e), chi_squared_quantile(o.len() - 1, 3.719));
         assert!(statistic < limit, "{filter:?}: {statistic} exceeds {limit}");
     }
@@ -97,8 +97,8 @@ fn profiles_match_known_values() {
             assert!(filter.weight(0.999 * r, 0.0).abs() < 2e-3, "{filter:?}");
         }
     }
-    // Mitchell's cubic is 8/9 at the centre, 1/18 at half the radius and zero at 8/7 of that.
-    // Beyond it is negative.
+    // Mitchell's cubic is 8/9 at the centre, 1/18 at half the radius and zero at 8/7 of half the
+    // radius. Beyond that point it is negative.
     let m = |d| Filter::Mitchell { radius: 2.0 }.profile(d);
     for (d, value) in [(0.0, 8.0 / 9.0), (1.0, 1.0 / 18.0), (8.0 / 7.0, 0.0), (2.0, 0.0), (0.99999, 1.0 / 18.0)] {
         assert!((m(d) - value).abs() < 1e-4, "{d}: {}", m(d));
@@ -115,8 +115,8 @@ fn warps_match_closed_forms() {
         let u = i as f32 / 1000.0;
         assert!((boxed.warp(u) - (u - 0.5)).abs() < 1e-7);
         let exact = if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 - 2.0 * u).sqrt() };
-        // Between two knots at a distance h, the chord is off by h^2 / 8 times the second
-        // derivative. In the last share, it is off by less than a quarter of the share's width.
+        // Between two knots at a distance h, the chord deviates by h^2 / 8 times the second
+        // derivative. In the last share, it deviates by less than a quarter of the share's width.
         let rest = 1.0 - (2.0 * f64::from(u) - 1.0).abs();
         let off = (7.5e-9 / (rest * rest.sqrt())).min(0.006) + 1e-6;
         assert!(f64::from((tent.warp(u) - exact).abs()) < off, "{u}");

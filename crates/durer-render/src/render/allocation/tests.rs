@@ -1,4 +1,4 @@
-//! Tests of adaptive allocation: sample counts and unbiased results.
+//! Tests that adaptive allocation gives the right numbers of samples and an unbiased result.
 
 use super::*;
 use crate::compile::testing;
@@ -26,7 +26,7 @@ Group { numObjects 2
   MaterialIndex 0 Sphere { center -0.8 0 0 radius 0.9 }
   MaterialIndex 1 Sphere { center -2.2 0.5 3 radius 0.4 } }";
 
-/// Returns a job with BSDF sampling alone, which rarely hits the light.
+/// Returns a job that only samples the BSDF and therefore rarely hits the light.
 fn uneven(adaptive: bool, seed: u64) -> Job {
     let IntegratorKind::Path(paths) = IntegratorKind::PATH else { unreachable!("`PATH` is a path tracer") };
     let method = IntegratorKind::Path(PathOptions { direct: DirectSampling::Bsdf, ..paths });
@@ -50,7 +50,8 @@ fn adaptive_sampling_keeps_the_count_and_reduces_the_error() {
     let counts: Vec<f32> = rendered.layers[1].image.pixels.iter().map(|p| p.x).collect();
     let (least, most) = counts.iter().fold((f32::MAX, 0.0_f32), |(a, b), &n| (a.min(n), b.max(n)));
     assert!(least == 8.0 && most >= 64.0, "{least} {most}");
-    // Half the squared difference of two independent pictures estimates the squared error of one.
+    // Half the squared difference between two independent pictures estimates the squared error of
+    // one of them.
     let colors = |adaptive, seed| made(adaptive, seed).pictures().unwrap().layers[0].image.pixels.clone();
     let error = |adaptive: bool| -> f64 {
         let pair = |seed| {
@@ -63,8 +64,8 @@ fn adaptive_sampling_keeps_the_count_and_reduces_the_error() {
     assert!(divided < 0.8 * even, "{divided} {even}");
 }
 
-/// Compares the means of many pictures. Samples that influence the sample count of their own pixel
-/// would darken it.
+/// Compares the means of many pictures. If samples influenced the number of samples of their own
+/// pixel, the pixel would become darker.
 #[test]
 fn adaptive_sampling_has_no_bias() {
     let world = testing::read(UNEVEN);
@@ -109,7 +110,7 @@ fn adaptive_renders_resume_from_any_point() {
     let alone = [("x".to_string(), PartialRender::read(&part.write()).unwrap())];
     let merged = merge(&alone).unwrap();
     assert_eq!((merged.hash(), merged.statistics(), merged.write()), (plain.hash(), plain.statistics(), part.write()));
-    // If the checksum is valid, the bytes can contain anything.
+    // The bytes may contain anything as long as the checksum is valid.
     let bytes = part.write();
     for at in (0..bytes.len() - 32).step_by(11) {
         let mut changed = bytes[..bytes.len() - 32].to_vec();
@@ -153,10 +154,11 @@ fn unsuitable_jobs_for_adaptive_sampling_are_rejected() {
 
 #[test]
 fn samples_follow_the_standard_deviation() {
-    // Each pixel gets the pilot samples. The others are distributed in proportion to the deviation.
+    // Each pixel gets its pilot samples. The other samples are distributed in proportion to the
+    // deviation.
     assert_eq!(distribute(&[0.0, 1.0, 3.0, 0.0], 64), [16, 56, 168, 16]);
     assert_eq!(distribute(&[1.0; 5], 100), [100; 5]);
-    // No pixel needs more samples, or one pixel gets the maximum.
+    // Either no pixel needs more samples, or one pixel gets the maximum.
     assert_eq!(distribute(&[0.0; 3], 64), [16; 3]);
     let mut one = [0.0; 1000];
     one[7] = 1e30;
@@ -191,7 +193,7 @@ fn pixels_of_the_other_colour_estimate_the_variance() {
         assert!((0..found.len()).all(|i| (found[i] > 0.0) == tells(i)), "{at}");
         variances[at] = 0.0;
     }
-    // A uniform variance stays uniform, also at the borders.
+    // A uniform variance stays uniform, even at the borders.
     assert!(neighbor_variances(&[2.0; 15], 5).iter().all(|value| (value - 2.0).abs() < 1e-5));
     assert_eq!(neighbor_variances(&[2.0], 1), [0.0]);
 }

@@ -1,4 +1,4 @@
-//! Tests of estimated errors and their bounds against true errors.
+//! Tests that compare estimated errors and their bounds with true errors.
 
 use super::*;
 use crate::compile::testing::read;
@@ -15,8 +15,8 @@ fn students_quantiles_match_tables() {
     assert!(student(0.0).is_infinite());
 }
 
-/// Builds a dark floor under a pane of glass with a point light at height 2. The camera sees the
-/// point below the light.
+/// Builds a dark floor under a pane of glass, with a point light at height 2. The camera sees the
+/// point on the floor below the light.
 fn pane() -> World {
     read(
         "PerspectiveCamera { center 2 0.4 0 direction -2 -0.4 0 up 0 1 0 angle 0.001 } Background { color 0 0 0 }
@@ -39,9 +39,10 @@ fn photons(count: u32, radius: f32) -> IntegratorKind {
 
 #[test]
 fn bounds_contain_the_truth_at_their_confidence() {
-    // Below a light at height h, the floor's irradiance is E (1 + x^2 / h^2)^(-3/2), attenuated by
-    // (1 - F) / (1 + F). Its second derivatives sum to -6 E / h^2. The Epanechnikov kernel has a
-    // second moment of r^2 / 6 along each axis, so the bias is -E r^2 / (2 h^2).
+    // Below a light at height h, the irradiance of the floor is E (1 + x^2 / h^2)^(-3/2),
+    // attenuated by (1 - F) / (1 + F). The sum of its second derivatives is -6 E / h^2. The second
+    // moment of the Epanechnikov kernel is r^2 / 6 along each axis, so the bias is -E r^2 / (2
+    // h^2).
     let (runs, samples, radius, height) = (200, 12, 0.6_f64, 2.0_f64);
     let truth = 0.001 * 1000.0 / (height * height) * 0.96 / 1.04;
     let squares = (0..samples).scan(radius * radius, |square, i| {
@@ -95,7 +96,7 @@ fn pictures_and_explanations_have_equal_errors_on_any_number_of_threads() {
             biased += u32::from(error.bias != 0.0);
         }
         assert_eq!(biased > 0, method != IntegratorKind::PATH);
-        // Without a colour picture, computing the error takes its own samples.
+        // Without a colour picture, the error estimate takes its own samples.
         let alone = PartialRender::new(&world, &Job { color: false, ..job.clone() }, Shard::WHOLE).unwrap();
         assert_eq!(alone.error(&world, None).unwrap()[0], values);
     }

@@ -1,4 +1,4 @@
-//! Check that explanations sum to the pixels that they explain.
+//! Checks that the terms of an explanation add up to the pixel that it explains.
 
 use super::{Explanation, explain};
 use crate::film::Filter;
@@ -9,7 +9,7 @@ use crate::world::World;
 use durer_scene::math::Color;
 use durer_scene::sampler::{Sampler, hash};
 
-/// Sampling method, noise threshold and adaptive flag of a picture to check.
+/// Sampling method, noise threshold and adaptive flag of a picture that is checked.
 type SamplingCase = (Sampling, Option<f32>, bool);
 
 const fn kept(sampler: Sampler, samples: u32, filter: Option<CourseFilter>) -> SamplingCase {
@@ -24,8 +24,8 @@ const fn sub_pixels(jitter: bool, blur: bool) -> SamplingCase {
     (Sampling::Course2012 { jitter, blur }, None, false)
 }
 
-/// Sampling methods to check, which include all ways of combining samples. One filter is so narrow
-/// that often all weights are zero.
+/// Sampling methods to check. They include all ways of combining samples. One filter is so narrow
+/// that all weights are often zero.
 pub const SAMPLINGS: [SamplingCase; 12] = [
     (Sampling::Center, None, false),
     filtered(3, None, false),
@@ -41,11 +41,11 @@ pub const SAMPLINGS: [SamplingCase; 12] = [
     sub_pixels(false, false),
 ];
 
-/// Explains random pixels of a job's picture, `pixels` for each entry of [`SAMPLINGS`]. Returns a
-/// message for each pixel that differs.
+/// Explains random pixels of a job's picture. `pixels` is their number for each entry of
+/// [`SAMPLINGS`]. Returns a message for each pixel whose explanation differs from the picture.
 ///
 /// # Errors
-/// [`RenderError`].
+/// Returns [`RenderError`].
 pub fn check(world: &World, job: &Job, pixels: u32, seed: u64) -> Result<Vec<String>, RenderError> {
     let mut differences = Vec::new();
     let control = Control { threads: Some(1), ..Control::default() };
@@ -65,7 +65,7 @@ pub fn check(world: &World, job: &Job, pixels: u32, seed: u64) -> Result<Vec<Str
     Ok(differences)
 }
 
-/// Compares an explanation with the sum of its terms and with the pixel of the picture.
+/// Compares an explanation with the sum of its terms and with the pixel in the picture.
 fn difference(explanation: &Explanation, stored: Color) -> Option<String> {
     let bits = |color: Color| color.to_array().map(f32::to_bits);
     let (color, coverage) = explanation.sum();

@@ -1,4 +1,5 @@
-//! Explanation of pixels that combine the samples of neighbours, as in the course's assignments.
+//! Explanation of pixels that include the samples of neighbouring pixels, as in the course's
+//! assignments.
 
 use super::{ExplainedSample, SampleCombination};
 use crate::film::course::CourseFilter;
@@ -12,8 +13,8 @@ use durer_scene::math::{Color, Vec3};
 use durer_scene::sampler::Sampler;
 use glam::DVec3;
 
-/// Returns the samples of a pixel of Fall 2004: all samples within the filter's support, with their
-/// weights in this pixel.
+/// Returns the samples of a pixel in the Fall 2004 course. These are all samples within the support
+/// of the filter, with their weights in this pixel.
 pub(super) fn around(
     source: &SampleSource,
     job: &Job,
@@ -36,7 +37,7 @@ pub(super) fn around(
     (SampleCombination::Neighbors, aims.into_iter().map(|(of, sample, aim)| account(of, sample, aim)).collect())
 }
 
-/// Returns the sub-pixels that contribute to a pixel of Fall 2012.
+/// Returns the sub-pixels that contribute to a pixel in the Fall 2012 course.
 pub(super) fn sub_pixels(
     source: &SampleSource,
     world: &World,
@@ -45,8 +46,8 @@ pub(super) fn sub_pixels(
 ) -> (SampleCombination, Vec<ExplainedSample>) {
     let (raster, count) = (grid.raster(world), grid.around.pixels() as usize);
     let one = |(i, place): (usize, (u32, u32))| {
-        // Blurring and averaging are linear, so the weight of a sub-pixel is the response to it
-        // being white.
+        // Blurring and averaging are linear operations. The weight of a sub-pixel is therefore the
+        // result when only this sub-pixel is white.
         let mut white = vec![Color::ZERO; count];
         white[i] = Color::ONE;
         let aim = source.aim.sub_pixel(&grid, &raster, place);
@@ -56,7 +57,7 @@ pub(super) fn sub_pixels(
     (SampleCombination::SubPixels(grid), samples)
 }
 
-/// Returns the colour and the coverage of the finished pixel.
+/// Returns the colour and coverage of the finished pixel.
 pub(super) fn finished(
     mean: &SampleCombination,
     samples: &[ExplainedSample],
@@ -72,7 +73,7 @@ pub(super) fn finished(
     (color, coverage_of(combined(mean, samples, mask)))
 }
 
-/// Combines the samples' colours into a pixel.
+/// Combines the colours of the samples into the colour of a pixel.
 fn combined(mean: &SampleCombination, samples: &[ExplainedSample], colors: Vec<Color>) -> Color {
     if let SampleCombination::SubPixels(grid) = mean {
         return grid.blurred_mean(colors)[0];

@@ -1,5 +1,5 @@
-//! Derivations of the numbers in an explanation: the equation of a hit, the matrix of a transformed
-//! object, the texels or pattern cell of a colour, and Snell's and Fresnel's laws.
+//! Derivations of the numbers in an explanation. They show the equation of a hit, the matrix of a
+//! transformed object, the texels or the pattern cell of a colour, and Snell's and Fresnel's laws.
 
 use super::numbers::{number, rgb, vector};
 use crate::integrator::TraceNode;
@@ -15,7 +15,7 @@ use durer_scene::texture::Texture;
 use glam::DVec3;
 
 /// Returns lines of text that derive the numbers in a term of a trace. `dir` is the direction of
-/// the ray that the term belongs to, and `n` the normal at its hit.
+/// the ray that the term belongs to, and `n` is the normal at the hit of that ray.
 pub fn derivations(node: &TraceNode, (scene, world): (&Scene, &World), dir: Vec3, n: Vec3) -> Vec<String> {
     match &node.kind {
         TermKind::Ray { ray, hit: Some(hit), .. } => of_hit(ray, hit, scene, world),
@@ -30,7 +30,7 @@ fn real(x: f64) -> String {
     number(x as f32)
 }
 
-/// Returns the derivation of a hit and of the surface's colour there.
+/// Returns the derivation of a hit and of the surface colour at the hit.
 fn of_hit(ray: &RayRecord, hit: &HitRecord, scene: &Scene, world: &World) -> Vec<String> {
     let object = &world.objects()[hit.object as usize];
     let local = hit.local.as_ref().unwrap_or(ray);
@@ -40,16 +40,16 @@ fn of_hit(ray: &RayRecord, hit: &HitRecord, scene: &Scene, world: &World) -> Vec
     lines
 }
 
-/// Returns the equation that was solved for a hit on a sphere or a plane.
+/// Returns the equation that was solved for a ray that hits a sphere or a plane.
 fn equation(object: &Object, ray: &RayRecord, t: f32) -> Option<String> {
-    // State the equation only if it yields this hit: an official program may have found another
-    // one.
+    // Show the equation only if it gives this hit, because an official program may have found a
+    // different one.
     let is_it = |root: f64| (root - f64::from(t)).abs() <= 1e-3 * root.abs().max(1e-3);
     let (o, d) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
     match &object.geometry {
         Geometry::Primitive(Primitive::Sphere(sphere)) => {
-            // The ray is in the coordinates of the scene file, the geometry relative to its own
-            // centre.
+            // The ray uses the coordinates of the scene file, but the geometry is relative to its
+            // own centre.
             let (off, r) = (o - (sphere.center + object.center).as_dvec3(), f64::from(sphere.radius));
             let (a, b, c) = (d.dot(d), d.dot(off), off.dot(off) - r * r);
             let root = (b * b - a * c).max(0.0).sqrt();
@@ -66,7 +66,7 @@ fn equation(object: &Object, ray: &RayRecord, t: f32) -> Option<String> {
         }
         Geometry::Primitive(Primitive::Plane(plane)) => {
             let n = plane.normal.as_dvec3();
-            // The geometry of a plane is never recentred.
+            // The geometry of a plane is never moved to the origin.
             let (offset, no, nd) = (f64::from(plane.offset), n.dot(o), n.dot(d));
             is_it((offset - no) / nd).then(|| {
                 format!(
@@ -94,7 +94,8 @@ fn matrix(object: &Object) -> Option<String> {
     Some(format!("M = {} {} {}; N = norm(M⁻ᵀ n)", row(0), row(1), row(2)))
 }
 
-/// Returns where a surface's colour comes from: pattern cells or blend weights, and texels.
+/// Returns text that explains where a surface colour comes from: pattern cells or blend weights,
+/// and texels.
 fn of_color(hit: &HitRecord, scene: &Scene, world: &World) -> Vec<String> {
     let (mut material, mut lines) = (hit.material, Vec::new());
     // Patterns can be nested.
@@ -136,7 +137,7 @@ fn of_color(hit: &HitRecord, scene: &Scene, world: &World) -> Vec<String> {
     lines
 }
 
-/// Describes the cell of a checkerboard.
+/// Describes a cell of a checkerboard.
 fn cell(q: DVec3, share: f32, [first, second]: [u32; 2]) -> (Option<u32>, String) {
     let floor = q.as_vec3().floor();
     let (parity, chosen) = if share == 1.0 { ("even", first) } else { ("odd", second) };
@@ -154,7 +155,7 @@ fn cell(q: DVec3, share: f32, [first, second]: [u32; 2]) -> (Option<u32>, String
     (Some(chosen), text)
 }
 
-/// Describes the texture lookup for a colour.
+/// Describes the texture lookup that gives a colour.
 fn of_texture(hit: &HitRecord, material: u32, phong: &Phong, scene: &Scene, world: &World) -> Vec<String> {
     let (Some(uv), Some(index)) = (hit.uv, phong.texture) else { return Vec::new() };
     let Some(texture) = world.textures().get(index as usize) else { return Vec::new() };
@@ -179,7 +180,7 @@ fn of_texture(hit: &HitRecord, material: u32, phong: &Phong, scene: &Scene, worl
     lines
 }
 
-/// Describes the texels of a filtered texture lookup, with their weights.
+/// Describes the texels of a filtered texture lookup and their weights.
 fn texels(texture: &Texture, uv: durer_scene::math::Vec2) -> Vec<String> {
     let line = |tap: &durer_scene::texture::Tap| {
         let (x, y) = tap.texel;
@@ -214,7 +215,7 @@ fn of_refraction(here: f64, there: f64, fresnel: Option<f32>, total: bool, dir: 
     let c = if here <= there { cos_i } else { cos_t };
     let left = (1.0 - c) * (1.0 - c);
     let r = r0 + (1.0 - r0) * left * left * (1.0 - c);
-    // Some programs use another R0 for rays that leave an object.
+    // Some programs use a different R0 for rays that leave an object.
     if let Some(share) = fresnel.filter(|share| !total && (f64::from(*share) - r).abs() < 1e-3) {
         lines.push(format!(
             "Fresnel, by Schlick: R0 = ((n₂ - n₁) / (n₂ + n₁))² = {}, cos = {}; R = R0 + (1 - R0) (1 - cos)⁵ = {}",

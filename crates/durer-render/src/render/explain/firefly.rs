@@ -1,5 +1,5 @@
-//! Explanation of fireflies: finds a sample's brightest term, the path to it, and the improbable
-//! choice on that path.
+//! Explanation of fireflies. It finds the brightest term of a sample, the path to this term, and
+//! the improbable choice on the path.
 
 use super::Explanation;
 use super::numbers::number;
@@ -8,8 +8,8 @@ use crate::integrator::trace::TermKind;
 use crate::integrator::{TraceNode, Tree};
 
 impl Explanation {
-    /// Returns the index of the sample that adds the most light, and what it adds to the pixel's
-    /// luminance. `None` for a black pixel.
+    /// Returns the index of the sample that adds the most light, and the luminance that it adds to
+    /// the pixel. Returns `None` for a black pixel.
     pub fn brightest(&self) -> Option<(usize, f64)> {
         let all: f64 = self.samples.iter().map(|s| f64::from(s.weight)).sum();
         let adds = |i: usize| {
@@ -22,16 +22,17 @@ impl Explanation {
     }
 
     /// Returns the index of a sample that is far brighter than the others, and its share of the
-    /// pixel's luminance.
+    /// luminance of the pixel.
     pub fn outlier(&self) -> Option<(usize, f64)> {
-        // A share below this, or below four times the average share, is normal.
+        // A share is normal if it is below this value or below four times the average share.
         let usual = (4.0 / self.samples.len() as f64).clamp(0.2, 0.9);
         let (number, adds) = self.brightest()?;
         let share = adds / luminance_of(self.color);
         (self.samples.len() > 1 && share >= usual).then_some((number, share))
     }
 
-    /// Explains in sentences why that sample is so bright. Empty if there is no such sample.
+    /// Explains in sentences why that sample is so bright. The result is empty if there is no such
+    /// sample.
     pub fn firefly(&self) -> Vec<String> {
         let Some((number, share)) = self.outlier() else { return Vec::new() };
         let mut causes = vec![format!("sample {number} alone is {:.0} % of the pixel", 100.0 * share)];
@@ -44,7 +45,7 @@ impl Explanation {
     }
 }
 
-/// Follows the brightest terms from a tree's root to their source, and explains their weight.
+/// Follows the brightest terms from the root of a tree to their source and explains their weight.
 fn cause(light: &Tree) -> Vec<String> {
     let (mut node, mut chosen) = (&light.root, Vec::new());
     let adds = |node: &TraceNode| luminance_of(light.color(node.contribution()));
@@ -59,7 +60,7 @@ fn cause(light: &Tree) -> Vec<String> {
         }
     }
     let path_text = chosen.iter().map(|bounce| bounce.lobe).collect::<Vec<_>>().join(", then ");
-    // Delta lobes have no density.
+    // Delta lobes have no probability density.
     let single = chosen.last().is_some_and(|last| last.pdf == 0.0);
     let seldom = chosen.iter().filter(|bounce| bounce.pdf > 0.0).min_by(|a, b| a.pdf.total_cmp(&b.pdf));
     let text = |what: &str| match chosen.is_empty() {

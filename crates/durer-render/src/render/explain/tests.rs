@@ -28,7 +28,7 @@ fn explanations_sum_to_the_pixels_of_all_scenes() {
             refraction: true,
             min_weight: 0.01,
         };
-        // Use path tracing for scenes made for it, and for some others.
+        // Use path tracing for the scenes that are designed for it and for some other scenes.
         let paths = text.contains("PrincipledMaterial") || i % 5 == 0;
         let color = [ColorMode::Rgb, ColorMode::Spectral][i % 2];
         let method = if paths {
@@ -44,7 +44,7 @@ fn explanations_sum_to_the_pixels_of_all_scenes() {
 
 #[test]
 fn brightest_sample_below_glass_is_explained_as_a_caustic() {
-    // The light is small and above a glass sphere, so paths find its light below the sphere only by
+    // The light is small and above a glass sphere. Below the sphere, paths find its light only by
     // chance.
     let world = testing::read(
         "PerspectiveCamera { center 0 3 5 direction 0 -0.6 -1 up 0 1 0 angle 30 } Background { color 0 0 0 }\n\
@@ -64,7 +64,7 @@ fn brightest_sample_below_glass_is_explained_as_a_caustic() {
     let causes = worst.firefly();
     assert!(causes.len() >= 3 && causes[0].starts_with("sample "), "{causes:?}");
     assert!(causes.iter().any(|sentence| sentence.contains("--integrator photons")), "{causes:?}");
-    // The brightest sample adds at most the total of the pixel.
+    // The brightest sample adds no more than the total of the pixel.
     let (number, most) = worst.brightest().unwrap();
     let light = worst.samples[number].light.as_ref().unwrap();
     assert!(most > 0.0 && light.sum().max_element() > 0.0);

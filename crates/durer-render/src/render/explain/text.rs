@@ -1,4 +1,4 @@
-//! Text form of explanations, one line per term.
+//! Explanations as text with one line per term.
 
 use super::derivations::derivations;
 use super::numbers::{number, rgb, vector};
@@ -14,75 +14,77 @@ use durer_scene::math::{Color, LUMINANCE, Vec3, reflect};
 use durer_scene::scene::Scene;
 use durer_scene::spectrum::{Lanes, Spectrum};
 
-/// Looks up the names of objects, materials and lights, and where the scene file defines them, for
-/// explanations.
+/// Finds the names of objects, materials and lights and their positions in the scene file, for use
+/// in explanations.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneNames<'a> {
-    /// Files that were read.
+    /// Files that have been read.
     pub files: &'a Files,
-    /// Scene as written in the file.
+    /// Scene as it is written in the file.
     pub scene: &'a Scene,
-    /// World compiled from the scene.
+    /// World that was compiled from the scene.
     pub world: &'a World,
 }
 
-/// Line of text in an explanation of a pixel: a term of the trace or a detail of one.
+/// A line of text in the explanation of a pixel. It shows a term of the trace or a detail of a
+/// term.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextLine {
     /// Indentation depth.
     pub depth: usize,
-    /// Contribution of the term: to the pixel for a path, else to its parent term. `None` for lines
-    /// with details about the line before.
+    /// Contribution of the term. For a path, this is its contribution to the pixel, and otherwise
+    /// the contribution to its parent term. `None` for lines that add details to the line before.
     pub adds: Option<TermValue>,
-    /// Colour of the contribution.
+    /// Colour of this contribution.
     pub color: Color,
-    /// Share of the tree's total brightness, from 0 to 1.
+    /// Share of the total brightness of the tree, from 0 to 1.
     pub share: f32,
     /// Text of the line.
     pub text: String,
 }
 
-/// Options for the text of an explanation: which terms to omit, and how to show eight-bit values.
+/// Options for the text of an explanation, such as which terms to omit and how to show eight-bit
+/// values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExplainOptions {
-    /// Minimum share of the total brightness. Terms with less are omitted.
+    /// Minimum share of the total brightness. Terms with a smaller share are omitted.
     pub min_share: f32,
-    /// Maximum depth of terms. Deeper ones are omitted.
+    /// Maximum depth of terms. Deeper terms are omitted.
     pub max_depth: usize,
     /// Transfer curve for the eight-bit colour.
     pub transfer: Transfer,
 }
 
 impl TextLine {
-    /// Creates a line without a contribution.
+    /// Creates a line that has no contribution.
     fn plain(depth: usize, text: String) -> Self {
         TextLine { depth, adds: None, color: Color::ZERO, share: 0.0, text }
     }
 }
 
 impl Default for ExplainOptions {
-    /// Options that omit nothing.
+    /// Returns options with which nothing is omitted.
     fn default() -> Self {
         ExplainOptions { min_share: 0.0, max_depth: usize::MAX, transfer: Transfer::default() }
     }
 }
 
-/// Data from the nodes above a trace node that its text needs, such as the enclosing ray.
+/// Data from the nodes above a trace node that is needed for its text, such as the enclosing ray.
 #[derive(Clone, Copy)]
 struct Context<'a> {
     /// Trace that the node belongs to.
     tree: &'a Tree,
     /// Factor by which the node's contribution is multiplied in the total.
     gain: TermValue,
-    /// Brightness of the total.
+    /// Brightness of the whole tree.
     total: f32,
     /// Direction of the enclosing ray.
     dir: Vec3,
-    /// Normal at the enclosing ray's hit.
+    /// Normal at the hit of the enclosing ray.
     n: Vec3,
     /// Direction to the enclosing light.
     to_light: Vec3,
-    /// Material at the enclosing ray's hit.
+    /// Material at the hit of the enclosing ray.
     material: Option<u32>,
     /// Fresnel reflectance at that hit.
     fresnel: Option<f32>,
@@ -103,12 +105,12 @@ impl SceneNames<'_> {
     }
 
     /// Returns lines that derive the numbers in a term. `dir` is the direction of the ray that the
-    /// term belongs to, and `n` the normal at its hit.
+    /// term belongs to, and `n` is the normal at the hit of that ray.
     pub fn origins(&self, node: &TraceNode, dir: Vec3, n: Vec3) -> Vec<String> {
         derivations(node, (self.scene, self.world), dir, n)
     }
 
-    /// Returns the line number of a span, or its full position if it is in another file than the
+    /// Returns the line number of a span, or its full position if it is not in the same file as the
     /// camera.
     fn line(&self, span: Span) -> String {
         let scene = self.scene.camera_span.file;
@@ -118,14 +120,14 @@ impl SceneNames<'_> {
         }
     }
 
-    /// Returns the text at a span.
+    /// Returns the text in a span.
     fn word(&self, span: Span) -> String {
         let bytes = self.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));
         String::from_utf8_lossy(bytes.unwrap_or(b"object")).into_owned()
     }
 
-    /// Names an object that has no keyword in the scene file, as in JSON: by its kind and, if it
-    /// has one, its name. `None` if it has a keyword.
+    /// Describes an object that has no keyword in the scene file, as in JSON, by its kind and its
+    /// name if it has one. Returns `None` if the object has a keyword.
     pub fn name_without_keyword(&self, object: u32) -> Option<String> {
         let object = &self.world.objects()[object as usize];
         let kind = match &object.geometry {
@@ -140,19 +142,19 @@ impl SceneNames<'_> {
         }
     }
 
-    /// Returns the keyword or kind of an object, and its span.
+    /// Returns the keyword or kind of an object and its span.
     fn keyword(&self, object: u32) -> (String, Span) {
         let span = self.world.objects()[object as usize].span;
         (self.name_without_keyword(object).unwrap_or_else(|| self.word(span)), span)
     }
 
-    /// Names an object by keyword and line number.
+    /// Describes an object by its keyword and line number.
     pub fn short_object(&self, number: u32) -> String {
         let (keyword, span) = self.keyword(number);
         format!("{keyword} {}", self.line(span))
     }
 
-    /// Names a material by index and line number.
+    /// Describes a material by its index and line number.
     fn short_material(&self, number: u32) -> String {
         match self.scene.materials.get(number as usize) {
             Some(material) => format!("material {number} {}", self.line(material.span)),
@@ -160,7 +162,7 @@ impl SceneNames<'_> {
         }
     }
 
-    /// Names a light by keyword and line number.
+    /// Describes a light by its keyword and line number.
     fn short_light(&self, number: usize) -> String {
         match self.scene.lights.iter().flatten().nth(number) {
             Some(light) => format!("{} {}", light.value.keywords()[0].0, self.line(light.span)),
@@ -168,7 +170,7 @@ impl SceneNames<'_> {
         }
     }
 
-    /// Names an emitter and the line that defines it.
+    /// Describes an emitter and the line that defines it.
     fn emitter(&self, light: LightId) -> String {
         match light {
             LightId::Light(number) => self.short_light(number as usize),
@@ -177,13 +179,13 @@ impl SceneNames<'_> {
         }
     }
 
-    /// Names an object by keyword and position in the file.
+    /// Describes an object by its keyword and its position in the file.
     pub fn object(&self, number: u32) -> String {
         let (keyword, span) = self.keyword(number);
         format!("{keyword} {}", self.place(span))
     }
 
-    /// Names a material by index and position in the file.
+    /// Describes a material by its index and its position in the file.
     pub fn material(&self, number: u32) -> String {
         match self.scene.materials.get(number as usize) {
             Some(material) => format!("material {number} {}", self.place(material.span)),
@@ -191,7 +193,7 @@ impl SceneNames<'_> {
         }
     }
 
-    /// Names a light by keyword and position in the file.
+    /// Describes a light by its keyword and its position in the file.
     pub fn light(&self, number: usize) -> String {
         match self.scene.lights.iter().flatten().nth(number) {
             Some(light) => format!("{} {}", light.value.keywords()[0].0, self.place(light.span)),
@@ -201,8 +203,8 @@ impl SceneNames<'_> {
 }
 
 impl Explanation {
-    /// Returns the explanation as lines of text: the pixel, its samples, and the tree of the sample
-    /// with index `wanted`.
+    /// Returns the explanation as lines of text. The lines show the pixel, its samples, and the
+    /// tree of the sample with the index `wanted`.
     pub fn lines(&self, names: &SceneNames, wanted: usize, options: &ExplainOptions) -> Vec<TextLine> {
         let mut lines = Vec::new();
         let mut push_line = |depth, text: String| lines.push(TextLine::plain(depth, text));
@@ -249,7 +251,8 @@ impl Explanation {
         lines
     }
 
-    /// Names a sample by its index, and by its pixel if the samples belong to several pixels.
+    /// Describes a sample by its index, and also by its pixel if the samples belong to several
+    /// pixels.
     fn number(&self, index: usize) -> String {
         let ExplainedSample { of: (x, y), sample, .. } = self.samples[index];
         match self.mean {
@@ -305,7 +308,7 @@ impl<'a> Context<'a> {
     }
 }
 
-/// Appends the lines of a node and of the terms below it.
+/// Appends the lines of a node and of all terms below it.
 fn node_lines(
     node: &TraceNode,
     names: &SceneNames,
@@ -443,7 +446,7 @@ fn node_lines(
     }
 }
 
-/// Describes how the direction of a ray was sampled.
+/// Describes how the direction of a ray was chosen.
 fn bounce_line(bounce: &Bounce) -> String {
     let Bounce { lobe, probability, pdf, survival, directions } = bounce;
     let density = if *pdf > 0.0 { format!(", density {} /sr", number(*pdf)) } else { String::new() };
@@ -454,7 +457,7 @@ fn bounce_line(bounce: &Bounce) -> String {
     format!("chosen by {lobe} (probability {}){density}{survived}{shared}", number(*probability))
 }
 
-/// Describes an MIS weight other than 1.
+/// Describes an MIS weight if it is not 1.
 fn weight_text(mis: f32) -> String {
     if mis == 1.0 { String::new() } else { format!(" (MIS weight {})", number(mis)) }
 }
@@ -463,8 +466,8 @@ fn terms(count: usize) -> String {
     if count == 1 { "1 term".into() } else { format!("{count} terms") }
 }
 
-/// Describes the factor of a secondary ray. If Fresnel's equations split the light, it is the
-/// material's colour times the Fresnel factor.
+/// Describes the factor of a secondary ray. If Fresnel's equations divide the light, the factor is
+/// the material's colour times the Fresnel factor.
 fn split(node: &TraceNode, from: &str, at: &Context, names: &SceneNames) -> String {
     let phong = at.material.and_then(|i| names.world.materials().get(i as usize));
     match (at.fresnel, phong) {
@@ -478,7 +481,7 @@ fn split(node: &TraceNode, from: &str, at: &Context, names: &SceneNames) -> Stri
     }
 }
 
-/// Describes the hit of a ray.
+/// Describes what a ray hits.
 fn struck_lines(hit: &HitRecord, names: &SceneNames) -> Vec<String> {
     let (object, t) = (names.short_object(hit.object), number(hit.t));
     let mut lines = vec![format!("hits {object} at t = {t}, point {}", vector(hit.position))];

@@ -1,5 +1,5 @@
-//! Tests that taking samples does not allocate memory, and that tiles lock rarely. Either would
-//! make threads wait for each other.
+//! Tests that taking samples does not allocate memory and that tiles rarely take locks. Otherwise,
+//! threads would wait for each other.
 
 use super::*;
 use crate::compile::{AccelKind, testing};
@@ -8,7 +8,7 @@ use crate::integrator::IntegratorKind;
 use crate::render::{Control, PartialRender, Shard};
 use durer_scene::dialect::Dialect;
 
-/// Scene of mirrors, glass and principled materials under a point light and an area light.
+/// A scene of mirrors, glass and principled materials under a point light and an area light.
 const TEXT: &str = "PerspectiveCamera { center 0 1 8 direction 0 -0.1 -1 up 0 1 0 angle 40 }
 Lights { PointLight { position 3 6 4 color 0.9 0.9 0.8 } }
 Background { color 0.2 0.1 0.5 ambientLight 0.2 0.2 0.2 }
@@ -50,7 +50,7 @@ fn samples_do_not_allocate() {
         let mut take = |range: std::ops::Range<u32>| {
             samples.add(&mut film, part, |_| range.clone(), &at, &mut RayCount::default()).unwrap()
         };
-        // Warm up the thread-local buffers, which grow to the size that a block needs.
+        // Fill the thread-local buffers first. They grow to the size that a block needs.
         take(0..16);
         let made = allocation_counter::measure(|| take(16..32));
         assert_eq!(made.count_total, 0, "{method:?}");
@@ -66,6 +66,6 @@ fn tile_locks_twice_per_pass() {
         part.render(&world, &control, &mut |_, _| {}).unwrap();
         part.locked.load(Relaxed)
     };
-    // One sample is one pass, so four more tiles lock eight more times.
+    // One sample is one pass, so four additional tiles take the lock eight more times.
     assert_eq!(locks(96) - locks(64), 8);
 }

@@ -1,4 +1,4 @@
-//! Comparison with the official pictures, in the folder that `DURER_CORPUS` names.
+//! Comparisons with the official pictures in the folder that `DURER_CORPUS` names.
 
 use super::*;
 use crate::film::course::StoredSample;
@@ -7,7 +7,7 @@ use durer_scene::sampler::Sampler;
 use glam::{DVec2, DVec3};
 use std::path::PathBuf;
 
-/// Returns the size and the 8-bit pixels of an official picture, or `None` if it is missing.
+/// Returns the size and the 8-bit pixels of an official picture, or `None` if the file is missing.
 fn official(name: &str) -> Option<(u32, u32, Vec<[u8; 3]>)> {
     let root = std::env::var_os("DURER_CORPUS").map(PathBuf::from);
     let root = root.unwrap_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared")));
@@ -20,8 +20,8 @@ fn official(name: &str) -> Option<(u32, u32, Vec<[u8; 3]>)> {
     Some((picture.width(), picture.height(), picture.pixels().map(|p| p.0).collect()))
 }
 
-/// Asserts the course's rule for pictures without random numbers: at most one pixel in a thousand
-/// may differ by more than 2/255.
+/// Asserts the rule of the course for pictures that use no random numbers: at most one pixel in a
+/// thousand may differ by more than 2/255.
 fn assert_agrees(name: &str, width: u32, height: u32, pixels: &[Color]) {
     let Some((w, h, expected)) = official(name) else { return };
     assert_eq!((width, height), (w, h), "{name}");
@@ -61,10 +61,10 @@ fn filter_diagrams_match_the_official_ones() {
     }
 }
 
-/// Returns the colour of the course's scene of a sphere in front of a triangle, seen along -z at a
-/// point in world units.
+/// Returns the colour at a point of the course's scene that shows a sphere in front of a triangle.
+/// The scene is seen along -z, and the point is in world units.
 fn sphere_and_triangle(p: Vec2) -> Color {
-    // There is an ambient light of 0.5, and a light of 0.5 from above and the front.
+    // There is an ambient light of 0.5 and a light of 0.5 from above and in front.
     let shade = |n: Vec3| 0.5 + 0.5 * n.dot(Vec3::new(0.0, 1.0, 1.0).normalize()).max(0.0);
     let d = p - Vec2::ONE;
     if d.length_squared() < 1.0 {
@@ -75,7 +75,7 @@ fn sphere_and_triangle(p: Vec2) -> Color {
     if inside { Vec3::Y * shade(Vec3::Z) } else { Vec3::Z }
 }
 
-/// Takes the samples of that scene, in a picture that is five units wide.
+/// Takes samples of that scene for a picture that is five units wide.
 fn course_samples(size: u32, n: u32) -> StoredSamples {
     StoredSamples::take(size, size, n, |x, y, s| {
         let position = Sampler::Uniform.pixel_position(0, x, y, s, n);
@@ -106,17 +106,19 @@ fn filtered_pictures_match_the_official_ones() {
     }
 }
 
-/// Returns the colour of the course's scene of a checkerboard at height 0.01, with squares of size
-/// 0.1. The point is in the picture, from -1 to 1.
+/// Returns the colour of the course's scene that shows a checkerboard at height 0.01 with squares
+/// of size 0.1. The coordinates of the point in the picture are from -1 to 1.
 ///
-/// It uses double precision, because towards the horizon single precision hits other squares.
+/// The colour is computed in double precision, because single precision hits different squares near
+/// the horizon.
 fn chessboard(p: DVec2) -> Color {
     let forward = DVec3::new(0.338670, -0.392536, -0.855113).normalize();
     let right = forward.cross(DVec3::Y).normalize();
     let dir = forward + fp::tan_f64(25_f64.to_radians()) * (p.x * right + p.y * right.cross(forward));
     let center = DVec3::new(-0.841950, 0.943160, 2.014966);
     let hit = center + (0.01 - center.y) / dir.y * dir;
-    // The official triangles extend beyond their edges by 1e-5 of their legs, which are 501 long.
+    // The official triangles extend beyond their edges by 1e-5 of the length of their legs, which
+    // is 501.
     let beyond = 0.00501;
     if dir.y >= 0.0 || hit.x < -0.99 - beyond || hit.z > 0.99 + beyond || hit.z < -500.0 || hit.x > 500.0 {
         return Vec3::Y;
@@ -130,11 +132,12 @@ fn filtered_chessboard_matches_the_official_one() {
     let samples = StoredSamples::take(180, 180, 16, |x, y, s| {
         let position = Sampler::Uniform.pixel_position(0, x, y, s, 16);
         let in_picture = (DVec2::new(x.into(), y.into()) + position.as_dvec2()) / 90.0 - 1.0;
-        // Colours above 1 are clamped only after filtering, when the picture is written.
+        // Colours above 1 are clamped after filtering, when the picture is written.
         StoredSample { position, color: chessboard(in_picture * DVec2::new(1.0, -1.0)) }
     });
     let picture = samples.reconstruct(CourseFilter::Tent { radius: 1.5 });
-    // Farther up, squares are smaller than a pixel, and the last bit of a hit decides the colour.
+    // Farther up in the picture, squares are smaller than a pixel, and the last bit of a hit
+    // determines the colour.
     const NEAR: usize = 45;
     let Some((180, 180, expected)) = official("output7_02e") else { return };
     assert_few_differ("output7_02e", &picture[NEAR * 180..], &expected[NEAR * 180..]);
@@ -144,7 +147,7 @@ fn filtered_chessboard_matches_the_official_one() {
 fn degenerate_sizes_give_pictures() {
     assert_eq!(filter(0, 0, 0, CourseFilter::Tent { radius: 0.0 }).pixels.len(), 1);
     assert!(samples(&course_samples(0, 1), 5).pixels.is_empty());
-    // Positions on the edge of a pixel must stay in it.
+    // Positions on the edge of a pixel must not leave the pixel.
     let corner = |p: f32| StoredSample { position: Vec2::splat(p), color: Vec3::ONE };
     for (p, place) in [(0.0, 0), (1.0 - f32::EPSILON * 0.5, 8)] {
         let diagram = samples(&StoredSamples::take(1, 1, 1, |_, _, _| corner(p)), 3);

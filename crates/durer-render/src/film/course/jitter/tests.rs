@@ -10,7 +10,7 @@ fn the_blur_spreads_a_point_by_its_taps() {
         let tap = |at: u32| if (2..=6).contains(&at) { BLUR[at as usize - 2] } else { 0.0 };
         assert!((blurred[(y * w + x) as usize].x - tap(x) * tap(y)).abs() < 1e-7);
     }
-    // At a corner, taps outside the picture use the corner pixel.
+    // At a corner, taps outside the picture use the pixel at the corner.
     point.fill(Vec3::ZERO);
     point[0] = Vec3::ONE;
     let edge = BLUR[0] + BLUR[1] + BLUR[2];

@@ -23,7 +23,7 @@ fn part_equals_that_of_the_whole_picture() {
     for filter in FILTERS {
         let whole = samples.reconstruct(filter);
         let (left, top, width, height) = (9, 7, 5, 4);
-        // Take only the samples that the part needs.
+        // Take only the samples that this part of the picture needs.
         let reach = filter.support();
         let around = StoredSamples::take(width + 2 * reach, height + 2 * reach, 4, |x, y, s| {
             samples.pixel(x + left - reach, y + top - reach)[s as usize]
@@ -51,7 +51,7 @@ fn supports_are_the_courses() {
     assert_eq!([0.5, 0.6, 1.5, 1.7, 2.3, -3.0, f32::NAN].map(boxed), [0, 1, 1, 2, 2, 0, 0]);
     let gaussian = |sigma| CourseFilter::Gaussian { sigma }.support();
     assert_eq!([0.25, 0.6, 1.0, 1.7, 2.3].map(gaussian), [0, 1, 2, 3, 5]);
-    // This support exceeds the width of the picture.
+    // This support is larger than the width of the picture.
     let samples = random_samples(1, |x, _, _| Vec3::splat(x as f32));
     let picture = samples.reconstruct(CourseFilter::Box { radius: f32::INFINITY });
     assert!(picture.iter().all(|c| (c.x - 11.0).abs() < 1e-5));
