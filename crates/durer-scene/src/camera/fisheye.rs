@@ -4,11 +4,11 @@
 //! A direction at the angle θ from the axis is shown at the radius r = f(θ) / f(angle / 2) of the
 //! disc. The functions f are:
 //!
-//! - `equidistant`: f = θ: equal angles are equal lengths along the radius;
-//! - `equisolid`: f = 2 sin(θ/2): equal solid angles are equal areas;
-//! - `stereographic`: f = 2 tan(θ/2): small circles stay circles;
-//! - `orthographic`: f = sin θ: parallel projection of the hemisphere; equal areas of the picture
-//!   of a uniform sky illuminate a horizontal surface equally.
+//! - `equidistant`, f = θ. Equal angles are mapped to equal lengths along the radius.
+//! - `equisolid`, f = 2 sin(θ/2). Equal solid angles are mapped to equal areas.
+//! - `stereographic`, f = 2 tan(θ/2). Small circles are mapped to circles.
+//! - `orthographic`, f = sin θ. This is a parallel projection of the hemisphere. If the sky is
+//!   uniform, equal areas of the picture illuminate a horizontal surface equally.
 //!
 //! The solid angle per unit area is sin θ F² / (f f'), with F = f(angle / 2).
 //!
