@@ -2,9 +2,9 @@
 //!
 //! All light from a point in the focus plane that passes through the lens meets in one point of the
 //! picture. The ray through a point l of the lens therefore goes to the point where the ray through
-//! the centre of the lens meets the plane at the focus distance F: direction = (F tan(angle / 2) (x
-//! + s, y + r) - l, F). A point at distance z is blurred to the shape of the aperture. In a picture
-//! of width 2, the diameter of this shape is aperture |F - z| / (F z tan(angle / 2)).
+//! the centre of the lens meets the plane at the focus distance F: direction = (F tan(angle / 2)
+//! (x + s, y + r) - l, F). A point at distance z is blurred to the shape of the aperture. In a
+//! picture of width 2, the diameter of this shape is aperture |F - z| / (F z tan(angle / 2)).
 //!
 //! The shift (s, r) moves the film in its plane, as in view cameras. The camera stays level but
 //! sees more above than below, and vertical lines stay parallel.

@@ -15,8 +15,8 @@ use rayon::prelude::*;
 /// it, and the correlation.
 const SIZES: [usize; 4] = [16, 16, 10, 5];
 
-/// Number of integration points around the normal, and from the normal towards the horizon. The
-/// error is at most 0.1 %.
+/// Number of integration points around the normal, and in the direction towards it. The error is at
+/// most 0.1 %.
 const EXACT: [usize; 2] = [32, 24];
 
 /// Number of integration points for a single shading point, in the same order as in [`EXACT`].

@@ -1,4 +1,4 @@
-//! Fuzz: fibres that stand up from a surface, as on velvet.
+//! Fuzz, which consists of fibres that stand up from a surface, as on velvet.
 //!
 //! Source: Estevez and Kulla, *Production Friendly Microfacet Sheen BRDF*, 2017 (the distribution);
 //! Neubelt and Pettineo, *Crafting a Next-Gen Material Pipeline for The Order: 1886*, 2013 (the

@@ -15,8 +15,8 @@ fn aperture_samples_are_uniform() {
     let mut random = Random(1);
     for blades in [0, 3, 4, 6, 9] {
         const COUNT: usize = 200_000;
-        // Mean square radius of a disc of radius 1, or of a regular polygon in it: (2 + cos 2π/n) /
-        // 6. The mean is 0.
+        // Compute the mean square radius of a disc of radius 1, or of a regular polygon inscribed
+        // in it, which is (2 + cos 2π/n) / 6. The mean of the points is 0.
         let expected = match blades {
             0 => 0.5,
             n => (2.0 + libm::cos(std::f64::consts::TAU / f64::from(n))) / 6.0,
