@@ -1,8 +1,9 @@
 //! Tables of the directional albedo of rough surfaces.
 //!
 //! A single-scattering microfacet model loses the light that would be reflected more than once.
-//! Dividing by the values in these tables restores it, so that a lossless surface stays white.
-//! Source: Turquin, *Practical multiple scattering compensation for microfacet models*, 2019.
+//! Dividing by the values in these tables restores this light, so that a lossless surface stays
+//! white. Source: Turquin, *Practical multiple scattering compensation for microfacet models*,
+//! 2019.
 //!
 //! [`super::Tables::prepare`] computes the tables that the materials of a world need, on all
 //! threads, when the world is compiled. Other tables are computed on first use.
@@ -66,8 +67,9 @@ fn mean_by_cosine(value: impl Fn(f32) -> f32) -> f32 {
 
 /// Returns the value of `cell`, which is computed by `make` on first use.
 ///
-/// No lock is held while `make` runs. If it were, a waiting rayon thread could steal work that
-/// needs the same value, and cause a deadlock. Concurrent callers therefore all compute the value.
+/// No lock is held while `make` runs. If a lock were held, a waiting rayon thread could steal work
+/// that needs the same value, and cause a deadlock. Concurrent callers therefore all compute the
+/// value.
 fn once<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
     cell.get().unwrap_or_else(|| {
         let table = make();
@@ -142,8 +144,8 @@ pub fn fuzz(cosine: f32, roughness: f32) -> f32 {
     table.at(cosine, roughness)
 }
 
-/// Boundary between two dielectrics with a given relative index. Its albedo tables are computed on
-/// first use.
+/// Boundary between two dielectrics with a given relative index. The albedo tables of the boundary
+/// are computed on first use.
 #[derive(Clone, Debug)]
 pub struct DielectricAlbedo {
     /// Index of refraction inside, relative to the index outside.
@@ -166,7 +168,8 @@ impl PartialEq for DielectricAlbedo {
 }
 
 impl DielectricAlbedo {
-    /// Creates a boundary with the relative index `ior`. Its tables are computed on first use.
+    /// Creates a boundary with the relative index `ior`. The tables of the boundary are computed on
+    /// first use.
     pub fn new(ior: f32) -> Self {
         let smooth_mean = mean_by_cosine(|cosine| fresnel::dielectric(cosine, ior));
         DielectricAlbedo {
@@ -237,8 +240,8 @@ impl DielectricAlbedo {
     }
 
     /// Version of [`DielectricAlbedo::gain`] that also accepts anisotropic surfaces. `eta` is the
-    /// index behind the boundary, relative to the index in front of it. It differs from the index
-    /// of this boundary if another medium surrounds the object.
+    /// index behind the boundary, relative to the index in front of it. This index differs from
+    /// that of the boundary if another medium surrounds the object.
     pub fn gain_for(&self, inside: bool, eta: f32, surface: Ggx, wo: Vec3, roughness: f32) -> f32 {
         let own_eta = if inside { 1.0 / self.ior } else { self.ior };
         if (eta / own_eta - 1.0).abs() > NEAR {
@@ -260,8 +263,8 @@ impl DielectricAlbedo {
 const NEAR: f32 = 0.05;
 
 /// Estimates the mean of `value` over the visible facets of a rough surface from a few points.
-/// `value` is a function of the cosine at a facet. This is used for surfaces that have too many
-/// parameters for tables.
+/// `value` is a function of the cosine at a facet. This estimate is used for surfaces that have too
+/// many parameters for tables.
 pub fn over_facets(surface: Ggx, wo: Vec3, value: impl Fn(f32) -> Spectrum) -> Spectrum {
     const FEW: usize = 16;
     let (ggx, cosine) = (surface.clamped(), wo.z);
@@ -276,9 +279,9 @@ pub fn over_facets(surface: Ggx, wo: Vec3, value: impl Fn(f32) -> Spectrum) -> S
     if all > 0.0 { sum / all } else { value(cosine) }
 }
 
-/// Estimates cosine-weighted means over the hemisphere from a few points. The first is for one
-/// reflection at a boundary, and the second is for reflection and refraction together. This is used
-/// where tables are not worth their cost.
+/// Estimates cosine-weighted means over the hemisphere from a few points. The first mean is for one
+/// reflection at a boundary, and the second is for reflection and refraction together. This
+/// estimate is used where tables are not worth their cost.
 pub fn single_means(eta: f32, roughness: f32) -> [f32; 2] {
     const COSINES: usize = 16;
     const FEW: usize = 64;

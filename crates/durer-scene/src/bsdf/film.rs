@@ -55,7 +55,7 @@ impl Film {
     }
 
     /// Returns the reflectance for unpolarised light at a cosine from 0 to 1. For light from
-    /// inside, for which the index of the base is below 1, it is equal to the reflectance from
+    /// inside, for which the index of the base is below 1, the reflectance is equal to that from
     /// outside along the same path.
     pub fn reflected(&self, cosine: f32) -> Spectrum {
         if self.metal {
@@ -142,8 +142,8 @@ fn airy(first: f32, second: Vec2, phase: f32) -> f32 {
     above.length_squared() / below.length_squared()
 }
 
-/// Returns the mean of [`airy`] over a colour channel under daylight. It is computed as a Fourier
-/// series in the phase, in which each order is averaged over the daylight spectrum.
+/// Returns the mean of [`airy`] over a colour channel under daylight. The mean is computed as a
+/// Fourier series in the phase, in which each order is averaged over the daylight spectrum.
 fn by_orders(first: f32, second: Vec2, shift: f32, channel: usize) -> f32 {
     let (r1, r2) = (first * first, second.length_squared());
     let through = 1.0 - r1;

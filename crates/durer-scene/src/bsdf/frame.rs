@@ -1,4 +1,4 @@
-//! Local frame at a surface point. Its z axis is the normal.
+//! Local frame at a surface point. The z axis of the frame is the normal.
 
 use crate::math::Vec3;
 

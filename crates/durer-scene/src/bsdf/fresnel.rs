@@ -65,8 +65,9 @@ impl Sheet {
     /// Returns the reflectance and transmittance at a cosine, including all internal reflections.
     ///
     /// Without a depth, the reflectance is 2 F / (1 + F) and the transmittance is the remainder. As
-    /// in other renderers, this assumes unpolarised light at each face. With a depth, light keeps
-    /// its polarisation between the faces, and more light is absorbed at oblique angles.
+    /// in other renderers, these formulas assume unpolarised light at each face. With a depth,
+    /// light keeps its polarisation between the faces, and more light is absorbed at oblique
+    /// angles.
     pub fn at(&self, cosine: f32) -> (Spectrum, Spectrum) {
         let Sheet { eta, inside } = *self;
         let Some(inside) = inside else {
@@ -107,8 +108,8 @@ fn sum_reflections(front: Spectrum, back: Spectrum, left: Spectrum) -> (Spectrum
 
 /// Returns the cosine-weighted mean of [`dielectric`] over the hemisphere.
 ///
-/// Source: a fit by d'Eon, *A Hitchhiker's Guide to Multiple Scattering*. Its converse is used for
-/// light from inside. The error is at most 0.6 % for indices from 1 to 3.
+/// Source: a fit by d'Eon, *A Hitchhiker's Guide to Multiple Scattering*. The converse of this fit
+/// is used for light from inside. The error is at most 0.6 % for indices from 1 to 3.
 pub fn diffuse(eta: f32) -> f32 {
     match eta >= 1.0 {
         true => fp::ln((10_893.0 * eta - 1_438.2) / (-774.4 * eta * eta + 10_212.0 * eta + 1.0)),
@@ -171,7 +172,7 @@ mod tests {
     #[test]
     fn conductor_agrees_with_fresnel_equations() {
         // At normal incidence, the reflectance is ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2). For k = 0,
-        // the dielectric equations apply.
+        // the equations for dielectrics apply.
         for (n, k) in [(0.2, 3.4), (1.5, 0.0), (2.9, 3.1)] {
             let right = ((n - 1.0_f32) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k);
             assert!((conductor(1.0, n, k) - right).abs() < 1e-6);

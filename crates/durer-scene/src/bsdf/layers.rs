@@ -3,8 +3,9 @@
 //!
 //! Light that is reflected by a layer does not reach the layer below. Each layer is weighted by the
 //! share of light that the layers above let through in the view direction. OpenPBR calls this
-//! albedo scaling. It conserves energy, but the sum is not reciprocal. A diffuse base is also
-//! weighted by the direction of the light ([`Boundary`]), so plastic is reciprocal.
+//! method albedo scaling. This weighting conserves energy, but the sum of the lobes is not
+//! reciprocal. A diffuse base is also weighted by the direction of the light ([`Boundary`]), so
+//! plastic is reciprocal.
 
 use super::Bsdf;
 use super::albedo::{self, DielectricAlbedo};
@@ -23,8 +24,8 @@ use crate::math::{Vec3, fp};
 use crate::spectrum::{Curve, Lanes, Spectrum};
 use std::sync::Arc;
 
-/// Albedo tables of a principled material and the measured spectrum of its base. They are computed
-/// once for each material.
+/// Albedo tables of a principled material and the measured spectrum of its base. The tables are
+/// computed once for each material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tables {
     /// Boundary of an opaque base.
@@ -38,9 +39,9 @@ pub struct Tables {
 }
 
 impl Tables {
-    /// Creates the tables of a material. `measured` is the measured spectrum of its base, if there
-    /// is one. `cache` holds boundaries that were already created, which are identified by their
-    /// index of refraction.
+    /// Creates the tables of a material. `measured` is the measured spectrum of the base of the
+    /// material, if there is one. `cache` holds boundaries that were already created, which are
+    /// identified by their index of refraction.
     pub fn new(
         material: &PrincipledMaterial,
         measured: Option<Arc<Curve>>,
@@ -64,7 +65,8 @@ impl Tables {
     /// Computes the tables that the material can use, on all threads, so that no render thread has
     /// to compute them.
     pub fn prepare(&self, m: &PrincipledMaterial) {
-        // A texture multiplies the parameter. It keeps the value 0, but may change any other value.
+        // A texture multiplies the parameter. The product is still 0 if the parameter is 0, but any
+        // other value may change.
         let all = |share: f32, picture: &Option<FileName>| share == 1.0 && picture.is_none();
         let metal = all(m.base_metalness, &m.base_metalness_texture) && m.metallic_roughness_texture.is_none();
         let glass = all(m.transmission_weight, &m.transmission_weight_texture);
@@ -99,8 +101,8 @@ impl Tables {
         }
     }
 
-    /// Returns, for the opaque base, the glass and the coat, whether its albedo tables have been
-    /// built.
+    /// Returns three flags, which are true if the albedo tables of the opaque base, the glass and
+    /// the coat have been built.
     #[cfg(any(test, feature = "testing"))]
     pub fn prepared(&self) -> [bool; 3] {
         [&self.opaque, &self.glass, &self.coat].map(|boundary| boundary.is_prepared())
@@ -130,8 +132,8 @@ fn ratios(shares: Spectrum, of: Spectrum) -> Spectrum {
     Spectrum::select(of.cmpgt(Spectrum::splat(1e-6)), shares / of, Spectrum::ONE)
 }
 
-/// View of a surface point for which the lobes of a principled material are built. It consists of a
-/// direction, lanes and the relative index of refraction.
+/// View of a surface point for which the lobes of a principled material are built. The view
+/// consists of a direction, lanes and the relative index of refraction.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
     /// RGB lanes or wavelengths in which light is represented.
@@ -299,13 +301,13 @@ impl<'t> LayerStack<'_, 't> {
         if self.compensates() { albedo::ggx_for(ggx, self.view.wo, roughness) } else { 1.0 }
     }
 
-    /// Returns a factor for the base below a coat. It accounts for absorption on the way in and
-    /// out, and for internal reflection.
+    /// Returns a factor for the base below a coat. The factor accounts for absorption on the way in
+    /// and out, and for internal reflection.
     fn coat(&self, mu: f32) -> Spectrum {
         let m = self.parameters;
         let eta = m.coat_ior;
         let inside = (1.0 - (1.0 - mu * mu) / (eta * eta)).max(0.01).sqrt();
-        // On average, light enters at normal incidence. It leaves along the view direction.
+        // On average, light enters at normal incidence. The light leaves along the view direction.
         let tint = power(self.view.lanes.reflectance(m.coat_color), 0.5 + 0.5 / inside);
         let roughness = mix(1.0, self.parameters.specular_roughness, self.parameters.base_metalness);
         let thrown_back = mix(fresnel::dielectric(mu, eta), fresnel::diffuse(1.0 / eta), roughness);
@@ -393,8 +395,8 @@ impl<'t> LayerStack<'_, 't> {
         let (m, wo, mu) = (self.parameters, self.view.wo, self.view.wo.z);
         let (eta, ggx) = (m.specular_ior, Ggx::new(roughness, m.specular_anisotropy));
         let color = self.view.lanes.reflectance(m.transmission_color);
-        // With a depth, the colour applies to the interior. Without one, it tints all transmitted
-        // light.
+        // With a depth, the colour applies to the interior. Without a depth, it tints all
+        // transmitted light.
         let (inside, tint) = if m.transmission_depth > 0.0 { (Some(color), Spectrum::ONE) } else { (None, color) };
         let sheet = Sheet { eta, inside };
         // The film is on one of the two faces.

@@ -83,8 +83,8 @@ impl Ggx {
         1.0 / (1.0 + self.lambda(wo) + self.lambda(wi))
     }
 
-    /// Samples a normal that is visible from `wo`, which is above the surface. Its pdf is
-    /// masking(wo) · density(h) · wo·h / wo.z.
+    /// Samples a normal that is visible from `wo`, which is above the surface. The pdf of the
+    /// normal is masking(wo) · density(h) · wo·h / wo.z.
     pub fn sample_visible(&self, wo: Vec3, u: Vec2) -> Vec3 {
         let stretched = Vec3::new(wo.x * self.alpha.x, wo.y * self.alpha.y, wo.z).normalize();
         let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;

@@ -1,8 +1,8 @@
 //! BSDFs, which describe how a surface point scatters light, as weighted lobes for one view
 //! direction.
 //!
-//! Directions are in the local [`Frame`] of the point and point away from the surface. The viewer
-//! is above the surface (z > 0).
+//! Directions are in the local [`Frame`] of the surface point, and they are directed away from the
+//! surface. The viewer is above the surface (z > 0).
 
 pub mod albedo;
 pub mod film;
@@ -127,7 +127,7 @@ impl<'a> Bsdf<'a> {
             rest -= entry.probability;
         }
         let entry = &self.lobes[chosen];
-        // Reuse the remainder of `choice`, which is uniform as well.
+        // Reuse the remainder of `choice`, which is again uniformly distributed.
         let again = (rest / entry.probability).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
         let scattered = entry.lobe.sample(wo, again, u)?;
         if entry.lobe.is_delta() {

@@ -12,13 +12,13 @@ use crate::math::random::Random;
 
 #[test]
 fn lobe_samples_agree_with_pdf() {
-    // `cargo xtask validate` runs this with a million samples for each lobe.
+    // `cargo xtask validate` runs this test with a million samples for each lobe.
     let cells = DirectionGrid { rows: 60, columns: 80, samples: 200_000, fine: 12 };
     for (name, lobe) in non_delta_lobes() {
         for (cosine, turn) in [(0.95, 0.1), (0.6, 0.7), (0.25, 0.35)] {
             let verdict = cells.lobe(11, lobe, warp::polar(cosine, turn));
-            // The 48 tests have a total significance of 0.01. By Šidák's correction, this is 2.1e-4
-            // for each test.
+            // The 48 tests have a total significance of 0.01. By Šidák's correction, the
+            // significance of each test is 2.1e-4.
             assert!(verdict.density < 1.005 && verdict.deviate < 3.53, "{name} at {cosine}: {verdict:?}");
         }
     }
@@ -88,7 +88,7 @@ fn assert_white(materials: Vec<(&str, PrincipledMaterial)>, roughnesses: &[f32],
 
 #[test]
 fn lossless_materials_are_white_in_a_furnace() {
-    // `cargo xtask validate` runs this with more samples.
+    // `cargo xtask validate` runs this test with more samples.
     assert_white(lossless(), &[0.0, 0.1, 0.3, 0.5, 0.8, 1.0], 0.002);
     assert_white(with_films(), &[0.0], 0.002);
 }

@@ -14,8 +14,9 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 pub const MAX_BLADES: u32 = 64;
 
 /// Samples an aperture of radius 1 around the origin uniformly by area. The aperture is a disc for
-/// 0 blades, and otherwise a regular polygon. Its first corner is on the right before it is turned
-/// counter-clockwise by `turn` degrees. The point (0.5, 0.5) maps to the centre.
+/// 0 blades, and otherwise a regular polygon. The first corner of the polygon is on the right
+/// before the polygon is turned counter-clockwise by `turn` degrees. The point (0.5, 0.5) maps to
+/// the centre.
 pub fn sample(lens: Vec2, blades: u32, turn: f32) -> DVec2 {
     let square = 2.0 * lens.as_dvec2() - 1.0;
     if square == DVec2::ZERO {

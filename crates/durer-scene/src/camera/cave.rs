@@ -1,12 +1,12 @@
 //! A CAVE, which consists of screens around a viewer, each of which is a window into the scene.
 //!
 //! A wall is given by three corners, as seen from inside: a (lower left), b (lower right) and c
-//! (upper left). The ray through the fractions (s, t) of its sides runs from the eye to a + s (b -
-//! a) + t (c - a). The rays form a frustum whose apex may lie off the axis of the wall. A point in
-//! space is seen along the same ray on every wall. Two walls that share an edge therefore match
-//! there for any eye position. The walls lie side by side in one picture, with the same scale and a
-//! common baseline. For a wall with normal n, the solid angle per unit area at offset r from the
-//! eye is |n·r| / |r|³.
+//! (upper left). The ray through the fractions (s, t) of the sides of a wall runs from the eye to
+//! a + s (b - a) + t (c - a). The rays form a frustum whose apex may lie off the axis of the wall.
+//! A point in space is seen along the same ray on every wall. Two walls that share an edge
+//! therefore match along this edge for any eye position. The walls lie side by side in one picture,
+//! with the same scale and a common baseline. For a wall with normal n, the solid angle per unit
+//! area at offset r from the eye is |n·r| / |r|³.
 //!
 //! Source: Cruz-Neira, Sandin, DeFanti, *Surround-Screen Projection-Based Virtual Reality: The
 //! Design and Implementation of the CAVE*, SIGGRAPH 1993; Kooima, *Generalized Perspective

@@ -5,8 +5,9 @@ use super::{CameraBasis, CameraSample, Pose, Projection};
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
-/// Camera whose rays all pass through one eye, so it only has to map picture points to directions
-/// and back. Directions are in camera space: x points to the right, y upwards and z forwards.
+/// Camera whose rays all pass through one eye, so that it only has to map picture points to
+/// directions and back. Directions are in camera space: x points to the right, y upwards and z
+/// forwards.
 pub trait SingleViewpoint {
     /// See [`Projection::pose`].
     fn camera_pose(&self) -> Pose;

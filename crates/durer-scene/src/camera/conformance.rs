@@ -1,11 +1,11 @@
-//! Tests properties that every [`Camera`] must have. For each kind, this uses the default camera
-//! and random cameras that are generated from its description.
+//! Tests properties that every [`Camera`] must have. For each kind of camera, the tests use the
+//! default camera and random cameras that are generated from its description.
 
 use super::*;
 use crate::describe::{Constraint, DescribedKind, Field, FieldKind, Value};
 use crate::math::random::Random;
 
-/// Number of random cameras of each kind. With `POINTS` samples for each camera, this gives 10^5
+/// Number of random cameras of each kind. With `POINTS` samples for each camera, there are 10^5
 /// samples for each kind.
 const CAMERAS: usize = 20;
 const POINTS: usize = 5_000;
@@ -87,7 +87,7 @@ fn all(seed: u64, mut check: impl FnMut(&Camera, &mut Random)) {
 }
 
 /// Returns the derivatives of X = ray.at(t) with respect to the x and y of the picture, without the
-/// component along the ray. They are computed by fourth-order differences.
+/// component along the ray. The derivatives are computed by fourth-order differences.
 fn slopes(camera: &Camera, sample: &CameraSample, t: f32, step: f32) -> Option<[glam::DVec3; 2]> {
     let frame = frame(camera);
     let dir = camera.ray(&frame, sample)?.dir.as_dvec3();

@@ -2,10 +2,10 @@
 //!
 //! The `cross` layout has four faces in a row (left, front, right, back), with the up face above
 //! the front face and the down face below it. Every fold is therefore an edge of the cube. The
-//! `strip` layout has the faces in one row: right, left, up, down, back, front. This is +x, -x, +y,
-//! -y, +z, -z for a camera that looks along -z. Each face is a square view of 90 degrees, and it is
-//! upright as in the cross. On a face whose coordinates run from -1 to 1, the solid angle per unit
-//! area is 1 / |direction|³.
+//! `strip` layout has the faces in one row: right, left, up, down, back, front. In axes, the order
+//! is +x, -x, +y, -y, +z, -z for a camera that looks along -z. Each face is a square view of 90
+//! degrees, and it is upright as in the cross. On a face whose coordinates run from -1 to 1, the
+//! solid angle per unit area is 1 / |direction|³.
 //!
 //! Source: Greene, *Environment Mapping and Other Applications of World Projections*, CG&A 6(11),
 //! 1986.
@@ -37,9 +37,9 @@ described! {
     }
 }
 
-/// Face of the cube. `axes` holds the directions of its centre, its right and its up in camera
-/// space. `cross` and `strip` hold its column and row in each layout, counted from the lower left
-/// corner.
+/// Face of the cube. `axes` holds the directions of the centre, right and up of the face in camera
+/// space. `cross` and `strip` hold the column and row of the face in each layout, counted from the
+/// lower left corner.
 struct Face {
     axes: [DVec3; 3],
     cross: [f64; 2],

@@ -1,9 +1,9 @@
-//! A cylindrical panorama, which is a picture on a cylinder around the eye. Vertical lines stay
+//! A cylindrical panorama, which is a picture on a cylinder around the eye. Vertical lines remain
 //! straight and vertical.
 //!
-//! direction = sin λ right + cos λ forward + h up, where x is the longitude λ and y is the height h
-//! on a cylinder of radius 1. The solid angle of dλ dh is dλ dh / (1 + h²)^(3/2). For one eye of a
-//! stereo pair, the ray starts on the viewing circle (`eyes.rs`).
+//! The direction of a ray is sin λ right + cos λ forward + h up, where x is the longitude λ and y
+//! is the height h on a cylinder of radius 1. The solid angle of dλ dh is dλ dh / (1 + h²)^(3/2).
+//! For one eye of a stereo pair, the ray starts on the viewing circle (`eyes.rs`).
 //!
 //! Source: Chen, *QuickTime VR: An Image-Based Approach to Virtual Environment Navigation*,
 //! SIGGRAPH 1995.

@@ -1,9 +1,9 @@
 //! An equirectangular picture, in which x is proportional to the longitude and y to the latitude.
 //!
-//! direction = cos φ (sin λ right + cos λ forward) + sin φ up. A picture of the whole sphere is
-//! twice as wide as it is high. The solid angle of dλ dφ is cos φ dλ dφ. For one eye of a stereo
-//! pair, the ray starts on the viewing circle (`eyes.rs`) and is tangent to it, which does not
-//! change the area across the ray.
+//! The direction of a ray is cos φ (sin λ right + cos λ forward) + sin φ up. A picture of the whole
+//! sphere is twice as wide as it is high. The solid angle of dλ dφ is cos φ dλ dφ. For one eye of a
+//! stereo pair, the ray starts on the viewing circle (`eyes.rs`) and is tangent to it, which does
+//! not change the area across the ray.
 //!
 //! Source: Snyder, *Map Projections: A Working Manual*, USGS Professional Paper 1395, 1987, chapter
 //! 12.

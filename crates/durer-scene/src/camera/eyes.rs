@@ -90,7 +90,7 @@ impl EyeCircle {
         }
         let distance = square.sqrt();
         // Seen from the centre of the circle, the point is farther to the right than seen from the
-        // eye. The second angle is the difference.
+        // eye. The second angle accounts for this difference.
         let heading = fp::atan2_f64(point.x, point.z) - fp::atan2_f64(self.radius, distance);
         Some((wrap_angle(heading), distance))
     }

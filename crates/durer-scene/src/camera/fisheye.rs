@@ -2,13 +2,13 @@
 //! sphere.
 //!
 //! A direction at the angle θ from the axis is shown at the radius r = f(θ) / f(angle / 2) of the
-//! disc. The functions f are:
+//! disc, where f depends on the projection.
 //!
-//! - `equidistant`, f = θ. Equal angles are mapped to equal lengths along the radius.
-//! - `equisolid`, f = 2 sin(θ/2). Equal solid angles are mapped to equal areas.
-//! - `stereographic`, f = 2 tan(θ/2). Small circles are mapped to circles.
-//! - `orthographic`, f = sin θ. This is a parallel projection of the hemisphere. If the sky is
-//!   uniform, equal areas of the picture illuminate a horizontal surface equally.
+//! `equidistant` uses f = θ, which maps equal angles to equal lengths along the radius.
+//! `equisolid` uses f = 2 sin(θ/2), which maps equal solid angles to equal areas. `stereographic`
+//! uses f = 2 tan(θ/2), which maps small circles to circles. `orthographic` uses f = sin θ, which is
+//! a parallel projection of the hemisphere. Under a uniform sky, equal areas of an orthographic
+//! picture illuminate a horizontal surface equally.
 //!
 //! The solid angle per unit area is sin θ F² / (f f'), with F = f(angle / 2).
 //!

@@ -161,7 +161,7 @@ pub trait Projection {
         None
     }
 
-    /// Half the width of the view at distance 1, or 1 if the rays do not need it.
+    /// Half the width of the view at distance 1, or 1 if the rays do not need this width.
     fn half_width(&self) -> f64 {
         1.0
     }
@@ -198,17 +198,18 @@ pub trait Projection {
     }
 
     /// Calls `emit` with every point of the picture at which a point in world space is seen through
-    /// a point on the lens. There may be none, one, or several, as for a pair of eyes. Occlusion is
-    /// ignored. If the picture can have any aspect ratio, the points may lie outside the square.
+    /// a point on the lens. There may be no such point, one, or several, as for a pair of eyes.
+    /// Occlusion is ignored. If the picture can have any aspect ratio, the points may lie outside
+    /// the square.
     fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, emit: &mut dyn FnMut(Vec2));
 
     /// Returns the area across the ray at distance `t` per unit area of the picture, for a fixed
     /// point on the lens.
     ///
-    /// This is the Jacobian |(dX/dx × dX/dy) · dir| of X = origin + t dir with respect to the point
-    /// in the picture. If all rays meet in one eye, the area is t² times the solid angle per unit
-    /// area of the picture. If the rays are parallel, it is constant. The result is undefined if
-    /// the sample has no ray.
+    /// The area is the Jacobian |(dX/dx × dX/dy) · dir| of X = origin + t dir with respect to the
+    /// point in the picture. If all rays meet in one eye, the area is t² times the solid angle per
+    /// unit area of the picture. If the rays are parallel, the area is constant. The result is
+    /// undefined if the sample has no ray.
     fn footprint(&self, frame: &CameraBasis, sample: &CameraSample, t: f32) -> f32;
 }
 

@@ -2,12 +2,13 @@
 //!
 //! The eyes e(u) and their targets c(u) move along Catmull-Rom splines through the rows of `path`,
 //! with the same step in u from each row to the next. With w = c - e, right = norm(w x up) and v =
-//! right x norm(w), a column is the fan of rays with direction = norm(w) + h v, |h| <= tan(angle /
-//! 2). A picture taken on a path around an object shows all sides of the object at once.
+//! right x norm(w), a column is a fan of rays. Their directions are norm(w) + h v, with |h| <=
+//! tan(angle / 2). A picture taken on a path around an object shows all sides of the object at
+//! once.
 //!
-//! A point X is seen in the columns whose plane contains it. These satisfy (w(u) x up)·(X - e(u)) =
-//! 0, which is a polynomial of degree 6 in each piece of the spline. `roots.rs` finds all roots of
-//! this polynomial, so a point may be seen several times.
+//! A point X is seen in the columns whose plane contains it. These columns satisfy (w(u) x up)·(X -
+//! e(u)) = 0, where the left side is a polynomial of degree 6 in each piece of the spline.
+//! `roots.rs` finds all roots of this polynomial, so a point may be seen several times.
 //!
 //! The area across a ray at distance t is t / (1 + h²) |dX/du·right| per du dh, where dX/du·right =
 //! e'·right + t (w'·right / |w| + h v'·right) / sqrt(1 + h²) and v'·right = -v·(w' x up) / |w x
@@ -67,11 +68,11 @@ struct Column {
     right: DVec3,
     up: DVec3,
     forward: DVec3,
-    /// e'·right
+    /// Value of e'·right in the formula of the module.
     eye_moves: f64,
-    /// w'·right / |w|
+    /// Value of w'·right / |w| in the formula of the module.
     forward_turns: f64,
-    /// v'·right
+    /// Value of v'·right in the formula of the module.
     up_turns: f64,
 }
 

@@ -2,14 +2,15 @@
 //! projector.
 //!
 //! A point of the picture leaves the projector P in a direction d, as in an equidistant fisheye
-//! along the pole of the dome. It meets the dome, which is part of a unit sphere, at D = P + s d.
-//! The viewer V sees this point in the direction D - V. The picture therefore shows the scene in
+//! along the pole of the dome. The ray meets the dome, which is part of a unit sphere, at D = P + s
+//! d. The viewer V sees this point in the direction D - V. The picture therefore shows the scene in
 //! that direction, and looks undistorted from V. The pole of the dome is the scene's `up`, tilted
 //! forwards by `tilt`. The front is at the bottom of the picture, as in dome masters.
 //!
-//! The solid angle per unit area of the picture is that of the fisheye of the projector, times two
-//! factors. s² / (D·d) converts it to area on the dome, and (D·e) / v² converts this to solid angle
-//! at the viewer, where e is the direction from the viewer and v is the distance.
+//! The solid angle per unit area of the picture is that of the projector's fisheye times two
+//! factors. The factor s² / (D·d) converts solid angle to area on the dome. The factor (D·e) / v²
+//! converts this area to solid angle at the viewer, where e is the direction from the viewer to D
+//! and v is the distance.
 //!
 //! Source: Max, *Computer Graphics Distortion for IMAX and OMNIMAX Projection*, Nicograph '83;
 //! Greene, Heckbert, *Creating Raster Omnimax Images from Multiple Perspective Views Using the
@@ -54,8 +55,8 @@ fn to_sphere(point: DVec3, direction: DVec3) -> f64 {
 }
 
 impl OmnimaxCamera {
-    /// Returns the axes of the picture in the space of the audience, as columns. They are right, up
-    /// (towards the back of the dome) and the pole of the dome.
+    /// Returns the axes of the picture in the space of the audience, as columns. The axes are
+    /// right, up (towards the back of the dome) and the pole of the dome.
     fn axes(&self) -> DMat3 {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(self.tilt));
         DMat3::from_cols(DVec3::X, DVec3::new(0.0, sin, -cos), DVec3::new(0.0, cos, sin))

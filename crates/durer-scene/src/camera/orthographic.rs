@@ -1,6 +1,6 @@
 //! An orthographic camera, whose rays are all parallel.
 //!
-//! origin = center + x size/2 right + y size/2 up.
+//! The origin of a ray is center + x size/2 right + y size/2 up.
 
 use super::{CameraBasis, CameraSample, Handedness, Pose, Projection};
 use crate::describe::{Constraint, described};

@@ -1,12 +1,13 @@
-//! A paraboloidal mirror below a lens that receives parallel rays. It gives a wide view from a
+//! A paraboloidal mirror below a lens that receives parallel rays, which gives a wide view from a
 //! single viewpoint.
 //!
 //! The mirror z = (h² - r²) / 2h has its focus at 0, and its axis points along z, towards the lens.
-//! It reflects every ray that arrives towards the focus, so that the ray continues along the axis.
-//! A direction at the angle θ from the axis is therefore seen at r = h tan(θ/2). The picture is
+//! Every ray that travels towards the focus is reflected so that it continues along the axis. A
+//! direction at the angle θ from the axis is therefore seen at r = h tan(θ/2). The picture is
 //! oriented like a map seen from above. For a viewer at the focus who looks up, left and right are
 //! exchanged. The rim of the disc sees half the field of view, so r = 1 at θ = angle / 2. The
-//! horizon is at r = h. The lens, which would hide the centre of a real picture, is omitted.
+//! horizon of the scene is at r = h. The lens, which would hide the centre of a real picture, is
+//! omitted.
 //!
 //! Source: Nayar, *Catadioptric Omnidirectional Camera*, CVPR 1997; Baker, Nayar, *A Theory of
 //! Single-Viewpoint Catadioptric Image Formation*, IJCV 35(2), 1999.

@@ -1,9 +1,9 @@
 //! The pinhole camera of the lecture, whose rays all start at the eye e, with w = forward, u =
 //! right, v = up.
 //!
-//! direction = D w + x u + y v, where D = 1 / tan(angle / 2), and x and y run from -1 to 1 across
-//! the larger side. If the picture is not square, the other coordinate runs from -a to a, where a <
-//! 1 is the ratio of the shorter side to the larger one.
+//! The direction of a ray is D w + x u + y v, where D = 1 / tan(angle / 2), and x and y run from -1
+//! to 1 across the larger side. If the picture is not square, the other coordinate runs from -a to
+//! a, where a < 1 is the ratio of the shorter side to the larger one.
 //!
 //! The solid angle of an area dx dy in the plane at distance D is D |u v w| dx dy / |direction|³.
 

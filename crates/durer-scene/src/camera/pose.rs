@@ -30,7 +30,7 @@ pub enum UpRule {
     Skew,
 }
 
-/// Arithmetic by which a dialect computes perspective rays, including the order of rounding.
+/// Arithmetic by which a dialect computes perspective rays, including all rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum RayArithmetic {
     /// Dürer's own arithmetic.
@@ -94,7 +94,7 @@ pub struct CameraRules {
 /// Axes of a camera: the view direction, and the right and up directions of the picture. The axes
 /// are orthonormal, unless the [`CameraRules`] specify otherwise.
 ///
-/// Together they span camera space, in which x points to the right, y upwards and z forwards.
+/// Together, the axes span camera space, in which x points to the right, y upwards and z forwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraBasis {
     /// Position of the eye, in world space.
@@ -191,7 +191,7 @@ impl CameraBasis {
         CameraBasis { eye: pose.center, forward, right, up, ray_arithmetic, half_width: 1.0 }
     }
 
-    /// Returns the axes as columns in double precision. They form the matrix from camera space to
+    /// Returns the axes as the columns of a matrix in double precision, which maps camera space to
     /// world space.
     fn axes(&self) -> DMat3 {
         DMat3::from_cols(self.right.as_dvec3(), self.up.as_dvec3(), self.forward.as_dvec3())
@@ -220,8 +220,8 @@ impl CameraBasis {
     }
 }
 
-/// Returns the ray from a point in world space along a direction of any length. Only the result is
-/// rounded.
+/// Returns the ray from a point in world space along a direction of any length. Only the final
+/// result is rounded.
 pub(super) fn world_ray(origin: DVec3, dir: DVec3) -> Ray {
     Ray::new(origin.as_vec3(), dir.normalize_or(DVec3::NEG_Z).as_vec3())
 }

@@ -1,11 +1,12 @@
 //! The general projective camera of computer vision, which consists of a 3x4 matrix in homogeneous
 //! coordinates and lens distortion.
 //!
-//! P = K [R | t] maps a point in world space to a pixel: (x, y, 1) ~ P (X, Y, Z, 1). x increases to
-//! the right and y downwards, and the centre of the upper left pixel is at (0, 0). The scale of P
-//! is arbitrary. Its left part M = K R is decomposed into an upper triangular matrix K and a
-//! rotation R. The eye is at -M⁻¹ p4. Between R and K, the lens distorts the point (x, y) at depth
-//! 1 by the Brown-Conrady model in OpenCV's form, where s = x² + y²:
+//! P = K [R | t] maps a point in world space to a pixel: (x, y, 1) ~ P (X, Y, Z, 1). Here, x
+//! increases to the right and y downwards, and the centre of the upper left pixel is at (0, 0). The
+//! scale of P is arbitrary. The left part M = K R of P is decomposed into an upper triangular
+//! matrix K and a rotation R. The eye is at -M⁻¹ p4, where p4 is the last column of P. Between R
+//! and K, the lens distorts the point (x, y) at depth 1 by the Brown-Conrady model in OpenCV's
+//! form, where s = x² + y²:
 //!
 //! ```text
 //! x' = x (1 + k1 s + k2 s² + k3 s³) + 2 p1 x y + p2 (s + 2 x²)
@@ -107,8 +108,8 @@ impl ProjectiveCamera {
     /// point.
     fn is_before_fold(&self, point: DVec2) -> bool {
         let end = point.length_squared();
-        // This is d/dr of r (1 + k1 r² + ...), as a function of s = r². Its extrema are at the
-        // roots of its derivative.
+        // This is d/dr of r (1 + k1 r² + ...), as a function of s = r². The extrema of this
+        // function are at the roots of its derivative.
         let growth = |s: f64| {
             let (factor, slope) = self.radial(s);
             factor + 2.0 * s * slope

@@ -1,10 +1,10 @@
 //! A push-broom camera, in which a line of pixels moves along a straight path while it records, as
 //! in satellites and scanners.
 //!
-//! The column at the fraction u of the path is a fan of rays from e(u) = start + u (end - start),
-//! with direction = forward + h up, |h| <= tan(angle / 2). The picture has perspective across the
-//! path, but not along it. The area across a ray grows linearly with distance. It is t |m·right| /
-//! |direction|² per du dh, where m = end - start.
+//! The column at the fraction u of the path is a fan of rays from e(u) = start + u (end - start).
+//! Their directions are forward + h up, with |h| <= tan(angle / 2). The picture has perspective
+//! across the path, but not along it. The area across a ray grows linearly with distance. The area
+//! is t |m·right| / |direction|² per du dh, where m = end - start.
 //!
 //! Source: Gupta, Hartley, *Linear Pushbroom Cameras*, PAMI 19(9), 1997.
 
@@ -66,7 +66,7 @@ impl Projection for PushBroomCamera {
     fn validate(&self) -> Result<(), String> {
         let frame = CameraBasis::new(self.pose(), CameraRules::default());
         let sideways = self.path_vector().dot(frame.right.as_dvec3()).abs();
-        // This is also false for a path of length 0.
+        // The test is also false for a path of length 0.
         let moves = sideways > 1e-6 * self.path_vector().length();
         match moves {
             true => Ok(()),

@@ -33,9 +33,9 @@ impl Raster {
         }
     }
 
-    /// Returns the default size of a picture. It is `plain`, or it has about as many pixels in the
-    /// proportions of the camera. If possible, one unit of the proportions is a whole number of
-    /// pixels, so that faces and walls end between pixels.
+    /// Returns the default size of a picture. The size is `plain`, or a size with about as many
+    /// pixels in the proportions of the camera. If possible, one unit of the proportions is a whole
+    /// number of pixels, so that faces and walls end between pixels.
     pub fn natural_size(proportions: Option<Vec2>, plain: (u32, u32)) -> (u32, u32) {
         let Some(sides) = proportions else { return plain };
         let scale = (plain.0 as f32 * plain.1 as f32 / (sides.x * sides.y)).sqrt();

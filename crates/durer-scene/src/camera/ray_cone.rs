@@ -3,8 +3,8 @@
 use super::{Camera, CameraBasis, CameraSample, Projection};
 use crate::math::Vec2;
 
-/// Cone around a camera ray that covers an area of the picture. Its width selects the texture
-/// detail.
+/// Cone around a camera ray that covers an area of the picture. The width of the cone selects the
+/// texture detail.
 ///
 /// A single cone, computed at the centre of the picture, is used for the full picture. Source:
 /// Amanatides, *Ray Tracing with Cones*, SIGGRAPH 1984.

@@ -1,10 +1,11 @@
 //! A stereo pair, made of two perspective cameras side by side.
 //!
 //! `offAxis` shears both views so that they share one window at the convergence distance. Objects
-//! at that distance appear on the screen, and nearer objects appear in front of it, without
-//! vertical parallax. `toeIn` turns both cameras towards a point at that distance, as a rig of
-//! toed-in cameras does. The two pictures then differ vertically towards the corners. `parallel`
-//! neither turns nor shears the views, so all objects appear in front of the screen.
+//! at the convergence distance appear on the screen, and nearer objects appear in front of it,
+//! without vertical parallax. `toeIn` turns both cameras towards a point at the convergence
+//! distance, as a rig of toed-in cameras does. The two pictures then differ vertically towards the
+//! corners. `parallel` neither turns nor shears the views, so all objects appear in front of the
+//! screen.
 //!
 //! Source: Hodges, McAllister, *Stereo and Alternating-Pair Techniques for Display of
 //! Computer-Generated Images*, IEEE CG&A 5(9), 1985; Bourke, *Calculating Stereo Pairs*, 1999.
@@ -47,7 +48,7 @@ described! {
     }
 }
 
-/// Eye of a stereo camera relative to the midpoint of both eyes. It has a position, axes (as
+/// Eye of a stereo camera relative to the midpoint of both eyes, with its position, its axes (as
 /// columns), and the shift of its window.
 struct Eye {
     at: DVec3,
@@ -75,7 +76,7 @@ impl StereoCamera {
         }
     }
 
-    /// Returns the size in the window, at distance 1, of one unit of the sheet for one eye.
+    /// Returns the size at distance 1 of one unit on the sheet for one eye.
     fn scale(&self, frame: &CameraBasis) -> f64 {
         frame.half_width / (0.5 * self.eye_size().max_element())
     }

@@ -1,7 +1,7 @@
 //! Computes the tangent in single precision, as the official programs of 2016 and 2020 do.
 //!
 //! For one angle in thirty, for example 60 degrees, the result is off by one unit in the last
-//! place. Such an error changes all camera rays.
+//! place. An error in this tangent changes all camera rays.
 //!
 //! Source: fdlibm, Sun Microsystems 1993, in the single-precision version of glibc before 2.40.
 
@@ -27,12 +27,12 @@ const SERIES: [f32; 13] = [
 /// Pi/4 as a sum of two numbers.
 const QUARTER: [f32; 2] = [7.8539812565e-01, 3.7748947079e-08];
 /// Pi/2 as the sum of its first 17 bits and the remainder. The last two entries are the next 17
-/// bits and the remainder after those.
+/// bits of pi/2 and the remainder after those bits.
 const HALF: [f32; 4] = [1.5707855225e+00, 1.0804334124e-05, 1.0804273188e-05, 6.0770999344e-11];
-/// For angles above this, the series is evaluated at pi/4 minus the angle.
+/// Limit above which the series is evaluated at pi/4 minus the angle.
 const LARGE: f32 = f32::from_bits(0x3f2c_a140);
 
-/// For angles below this, the linear approximation is accurate enough.
+/// Limit below which the linear approximation of the tangent is accurate enough.
 const TINY: f32 = 1.0 / 8192.0;
 
 /// Returns the tangent of an angle in radians, from 0 to pi/2.

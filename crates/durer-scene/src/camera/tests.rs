@@ -124,7 +124,7 @@ fn orthographic_rays_start_on_the_picture_and_extend_both_ways() {
         ..OrthographicCamera::default()
     };
     let frame = CameraBasis::of(&camera, OURS);
-    // The axes are right = x cross y = z, and up = y.
+    // The axes of the picture are right = x cross y = z, and up = y.
     let ray = camera.ray(&frame, &CameraSample::at(Vec2::new(1.0, -0.5))).unwrap();
     close(ray.origin, Vec3::new(1.0, 2.0 - 1.25, 3.0 + 2.5));
     close(ray.dir, Vec3::X);

@@ -15,9 +15,9 @@ use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Meshes, pictures, light profiles and densities of a scene that are in memory, by name. A
-/// [`FileName`] in the scene refers to the asset with that name, or to a file if there is no such
-/// asset.
+/// Meshes, pictures, light profiles and densities of a scene that are in memory, with their names
+/// as keys. A [`FileName`] in the scene refers to the asset with that name, or to a file if there
+/// is no such asset.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Assets {
     /// Meshes.

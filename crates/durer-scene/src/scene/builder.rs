@@ -1,4 +1,4 @@
-//! Builder for scenes that are created in code. It refers to materials and meshes by handles
+//! Builder for scenes that are created in code, which refers to materials and meshes by handles
 //! instead of names.
 
 use super::{Background, Group, Material, MatrixOp, Object, ObjectKind, Scene, Spanned};
@@ -27,7 +27,7 @@ pub struct MeshId(u32);
 pub enum Shape {
     /// A primitive, such as a sphere, a box or a disc.
     Primitive(Primitive),
-    /// A mesh that was stored in the same builder.
+    /// A mesh that is stored in the same builder.
     Mesh(MeshId),
 }
 
@@ -181,8 +181,8 @@ impl SceneBuilder {
         mesh
     }
 
-    /// Adds a primitive or a mesh to the scene. Its material and transforms can be set on the
-    /// result.
+    /// Adds a primitive or a mesh to the scene. The material and transforms of the object can be
+    /// set on the result.
     pub fn add(&mut self, shape: impl Into<Shape>) -> &mut ObjectBuilder {
         let node = match shape.into() {
             Shape::Primitive(primitive) => ObjectKind::Primitive(primitive),

@@ -77,8 +77,8 @@ pub struct SceneDefaults {
     /// True to move the model's own camera to a position from which the full model is visible.
     pub fit: bool,
     /// Angle in degrees by which the camera orbits the model, counter-clockwise as seen from above,
-    /// or `None` for a single picture. The distance is chosen so that the full model is visible at
-    /// all angles.
+    /// or `None` for a single picture. The distance of the camera is chosen so that the full model
+    /// is visible at all angles.
     pub orbit_degrees: Option<f32>,
     /// True to neither add nor replace anything, because the scene is being converted to another
     /// format.
@@ -119,8 +119,8 @@ const ORBIT_STEPS: u32 = 48;
 const FILL: f64 = 0.86;
 
 impl SceneDefaults {
-    /// Adds the parts that a scene lacks. `up` is the usual up axis of the format of the scene. If
-    /// `dark` is set, a scene without lights counts as complete if it has a camera or emitters.
+    /// Adds the parts that the scene lacks. `up` is the usual up axis of the format of the scene.
+    /// If `dark` is set, a scene without lights counts as complete if it has a camera or emitters.
     pub fn complete(&self, scene: &mut Scene, up: Axis, dark: bool) {
         let sides = ModelAxes::new(self.up.unwrap_or(up));
         let framed = scene.camera.is_none() || self.view.is_some() || self.orbit_degrees.is_some();
@@ -320,7 +320,7 @@ fn assign_default_material(scene: &mut Scene) {
 }
 
 /// Extent of the points of a model along the camera axes. The closest camera that shows all points
-/// is computed from it.
+/// is computed from this extent.
 struct VisibleExtent {
     /// Half the width and half the height of the picture at distance 1.
     slopes: [f64; 2],

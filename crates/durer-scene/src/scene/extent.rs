@@ -13,8 +13,8 @@ pub fn points(scene: &Scene, found: &mut dyn FnMut(DVec3)) {
     }
 }
 
-/// Calls `found` with points whose convex hull contains one object, in the coordinates in which the
-/// object is placed.
+/// Calls `found` with points whose convex hull contains one object, in the coordinate system of its
+/// parent.
 pub fn object_points(scene: &Scene, object: &Object, found: &mut dyn FnMut(DVec3)) {
     visit(scene, object, DAffine3::IDENTITY, found);
 }

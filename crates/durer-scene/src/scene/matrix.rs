@@ -84,8 +84,8 @@ impl MatrixOp {
         }
     }
 
-    /// True if the product of the matrices of one transform is treated as singular. This is the
-    /// case if its determinant is at most the rounding error of 1 in single precision.
+    /// True if the product of the matrices of one transform is treated as singular. A product is
+    /// singular if its determinant is at most the rounding error of 1 in single precision.
     pub fn is_tiny(ops: &[MatrixOp], rules: MatrixRules) -> bool {
         is_tiny(MatrixOp::product(ops, MatrixRules { drop_shear: false, ignore_tiny: false, ..rules }))
     }
@@ -98,8 +98,8 @@ fn is_tiny(map: DAffine3) -> bool {
 /// Makes the axes of a map perpendicular, one after the other, so that only translation, rotation
 /// and scale remain.
 ///
-/// Source: Spencer W. Thomas, *Decomposing a Matrix into Simple Transformations*, Graphics Gems II
-/// (1991), VII.1.
+/// Source: Thomas, *Decomposing a Matrix into Simple Transformations*, Graphics Gems II (1991),
+/// VII.1.
 fn without_shear(map: DAffine3) -> DAffine3 {
     let DMat3 { x_axis: x, y_axis, z_axis } = map.matrix3;
     // An axis of length 0 has no direction that could be removed.

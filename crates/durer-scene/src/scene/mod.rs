@@ -172,7 +172,8 @@ impl Background {
     }
 }
 
-/// Render settings that a scene file requests for its picture. Command-line options override them.
+/// Render settings that a scene file requests for its picture. Command-line options override these
+/// settings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RenderDefaults {
     /// Width and height in pixels.
@@ -202,9 +203,9 @@ pub struct Scene {
     /// The fog.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fog: Option<Spanned<Fog>>,
-    /// Lights; `None` if the file has no section for them.
+    /// Lights in the scene, or `None` if the file has no section for lights.
     pub lights: Option<Vec<Spanned<Light>>>,
-    /// Materials of the scene. Objects refer to them by number.
+    /// Materials of the scene. Objects refer to materials by number.
     pub materials: Vec<Spanned<Material>>,
     /// The objects.
     pub root: Option<Group>,
@@ -235,8 +236,8 @@ impl Scene {
         ObjectKind::Mesh(TriangleMesh { obj_file: FileName { path: name.to_string(), span } })
     }
 
-    /// True if the scene has lights or materials that only a path tracer can render. These are
-    /// principled or hair materials, fog, an environment, a sun and a sky.
+    /// True if the scene has lights or materials that only a path tracer can render. Such features
+    /// are principled or hair materials, fog, an environment, a sun and a sky.
     pub fn is_physical(&self) -> bool {
         let layered = |m: &Spanned<Material>| matches!(m.value, Material::Principled(_) | Material::Hair(_));
         let background = &self.background;
@@ -277,7 +278,7 @@ pub enum Material {
     Phong(Box<PhongMaterial>, Option<ColorNoise>),
     /// Principled material with layers, as in OpenPBR.
     Principled(Box<PrincipledMaterial>),
-    /// Fibres of hair or fur.
+    /// Material for fibres of hair or fur.
     Hair(HairMaterial),
     /// Two earlier materials that are mixed by a pattern, and the transform from world space to
     /// pattern space.
@@ -294,7 +295,7 @@ pub struct Group {
 /// Object of a scene, with the material that was current at the position of the object in the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Object {
-    /// Kind of object.
+    /// Kind of the object.
     pub node: ObjectKind,
     /// Number of the current material, or `None` before the first material.
     pub material: Option<u32>,

@@ -113,14 +113,15 @@ impl Validator {
         self.report(Diagnostic::error(message), span);
     }
 
-    /// Reports an error with its span, if it has one. Errors in scenes that are built in code have
-    /// no span.
+    /// Reports an error with its span, if the error has one. Errors in scenes that are built in
+    /// code have no span.
     fn report(&mut self, error: Diagnostic, span: Span) {
         let error = error.code("bad-value");
         self.diagnostics.push(if span.has_position() { error.at(span) } else { error });
     }
 
-    /// Checks each field of an object. If all fields are valid, it also checks them in combination.
+    /// Checks each field of an object. If all fields are valid, the method also checks them in
+    /// combination.
     fn check_fields<T: DescribedKind>(
         &mut self,
         entry: &T,

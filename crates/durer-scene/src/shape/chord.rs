@@ -11,7 +11,7 @@ pub(super) struct Chord {
 }
 
 impl Chord {
-    /// The full line, before clipping.
+    /// The full line, which has not been clipped.
     pub(super) const LINE: Chord = Chord { enter: (f64::NEG_INFINITY, 0.0), leave: (f64::INFINITY, 0.0) };
 
     /// Clips the chord to an interval whose ends lie on the given faces.
@@ -27,7 +27,7 @@ impl Chord {
     }
 
     /// Clips the chord to the interval where the coordinate `o + t d` lies between two bounds.
-    /// `faces` holds the face number for each bound.
+    /// `faces` holds the number of the face at each bound.
     #[inline(always)]
     pub(super) fn slab(mut self, o: f64, d: f64, [low, high]: [f64; 2], faces: [u32; 2]) -> Chord {
         if d == 0.0 {

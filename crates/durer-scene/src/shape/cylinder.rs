@@ -72,7 +72,7 @@ impl Axis {
         padded_box((self.base - a).min(top - b), (self.base + a).max(top + b))
     }
 
-    /// Returns texture coordinates: u is the angle around the axis, and `v` is given.
+    /// Returns texture coordinates, where u is the angle around the axis and `v` is passed in.
     pub(super) fn uv(&self, around: DVec3, v: f64) -> Uv {
         let (x, z) = self.dir.any_orthonormal_pair();
         Uv::Angle(DVec2::new(around.dot(x), around.dot(z)).as_vec2(), v.clamp(0.0, 1.0) as f32)

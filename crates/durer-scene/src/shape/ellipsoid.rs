@@ -23,7 +23,7 @@ impl Shape for Ellipsoid {
         Some(padded_box(center - radii, center + radii))
     }
 
-    /// Solves |(p - center) / radii|^2 = 1. The parameter is measured from the point of the line
+    /// Solves |(p - center) / radii|^2 = 1. Ray parameters are measured from the point of the line
     /// that is nearest to the centre of the unit sphere.
     fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         let radii = self.radii.as_dvec3();

@@ -43,8 +43,8 @@ impl HeightField {
         }
     }
 
-    /// Builds the terrain. It has two triangles between each group of four neighbouring pixels,
-    /// walls around them, and a floor below.
+    /// Builds the terrain. The mesh has two triangles between each group of four neighbouring
+    /// pixels, walls around them, and a floor below.
     ///
     /// `heights` holds rows of `columns` values, starting with the top row. The terrain must have
     /// at least 2 rows and 2 columns. Returns `None` if any coordinate exceeds the range of `f32`.
@@ -225,8 +225,8 @@ impl Triangles for Terrain {
     fn ordered_around(&self, vertex: u32, mut emit: impl FnMut(u32)) {
         let ([columns, rows], vertex) = (self.sides(), vertex as usize);
         let (column, row) = (vertex % columns, vertex / columns);
-        // Each entry is a cell that touches the vertex: the offset of the cell from the vertex, and
-        // the corner at which each of its two triangles touches the vertex.
+        // Each entry describes a cell that touches the vertex. The entry holds the offset of the
+        // cell, and the corner at which each of the two triangles in the cell touches the vertex.
         for (across, down, corners) in
             [(1, 1, [Some(2), Some(1)]), (0, 1, [Some(1), None]), (1, 0, [None, Some(2)]), (0, 0, [Some(0); 2])]
         {

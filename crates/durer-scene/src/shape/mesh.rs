@@ -21,8 +21,8 @@ described! {
     }
 }
 
-/// Triangle mesh that is ready for rendering. It is made from mesh data or a height field, and its
-/// normals have been computed.
+/// Triangle mesh that is ready for rendering. The mesh is made from mesh data or a height field,
+/// and its normals have been computed.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     storage: TriangleStorage,
@@ -35,7 +35,7 @@ pub struct Mesh {
 /// demand.
 #[derive(Clone, Debug)]
 enum TriangleStorage {
-    /// Lists of triangles. They are shared with the scene description unless they were changed.
+    /// Lists of triangles, which are shared with the scene description unless they were changed.
     Lists(Arc<MeshData>),
     Terrain(Terrain),
 }
@@ -61,8 +61,8 @@ impl Mesh {
         Mesh { storage: TriangleStorage::Terrain(terrain), computed_normals, center: Vec3::ZERO }
     }
 
-    /// Moves the mesh to the origin if it is [far](Aabb::is_far) from it. Only axes along which
-    /// `f32` represents the result exactly are affected.
+    /// Moves the mesh to the origin if it is [far](Aabb::is_far) from the origin. The mesh moves
+    /// only along axes for which `f32` represents the result exactly.
     pub fn centered(mut self) -> Self {
         let bounds = match &self.storage {
             TriangleStorage::Lists(data) => Aabb::around(data.positions.iter().copied()),
@@ -271,7 +271,7 @@ impl Mesh {
         }
     }
 
-    /// Returns the interpolated normal of a triangle at a crossing. It is not normalized, and it is
+    /// Returns the interpolated normal of a triangle at a crossing, without normalizing it, or
     /// `None` if the triangle is flat.
     pub fn interpolated_normal(&self, triangle: u32, uv: Vec2) -> Option<Vec3> {
         let [a, b, c] = self.corner_normals(triangle)?.map(Vec3::normalize_or_zero);
@@ -320,9 +320,9 @@ impl Mesh {
         Some(barycentric.x * a + barycentric.y * b + barycentric.z * c)
     }
 
-    /// Returns the directions of increasing u and v at a point on a triangle. They come from the
-    /// tangents in the file if there are any, and otherwise from the texture coordinates of the
-    /// triangle.
+    /// Returns the directions of increasing u and v at a point on a triangle. The directions come
+    /// from the tangents in the file, or from the texture coordinates of the triangle if the file
+    /// has no tangents.
     pub fn tangents(&self, triangle: u32, barycentric: Vec3, normal: Vec3, second: bool) -> Option<[Vec3; 2]> {
         let tangents = self.lists().and_then(|data| attribute(&data.triangles, &data.tangents, triangle));
         if let Some(corners) = tangents.filter(|_| !second) {

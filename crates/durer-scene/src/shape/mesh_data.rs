@@ -6,13 +6,13 @@ use crate::source::Digest;
 /// Index that marks a missing attribute.
 pub const NO_INDEX: u32 = u32::MAX;
 
-/// Returns a key for a position. Keys are equal for corners at the same position, and the two
-/// signed zeros are considered equal.
+/// Returns a key for a position. Corners at the same position have equal keys, and positive and
+/// negative zero count as equal.
 pub fn position_key(p: Vec3) -> [u32; 3] {
     (p + 0.0).to_array().map(f32::to_bits)
 }
 
-/// Triangle mesh that was read from a file or built in code. It consists of lists of vertex
+/// Triangle mesh that was read from a file or built in code. The mesh consists of lists of vertex
 /// attributes and indices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshData {
@@ -30,23 +30,23 @@ pub struct MeshData {
     /// Three normal indices for each triangle, or [`NO_INDEX`]. The list is empty if no triangle
     /// has normals.
     pub triangle_normals: Vec<[u32; 3]>,
-    /// Three original vertices for each triangle after [`MeshData::loosen`]. The list is empty if
-    /// that was not called.
+    /// Three original vertices for each triangle, or an empty list unless [`MeshData::loosen`] was
+    /// called.
     pub vertices: Vec<[u32; 3]>,
     /// Linear red, green, blue and opacity for each position. The list is empty if no vertex has a
     /// colour.
     pub colors: Vec<[f32; 4]>,
     /// Second set of texture coordinates, one for each position; may be empty.
     pub second_uvs: Vec<Vec2>,
-    /// Tangents, one for each position; may be empty. The first three components are the direction
-    /// of increasing u. The fourth is the sign of the bitangent relative to the cross product of
-    /// normal and tangent.
+    /// Tangents, one for each position; may be empty. The first three components of a tangent are
+    /// the direction of increasing u. The fourth component is the sign of the bitangent relative to
+    /// the cross product of normal and tangent.
     pub tangents: Vec<[f32; 4]>,
     /// True if triangles without normals stay flat, regardless of the rule for missing normals.
     pub flat: bool,
 }
 
-/// Access to the indexed triangles of a mesh, regardless of how they are stored.
+/// Interface to the indexed triangles of a mesh that does not depend on how they are stored.
 pub trait Triangles: Sync {
     /// Number of triangles.
     fn len(&self) -> usize;
@@ -73,14 +73,14 @@ pub trait Triangles: Sync {
         [self.position(a), self.position(b), self.position(c)]
     }
 
-    /// Number of triangles at the start of the mesh whose corners [`Triangles::ordered_around`]
-    /// finds without lists.
+    /// Number of leading triangles of the mesh for which [`Triangles::ordered_around`] finds
+    /// corners without lists.
     fn ordered_count(&self) -> usize {
         0
     }
 
-    /// Calls `offer` for each corner of those first triangles at the given vertex, in order. Corner
-    /// k of triangle i has the number 3 i + k.
+    /// Calls `offer` for each corner of the leading triangles that is at the given vertex, in
+    /// order. Corner k of triangle i has the number 3 i + k.
     fn ordered_around(&self, _vertex: u32, _offer: impl FnMut(u32)) {}
 }
 
@@ -109,7 +109,7 @@ impl Triangles for MeshData {
 impl MeshData {
     /// Reorders the corners of each triangle so that it faces the same side as its normals. If
     /// `reversed` is set, the normals are negated first, and triangles without normals are flipped.
-    /// The mesh is then marked as flat.
+    /// Afterwards, the mesh is marked as flat.
     pub fn oriented(mut self, reversed: bool) -> MeshData {
         if reversed {
             self.normals.iter_mut().for_each(|n| *n = -*n);
@@ -237,7 +237,8 @@ impl MeshData {
 }
 
 /// Returns the triangle that contains all points whose barycentric coordinates are at least
-/// -0.00001. This is the original triangle, enlarged about its centroid by three times that value.
+/// -0.00001. The result is the original triangle, enlarged about its centroid by the factor
+/// 1.00003.
 pub fn enlarged([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
     const SLACK: f64 = 1e-5;
     let corners = [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()];

@@ -50,8 +50,8 @@ pub use voxels::VoxelGrid;
 
 macro_rules! delegate {
     ($($variant:ident),+) => {
-        // Without this lint, a method that is missing below would silently use its default for
-        // every shape.
+        // Without this lint, a method that the macro omits would silently use its default for every
+        // shape.
         #[deny(clippy::missing_trait_methods)]
         impl Shape for Primitive {
             fn bounds(&self) -> Option<Aabb> {
@@ -133,7 +133,7 @@ described_list! {
 /// Edit of a scene file that swaps the front and back of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flip {
-    /// Swap any two corners, such as the two named here.
+    /// Swap any two corners, such as the two corners named here.
     Corners([&'static str; 2]),
     /// Swap the two named edges.
     Edges([&'static str; 2]),
@@ -163,9 +163,9 @@ pub struct SurfacePoint {
     /// Bound on the absolute error of the point along each axis.
     pub error: Vec3,
     /// Bound on the curvature in object space, which is 1 over the smallest radius of curvature.
-    /// Zero if the surface is flat.
+    /// The bound is zero if the surface is flat.
     pub curvature: f32,
-    /// Unit normal of the true surface.
+    /// Unit normal of the actual surface, in contrast to `n_shade`.
     pub n_geo: Vec3,
     /// Unit normal for shading, which is interpolated on smooth meshes.
     pub n_shade: Vec3,
@@ -173,10 +173,10 @@ pub struct SurfacePoint {
     pub uv: Uv,
     /// Barycentric coordinates, which are only set on triangles.
     pub barycentric: Vec3,
-    /// Offsets from the point to the curved surface that a flat triangle approximates. The first is
-    /// for the side of `n_shade`, the second for the other side. Both are zero on other shapes.
-    /// Shadow rays start at the offset points, as described by Hanika, *Hacking the Shadow
-    /// Terminator*.
+    /// Offsets from the point to the curved surface that a flat triangle approximates. The first
+    /// offset is for the side of `n_shade`, and the second is for the other side. On other shapes,
+    /// both offsets are zero. Shadow rays start at the offset points, as described by Hanika,
+    /// *Hacking the Shadow Terminator*.
     pub shadow_offsets: [Vec3; 2],
     /// Linear red, green, blue and opacity, interpolated from the vertices of the mesh; all 1 if it
     /// has no vertex colours.
@@ -187,7 +187,7 @@ pub struct SurfacePoint {
 }
 
 impl SurfacePoint {
-    /// Placeholder that consists of zeros, because zeros are the fastest to write.
+    /// Placeholder that consists of zeros, since zeros are the fastest values to write.
     pub const ZERO: SurfacePoint = SurfacePoint {
         position: Vec3::ZERO,
         rounding_error: Vec3::ZERO,
@@ -248,8 +248,9 @@ impl SurfacePoint {
 }
 
 /// Distance that points keep from the edges of a shape, in units of their error, so that secondary
-/// rays also start in front of the neighbouring face. This works for faces that meet at an angle of
-/// more than about 10 degrees, since the start moves by two errors along the normal.
+/// rays also start in front of the neighbouring face. This distance suffices for faces that meet at
+/// an angle of more than about 10 degrees, since the start of a ray moves by two errors along the
+/// normal.
 const INSET: f32 = 16.0;
 
 /// Clamps a coordinate that runs from 0 to `end` across a face, so that it stays [`INSET`] errors
@@ -266,7 +267,7 @@ fn exact_offsets<const N: usize>(points: [Vec3; N], center: Vec3) -> Option<[Vec
 }
 
 /// Operations that every shape implements. A method has a default only if the default is correct
-/// for every shape. Overriding such a method only makes it faster.
+/// for every shape. A shape overrides such a method only to make it faster.
 pub trait Shape {
     /// Returns the bounds in object space, or `None` for an infinite shape.
     fn bounds(&self) -> Option<Aabb>;
@@ -304,7 +305,7 @@ pub trait Shape {
         None
     }
 
-    /// Reports crossings as [`Shape::crossings`] does, but takes the result of [`Shape::axis`].
+    /// Reports crossings as [`Shape::crossings`] does, but reuses the result of [`Shape::axis`].
     #[inline(always)]
     fn crossings_about(&self, _axis: Option<&Axis>, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         self.crossings(line, emit);
@@ -317,12 +318,12 @@ pub trait Shape {
     /// True if the point is inside the shape; `None` for shapes that have no inside.
     fn inside(&self, point: DVec3) -> Option<bool>;
 
-    /// True if the line is inside the shape at t = -infinity. This is `false` for every bounded
+    /// True if the line is inside the shape at t = -infinity, which is never the case for a bounded
     /// shape.
     fn starts_inside(&self, line: &Line) -> bool;
 
-    /// Returns the shape moved to the origin, and the translation that moves it back. `None` if the
-    /// shape has no position, or if `f32` cannot represent the result exactly.
+    /// Returns the shape moved to the origin, and the translation that moves it back. Returns
+    /// `None` if the shape has no position, or if `f32` cannot represent the result exactly.
     fn centered(&self) -> Option<(Self, Vec3)>
     where
         Self: Sized;
@@ -348,14 +349,14 @@ pub trait Shape {
     fn polygons(&self) -> Vec<Vec<Vec3>>;
 
     /// Returns the surface to sample as a light, in world space, and its outward unit normal. The
-    /// normal is zero if it varies over the surface. If this returns `None`, the light is found
-    /// only by rays that hit the shape by chance, which causes noise.
+    /// normal is zero if it varies over the surface. If the result is `None`, only rays that hit
+    /// the shape by chance find its light, which causes noise.
     fn emitter(&self, transform: &EmitterTransform) -> Option<(EmitterShape, Vec3)>;
 
     /// Returns the direction in which the texture coordinate u increases at a point, in object
     /// space. The vector can have any length, and it defines the direction of anisotropic
-    /// highlights. If this returns `None`, the direction is horizontal and perpendicular to the
-    /// normal.
+    /// highlights. If the result is `None`, a direction that is horizontal and perpendicular to the
+    /// normal is used.
     fn tangent(&self, point: Vec3) -> Option<Vec3>;
 
     /// Returns triangles that approximate the shape in object space, or `None` for an infinite
@@ -363,7 +364,7 @@ pub trait Shape {
     fn to_mesh(&self) -> Option<MeshData>;
 
     /// Returns polylines that depict the shape in a drawing, in object space. For an infinite
-    /// shape, only the part near `around` is drawn. If this returns `None`, the bounding box is
+    /// shape, only the part near `around` is drawn. If the result is `None`, the bounding box is
     /// drawn.
     fn outline(&self, around: &Aabb) -> Option<Vec<Vec<Vec3>>>;
 }

@@ -11,7 +11,7 @@ use std::ops::Range;
 
 /// Maximum number of faces at a vertex that are compared with each other.
 const MANY: usize = 64;
-/// Minimum number of vertices per thread.
+/// Minimum number of vertices for each thread.
 const AT_ONCE: usize = 256;
 /// Number of vertices that are processed in parallel. Processing all of them at once would need too
 /// much memory.
@@ -33,7 +33,7 @@ pub(super) enum CornerMap {
     /// normals.
     Listed(Vec<[u32; 3]>),
     /// Index of the first normal of each vertex, and the offset of each corner from that index.
-    /// This needs a third of the memory, but it is slower.
+    /// This representation needs a third of the memory of the list, but it is slower.
     ByVertex(Vec<u32>, Vec<[u8; 3]>),
 }
 
@@ -130,8 +130,8 @@ fn by_rule(mesh: &impl Triangles, vertices: &[[u32; 3]], rule: MeshNormals, by_v
     }
 }
 
-/// Returns the normal of a triangle times twice its area. It uses double precision because tiny
-/// areas underflow in single precision.
+/// Returns the normal of a triangle times twice its area, in double precision because tiny areas
+/// underflow in single precision.
 fn cross(mesh: &impl Triangles, triangle: usize) -> DVec3 {
     let [a, b, c] = mesh.corners(triangle).map(|p| p.as_dvec3());
     (b - a).cross(c - a)
@@ -176,9 +176,9 @@ fn shares_vertices(mesh: &impl Triangles) -> bool {
     (0..mesh.len()).any(|i| mesh.triangle(i).into_iter().any(&mut is_second))
 }
 
-/// Computes one normal for each corner. It is the sum of the normals of the faces around the
-/// vertex, weighted by angle, without the faces beyond a crease. Most corners that share a vertex
-/// have equal normals, which are stored only once.
+/// Computes one normal for each corner. A normal is the sum of the normals of the faces around the
+/// vertex, weighted by angle and without the faces beyond a crease. Most corners that share a
+/// vertex have equal normals, which are stored only once.
 ///
 /// Source of the weights: Thürmer and Wüthrich, *Computing Vertex Normals from Polygonal Facets*,
 /// JGT 3(1), 1998.

@@ -27,7 +27,7 @@ impl Shape for Plane {
         let n = self.normal.as_dvec3();
         let slope = n.dot(ray.dir.as_dvec3());
         // For a ray parallel to the plane, the slope is zero. If the direction of the ray is
-        // infinite, so is the slope. Neither counts as a hit.
+        // infinite, so is the slope. In both cases, the ray does not count as a hit.
         let t = ((f64::from(self.offset) - n.dot(ray.origin.as_dvec3())) / slope) as f32;
         (slope.is_finite() && t.is_finite() && ray.contains(t)).then_some(ShapeHit { t, uv: Vec2::ZERO })
     }

@@ -38,7 +38,7 @@ impl Quadric {
     }
 
     /// Returns the polynomial a t^2 + 2 b t + c along a line, where t is measured from the point of
-    /// the line nearest to the origin. Also returns the original `t` of that point.
+    /// the line nearest to the origin. The function also returns the original `t` of that point.
     fn along(&self, line: &Line) -> (f64, [f64; 3]) {
         let shift = line.nearest(DVec3::ZERO);
         let (o, d) = (line.at(shift), line.dir);

@@ -25,8 +25,8 @@ impl Rectangle {
         [self.edge0.as_dvec3(), self.edge1.as_dvec3()]
     }
 
-    /// Returns the ray parameter at which a line meets the plane. It is infinite or NaN for a
-    /// parallel line.
+    /// Returns the ray parameter at which a line meets the plane. The parameter is infinite or NaN
+    /// if the line is parallel to the plane.
     fn plane_at(&self, line: &Line) -> f64 {
         let [e, f] = self.edges();
         let n = e.cross(f);

@@ -20,9 +20,9 @@ described! {
 impl Sphere {
     /// Solves |origin + t dir - center|^2 = radius^2 in double precision.
     ///
-    /// The discriminant is computed from the point of the ray that is nearest to the centre. It is
-    /// therefore accurate even for small, distant spheres. Source: Haines, Günther, Akenine-Möller,
-    /// *Ray Tracing Gems* (2019), chapter 7.
+    /// The discriminant is computed from the point of the ray that is nearest to the centre, so it
+    /// is accurate even for small, distant spheres. Source: Haines, Günther, Akenine-Möller, *Ray
+    /// Tracing Gems* (2019), chapter 7.
     fn roots(&self, line: &Line) -> Option<[f64; 2]> {
         let o = line.origin - self.center.as_dvec3();
         let d = line.dir;
@@ -49,8 +49,8 @@ impl Shape for Sphere {
         Some(Aabb { min: self.center - self.radius - pad, max: self.center + self.radius + pad })
     }
 
-    /// True if the bounding sphere of the box intersects this sphere. This is the test used in the
-    /// course, and it has false positives.
+    /// True if the bounding sphere of the box intersects this sphere. This box test is the one used
+    /// in the course, and it has false positives.
     fn overlaps(&self, cell: &Aabb) -> bool {
         let reach = self.radius + 0.5 * cell.size().length();
         (cell.center() - self.center).length() <= reach * (1.0 + gamma(8))

@@ -1,5 +1,5 @@
-//! Computes vertex tangents for normal maps. They are compatible with MikkTSpace, because normal
-//! maps are baked for its tangents.
+//! Computes vertex tangents for normal maps. The tangents are compatible with MikkTSpace, for which
+//! most normal maps are baked.
 //!
 //! Source: Morten Mikkelsen, *Simulation of Wrinkled Surfaces Revisited*, University of Copenhagen,
 //! 2008, and his program. Triangle corners share one tangent if they have the same position, normal
@@ -65,7 +65,7 @@ impl MeshData {
 struct Corners {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
-    /// Direction in which u increases on each triangle, with length 1 or 0. The flag is true if the
+    /// Direction of length 1 or 0 in which u increases on each triangle. The flag is true if the
     /// texture coordinates have the same orientation as the triangle.
     triangles: Vec<(Vec3, bool)>,
     /// Numbers that are equal for corners with the same values of all attributes.
@@ -78,7 +78,7 @@ impl Corners {
         let positions: Vec<Vec3> = of(&data.triangles).into_iter().map(|i| data.positions[i]).collect();
         let normals: Vec<Vec3> = of(&data.triangle_normals).into_iter().map(|i| data.normals[i]).collect();
         let uvs: Vec<Vec2> = of(&data.triangle_uvs).into_iter().map(|i| data.uvs[i]).collect();
-        // Treat zeros of both signs as equal.
+        // Treat positive and negative zero as equal.
         let bits = |x: f32| (x + 0.0).to_bits();
         let key = |&corner: &u32| {
             let (p, n, uv) = (positions[corner as usize], normals[corner as usize], uvs[corner as usize]);
@@ -138,8 +138,8 @@ impl Corners {
         angle * flat(self.triangles[corner / 3].0)
     }
 
-    /// Returns the tangent of each corner, and 1 or -1 as the sign of its bitangent. The tangent is
-    /// zero if it is undefined.
+    /// Returns the tangent of each corner, or zero if it is undefined, and 1 or -1 as the sign of
+    /// the bitangent.
     fn tangents(&self) -> Vec<[f32; 4]> {
         let mut groups = UnionFind((0..self.positions.len() as u32).collect());
         self.pairs().into_iter().for_each(|[a, b]| groups.join(a, b));

@@ -1,5 +1,5 @@
-//! Reference definitions of the shapes, for tests in this crate and in dependent crates. They
-//! provide samples of each shape, and distances from its surface in double precision.
+//! Reference definitions of the shapes, for tests in this crate and in dependent crates. The
+//! definitions provide samples of each shape, and distances from its surface in double precision.
 
 use super::*;
 use crate::describe::DescribedKind;

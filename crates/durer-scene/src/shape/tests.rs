@@ -9,8 +9,8 @@ use super::testing::{distance, near_edge, samples, surface_point, too_far};
 use super::*;
 use crate::math::random::Random;
 
-/// Returns every intersection of a line with the shape. The flag is `false` for those that single
-/// precision cannot decide.
+/// Returns every intersection of a line with the shape. The flag is `false` for intersections that
+/// single precision cannot decide.
 fn crossings(shape: &Primitive, o: DVec3, d: DVec3) -> Vec<(f64, bool)> {
     match shape {
         Primitive::Sphere(s) => {
@@ -33,8 +33,8 @@ fn crossings(shape: &Primitive, o: DVec3, d: DVec3) -> Vec<(f64, bool)> {
             let t = n.dot(a - o) / n.dot(d);
             let p = o + t * d;
             // Compute the height of the point above each of the three edges. The ray is sheared in
-            // single precision. This causes 8 roundings of the distance, which have more effect if
-            // the triangle is seen edge-on.
+            // single precision. The shear causes 8 roundings of the distance, which have more
+            // effect if the triangle is seen edge-on.
             let heights = [(a, b), (b, c), (c, a)].map(|(e, f)| n.cross(f - e).normalize().dot(p - e));
             let least = heights.into_iter().fold(f64::INFINITY, f64::min);
             let reach = [a, b, c].map(|x| (x - o).length()).into_iter().fold(0.0, f64::max);
@@ -55,7 +55,7 @@ fn first_crossing_in_the_open_interval_is_returned() {
     let mut random = Random(1);
     let mut found = [0; 11];
     for round in 0..40_000 {
-        // Test sizes from 1e-6 to 1e6, which exceed those in real scenes by far.
+        // Test sizes from 1e-6 to 1e6, a range that is far larger than that of real scenes.
         let size = match round % 16 {
             14 => 1e-16,
             15 => 1e16,
@@ -78,7 +78,7 @@ fn first_crossing_in_the_open_interval_is_returned() {
             ][random.below(5)];
             let ray = Ray { t_min, t_max, ..ray };
             let crossing = shape.intersect(&ray);
-            // Each root is accurate to a rounding of the largest root. On curved shapes, it is
+            // Each root is accurate to a rounding of the largest root. On curved shapes, a root is
             // accurate to a rounding of the size of the shape.
             let rounding = if kind == 0 || kind > 2 { f64::from(size) / ray.dir.as_dvec3().length() } else { 0.0 };
             let near = |a: f64, b: f64| (a - b).abs() <= 2e-7 * (a.abs() + rounding);
@@ -152,9 +152,9 @@ fn surface_is_on_the_shape_within_its_error_and_bounds() {
             let difference =
                 |v: DVec3| (distance(&shape, p + step * v) - distance(&shape, p - step * v)) / (2.0 * step);
             let gradient = DVec3::new(difference(DVec3::X), difference(DVec3::Y), difference(DVec3::Z));
-            // With a step of 1e-5 times the size, the third-order terms are the square of the step
-            // relative to the smallest radius of curvature. The rounding of the point adds an error
-            // that is relative to that radius.
+            // With a step of 1e-5 times the size, the third-order terms are about the square of the
+            // ratio of the step to the smallest radius of curvature. The rounding of the point adds
+            // an error relative to the radius of curvature.
             let bend = f64::from(surface.curvature * size);
             let slack = 1e-6 + (1e-5 * bend) * (1e-5 * bend) + 2e-7 * (1.0 + bend) * f64::from(1.0 + away / size);
             assert!((gradient - n).length() < slack, "{shape:?} {surface:?} {gradient}");

@@ -51,8 +51,8 @@ impl Shape for Torus {
     ///
     /// Lengths are in units of R, and they are measured along a unit direction from the point of
     /// the line that is nearest to the centre. All coefficients then have the same order of
-    /// magnitude. Source of the equation: Hanrahan in Glassner, *An Introduction to Ray Tracing*
-    /// (1989), chapter 3.
+    /// magnitude. Source of the equation: chapter 3 by Hanrahan in Glassner (ed.), *An Introduction
+    /// to Ray Tracing* (1989).
     fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         let ((major, minor), a) = (self.radii(), self.axis());
         let shift = line.nearest(self.center.as_dvec3());

@@ -129,7 +129,7 @@ fn weighted([a, b, c]: [Vec3; 3], weights: Vec3) -> (Vec3, Vec3) {
 #[inline(always)]
 fn inset([a, b, c]: [Vec3; 3], barycentric: Vec3, error: Vec3) -> Option<Vec3> {
     // The distance from an edge is the barycentric coordinate times twice the area, divided by the
-    // length of the edge. The squares are compared.
+    // length of the edge. The comparison uses squares.
     let areas = (b - a).cross(c - a).length_squared();
     let lengths = Vec3::new((c - b).length_squared(), (a - c).length_squared(), (b - a).length_squared());
     let least = lengths * (INSET * INSET * error.length_squared());
@@ -184,13 +184,13 @@ fn interpolate_vectors([a, b, c]: [Vec3; 3], barycentric: Vec3) -> Vec3 {
 }
 
 /// Returns, for each corner, the offset from a point on the triangle up to the tangent plane at the
-/// corner. The offset is zero if the point is above that plane. The second array contains the same
-/// for the other side of the triangle.
+/// corner. The offset is zero if the point is above that plane. The second array contains the
+/// offsets for the other side of the triangle.
 ///
 /// The barycentric mean of the offsets leads to the curved surface that the normals imply. A shadow
-/// ray that starts there does not hit the flat neighbouring triangles. Such hits would darken whole
-/// triangles of a coarse mesh along the terminator. Source: Johannes Hanika, *Hacking the Shadow
-/// Terminator*, Ray Tracing Gems II (2021), chapter 4.
+/// ray that starts on the curved surface does not hit the flat neighbouring triangles. Such hits
+/// would darken whole triangles of a coarse mesh along the terminator. Source: Johannes Hanika,
+/// *Hacking the Shadow Terminator*, Ray Tracing Gems II (2021), chapter 4.
 #[inline(always)]
 fn corner_offsets(point: Vec3, corners: [Vec3; 3], normals: [Vec3; 3]) -> [[Vec3; 3]; 2] {
     let mut shadow_offsets = [[Vec3::ZERO; 3]; 2];

@@ -12,7 +12,8 @@ pub enum Uv {
     None,
     /// Coordinates that have already been computed.
     Value(Vec2),
-    /// Point whose angle around the axis, measured from -x, gives u, and the value of v.
+    /// Point whose angle around the axis, measured from -x, gives the u coordinate, and the v
+    /// coordinate.
     Angle(Vec2, f32),
     /// Unit vector that gives the longitude, measured from -z towards +x, and the latitude,
     /// measured upwards from the south pole.

@@ -1,5 +1,5 @@
-//! A box of equal cells, some of which are filled. The course of 2003 used it to show how its grid
-//! rasterizes a sphere.
+//! A box of equal cells, some of which are filled. The course of 2003 used such boxes to show how
+//! its grid rasterizes a sphere.
 
 use super::{MeshData, Sphere};
 use crate::describe::{Constraint, described};

@@ -2,9 +2,9 @@
 //!
 //! The albedo of an anisotropic surface depends on the azimuth of the view, and most strongly near
 //! the smoother axis. Therefore, the table is not indexed by the azimuth and two roughnesses, but
-//! by the slopes of the facets relative to the view direction. These are their spread along the
-//! view direction, their spread across it, and the correlation of the two. In these coordinates,
-//! the albedo is smooth for every anisotropy.
+//! by the slopes of the facets relative to the view direction. The indices are the spread of the
+//! slopes along the view direction, their spread across it, and the correlation of the two. In
+//! these coordinates, the albedo is smooth for every anisotropy.
 
 use super::{direction, table_position_in};
 use crate::bsdf::microfacet::{Ggx, SMOOTH};

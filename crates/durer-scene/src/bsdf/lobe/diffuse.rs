@@ -1,7 +1,7 @@
 //! Diffuse surfaces, described by the energy-preserving Oren-Nayar model.
 //!
 //! Source: Portsmouth, Kutz and Hill, *EON: A practical energy-preserving rough diffuse BRDF*, JCGT
-//! 14(1), 2025. This is Fujii's version of the Oren-Nayar model, with an additional term for
+//! 14(1), 2025. The model is Fujii's version of the Oren-Nayar model, with an additional term for
 //! multiple scattering.
 
 use super::{LobeKind, LobeSample, NO_SCATTERING, Scatter};
@@ -12,17 +12,19 @@ use crate::spectrum::Spectrum;
 use std::f32::consts::{FRAC_1_PI, PI};
 
 /// Diffuse reflection lobe, optionally below a dielectric boundary. Without the effect of
-/// `boundary`, it is reciprocal.
+/// `boundary`, the lobe is reciprocal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Diffuse<'a> {
     /// Albedo in each lane.
     pub color: Spectrum,
     /// Roughness, from 0 (Lambert) to 1.
     pub roughness: f32,
-    /// Boundary that light crosses on its way in. The weight of the lobe accounts for the way out.
+    /// Boundary that light crosses on its way in. The weight of the lobe accounts for the light
+    /// that is lost on the way out.
     pub boundary: Option<Boundary<'a>>,
-    /// Local shading normal of the lobe. It is z unless the normal of the frame was bent, which
-    /// keeps mirrors from reflecting below the surface. Diffuse lobes do not need a bent normal.
+    /// Local shading normal of the lobe. This normal is z unless the normal of the frame was bent,
+    /// which keeps mirrors from reflecting below the surface. Diffuse lobes do not need a bent
+    /// normal.
     pub normal: Vec3,
 }
 
@@ -41,9 +43,9 @@ impl Boundary<'_> {
     /// Returns the transmittance for light from one direction above, divided by the cosine-weighted
     /// mean of the transmittance over the hemisphere.
     ///
-    /// Together with the weight 1 - E(wo) of the diffuse base, this scales the bare base by (1 -
-    /// E(wo)) (1 - E(wi)) / (1 - E mean). The result is reciprocal. Together with the boundary's
-    /// own E(wo), it conserves energy.
+    /// Together with the weight 1 - E(wo) of the diffuse base, this factor scales the bare base by
+    /// (1 - E(wo)) (1 - E(wi)) / (1 - E mean). The result is reciprocal. Together with the
+    /// boundary's own E(wo), the result conserves energy.
     ///
     /// Source: Kelemen and Szirmay-Kalos, *A Microfacet Based Coupled Specular-Matte BRDF Model
     /// with Importance Sampling*, Eurographics 2001.
@@ -82,8 +84,8 @@ impl<'a> Diffuse<'a> {
         if self.roughness == 0.0 {
             return self.color * (FRAC_1_PI * entering);
         }
-        // For a rough base, apply the boundary only to the isotropic part of the value. If it were
-        // applied to the remainder, energy would be lost or created.
+        // For a rough base, apply the boundary only to the isotropic part of the value. If the
+        // boundary were applied to the remainder, energy would be lost or created.
         let even = FRAC_1_PI * (1.0 - self.roughness) / (1.0 + C1 * self.roughness);
         self.bare(between, out, into) + self.color * (even * (entering - 1.0))
     }

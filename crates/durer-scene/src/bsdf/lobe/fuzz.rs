@@ -11,8 +11,8 @@ use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 use std::f32::consts::PI;
 
-/// Lobe for a layer of white fibres that stand up from a surface. Its directional albedo is
-/// [`crate::bsdf::albedo::fuzz`].
+/// Lobe for a layer of white fibres that stand up from a surface. The directional albedo of the
+/// lobe is [`crate::bsdf::albedo::fuzz`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fuzz {
     /// Roughness, from 0 (a thin bright rim) to 1.

@@ -4,11 +4,11 @@ use super::{LobeKind, LobeSample, NO_SCATTERING, Scatter};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
-/// Perfect mirror lobe. Its weight is the reflectance.
+/// Perfect mirror lobe. The weight of the lobe is its reflectance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mirror;
 
-/// Lobe for refraction by a smooth boundary. Its weight is the transmittance.
+/// Lobe for refraction by a smooth boundary. The weight of the lobe is its transmittance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refraction {
     /// Index of refraction behind the boundary, relative to the index in front of it.

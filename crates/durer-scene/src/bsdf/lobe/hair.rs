@@ -23,8 +23,8 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 /// Number of light paths, which are R, TT, TRT, and all paths with more internal reflections.
 const PATHS: usize = 4;
 
-/// Index of the last path, which covers all further internal reflections. It spreads light evenly
-/// around the fibre.
+/// Index of the last path, which covers all further internal reflections. The last path spreads
+/// light evenly around the fibre.
 const LAST_PATH: usize = PATHS - 1;
 
 /// Hair fibre of one material, with its pigment and roughness, which is shared by all points of the
@@ -47,13 +47,13 @@ pub struct Fibre {
 enum Pigment {
     /// Absorption coefficient per radius of the fibre.
     Absorption(Color),
-    /// Colour of many fibres together, and a divisor. The logarithm of the colour divided by this
-    /// divisor is the square root of the absorption, apart from the sign.
+    /// Colour of many fibres together, and a divisor. The logarithm of the colour, divided by the
+    /// divisor, is minus the square root of the absorption.
     Color(Color, f32),
 }
 
 impl Fibre {
-    /// Creates the fibre of a hair material.
+    /// Creates a fibre from a hair material.
     pub fn new(m: &HairMaterial) -> Self {
         // The scales tilt R back by twice their own angle, TT forward by that angle, and TRT
         // forward by four times that angle.
@@ -86,7 +86,7 @@ impl Fibre {
     pub fn color(&self) -> Color {
         match self.pigment {
             Pigment::Color(color, _) => color,
-            // This assumes an azimuthal roughness of 0.
+            // The formula assumes an azimuthal roughness of 0.
             Pigment::Absorption(absorption) => absorption.map(|sigma| fp::exp(-5.969 * sigma.sqrt())),
         }
     }
@@ -216,7 +216,7 @@ impl Scatter for Hair<'_> {
             rest -= paths.sampling_weights[path];
             path += 1;
         }
-        // Reuse the remainder of `choice`, which is uniform as well.
+        // Reuse the remainder of `choice`, which is again uniformly distributed.
         let again = (rest / paths.sampling_weights[path]).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
         let (turned, variance) = (self.fibre.tilted(path, &out), self.fibre.variances[path]);
         // Sample the angle to the mirror direction on a sphere.
@@ -234,8 +234,8 @@ impl Scatter for Hair<'_> {
     }
 }
 
-/// Returns the longitudinal scattering. It is a distribution on the sphere around the mirror
-/// direction, averaged around the fibre. Both directions are given by their sine and cosine.
+/// Returns the longitudinal scattering, which is a distribution on the sphere around the mirror
+/// direction that is averaged around the fibre. Both directions are given by their sine and cosine.
 fn longitudinal(variance: f32, out: Vec2, incident: Vec2) -> f32 {
     let [out, incident] = [out.as_dvec2(), incident.as_dvec2()];
     // This is 1 minus the cosine of the angle to the mirror cone.
@@ -265,8 +265,8 @@ fn bessel(x: f32) -> f32 {
     if t < 1.0 { sum(&NEAR, t * t) * fp::exp(-x) } else { sum(&FAR, 1.0 / t) / x.sqrt() }
 }
 
-/// Logistic distribution truncated to [-pi, pi], for the azimuthal scattering of hair. It is close
-/// to a normal distribution, but cheap to sample.
+/// Logistic distribution truncated to [-pi, pi], for the azimuthal scattering of hair. The logistic
+/// distribution is close to a normal distribution, but cheap to sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Logistic {
     scale: f32,
@@ -352,8 +352,8 @@ mod tests {
 
     #[test]
     fn smooth_fibre_reflects_into_a_cone() {
-        // Light leaves along Marschner's cone. Its longitudinal angle is that at which it arrives,
-        // minus the tilt of the scales.
+        // Light leaves along Marschner's cone. The longitudinal angle of this light is that at
+        // which it arrives, minus the tilt of the scales.
         let m = HairMaterial { longitudinal_roughness: 0.05, scale_tilt: 3.0, ..Default::default() };
         let fibre = Fibre::new(&HairMaterial { absorption: Some(Color::splat(1e3)), ..m });
         let hair = fibre.lobe(&Lanes::Rgb);

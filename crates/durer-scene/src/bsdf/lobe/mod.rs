@@ -17,7 +17,7 @@ use crate::spectrum::Spectrum;
 pub struct LobeSample {
     /// Local direction to the incident light.
     pub wi: Vec3,
-    /// Throughput factor of a delta lobe. It is ignored for other lobes.
+    /// Throughput factor of a delta lobe. The factor is ignored for other lobes.
     pub value: Spectrum,
 }
 
@@ -28,7 +28,7 @@ const NO_SCATTERING: (Spectrum, f32) = (Spectrum::ZERO, 0.0);
 /// surface. `wo` is above the surface (`wo.z` > 0).
 pub trait Scatter {
     /// Returns the value times |cos| of `wi`, and the pdf per solid angle with which
-    /// [`Scatter::sample`] chooses `wi`. Both are 0 for a delta lobe.
+    /// [`Scatter::sample`] chooses `wi`. Both results are 0 for a delta lobe.
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32);
 
     /// Samples a direction. `choice` and `u` are uniform in [0, 1]. Returns `None` if the sample
@@ -56,15 +56,15 @@ pub enum Spread {
     Diffuse,
 }
 
-/// Properties of a BSDF lobe that decide how lights are sampled for it. Every lobe returns them
-/// from [`Scatter::kind`].
+/// Properties of a BSDF lobe that decide how lights are sampled for it. Every lobe returns these
+/// properties from [`Scatter::kind`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LobeKind {
     /// Angular spread.
     pub spread: Spread,
     /// True if the lobe scatters light that arrives from behind the surface.
     pub transmits: bool,
-    /// True if light keeps its direction, as if there were no surface.
+    /// True if the light keeps its direction, as if there were no surface.
     pub is_straight: bool,
     /// True for a fibre, which scatters light from any side to any side.
     pub is_fibre: bool,

@@ -43,8 +43,8 @@ pub struct RoughReflection {
     pub ggx: Ggx,
     /// Reflectance model of the facets.
     pub facet: Facet,
-    /// True if light leaves on the other side, as the mirror image of the reflection. This is
-    /// transmission through a thin sheet of rough glass.
+    /// True if light leaves on the other side, as the mirror image of the reflection. The flag is
+    /// set for transmission through a thin sheet of rough glass.
     pub transmits: bool,
 }
 

@@ -1,9 +1,9 @@
 //! Finds the roots of a polynomial between 0 and 1 from its Bernstein coefficients.
 //!
 //! In an interval, a polynomial has at most as many roots as there are sign changes in its
-//! coefficients. If there is one sign change, it has exactly one root. Halving the interval by de
-//! Casteljau's algorithm separates the roots, and the method of false position then refines each of
-//! them.
+//! coefficients. If there is one sign change, the polynomial has exactly one root. Halving the
+//! interval by de Casteljau's algorithm separates the roots, and the method of false position then
+//! refines each of them.
 //!
 //! Source: Lane, Riesenfeld, *Bounds on a Polynomial*, BIT 21, 1981; Farin, *Curves and Surfaces
 //! for CAGD*, chapter 4.

@@ -130,7 +130,7 @@ fn filter_across_a_seam_continues_the_face() {
     let on_face = ray(&cross, CameraSample { point: edge, ..beyond }).unwrap().dir;
     let further = ray(&cross, beyond).unwrap().dir;
     assert!(on_face.distance(further) < 0.04 && further.x > further.y, "{on_face} {further}");
-    // Beyond the left border, the sphere continues at the right border. Beyond the pole, it
+    // Beyond the left border, the sphere continues at the right border. Beyond the pole, the sphere
     // continues downwards on the other side.
     let sphere = EquirectangularCamera::default();
     let left = CameraSample { point: Vec2::new(-1.01, 0.1), ..CameraSample::at(Vec2::new(-0.99, 0.1)) };

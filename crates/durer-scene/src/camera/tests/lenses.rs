@@ -153,8 +153,8 @@ fn distortion_matches_the_formula_and_ends_at_the_fold() {
     );
     let projected = project(&camera, x, y).unwrap();
     assert!(projected.distance(150.0 * expected + Vec2::new(99.5, 49.5)) < 1e-3, "{projected} {expected}");
-    // r - r³ grows only up to r = 1/sqrt 3, where it is 0.385. Beyond that, neither `project` nor
-    // `ray` finds a point.
+    // r - r³ grows only up to r = 1/sqrt 3, where it is 0.385. Beyond this value, neither `project`
+    // nor `ray` finds a point.
     let folded = ProjectiveCamera { k1: -1.0, ..photograph() };
     assert!(project(&folded, 0.55, 0.0).is_some() && project(&folded, 0.6, 0.0).is_none());
     let at = |pixels: f32| ray(&folded, CameraSample::at(Vec2::new(pixels / 100.0, 0.0)));

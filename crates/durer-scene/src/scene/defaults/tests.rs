@@ -116,8 +116,8 @@ fn staging_adds_only_missing_parts() {
     let same = staged(complete.clone(), &SceneDefaults::default());
     assert_eq!((&same.camera, &same.lights), (&complete.camera, &complete.lights));
     assert_eq!(same.root.unwrap().objects.len(), 1);
-    // The background of a scene with its own light is black. In a scene without any light it is not
-    // black, so that something is visible.
+    // The background of a scene with its own light is black. In a scene without any light, the
+    // background is not black, so that something is visible.
     assert_eq!(same.background.color, Vec3::ZERO);
     let none = SceneDefaults { lighting: Some(DefaultLighting::None), ..SceneDefaults::default() };
     assert_eq!(staged(scene(vec![Vec3::ZERO, Vec3::ONE]), &none).background, Background::default());

@@ -6,7 +6,7 @@ const LEFT: MatrixRules = MatrixRules { matrix_on_left: true, drop_shear: false,
 
 fn image(ops: &[MatrixOp], p: [f64; 3]) -> [f64; 3] {
     let image = MatrixOp::product(ops, MatrixRules::default()).transform_point3(p.into());
-    // This makes zeros of both signs equal.
+    // Adding 0 turns negative zero into positive zero.
     image.to_array().map(|x| x + 0.0)
 }
 

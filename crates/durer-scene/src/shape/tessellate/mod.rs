@@ -10,7 +10,7 @@ pub mod tube;
 use super::MeshData;
 use crate::math::{Vec2, Vec3, fp};
 
-/// Number of segments around a sphere. There are half as many from pole to pole.
+/// Number of segments around a sphere, which has half as many from pole to pole.
 const STEPS: u32 = 96;
 
 /// Creates a single flat triangle.
@@ -62,7 +62,7 @@ pub(super) fn frustum([base, top]: [(Vec3, f32); 2]) -> MeshData {
 }
 
 /// Adds the surface between two circles around an axis. If the circles have the same centre, the
-/// surface is flat and faces along the axis. Otherwise, it faces outwards.
+/// surface is flat and faces along the axis. Otherwise, the surface faces outwards.
 pub(super) fn push_band(data: &mut MeshData, axis: Vec3, circles: [(Vec3, f32); 2]) {
     let axis = axis.normalize_or(Vec3::Y);
     let (x, y) = axis.any_orthonormal_pair();

@@ -88,9 +88,10 @@ pub fn bilinear(patches: &Patches) -> MeshData {
 /// Knots along one side of a NURBS surface, and the parameter interval to tessellate.
 #[derive(Clone, Copy, Debug)]
 pub struct NurbsSide<'a> {
-    /// Knots in ascending order. There are as many as the number of control points plus the order.
+    /// Knots in ascending order. The number of knots is the number of control points plus the
+    /// order.
     pub knots: &'a [f64],
-    /// The order, which is the degree plus 1. It is at least 2.
+    /// Order of the surface on this side, which is the degree plus 1 and at least 2.
     pub order: usize,
     /// Start of the interval.
     pub from: f64,
@@ -98,8 +99,8 @@ pub struct NurbsSide<'a> {
     pub to: f64,
 }
 
-/// Tessellates a NURBS surface whose control points have positive weights. They are given row by
-/// row, with `columns` points in each row.
+/// Tessellates a NURBS surface whose control points have positive weights. The control points are
+/// given row by row, with `columns` points in each row.
 pub fn nurbs(points: &[DVec4], columns: u32, sides: &[NurbsSide; 2]) -> MeshData {
     let side = STEPS + 1;
     let mut data = MeshData::default();

@@ -23,8 +23,8 @@ struct Ring {
 }
 
 /// Subdivides the triangles of a control mesh `levels` times, or stops earlier if the next level
-/// would have more than `most` triangles. The points are then moved to their limit positions.
-/// Returns the mesh and the number of levels that were applied.
+/// would have more than `most` triangles. Afterwards, the points are moved to their limit
+/// positions. Returns the mesh and the number of levels that were applied.
 pub fn loop_surface(control: &MeshData, levels: u32, most: usize) -> (MeshData, u32) {
     let points = control.positions.iter().map(|p| p.as_dvec3()).collect();
     // A triangle with a repeated corner has no area, and its edges cannot be traversed.

@@ -5,8 +5,8 @@ use crate::shape::MeshData;
 use glam::{DVec3, DVec4};
 use std::f64::consts::PI;
 
-/// Number of sides of a tube, and number of sides if there are many tubes. The mean width of the
-/// tube is that of a round tube.
+/// Number of sides of a tube, for a few tubes and for many tubes. The mean width of a tube with
+/// this many sides is that of a round tube.
 const SIDES: [u32; 2] = [12, 6];
 
 /// Number of segments of a hemisphere from its rim to its pole.
@@ -99,9 +99,9 @@ pub fn with_round_caps(mut places: Vec<CurvePoint>) -> Vec<CurvePoint> {
 pub fn add_tube(data: &mut MeshData, places: &[CurvePoint], many: bool) {
     let Some(first) = places.first() else { return };
     let sides = SIDES[usize::from(many)];
-    // The radius is halfway between that of the inscribed and that of the circumscribed polygon.
+    // The radius is halfway between the radii of the inscribed and the circumscribed polygon.
     let corner = (PI / f64::from(sides)) / fp::sin_cos_f64(PI / f64::from(sides)).0;
-    // Each entry is a fraction of a turn, with its sine and cosine.
+    // Each entry of `circle` is a fraction of a turn, with its sine and cosine.
     let circle: Vec<(f64, (f64, f64))> = (0..=sides)
         .map(|k| f64::from(k) / f64::from(sides))
         .map(|share| (share, fp::sin_cos_degrees(360.0 * share)))

@@ -103,8 +103,8 @@ fn crease_angle_keeps_a_cube_flat_and_a_sphere_smooth() {
             let surface = mesh.surface(part, &ShapeHit { t: 1.0, uv });
             let off = (surface.n_shade - surface.position).length();
             // At the poles, each triangle has its own vertex. Elsewhere, four or more faces are
-            // averaged. Their planes are tilted by up to half a ring, or 5.6 degrees, and they are
-            // not quite evenly distributed.
+            // averaged. The planes of these faces are tilted by up to half a ring, or 5.6 degrees,
+            // and the faces are not quite evenly distributed.
             let pole = surface.position.y.abs() > 0.999;
             assert!(pole || off < 0.02, "{surface:?} {off}");
         }
