@@ -6,8 +6,8 @@
 //!
 //! `equidistant` uses f = θ, which maps equal angles to equal lengths along the radius.
 //! `equisolid` uses f = 2 sin(θ/2), which maps equal solid angles to equal areas. `stereographic`
-//! uses f = 2 tan(θ/2), which maps small circles to circles. `orthographic` uses f = sin θ, which is
-//! a parallel projection of the hemisphere. Under a uniform sky, equal areas of an orthographic
+//! uses f = 2 tan(θ/2), which maps small circles to circles. `orthographic` uses f = sin θ, which
+//! is a parallel projection of the hemisphere. Under a uniform sky, equal areas of an orthographic
 //! picture illuminate a horizontal surface equally.
 //!
 //! The solid angle per unit area is sin θ F² / (f f'), with F = f(angle / 2).
