@@ -1,11 +1,12 @@
 //! Tables of the directional albedo of rough surfaces.
 //!
 //! A single-scattering microfacet model loses the light that would be reflected more than once.
-//! Dividing by these tables restores it, so that a lossless surface stays white. Source: Turquin,
-//! *Practical multiple scattering compensation for microfacet models*, 2019.
+//! Dividing by the values in these tables restores this light, so that a lossless surface stays
+//! white. Source: Turquin, *Practical multiple scattering compensation for microfacet models*,
+//! 2019.
 //!
-//! [`super::Tables::prepare`] computes the tables that a world's materials need, on all threads,
-//! when the world is compiled. Other tables are computed on first use.
+//! [`super::Tables::prepare`] computes the tables that the materials of a world need, on all
+//! threads, when the world is compiled. Other tables are computed on first use.
 
 mod anisotropic;
 
@@ -16,13 +17,14 @@ use crate::spectrum::Spectrum;
 use rayon::prelude::*;
 use std::sync::OnceLock;
 
-/// Number of rows and of columns in a table.
+/// Number of rows and number of columns in a table.
 const SIZE: usize = 32;
 
-/// Number of sample points per integral.
+/// Number of sample points for each integral.
 const POINTS: u32 = 1024;
 
-/// Table of a function of a cosine and a roughness, both in [0, 1], such as a directional albedo.
+/// Table of a function of a cosine and a roughness, such as a directional albedo. Both arguments
+/// are in [0, 1].
 #[derive(Clone, Debug, PartialEq)]
 struct Table(Vec<f32>);
 
@@ -42,8 +44,8 @@ impl Table {
     }
 }
 
-/// Returns the index of the table entry below `x` in [0, 1], and the fraction towards the next
-/// entry.
+/// Returns the index of the table entry below `x`, which is in [0, 1], and the fraction of the way
+/// to the next entry.
 fn table_position(x: f32) -> (usize, f32) {
     table_position_in(x, SIZE)
 }
@@ -55,7 +57,7 @@ fn table_position_in(x: f32, size: usize) -> (usize, f32) {
     (i, x - i as f32)
 }
 
-/// Cosine-weighted mean of `value` over the hemisphere.
+/// Returns the cosine-weighted mean of `value` over the hemisphere.
 fn mean_by_cosine(value: impl Fn(f32) -> f32) -> f32 {
     const STEPS: usize = 512;
     let at = |i: usize| (i as f32 + 0.5) / STEPS as f32;
@@ -63,10 +65,11 @@ fn mean_by_cosine(value: impl Fn(f32) -> f32) -> f32 {
     (sum / STEPS as f64) as f32
 }
 
-/// Returns the value of `cell`, computing it with `make` at first use.
+/// Returns the value of `cell`, which is computed by `make` on first use.
 ///
-/// Holds no lock while `make` runs. With a lock, a waiting rayon thread could steal work that needs
-/// the same value, and deadlock. Concurrent callers all compute the same value.
+/// No lock is held while `make` runs. If a lock were held, a waiting rayon thread could steal work
+/// that needs the same value, and cause a deadlock. Concurrent callers therefore all compute the
+/// value.
 fn once<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
     cell.get().unwrap_or_else(|| {
         let table = make();
@@ -74,11 +77,11 @@ fn once<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
     })
 }
 
-/// Evenly distributed points of the unit square: the R2 sequence.
+/// Returns points that are evenly distributed in the unit square, from the R2 sequence.
 ///
 /// Source: Martin Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018.
 fn points() -> impl Iterator<Item = Vec2> {
-    // Steps are 1/p and 1/p^2 in units of 2^-32, where p is the root of p^3 = p + 1.
+    // The steps are 1/p and 1/p^2 in units of 2^-32, where p is the root of p^3 = p + 1.
     let unit = |i: u32, step: u32| ((i.wrapping_mul(step) >> 8) as f32 + 0.5) / 16_777_216.0;
     (0..POINTS).map(move |i| Vec2::new(unit(i, 3_242_174_889), unit(i, 2_447_445_414)))
 }
@@ -95,7 +98,8 @@ fn isotropic(roughness: f32) -> Ggx {
     Ggx::new(roughness, 0.0).clamped()
 }
 
-/// Directional albedo of single scattering off a GGX surface with perfectly reflecting facets.
+/// Returns the directional albedo of single scattering at a GGX surface whose facets reflect all
+/// light.
 pub fn ggx(cosine: f32, roughness: f32) -> f32 {
     static TABLE: OnceLock<Table> = OnceLock::new();
     let table = once(&TABLE, || {
@@ -107,7 +111,7 @@ pub fn ggx(cosine: f32, roughness: f32) -> f32 {
     table.at(cosine, roughness)
 }
 
-/// Weight of the reflection off one sampled facet that reflects all light.
+/// Returns the weight of the reflection at one sampled facet that reflects all light.
 fn reflection_weight(ggx: Ggx, wo: Vec3, u: Vec2) -> f32 {
     let h = ggx.sample_visible(wo, u);
     let wi = 2.0 * wo.dot(h) * h - wo;
@@ -124,7 +128,7 @@ pub fn ggx_for(surface: Ggx, wo: Vec3, roughness: f32) -> f32 {
     }
 }
 
-/// Directional albedo of fuzz with white fibres.
+/// Returns the directional albedo of fuzz with white fibres.
 pub fn fuzz(cosine: f32, roughness: f32) -> f32 {
     static TABLE: OnceLock<Table> = OnceLock::new();
     let table = once(&TABLE, || {
@@ -132,7 +136,7 @@ pub fn fuzz(cosine: f32, roughness: f32) -> f32 {
             let wo = direction(cosine);
             mean(|u| {
                 let wi = super::warp::polar(u.x, u.y);
-                // Uniform hemisphere: the pdf is 1 / (2 pi).
+                // Directions are uniform in the hemisphere, so the pdf is 1 / (2 pi).
                 2.0 * std::f32::consts::PI * fuzz_value(roughness, wo, wi) * wi.z
             })
         })
@@ -140,20 +144,20 @@ pub fn fuzz(cosine: f32, roughness: f32) -> f32 {
     table.at(cosine, roughness)
 }
 
-/// Boundary between two dielectrics of a given relative index, with albedo tables that are computed
-/// on first use.
+/// Boundary between two dielectrics with a given relative index. The albedo tables of the boundary
+/// are computed on first use.
 #[derive(Clone, Debug)]
 pub struct DielectricAlbedo {
     /// Index of refraction inside, relative to the index outside.
     pub ior: f32,
     /// Cosine-weighted mean of the reflectance from outside, for a smooth boundary.
     smooth_mean: f32,
-    /// Tables for light from outside and from inside: the reflected share, and the share that is
-    /// not lost.
+    /// Tables for light from outside and from inside. Each pair holds the share of light that is
+    /// reflected and the share that is not lost.
     tables: OnceLock<[[Table; 2]; 2]>,
     /// Cosine-weighted mean of the reflectance from outside, for each roughness in the tables.
     means: OnceLock<Vec<f32>>,
-    /// Share that is not lost, from outside and from inside, for anisotropic surfaces.
+    /// Share of light that is not lost, from outside and from inside, for anisotropic surfaces.
     anisotropic: OnceLock<[anisotropic::Table; 2]>,
 }
 
@@ -164,7 +168,8 @@ impl PartialEq for DielectricAlbedo {
 }
 
 impl DielectricAlbedo {
-    /// Creates a boundary of relative index `ior`. Its tables are computed on first use.
+    /// Creates a boundary with the relative index `ior`. The tables of the boundary are computed on
+    /// first use.
     pub fn new(ior: f32) -> Self {
         let smooth_mean = mean_by_cosine(|cosine| fresnel::dielectric(cosine, ior));
         DielectricAlbedo {
@@ -176,7 +181,8 @@ impl DielectricAlbedo {
         }
     }
 
-    /// Returns the tables for one side: the reflected share, and the share that is not lost.
+    /// Returns the tables for one side, which hold the share of light that is reflected and the
+    /// share that is not lost.
     fn tables(&self, inside: bool) -> &[Table; 2] {
         let both = once(&self.tables, || {
             [self.ior, 1.0 / self.ior].map(|eta| {
@@ -197,14 +203,15 @@ impl DielectricAlbedo {
         self.tables.get().is_some()
     }
 
-    /// Reflected share of the light that single scattering does not lose, from inside or from
-    /// outside.
+    /// Returns the reflected share of the light that is not lost by single scattering, for light
+    /// from inside or from outside.
     pub fn reflected(&self, inside: bool, cosine: f32, roughness: f32) -> f32 {
         let [reflected, all] = self.tables(inside);
         (reflected.at(cosine, roughness) / all.at(cosine, roughness)).min(1.0)
     }
 
-    /// Reflectance from outside; equal to the Fresnel reflectance if the boundary is smooth.
+    /// Returns the reflectance from outside, which is the Fresnel reflectance if the boundary is
+    /// smooth.
     pub fn reflectance(&self, cosine: f32, roughness: f32) -> f32 {
         match Ggx::new(roughness, 0.0).is_smooth() {
             true => fresnel::dielectric(cosine, self.ior),
@@ -212,7 +219,7 @@ impl DielectricAlbedo {
         }
     }
 
-    /// Cosine-weighted mean of [`DielectricAlbedo::reflectance`] over the hemisphere.
+    /// Returns the cosine-weighted mean of [`DielectricAlbedo::reflectance`] over the hemisphere.
     pub fn mean(&self, roughness: f32) -> f32 {
         if Ggx::new(roughness, 0.0).is_smooth() {
             return self.smooth_mean;
@@ -226,15 +233,15 @@ impl DielectricAlbedo {
         means[i] * (1.0 - a) + means[i + 1] * a
     }
 
-    /// Factor for a single reflection or refraction that compensates for the light lost to multiple
-    /// scattering.
+    /// Returns a factor for a single reflection or refraction that compensates for the light lost
+    /// to multiple scattering.
     pub fn gain(&self, inside: bool, cosine: f32, roughness: f32) -> f32 {
         1.0 / self.tables(inside)[1].at(cosine, roughness)
     }
 
     /// Version of [`DielectricAlbedo::gain`] that also accepts anisotropic surfaces. `eta` is the
-    /// index behind the boundary, relative to the index in front of it. It differs from the
-    /// boundary's own index if another medium surrounds the object.
+    /// index behind the boundary, relative to the index in front of it. This index differs from
+    /// that of the boundary if another medium surrounds the object.
     pub fn gain_for(&self, inside: bool, eta: f32, surface: Ggx, wo: Vec3, roughness: f32) -> f32 {
         let own_eta = if inside { 1.0 / self.ior } else { self.ior };
         if (eta / own_eta - 1.0).abs() > NEAR {
@@ -251,13 +258,13 @@ impl DielectricAlbedo {
     }
 }
 
-/// Largest relative difference between indices that share a table. Dispersion of glass stays below
-/// it.
+/// Largest relative difference between indices that share a table. The dispersion of glass stays
+/// below this limit.
 const NEAR: f32 = 0.05;
 
 /// Estimates the mean of `value` over the visible facets of a rough surface from a few points.
-/// `value` takes the cosine at a facet. Used where the surfaces have too many parameters for
-/// tables.
+/// `value` is a function of the cosine at a facet. This estimate is used for surfaces that have too
+/// many parameters for tables.
 pub fn over_facets(surface: Ggx, wo: Vec3, value: impl Fn(f32) -> Spectrum) -> Spectrum {
     const FEW: usize = 16;
     let (ggx, cosine) = (surface.clamped(), wo.z);
@@ -272,9 +279,9 @@ pub fn over_facets(surface: Ggx, wo: Vec3, value: impl Fn(f32) -> Spectrum) -> S
     if all > 0.0 { sum / all } else { value(cosine) }
 }
 
-/// Estimates from a few points the cosine-weighted means over the hemisphere of one reflection off
-/// a boundary, and of reflection and refraction together. Used where tables are not worth their
-/// cost.
+/// Estimates cosine-weighted means over the hemisphere from a few points. The first mean is for one
+/// reflection at a boundary, and the second is for reflection and refraction together. This
+/// estimate is used where tables are not worth their cost.
 pub fn single_means(eta: f32, roughness: f32) -> [f32; 2] {
     const COSINES: usize = 16;
     const FEW: usize = 64;
@@ -286,7 +293,8 @@ pub fn single_means(eta: f32, roughness: f32) -> [f32; 2] {
     })
 }
 
-/// Weight of one sampled facet: its reflection, or its reflection and refraction if `all` is set.
+/// Returns the weight of one sampled facet, for its reflection, or for reflection and refraction if
+/// `all` is set.
 fn facet_weight(ggx: Ggx, wo: Vec3, eta: f32, u: Vec2, all: bool) -> f32 {
     let h = ggx.sample_visible(wo, u);
     let cosine = wo.dot(h).max(0.0);
@@ -314,8 +322,8 @@ mod tests {
         std::thread::spawn(move || {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
             let cell = OnceLock::new();
-            // Yield, as a thread does while it waits for a part of the table. It then steals the
-            // next tile.
+            // Yield, as a thread does while it waits for a part of the table. The thread then
+            // steals the next tile.
             let tile = || *once(&cell, || (rayon::yield_now(), 5).1);
             let _ = sender.send(pool.install(|| rayon::join(tile, tile)));
         });

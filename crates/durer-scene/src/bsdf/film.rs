@@ -1,8 +1,8 @@
-//! Thin films, such as soap, oil on water, and the oxide on tempered steel. Light reflected at the
-//! upper boundary interferes with light reflected at the lower one.
+//! Thin films, such as soap, oil on water, and the oxide on tempered steel. Light that is reflected
+//! at the upper boundary interferes with light that is reflected at the lower one.
 //!
 //! Sources: Airy's sum of all reflections in a film (Born and Wolf, *Principles of Optics*, section
-//! 7.6); the sum by interference orders, used for RGB colours: Belcour and Barla, *A Practical
+//! 7.6). For RGB colours, the sum by interference orders is from Belcour and Barla, *A Practical
 //! Extension to Microfacet Theory for the Modeling of Varying Iridescence*, SIGGRAPH 2017.
 
 use super::fresnel;
@@ -10,11 +10,11 @@ use crate::math::{Vec2, fp};
 use crate::spectrum::{Lanes, Spectrum, interference};
 use std::f32::consts::TAU;
 
-/// Thin film on a dielectric or metal base, with an iridescent reflectance. Indices are relative to
-/// the medium in front of the film.
+/// Thin film on a dielectric or metal base, which has an iridescent reflectance. Indices are
+/// relative to the medium in front of the film.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Film {
-    /// Wavelengths of the lanes in nanometres; 0 for RGB lanes.
+    /// Wavelengths of the lanes in nanometres, or 0 for RGB lanes.
     nm: Spectrum,
     /// Index of a dielectric base relative to the medium in front of the film, or reflectance of a
     /// metal base at normal incidence.
@@ -28,14 +28,15 @@ pub struct Film {
     weight: f32,
 }
 
-/// Position of a metal's index between the largest (0) and the smallest (1) index that its
-/// reflectance allows. This value suits gold, copper, silver and aluminium.
+/// Relative position of the refractive index of a metal between the largest index (0) and the
+/// smallest index (1) that its reflectance allows. This value suits gold, copper, silver and
+/// aluminium.
 ///
 /// Source of the formulas: Gulbrandsen, *Artist Friendly Metallic Fresnel*, JCGT 3(4), 2014.
 const METALLIC: f32 = 0.985;
 
-/// Maximum number of interference orders that are summed for RGB colours. Higher orders are
-/// invisible at eight bits.
+/// Maximum number of interference orders that are summed for RGB colours. Higher orders have no
+/// visible effect at eight bits per channel.
 const ORDERS: i32 = 12;
 
 impl Film {
@@ -46,14 +47,16 @@ impl Film {
         Film { nm: wavelengths(lanes), below, metal: false, thickness: 1_000.0 * micrometres, ior, weight }
     }
 
-    /// Creates a film on a metal base, whose reflectance at normal incidence is `reflected`.
+    /// Creates a film on a metal base. `reflected` is the reflectance of the base at normal
+    /// incidence.
     pub fn on_metal(lanes: &Lanes, micrometres: f32, ior: f32, reflected: Spectrum) -> Self {
         let below = reflected.clamp(Spectrum::splat(0.01), Spectrum::splat(0.999));
         Film { nm: wavelengths(lanes), below, metal: true, thickness: 1_000.0 * micrometres, ior, weight: 1.0 }
     }
 
-    /// Reflectance for unpolarised light at a cosine from 0 to 1. For light from inside (an index
-    /// below 1), it equals the reflectance from outside along the same path.
+    /// Returns the reflectance for unpolarised light at a cosine from 0 to 1. For light from
+    /// inside, for which the index of the base is below 1, the reflectance is equal to that from
+    /// outside along the same path.
     pub fn reflected(&self, cosine: f32) -> Spectrum {
         if self.metal {
             return self.film_reflectance(cosine);
@@ -87,7 +90,7 @@ impl Film {
         ];
         let mut sum = Spectrum::ZERO;
         for lane in 0..4 {
-            // In RGB mode, the fourth lane repeats green.
+            // In RGB mode, the fourth lane is a copy of the green one.
             let below = self.lower_boundary(lane, sine2, inside);
             for (first, second) in boundaries.into_iter().zip(below) {
                 sum[lane] += match self.nm.x > 0.0 {
@@ -99,8 +102,8 @@ impl Film {
         (0.5 * sum).clamp(Spectrum::ZERO, Spectrum::ONE)
     }
 
-    /// Complex reflection coefficients of the lower boundary, for light polarised perpendicular and
-    /// parallel to the plane of incidence.
+    /// Returns the complex reflection coefficients of the lower boundary, for light polarised
+    /// perpendicular and parallel to the plane of incidence.
     fn lower_boundary(&self, lane: usize, sine2: f32, inside: f32) -> [Vec2; 2] {
         let index = match self.metal {
             true => metal_index(self.below[lane]),
@@ -123,7 +126,7 @@ fn wavelengths(lanes: &Lanes) -> Spectrum {
     }
 }
 
-/// Complex index of refraction of a metal with reflectance `r` at normal incidence.
+/// Returns the complex index of refraction of a metal whose reflectance at normal incidence is `r`.
 fn metal_index(r: f32) -> Vec2 {
     let root = r.sqrt();
     let n = METALLIC * (1.0 - r) / (1.0 + r) + (1.0 - METALLIC) * (1.0 + root) / (1.0 - root);
@@ -131,7 +134,7 @@ fn metal_index(r: f32) -> Vec2 {
     Vec2::new(n, k2.max(0.0).sqrt())
 }
 
-/// Airy reflectance |(a + b z) / (1 + a b z)|^2, where z is a unit phasor.
+/// Returns the Airy reflectance |(a + b z) / (1 + a b z)|^2, where z is a unit phasor.
 fn airy(first: f32, second: Vec2, phase: f32) -> f32 {
     let z = multiply(second, Vec2::new(fp::cos(phase), fp::sin(phase)));
     let above = Vec2::new(first, 0.0) + z;
@@ -139,14 +142,14 @@ fn airy(first: f32, second: Vec2, phase: f32) -> f32 {
     above.length_squared() / below.length_squared()
 }
 
-/// Mean of [`airy`] over a colour channel under daylight: its Fourier series in the phase, with
-/// each order averaged over the daylight spectrum.
+/// Returns the mean of [`airy`] over a colour channel under daylight. The mean is computed as a
+/// Fourier series in the phase, in which each order is averaged over the daylight spectrum.
 fn by_orders(first: f32, second: Vec2, shift: f32, channel: usize) -> f32 {
     let (r1, r2) = (first * first, second.length_squared());
     let through = 1.0 - r1;
     let again = through * through * r2 / (1.0 - r1 * r2).max(1e-6);
     let mut sum = r1 + again;
-    // Each order is the previous one times `step`.
+    // Each order is the previous one multiplied by `step`.
     let step = -first * second;
     let mut order = step;
     for number in 1..=ORDERS {
@@ -168,7 +171,7 @@ fn divide(a: Vec2, b: Vec2) -> Vec2 {
     multiply(a, Vec2::new(b.x, -b.y)) / b.length_squared()
 }
 
-/// Complex square root in the upper half-plane.
+/// Returns the complex square root in the upper half-plane.
 fn complex_sqrt(a: Vec2) -> Vec2 {
     let length = a.length();
     let real = (0.5 * (length + a.x)).max(0.0).sqrt();
@@ -202,8 +205,8 @@ mod tests {
 
     #[test]
     fn quarter_wave_film_of_matched_index_reflects_nothing() {
-        // The film's index is the square root of the glass's; the thickness is a quarter of the
-        // wavelength.
+        // The index of the film is the square root of that of the glass, and the thickness is a
+        // quarter of the wavelength.
         let lanes = waves(0.4);
         let nm = lanes.hero().unwrap();
         let ior = 1.52_f32.sqrt();

@@ -1,12 +1,12 @@
-//! Local frame of a surface point. Its z axis is the normal.
+//! Local frame at a surface point. The z axis of the frame is the normal.
 
 use crate::math::Vec3;
 
-/// Orthonormal basis at a surface point, for BSDFs. Directions in it are *local*: z is the cosine
-/// to the normal.
+/// Orthonormal basis at a surface point, used by BSDFs. Directions in this basis are called
+/// *local*, and their z component is the cosine of the angle to the normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// Local x axis: the direction of increasing u, if the surface has one.
+    /// Local x axis, which is the direction of increasing u if the surface has one.
     pub tangent: Vec3,
     /// Local y axis.
     pub bitangent: Vec3,

@@ -3,9 +3,9 @@
 use crate::math::{Color, Vec3, fp};
 use crate::spectrum::{Spectrum, SpectrumSource, under_daylight};
 
-/// Reflectance of a boundary between two dielectrics for unpolarised light. `cosine` is the cosine
-/// between the light and the normal, from 0 to 1. `eta` is the index behind the boundary, relative
-/// to the index in front of it.
+/// Returns the reflectance of a boundary between two dielectrics for unpolarised light. `cosine` is
+/// the cosine of the angle between the light and the normal, from 0 to 1. `eta` is the index behind
+/// the boundary, relative to the index in front of it.
 ///
 /// Source: Fresnel's equations, as in *Physically Based Rendering*, 4th edition, section 9.3.5.
 pub fn dielectric(cosine: f32, eta: f32) -> f32 {
@@ -13,7 +13,8 @@ pub fn dielectric(cosine: f32, eta: f32) -> f32 {
     0.5 * (parallel + perpendicular)
 }
 
-/// Reflectance for light polarised parallel and perpendicular to the plane of incidence.
+/// Returns the reflectance for light polarised parallel and perpendicular to the plane of
+/// incidence.
 fn polarised(cosine: f32, eta: f32) -> [f32; 2] {
     let sine2 = (1.0 - cosine * cosine).max(0.0) / (eta * eta);
     if sine2 >= 1.0 {
@@ -25,8 +26,8 @@ fn polarised(cosine: f32, eta: f32) -> [f32; 2] {
     [parallel * parallel, perpendicular * perpendicular]
 }
 
-/// Colours of a metal's reflection at normal incidence and at cosine 1/7, for light that arrives in
-/// a medium of index `outside`.
+/// Returns the colour that a metal reflects at normal incidence, and the colour at cosine 1/7. The
+/// light arrives in a medium of index `outside`.
 pub fn conductor_colors(eta: &SpectrumSource, k: &SpectrumSource, outside: f32) -> [Color; 2] {
     [1.0, 1.0 / 7.0].map(|cosine| match (eta, k) {
         (SpectrumSource::Rgb(n), SpectrumSource::Rgb(k)) => {
@@ -36,7 +37,7 @@ pub fn conductor_colors(eta: &SpectrumSource, k: &SpectrumSource, outside: f32) 
     })
 }
 
-/// Reflectance of a metal of complex index n + i k for unpolarised light.
+/// Returns the reflectance of a metal with the complex index n + i k for unpolarised light.
 ///
 /// Source: Fresnel's equations, as in *Physically Based Rendering*, 4th edition, section 9.3.6.
 pub fn conductor(cosine: f32, n: f32, k: f32) -> f32 {
@@ -56,16 +57,17 @@ pub fn conductor(cosine: f32, n: f32, k: f32) -> f32 {
 pub struct Sheet {
     /// Index of the sheet, relative to the medium around it.
     pub eta: f32,
-    /// Transmittance of the interior at normal incidence; `None` for a sheet without a depth.
+    /// Transmittance of the interior at normal incidence, or `None` for a sheet without a depth.
     pub inside: Option<Spectrum>,
 }
 
 impl Sheet {
-    /// Reflectance and transmittance at a cosine, including all internal reflections.
+    /// Returns the reflectance and transmittance at a cosine, including all internal reflections.
     ///
-    /// Without a depth these are 2 F / (1 + F) and the remainder, assuming unpolarised light at
-    /// each face, as other renderers do. With a depth, light keeps its polarisation between the
-    /// faces, and more light is absorbed at oblique angles.
+    /// Without a depth, the reflectance is 2 F / (1 + F) and the transmittance is the remainder. As
+    /// in other renderers, these formulas assume unpolarised light at each face. With a depth,
+    /// light keeps its polarisation between the faces, and more light is absorbed at oblique
+    /// angles.
     pub fn at(&self, cosine: f32) -> (Spectrum, Spectrum) {
         let Sheet { eta, inside } = *self;
         let Some(inside) = inside else {
@@ -81,32 +83,33 @@ impl Sheet {
         (0.5 * (parallel.0 + perpendicular.0), 0.5 * (parallel.1 + perpendicular.1))
     }
 
-    /// Reflectance and transmittance of a sheet whose front face has reflectance `face`, for
-    /// unpolarised light.
+    /// Returns the reflectance and transmittance of a sheet for unpolarised light, where `face` is
+    /// the reflectance of the front face.
     pub fn with_front_face(&self, face: Spectrum, cosine: f32) -> (Spectrum, Spectrum) {
         let left = self.inside.map_or(Spectrum::ONE, |inside| transmittance_at(inside, cosine, self.eta));
         sum_reflections(face, Spectrum::splat(dielectric(cosine, self.eta)), left)
     }
 }
 
-/// Transmittance of the interior at an oblique angle, where the path through it is longer.
+/// Returns the transmittance of the interior at an oblique angle, at which the path through the
+/// interior is longer.
 fn transmittance_at(inside: Spectrum, cosine: f32, eta: f32) -> Spectrum {
     let behind = (1.0 - (1.0 - cosine * cosine).max(0.0) / (eta * eta)).max(0.0).sqrt();
     inside.max(Spectrum::ZERO).map(|left| if left < 1.0 { fp::pow(left, 1.0 / behind.max(1e-3)) } else { 1.0 })
 }
 
-/// Reflectance and transmittance of two parallel faces, summed over all internal reflections. Each
-/// crossing keeps the share `left`.
+/// Returns the reflectance and transmittance of two parallel faces, summed over all internal
+/// reflections. The share `left` of the light remains after each pass through the interior.
 fn sum_reflections(front: Spectrum, back: Spectrum, left: Spectrum) -> (Spectrum, Spectrum) {
     let entered = Spectrum::ONE - front;
     let again = (Spectrum::ONE - front * back * left * left).max(Spectrum::splat(1e-6));
     (front + entered * entered * back * left * left / again, entered * (Spectrum::ONE - back) * left / again)
 }
 
-/// Cosine-weighted mean of [`dielectric`] over the hemisphere.
+/// Returns the cosine-weighted mean of [`dielectric`] over the hemisphere.
 ///
-/// Source: a fit by d'Eon, *A Hitchhiker's Guide to Multiple Scattering*, and its converse for
-/// light from inside. The error is at most 0.6 % for indices from 1 to 3.
+/// Source: a fit by d'Eon, *A Hitchhiker's Guide to Multiple Scattering*. The converse of this fit
+/// is used for light from inside. The error is at most 0.6 % for indices from 1 to 3.
 pub fn diffuse(eta: f32) -> f32 {
     match eta >= 1.0 {
         true => fp::ln((10_893.0 * eta - 1_438.2) / (-774.4 * eta * eta + 10_212.0 * eta + 1.0)),
@@ -116,14 +119,14 @@ pub fn diffuse(eta: f32) -> f32 {
     .clamp(0.0, 1.0)
 }
 
-/// Relative index of a boundary whose reflectance at normal incidence is `r0`.
+/// Returns the relative index of a boundary whose reflectance at normal incidence is `r0`.
 pub fn ior_of_reflectance(r0: f32) -> f32 {
     let root = r0.clamp(0.0, 0.98).sqrt();
     (1.0 + root) / (1.0 - root)
 }
 
-/// Schlick's reflectance at 82 degrees (cosine 1/7) for the colour `f0` at normal incidence.
-/// [`F82`] applies its tint at this angle.
+/// Returns the reflectance given by Schlick's approximation at 82 degrees (cosine 1/7) if the
+/// colour at normal incidence is `f0`. [`F82`] applies its tint at this angle.
 pub fn schlick_82(f0: Color) -> Color {
     f0 + (Color::ONE - f0) * fp::pow(6.0 / 7.0, 5.0)
 }
@@ -132,16 +135,16 @@ pub fn schlick_82(f0: Color) -> Color {
 /// degrees.
 ///
 /// Source: Kutz, Hasan and Edmondson, *Novel aspects of the Adobe Standard Material*, 2021, section
-/// 2.3; OpenPBR, Metal.
+/// 2.3, and the section on metal in the OpenPBR specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct F82 {
     f0: Spectrum,
-    /// Amount subtracted from Schlick's curve, in units of cos (1 - cos)^6.
+    /// Amount that is subtracted from Schlick's curve, in units of cos (1 - cos)^6.
     dip: Spectrum,
 }
 
 impl F82 {
-    /// Metal that reflects all light at every angle.
+    /// Curve of a metal that reflects all light at every angle.
     pub const WHITE: F82 = F82 { f0: Spectrum::ONE, dip: Spectrum::ZERO };
 
     /// Creates the curve of a metal with a colour at normal incidence and a tint.
@@ -153,7 +156,7 @@ impl F82 {
         F82 { f0, dip: schlick * (Spectrum::ONE - tint) / (COSINE * power6) }
     }
 
-    /// Reflectance at a cosine from 0 to 1.
+    /// Returns the reflectance at a cosine from 0 to 1.
     pub fn at(&self, cosine: f32) -> Spectrum {
         let rest = (1.0 - cosine).clamp(0.0, 1.0);
         let power5 = rest * rest * rest * rest * rest;
@@ -169,7 +172,7 @@ mod tests {
     #[test]
     fn conductor_agrees_with_fresnel_equations() {
         // At normal incidence, the reflectance is ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2). For k = 0,
-        // the dielectric equations apply.
+        // the equations for dielectrics apply.
         for (n, k) in [(0.2, 3.4), (1.5, 0.0), (2.9, 3.1)] {
             let right = ((n - 1.0_f32) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k);
             assert!((conductor(1.0, n, k) - right).abs() < 1e-6);
@@ -181,7 +184,7 @@ mod tests {
 
     #[test]
     fn conductor_colours_agree_for_curve_and_rgb() {
-        // Gold, given by three wavelength bands and by three RGB values.
+        // Gold is given by three wavelength bands and by three RGB values.
         let curve = |c: [f32; 3]| {
             let rows = [[300.0, c[2]], [489.0, c[2]], [490.0, c[1]], [579.0, c[1]], [580.0, c[0]], [900.0, c[0]]];
             SpectrumSource::Curve(rows.to_vec())

@@ -1,9 +1,11 @@
-//! Layers of a principled material as lobes: fuzz on a coat on metal, glass or a diffuse base.
+//! Converts the layers of a principled material to lobes: fuzz on a coat on metal, glass or a
+//! diffuse base.
 //!
-//! Light reflected by a layer does not reach the layer below. Each layer is weighted by the share
-//! that the layers above let through in the view direction; OpenPBR calls this albedo scaling. It
-//! conserves energy, but the sum is not reciprocal. A diffuse base is weighted by the direction of
-//! the light too ([`Boundary`]), so plastic is reciprocal.
+//! Light that is reflected by a layer does not reach the layer below. Each layer is weighted by the
+//! share of light that the layers above let through in the view direction. OpenPBR calls this
+//! method albedo scaling. This weighting conserves energy, but the sum of the lobes is not
+//! reciprocal. A diffuse base is also weighted by the direction of the light ([`Boundary`]), so
+//! plastic is reciprocal.
 
 use super::Bsdf;
 use super::albedo::{self, DielectricAlbedo};
@@ -22,7 +24,8 @@ use crate::math::{Vec3, fp};
 use crate::spectrum::{Curve, Lanes, Spectrum};
 use std::sync::Arc;
 
-/// Albedo tables and measured base spectrum of a principled material, computed once per material.
+/// Albedo tables of a principled material and the measured spectrum of its base. The tables are
+/// computed once for each material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tables {
     /// Boundary of an opaque base.
@@ -36,8 +39,9 @@ pub struct Tables {
 }
 
 impl Tables {
-    /// Creates the tables of a material. `measured` is the measured spectrum of its base, if any.
-    /// `cache` caches boundaries by index of refraction.
+    /// Creates the tables of a material. `measured` is the measured spectrum of the base of the
+    /// material, if there is one. `cache` holds boundaries that were already created, which are
+    /// identified by their index of refraction.
     pub fn new(
         material: &PrincipledMaterial,
         measured: Option<Arc<Curve>>,
@@ -58,10 +62,11 @@ impl Tables {
         }
     }
 
-    /// Computes, on all threads, the tables that the material can use, so that no render thread has
-    /// to.
+    /// Computes the tables that the material can use, on all threads, so that no render thread has
+    /// to compute them.
     pub fn prepare(&self, m: &PrincipledMaterial) {
-        // A texture multiplies the parameter: it keeps 0, but may change any other value.
+        // A texture multiplies the parameter. The product is still 0 if the parameter is 0, but any
+        // other value may change.
         let all = |share: f32, picture: &Option<FileName>| share == 1.0 && picture.is_none();
         let metal = all(m.base_metalness, &m.base_metalness_texture) && m.metallic_roughness_texture.is_none();
         let glass = all(m.transmission_weight, &m.transmission_weight_texture);
@@ -96,15 +101,16 @@ impl Tables {
         }
     }
 
-    /// True for each of the opaque base, the glass and the coat if its albedo tables have been
-    /// built.
+    /// Returns three flags, which are true if the albedo tables of the opaque base, the glass and
+    /// the coat have been built.
     #[cfg(any(test, feature = "testing"))]
     pub fn prepared(&self) -> [bool; 3] {
         [&self.opaque, &self.glass, &self.coat].map(|boundary| boundary.is_prepared())
     }
 }
 
-/// Index of an opaque base. `specularWeight` scales the reflectance at normal incidence.
+/// Returns the index of refraction of an opaque base. `specularWeight` scales the reflectance at
+/// normal incidence.
 pub fn opaque_ior(material: &PrincipledMaterial) -> f32 {
     if material.specular_weight == 1.0 {
         return material.specular_ior;
@@ -121,13 +127,13 @@ fn mix(a: f32, b: f32, share: f32) -> f32 {
     a + share * (b - a)
 }
 
-/// Quotient `shares / of`, lane by lane; 1 where `of` is 0.
+/// Returns the quotient `shares / of` for each lane, or 1 where `of` is 0.
 fn ratios(shares: Spectrum, of: Spectrum) -> Spectrum {
     Spectrum::select(of.cmpgt(Spectrum::splat(1e-6)), shares / of, Spectrum::ONE)
 }
 
-/// View of a surface point for which the lobes of a principled material are built: its direction,
-/// lanes and relative index of refraction.
+/// View of a surface point for which the lobes of a principled material are built. The view
+/// consists of a direction, lanes and the relative index of refraction.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
     /// RGB lanes or wavelengths in which light is represented.
@@ -174,7 +180,7 @@ impl<'t> LayerStack<'_, 't> {
         if m.fuzz_weight > 0.0 && !view.inside {
             let roughness = m.fuzz_roughness;
             let reflectance = albedo::fuzz(mu, roughness);
-            // At grazing angles, the fibres would reflect more light than arrives: limit their
+            // At grazing angles, the fibres would reflect more light than arrives, so limit their
             // albedo to 1.
             let scale = m.fuzz_weight * (1.0 / reflectance).min(1.0);
             bsdf.push(
@@ -206,7 +212,7 @@ impl<'t> LayerStack<'_, 't> {
         let opaque = dielectric * (1.0 - m.transmission_weight);
         if opaque.max_element() > 0.0 {
             if view.inside && m.has_body && m.transmission_weight == 0.0 {
-                // Light scattered inside the body leaves in all directions.
+                // Light that is scattered inside the body leaves in all directions.
                 return bsdf.push(DiffuseTransmission { color: Spectrum::ONE }, opaque, opaque.max_element());
             }
             let film = self.film(self.tables.opaque.ior);
@@ -224,7 +230,8 @@ impl<'t> LayerStack<'_, 't> {
         }
     }
 
-    /// Adds the light that enters the body, or the light that a thin sheet scatters to both sides.
+    /// Adds the lobe for light that enters the body, or the lobes for light that a thin sheet
+    /// scatters to both sides.
     fn subsurface(&self, bsdf: &mut Bsdf<'t>, weight: Spectrum, boundary: Option<Boundary<'t>>) {
         if weight.max_element() <= 0.0 {
             return;
@@ -244,10 +251,10 @@ impl<'t> LayerStack<'_, 't> {
         bsdf.push(DiffuseTransmission { color }, weight * onwards, share * onwards);
     }
 
-    /// Film on a dielectric of relative index `eta`, if there is one.
+    /// Returns the film on a dielectric of relative index `eta`, if there is one.
     fn film(&self, eta: f32) -> Option<Film> {
         let m = self.parameters;
-        // The outside is air. Seen from inside, the body is in front of the film.
+        // The outside is air. For light from inside, the body is in front of the film.
         let ior = m.thin_film_ior * eta.min(1.0);
         (m.thin_film_weight > 0.0)
             .then(|| Film::on_dielectric(self.view.lanes, m.thin_film_thickness, ior, eta, m.thin_film_weight))
@@ -262,7 +269,7 @@ impl<'t> LayerStack<'_, 't> {
         weight: Spectrum,
         film: Option<Film>,
     ) -> Spectrum {
-        // Without a change of index nothing is reflected, at any roughness.
+        // If the index does not change, nothing is reflected, at any roughness.
         if tables.ior == 1.0 && film.is_none() {
             return Spectrum::ZERO;
         }
@@ -283,22 +290,24 @@ impl<'t> LayerStack<'_, 't> {
         reflectance
     }
 
-    /// True if energy lost to multiple scattering between facets is restored.
+    /// True if the energy that is lost to multiple scattering between facets is restored.
     fn compensates(&self) -> bool {
         self.parameters.energy_compensation == Switch::On
     }
 
-    /// Albedo of single scattering off perfectly reflecting facets; 1 without energy compensation.
+    /// Returns the albedo of single scattering at facets that reflect all light, or 1 without
+    /// energy compensation.
     fn facets(&self, ggx: Ggx, roughness: f32) -> f32 {
         if self.compensates() { albedo::ggx_for(ggx, self.view.wo, roughness) } else { 1.0 }
     }
 
-    /// Factor for the base below a coat: absorption on the way in and out, and internal reflection.
+    /// Returns a factor for the base below a coat. The factor accounts for absorption on the way in
+    /// and out, and for internal reflection.
     fn coat(&self, mu: f32) -> Spectrum {
         let m = self.parameters;
         let eta = m.coat_ior;
         let inside = (1.0 - (1.0 - mu * mu) / (eta * eta)).max(0.01).sqrt();
-        // On average, light enters at normal incidence. It leaves along the view direction.
+        // On average, light enters at normal incidence. The light leaves along the view direction.
         let tint = power(self.view.lanes.reflectance(m.coat_color), 0.5 + 0.5 / inside);
         let roughness = mix(1.0, self.parameters.specular_roughness, self.parameters.base_metalness);
         let thrown_back = mix(fresnel::dielectric(mu, eta), fresnel::diffuse(1.0 / eta), roughness);
@@ -336,7 +345,7 @@ impl<'t> LayerStack<'_, 't> {
             return bsdf.push(Mirror, reflected, reflected.max_element());
         }
         let reflectance = self.facets(ggx, roughness);
-        // Each further reflection between facets is tinted by the metal's colour again.
+        // Each further reflection between facets is tinted by the colour of the metal again.
         let again = Spectrum::ONE + self.base * ((1.0 - reflectance) / reflectance);
         let rough = RoughReflection { ggx: ggx.clamped(), facet: Facet::Metal(f82), transmits: false };
         bsdf.push(rough, weight * again, (weight * f82.at(mu)).max_element());
@@ -356,7 +365,7 @@ impl<'t> LayerStack<'_, 't> {
         let ggx = Ggx::new(roughness, m.specular_anisotropy);
         let plain = fresnel::dielectric(wo.z, eta);
         let reflected = film.map_or(Spectrum::splat(plain), |film| film.reflected(wo.z));
-        // Without a change of index, rough glass does not scatter.
+        // If the index does not change, rough glass does not scatter.
         if ggx.is_smooth() || eta == 1.0 {
             let (up, down) = (weight * reflected, weight * (Spectrum::ONE - reflected));
             bsdf.push(Mirror, self.specular * up, up.max_element());
@@ -367,7 +376,7 @@ impl<'t> LayerStack<'_, 't> {
         }
         let (mut up, mut down) = (self.specular, tint);
         if let Some(film) = film {
-            // All facets share one film colour, chosen so that no energy is lost.
+            // All facets share one film colour, which is chosen so that no energy is lost.
             let mean = |value: &dyn Fn(f32) -> Spectrum| albedo::over_facets(ggx, wo, value);
             let with = mean(&|cosine| film.reflected(cosine));
             let without = mean(&|cosine| Spectrum::splat(fresnel::dielectric(cosine, eta)));
@@ -386,8 +395,8 @@ impl<'t> LayerStack<'_, 't> {
         let (m, wo, mu) = (self.parameters, self.view.wo, self.view.wo.z);
         let (eta, ggx) = (m.specular_ior, Ggx::new(roughness, m.specular_anisotropy));
         let color = self.view.lanes.reflectance(m.transmission_color);
-        // With a depth, the colour applies to the interior. Without one, it tints all transmitted
-        // light.
+        // With a depth, the colour applies to the interior. Without a depth, it tints all
+        // transmitted light.
         let (inside, tint) = if m.transmission_depth > 0.0 { (Some(color), Spectrum::ONE) } else { (None, color) };
         let sheet = Sheet { eta, inside };
         // The film is on one of the two faces.

@@ -8,13 +8,13 @@ use super::warp;
 use crate::math::{Vec2, Vec3, fp};
 use std::f32::consts::PI;
 
-/// Smallest alpha of a rough surface. If both alphas are smaller, the surface counts as smooth.
+/// Smallest alpha of a rough surface. If both alphas are smaller, the surface is treated as smooth.
 pub const SMOOTH: f32 = 1e-3;
 
 /// GGX distribution of the microfacet normals of a rough surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ggx {
-    /// Roughness parameter alpha along the local x and y axes.
+    /// Roughness parameters alpha along the local x and y axes.
     pub alpha: Vec2,
 }
 
@@ -24,7 +24,7 @@ impl Ggx {
     pub fn new(roughness: f32, anisotropy: f32) -> Self {
         let square = roughness * roughness;
         let rest = 1.0 - anisotropy;
-        // Anisotropy keeps the mean square: (ax^2 + ay^2) / 2 = r^4.
+        // Anisotropy does not change the mean square, so (ax^2 + ay^2) / 2 = r^4.
         let ax = square * (2.0 / (1.0 + rest * rest)).sqrt();
         Ggx { alpha: Vec2::new(ax.min(1.0), rest * ax) }
     }
@@ -42,7 +42,7 @@ impl Ggx {
         self.alpha.x == self.alpha.y
     }
 
-    /// True if the surface counts as a perfect mirror.
+    /// True if the surface is treated as a perfect mirror.
     pub fn is_smooth(&self) -> bool {
         self.alpha.max_element() < SMOOTH
     }
@@ -53,13 +53,13 @@ impl Ggx {
         Ggx { alpha: self.alpha.max(Vec2::splat(SMOOTH)) }
     }
 
-    /// Density of normals at a unit vector.
+    /// Returns the density of the facet normals at a unit vector.
     pub fn density(&self, h: Vec3) -> f32 {
         let s = Vec3::new(h.x / self.alpha.x, h.y / self.alpha.y, h.z).length_squared();
         1.0 / (PI * self.alpha.x * self.alpha.y * s * s)
     }
 
-    /// Smith's Lambda: hidden area over visible area.
+    /// Returns Smith's Lambda, which is the ratio of hidden area to visible area.
     pub fn lambda(&self, w: Vec3) -> f32 {
         let slope = (Vec2::new(w.x, w.y) * self.alpha).length_squared();
         let z2 = w.z * w.z;
@@ -72,18 +72,19 @@ impl Ggx {
         if s.is_finite() { 0.5 * s / ((1.0 + s).sqrt() + 1.0) } else { f32::INFINITY }
     }
 
-    /// Share of the facets that are visible from a direction (Smith's G1).
+    /// Returns the share of the facets that are visible from a direction (Smith's G1).
     pub fn masking(&self, w: Vec3) -> f32 {
         1.0 / (1.0 + self.lambda(w))
     }
 
-    /// Share of the facets that are visible from both directions (height-correlated G2).
+    /// Returns the share of the facets that are visible from both directions (height-correlated
+    /// G2).
     pub fn masking_shadowing(&self, wo: Vec3, wi: Vec3) -> f32 {
         1.0 / (1.0 + self.lambda(wo) + self.lambda(wi))
     }
 
-    /// Samples a normal visible from `wo`, which is above the surface. Its pdf is masking(wo) ·
-    /// density(h) · wo·h / wo.z.
+    /// Samples a normal that is visible from `wo`, which is above the surface. The pdf of the
+    /// normal is masking(wo) · density(h) · wo·h / wo.z.
     pub fn sample_visible(&self, wo: Vec3, u: Vec2) -> Vec3 {
         let stretched = Vec3::new(wo.x * self.alpha.x, wo.y * self.alpha.y, wo.z).normalize();
         let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
@@ -92,9 +93,9 @@ impl Ggx {
     }
 }
 
-/// BRDF value of a layer of white fibres, without the cosine.
+/// Returns the BRDF value of a layer of white fibres, without the cosine.
 ///
-/// Source: see [`crate::bsdf::lobe::fuzz`].
+/// For the source, see [`crate::bsdf::lobe::fuzz`].
 pub fn fuzz_value(roughness: f32, wo: Vec3, wi: Vec3) -> f32 {
     let Some(h) = (wo + wi).try_normalize().filter(|_| wi.z > 0.0) else { return 0.0 };
     let sharpness = 1.0 / (roughness * roughness).max(0.01);

@@ -1,7 +1,8 @@
-//! BSDFs: how a surface point scatters light, as weighted lobes for one view direction.
+//! BSDFs, which describe how a surface point scatters light, as weighted lobes for one view
+//! direction.
 //!
-//! Directions are local to the point's [`Frame`] and point away from the surface. The viewer is
-//! above the surface (z > 0).
+//! Directions are in the local [`Frame`] of the surface point, and they are directed away from the
+//! surface. The viewer is above the surface (z > 0).
 
 pub mod albedo;
 pub mod film;
@@ -27,13 +28,13 @@ use smallvec::SmallVec;
 pub struct WeightedLobe<'a> {
     /// Scattering lobe.
     pub lobe: Lobe<'a>,
-    /// Factor that scales the lobe's value.
+    /// Factor that scales the value of the lobe.
     pub weight: Spectrum,
     /// Probability of sampling this lobe.
     pub probability: f32,
 }
 
-/// BSDF of a surface point for one view direction, as a weighted sum of lobes.
+/// BSDF of a surface point for one view direction, represented as a weighted sum of lobes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bsdf<'a> {
     lobes: SmallVec<[WeightedLobe<'a>; 4]>,
@@ -46,16 +47,16 @@ pub struct Bsdf<'a> {
 pub struct BsdfSample {
     /// Local direction to the incident light.
     pub wi: Vec3,
-    /// Throughput factor: value · |cos| / pdf.
+    /// Throughput factor, which is value · |cos| / pdf.
     pub weight: Spectrum,
-    /// Pdf with respect to solid angle; 0 if a delta lobe was sampled.
+    /// Pdf with respect to solid angle, or 0 if a delta lobe was sampled.
     pub pdf: f32,
-    /// Index of the lobe that the direction was sampled from.
+    /// Index of the lobe from which the direction was sampled.
     pub lobe: usize,
 }
 
 impl<'a> Bsdf<'a> {
-    /// Adds a lobe. Lobes are sampled in proportion to `share`, their approximate albedo.
+    /// Adds a lobe. Lobes are sampled in proportion to `share`, which is their approximate albedo.
     pub fn push(&mut self, lobe: impl Into<Lobe<'a>>, weight: Spectrum, share: f32) {
         if weight.max_element() > 0.0 && share > 0.0 {
             self.lobes.push(WeightedLobe { lobe: lobe.into(), weight, probability: share });
@@ -68,12 +69,12 @@ impl<'a> Bsdf<'a> {
         self.lobes.iter().map(|entry| WeightedLobe { probability: entry.probability / self.total, ..*entry })
     }
 
-    /// True if some lobe is not a delta lobe, so that sampling lights is useful.
+    /// True if some lobe is not a delta lobe, in which case sampling lights is useful.
     pub fn has_non_delta(&self) -> bool {
         self.lobes.iter().any(|entry| !entry.lobe.is_delta())
     }
 
-    /// True if glossy lobes have at least half of the sampling probability.
+    /// True if glossy lobes have at least half of the total sampling probability.
     pub fn is_glossy(&self) -> bool {
         let glossy = self.lobes.iter().filter(|entry| entry.lobe.kind().spread == Spread::Glossy);
         glossy.map(|entry| entry.probability).sum::<f32>() >= 0.5 * self.total
@@ -89,19 +90,19 @@ impl<'a> Bsdf<'a> {
         self.lobes.is_empty()
     }
 
-    /// True if light from behind the surface is scattered by a lobe that is not a delta lobe.
+    /// True if a lobe that is not a delta lobe scatters light from behind the surface.
     pub fn passes_light(&self) -> bool {
         self.lobes.iter().any(|entry| entry.lobe.kind().transmits && !entry.lobe.is_delta())
     }
 
-    /// Share of light that passes straight through, as if there were no surface.
+    /// Returns the share of light that passes straight through, as if there were no surface.
     pub fn straight_transmittance(&self) -> Spectrum {
         let through = self.lobes.iter().filter(|entry| entry.lobe.kind().is_straight);
         through.map(|entry| entry.weight).sum()
     }
 
-    /// Value times |cos| of `wi`, and the pdf per solid angle with which [`Bsdf::sample`] chooses
-    /// `wi`. Delta lobes are excluded.
+    /// Returns the value times |cos| of `wi`, and the pdf per solid angle with which
+    /// [`Bsdf::sample`] chooses `wi`. Delta lobes are excluded.
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         let (mut value, mut density) = (Spectrum::ZERO, 0.0);
         for entry in &self.lobes {
@@ -112,7 +113,8 @@ impl<'a> Bsdf<'a> {
         if density > 0.0 { (value, density / self.total) } else { (value, 0.0) }
     }
 
-    /// Samples a direction from three numbers, uniform in [0, 1]; `None` if the path ends.
+    /// Samples a direction from three numbers that are uniform in [0, 1]. Returns `None` if the
+    /// path ends.
     pub fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<BsdfSample> {
         let mut rest = choice * self.total;
         let last = self.lobes.len().checked_sub(1)?;
@@ -125,7 +127,7 @@ impl<'a> Bsdf<'a> {
             rest -= entry.probability;
         }
         let entry = &self.lobes[chosen];
-        // Reuse the remainder of `choice`, which is uniform again.
+        // Reuse the remainder of `choice`, which is again uniformly distributed.
         let again = (rest / entry.probability).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
         let scattered = entry.lobe.sample(wo, again, u)?;
         if entry.lobe.is_delta() {

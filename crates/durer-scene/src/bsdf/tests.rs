@@ -1,4 +1,5 @@
-//! Tests of lobes and layers: albedo, reciprocity, and agreement of samples with pdf.
+//! Tests lobes and layers for their albedo, for reciprocity, and for the agreement of samples with
+//! the pdf.
 
 use super::lobe::blinn::Blinn;
 use super::validation::{
@@ -11,13 +12,13 @@ use crate::math::random::Random;
 
 #[test]
 fn lobe_samples_agree_with_pdf() {
-    // `cargo xtask validate` runs this with a million samples each.
+    // `cargo xtask validate` runs this test with a million samples for each lobe.
     let cells = DirectionGrid { rows: 60, columns: 80, samples: 200_000, fine: 12 };
     for (name, lobe) in non_delta_lobes() {
         for (cosine, turn) in [(0.95, 0.1), (0.6, 0.7), (0.25, 0.35)] {
             let verdict = cells.lobe(11, lobe, warp::polar(cosine, turn));
-            // The 48 tests have a significance of 0.01 in total: 2.1e-4 each, by Šidák's
-            // correction.
+            // The 48 tests have a total significance of 0.01. By Šidák's correction, the
+            // significance of each test is 2.1e-4.
             assert!(verdict.density < 1.005 && verdict.deviate < 3.53, "{name} at {cosine}: {verdict:?}");
         }
     }
@@ -26,8 +27,8 @@ fn lobe_samples_agree_with_pdf() {
 #[test]
 fn reflecting_lobes_are_reciprocal() {
     let mut random = Random(12);
-    // Exclude the bent normal, which enters the cosine on one side only, and fibres, whose offset
-    // depends on the view.
+    // Exclude the bent normal, which affects the cosine on one side only. Also exclude fibres,
+    // whose offset depends on the view.
     let others = ["matte with bent normal", "hair", "fur"];
     for (name, lobe) in non_delta_lobes().into_iter().filter(|(name, _)| !others.contains(name)) {
         for _ in 0..500 {
@@ -73,8 +74,8 @@ fn lobes_are_finite_at_grazing_angles() {
     }
 }
 
-/// Asserts that materials differ from white by at most `most` plus three standard errors, over
-/// roughness and angle.
+/// Asserts that the albedo of each material differs from 1 by at most `most` plus three standard
+/// errors, for several roughnesses and angles.
 fn assert_white(materials: Vec<(&str, PrincipledMaterial)>, roughnesses: &[f32], most: f64) {
     for (name, material) in materials {
         let furnace = Furnace::new(&material);
@@ -87,7 +88,7 @@ fn assert_white(materials: Vec<(&str, PrincipledMaterial)>, roughnesses: &[f32],
 
 #[test]
 fn lossless_materials_are_white_in_a_furnace() {
-    // `cargo xtask validate` runs this with more samples.
+    // `cargo xtask validate` runs this test with more samples.
     assert_white(lossless(), &[0.0, 0.1, 0.3, 0.5, 0.8, 1.0], 0.002);
     assert_white(with_films(), &[0.0], 0.002);
 }
@@ -178,7 +179,8 @@ fn sheet_agrees_with_sum_over_internal_reflections() {
             "{eta} {left} {cosine}: {up} {down}, {reflected} {through}"
         );
     }
-    // Without a depth the faces use unpolarised light. `faced` replaces one face's reflectance.
+    // Without a depth, unpolarised light is assumed at each face. `with_front_face` replaces the
+    // reflectance of one face.
     let plain = fresnel::Sheet { eta: 1.5, inside: None };
     for (up, down) in [plain.at(1.0), plain.with_front_face(Spectrum::splat(0.04), 1.0)] {
         assert!((up[0] - 0.08 / 1.04).abs() < 1e-6 && (down[0] - 0.96 / 1.04).abs() < 1e-6, "{up} {down}");
@@ -198,7 +200,7 @@ fn diffuse_fresnel_is_the_mean_of_fresnel() {
     }
     assert!((fresnel::dielectric(1.0, 1.5) - 0.04).abs() < 1e-6);
     assert_eq!(fresnel::dielectric(0.1, 1.0 / 1.5), 1.0);
-    // At 82 degrees a metal of tint t reflects t of Schlick's curve.
+    // At 82 degrees, a metal with tint t reflects t times the value of Schlick's curve.
     let f0 = Spectrum::new(0.9, 0.6, 0.3, 0.6);
     let (plain, tinted) = (fresnel::F82::new(f0, Spectrum::ONE), fresnel::F82::new(f0, Spectrum::splat(0.8)));
     assert!((tinted.at(1.0 / 7.0) - 0.8 * plain.at(1.0 / 7.0)).abs().max_element() < 1e-5);

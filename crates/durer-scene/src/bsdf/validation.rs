@@ -1,5 +1,6 @@
 //! Numerical checks that samples agree with their pdf, and that lossless materials are white in a
-//! furnace. Tests run them with few samples, `cargo xtask validate` with many.
+//! furnace. Tests run these checks with few samples, and `cargo xtask validate` runs them with
+//! many.
 
 use super::lobe::blinn::Blinn;
 use super::lobe::diffuse::{Diffuse, DiffuseTransmission};
@@ -17,8 +18,8 @@ use crate::spectrum::{Lanes, Spectrum};
 use std::f64::consts::{PI, TAU};
 use std::sync::LazyLock;
 
-/// Grid of cells of equal solid angle on the sphere, in which samples are counted to compare them
-/// with a pdf.
+/// Grid of cells on the sphere that have equal solid angles. Samples are counted in these cells to
+/// compare them with a pdf.
 #[derive(Clone, Copy, Debug)]
 pub struct DirectionGrid {
     /// Number of bands from pole to pole.
@@ -31,12 +32,13 @@ pub struct DirectionGrid {
     pub fine: usize,
 }
 
-/// Result of comparing samples with their pdf: a chi-square test and the integral of the pdf.
+/// Result of comparing samples with their pdf, which consists of a chi-square test and the integral
+/// of the pdf.
 #[derive(Clone, Copy, Debug)]
 pub struct PdfComparison {
     /// Chi-square statistic, converted to a standard normal deviate.
     pub deviate: f64,
-    /// Integral of the pdf over all directions: 1 minus the probability of failed samples.
+    /// Integral of the pdf over all directions, which is 1 minus the probability of failed samples.
     pub density: f64,
 }
 
@@ -47,7 +49,7 @@ impl DirectionGrid {
         row * self.columns + ((turn * self.columns as f64) as usize).min(self.columns - 1)
     }
 
-    /// Expected number of samples in a cell.
+    /// Returns the expected number of samples in a cell.
     fn expected(&self, cell: usize, pdf: &impl Fn(Vec3) -> f32) -> f64 {
         let fine = self.fine;
         let point = |i: usize| {
@@ -59,8 +61,8 @@ impl DirectionGrid {
         mean * 4.0 * PI / (self.rows * self.columns) as f64 * f64::from(self.samples)
     }
 
-    /// Compares samples with their pdf. `sample` draws a sample from three numbers in [0, 1];
-    /// `seed` selects the numbers.
+    /// Compares samples with their pdf. `sample` draws a sample from three numbers in [0, 1], and
+    /// `seed` selects these numbers.
     pub fn compare(
         &self,
         seed: u64,
@@ -75,7 +77,7 @@ impl DirectionGrid {
         }
         let mut expected: Vec<f64> = (0..all).map(|cell| self.expected(cell, &pdf)).collect();
         let density = expected.iter().sum::<f64>() / f64::from(self.samples);
-        // Failed samples account for the missing probability.
+        // Failed samples account for the probability that is missing.
         expected.push((f64::from(self.samples) * (1.0 - density)).max(0.0));
         let mut cells: Vec<(f64, f64)> = expected.into_iter().zip(counts).collect();
         cells.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -98,7 +100,7 @@ impl DirectionGrid {
     }
 }
 
-/// Upper tail of a chi-square distribution, as a normal deviate.
+/// Returns the upper tail of a chi-square distribution as a normal deviate.
 ///
 /// Source: Wilson and Hilferty, *The Distribution of Chi-Square*, 1931.
 fn deviate(chi2: f64, freedom: f64) -> f64 {
@@ -196,8 +198,8 @@ pub fn brushed() -> Vec<(String, PrincipledMaterial)> {
     all
 }
 
-/// Returns named examples of lossless materials with films. The albedo of rough ones is
-/// approximate.
+/// Returns named examples of lossless materials with films. The albedo of rough materials with
+/// films is approximate.
 pub fn with_films() -> Vec<(&'static str, PrincipledMaterial)> {
     let film = || PrincipledMaterial { base_color: Vec3::ONE, thin_film_weight: 1.0, ..Default::default() };
     let bubble = PrincipledMaterial { specular_ior: 1.0, transmission_weight: 1.0, walls: Walls::Thin, ..film() };
@@ -205,7 +207,7 @@ pub fn with_films() -> Vec<(&'static str, PrincipledMaterial)> {
     vec![("film on a matte base", film()), ("soap film", bubble), ("film on glass", glass)]
 }
 
-/// White furnace: a material lit uniformly from all directions, to measure its albedo.
+/// White furnace, in which a material is lit uniformly from all directions to measure its albedo.
 pub struct Furnace<'a> {
     material: &'a PrincipledMaterial,
     tables: Tables,
@@ -217,13 +219,14 @@ impl<'a> Furnace<'a> {
         Furnace { material, tables: Tables::new(material, None, &mut Vec::new()) }
     }
 
-    /// Returns the albedo for a roughness and a view cosine, and its standard error. Light that
-    /// enters glass is measured as flux, since its radiance grows with the square of the index.
+    /// Returns the albedo for a roughness and a view cosine, and the standard error of the albedo.
+    /// Light that enters glass is measured as flux, since its radiance grows with the square of the
+    /// index.
     pub fn albedo(&self, roughness: f32, cosine: f32, samples: u32) -> (f64, f64) {
         self.albedo_for(FurnaceView { roughness, cosine, ..FurnaceView::default() }, samples)
     }
 
-    /// Returns the albedo for any view, and its standard error.
+    /// Returns the albedo for any view, and the standard error of the albedo.
     pub fn albedo_for(&self, from: FurnaceView, samples: u32) -> (f64, f64) {
         let here = Parameters {
             specular_roughness: from.roughness,
@@ -243,18 +246,18 @@ pub struct FurnaceView {
     pub roughness: f32,
     /// Anisotropy.
     pub anisotropy: f32,
-    /// Cosine between the view direction and the normal.
+    /// Cosine of the angle between the view direction and the normal.
     pub cosine: f32,
     /// Azimuth of the view direction, in turns.
     pub turn: f32,
-    /// True if seen from inside.
+    /// True if the material is seen from inside.
     pub inside: bool,
-    /// Index behind the boundary, relative to the index in front of it; `None` for the material in
-    /// air.
+    /// Index behind the boundary, relative to the index in front of it, or `None` if the material
+    /// is in air.
     pub eta: Option<f32>,
 }
 
-/// BSDF of a material seen from outside.
+/// Returns the BSDF of a material seen from outside.
 #[cfg(test)]
 pub(super) fn bsdf_from_outside<'a>(here: &Parameters, tables: &'a Tables, wo: Vec3) -> Bsdf<'a> {
     bsdf_for(here, tables, wo, false, here.specular_ior)
@@ -267,7 +270,7 @@ fn bsdf_for<'a>(here: &Parameters, tables: &'a Tables, wo: Vec3, inside: bool, e
     bsdf
 }
 
-/// Estimates the albedo of a BSDF by sampling. Returns it with its standard error.
+/// Estimates the albedo of a BSDF by sampling. Returns the albedo and its standard error.
 pub(super) fn reflectance(bsdf: &Bsdf, wo: Vec3, samples: u32) -> (f64, f64) {
     let eta = bsdf.lobes().find_map(|part| part.lobe.kind().eta);
     let denser = eta.map_or(1.0, |eta| eta * eta);

@@ -12,7 +12,7 @@ pub fn disc(u: Vec2) -> Vec2 {
     if p == Vec2::ZERO {
         return Vec2::ZERO;
     }
-    // Angle in eighths of a turn.
+    // Compute the angle in eighths of a turn.
     let flat = p.x.abs() > p.y.abs();
     let (radius, other) = (select_unpredictable(flat, p.x, p.y), select_unpredictable(flat, p.y, p.x));
     let ratio = other / radius;
@@ -21,25 +21,26 @@ pub fn disc(u: Vec2) -> Vec2 {
     radius * Vec2::new(cos, sin)
 }
 
-/// Direction in the upper hemisphere, with pdf cos / pi.
+/// Returns a direction in the upper hemisphere, with the pdf cos / pi.
 pub fn cosine_hemisphere(u: Vec2) -> Vec3 {
     let p = disc(u);
     p.extend((1.0 - p.length_squared()).max(0.0).sqrt())
 }
 
-/// Direction with given polar coordinates: the cosine to z, and the azimuth in turns.
+/// Returns the direction with the given polar coordinates, which are the cosine of the angle to z
+/// and the azimuth in turns.
 pub fn polar(cosine: f32, turn: f32) -> Vec3 {
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
     let (sin, cos) = fp::sin_cos_turn(turn);
     Vec3::new(sine * cos, sine * sin, cosine)
 }
 
-/// Uniform direction on the sphere, with pdf 1 / (4 pi).
+/// Returns a uniformly distributed direction on the sphere, with the pdf 1 / (4 pi).
 pub fn sphere(u: Vec2) -> Vec3 {
     polar(1.0 - 2.0 * u.x, u.y)
 }
 
-/// Barycentric coordinates of a uniformly distributed point in a triangle.
+/// Returns the barycentric coordinates of a uniformly distributed point in a triangle.
 ///
 /// Source: Heitz, *A Low-Distortion Map Between Triangle and Square*, 2019.
 pub fn triangle(u: Vec2) -> Vec3 {

@@ -1,26 +1,28 @@
 //! Aperture of a lens: a disc, or a regular polygon if the lens has straight blades.
 //!
-//! Shirley and Chiu's concentric map maps the unit square to the disc and preserves relative areas
-//! and neighbourhoods (*A Low Distortion Map Between Disk and Square*, Journal of Graphics Tools
-//! 2(3), 1997). A sector of the disc then maps to the triangle of a blade: the fraction of the
-//! angle becomes the position along the blade, and the radius scales the triangle.
+//! Shirley and Chiu's concentric mapping takes the unit square to the disc and preserves relative
+//! areas and neighbourhoods (*A Low Distortion Map Between Disk and Square*, Journal of Graphics
+//! Tools 2(3), 1997). For straight blades, a sector of the disc is then mapped to the triangle of a
+//! blade. The fraction of the angle becomes the position along the blade, and the radius scales the
+//! triangle.
 
 use crate::math::{Vec2, fp};
 use glam::DVec2;
 use std::f64::consts::{FRAC_PI_4, TAU};
 
-/// Maximum number of blades of a lens.
+/// Maximum number of blades in a lens.
 pub const MAX_BLADES: u32 = 64;
 
-/// Samples an aperture of radius 1 around 0 uniformly by area: a disc for 0 blades, otherwise a
-/// regular polygon with its first corner on the right, turned counter-clockwise by `turn` degrees.
-/// (0.5, 0.5) maps to the centre.
+/// Samples an aperture of radius 1 around the origin uniformly by area. The aperture is a disc for
+/// 0 blades, and otherwise a regular polygon. The first corner of the polygon is on the right
+/// before the polygon is turned counter-clockwise by `turn` degrees. The point (0.5, 0.5) maps to
+/// the centre.
 pub fn sample(lens: Vec2, blades: u32, turn: f32) -> DVec2 {
     let square = 2.0 * lens.as_dvec2() - 1.0;
     if square == DVec2::ZERO {
         return DVec2::ZERO;
     }
-    // Polar coordinates of the point on its circle.
+    // Compute the polar coordinates of the point on its circle.
     let (radius, angle) = match square.x.abs() > square.y.abs() {
         true => (square.x, FRAC_PI_4 * (square.y / square.x)),
         false => (square.y, 2.0 * FRAC_PI_4 - FRAC_PI_4 * (square.x / square.y)),
@@ -33,7 +35,7 @@ pub fn sample(lens: Vec2, blades: u32, turn: f32) -> DVec2 {
     if blades == 0 {
         return radius * direction(angle);
     }
-    // A negative radius is a positive radius in the opposite direction.
+    // A negative radius is equivalent to a positive radius in the opposite direction.
     let angle = if radius < 0.0 { angle + 0.5 * TAU } else { angle };
     let share = angle.rem_euclid(TAU) / TAU * f64::from(blades);
     let along = share - share.floor();
@@ -46,7 +48,7 @@ pub fn sample(lens: Vec2, blades: u32, turn: f32) -> DVec2 {
 ///
 /// # Errors
 ///
-/// A message for 1, 2 and more than [`MAX_BLADES`].
+/// Fails for 1 blade, 2 blades and more than [`MAX_BLADES`] blades.
 pub fn validate(blades: u32) -> Result<(), String> {
     let wrong = (1..=2).contains(&blades) || blades > MAX_BLADES;
     match wrong {

@@ -1,11 +1,12 @@
-//! The CAVE: screens around a viewer, each a window into the scene.
+//! A CAVE, which consists of screens around a viewer, each of which is a window into the scene.
 //!
-//! A wall is given by three corners a (lower left), b (lower right) and c (upper left), as seen
-//! from inside. The ray through the fractions (s, t) of its sides runs from the eye to a + s (b -
-//! a) + t (c - a), a frustum whose apex may lie off the wall's axis. A point in space is seen along
-//! the same ray on every wall, so two walls that share an edge match there for any eye position.
-//! The walls lie side by side in one picture, at the same scale, on a common baseline. The solid
-//! angle of an area at r from the eye on a wall with normal n is |n·r| / |r|³.
+//! A wall is given by three corners, as seen from inside: a (lower left), b (lower right) and c
+//! (upper left). The ray through the fractions (s, t) of the sides of a wall runs from the eye to
+//! a + s (b - a) + t (c - a). The rays form a frustum whose apex may lie off the axis of the wall.
+//! A point in space is seen along the same ray on every wall. Two walls that share an edge
+//! therefore match along this edge for any eye position. The walls lie side by side in one picture,
+//! with the same scale and a common baseline. For a wall with normal n, the solid angle per unit
+//! area at offset r from the eye is |n·r| / |r|³.
 //!
 //! Source: Cruz-Neira, Sandin, DeFanti, *Surround-Screen Projection-Based Virtual Reality: The
 //! Design and Implementation of the CAVE*, SIGGRAPH 1993; Kooima, *Generalized Perspective
@@ -42,7 +43,8 @@ fn front_wall() -> Vec<[f32; 9]> {
     vec![[-1.0, -1.0, -1.0, 1.0, -1.0, -1.0, -1.0, 1.0, -1.0]]
 }
 
-/// Wall of a CAVE: its lower left corner, its sides, and the position of that corner on the sheet.
+/// Wall of a CAVE, given by its lower left corner, its sides, and the horizontal position of that
+/// corner on the sheet.
 #[derive(Clone, Copy)]
 struct Wall {
     corner: DVec3,
@@ -56,7 +58,7 @@ impl Wall {
         DVec2::new(self.across.length(), self.upwards.length())
     }
 
-    /// Returns the world-space point of a position on the sheet.
+    /// Returns the point in world space for a position on the sheet.
     fn point(&self, position: DVec2) -> DVec3 {
         let share = (position - DVec2::new(self.left, 0.0)) / self.size();
         self.corner + share.x * self.across + share.y * self.upwards
@@ -82,17 +84,17 @@ impl CaveCamera {
         })
     }
 
-    /// Size of one eye's sheet: all walls in a row.
+    /// Size of the sheet for one eye, which contains all walls in a row.
     fn eye_size(&self) -> DVec2 {
         self.walls().fold(DVec2::ZERO, |one, wall| DVec2::new(one.x + wall.size().x, one.y.max(wall.size().y)))
     }
 
-    /// World-space position of an eye.
+    /// Returns the position of an eye in world space.
     fn eye(&self, frame: &CameraBasis, side: f64) -> DVec3 {
         frame.eye.as_dvec3() + 0.5 * side * f64::from(self.separation) * frame.right.as_dvec3()
     }
 
-    /// Returns the eye, the wall and the point of the wall for a sample.
+    /// Returns the eye, the wall, and the point on the wall for a sample.
     fn wall_point(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<(DVec3, Wall, DVec3)> {
         let (point, pixel) = (sample.point.as_dvec2(), sample.pixel.as_dvec2());
         let (one, sheet) = (self.eye_size(), self.eyes.sheet(self.eye_size()));

@@ -1,11 +1,13 @@
-//! Cameras whose rays all pass through one eye: mappings between picture points and directions.
+//! Cameras whose rays all pass through one eye, defined by mappings between picture points and
+//! directions.
 
 use super::{CameraBasis, CameraSample, Pose, Projection};
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
-/// Camera whose rays all pass through one eye, so that it only maps picture points to directions.
-/// Directions are in the camera's space: x to the right, y upwards, z forwards.
+/// Camera whose rays all pass through one eye, so that it only has to map picture points to
+/// directions and back. Directions are in camera space: x points to the right, y upwards and z
+/// forwards.
 pub trait SingleViewpoint {
     /// See [`Projection::pose`].
     fn camera_pose(&self) -> Pose;
@@ -21,10 +23,10 @@ pub trait SingleViewpoint {
     }
 
     /// Returns the direction, of any length, that is seen at `point` of the picture. `pixel` is the
-    /// centre of the sample's pixel.
+    /// centre of the pixel to which the sample belongs.
     fn direction(&self, point: DVec2, pixel: DVec2) -> Option<DVec3>;
 
-    /// Calls `emit` with every point of the picture at which a unit direction is seen.
+    /// Calls `emit` with every point of the picture at which the unit vector `direction` is seen.
     fn project_direction(&self, direction: DVec3, emit: &mut dyn FnMut(DVec2));
 
     /// Solid angle per unit area of the picture, in steradians.

@@ -1,15 +1,16 @@
-//! Tests of properties that every [`Camera`] must have: for each kind, the default camera and
-//! random ones generated from its description.
+//! Tests properties that every [`Camera`] must have. For each kind of camera, the tests use the
+//! default camera and random cameras that are generated from its description.
 
 use super::*;
 use crate::describe::{Constraint, DescribedKind, Field, FieldKind, Value};
 use crate::math::random::Random;
 
-/// Number of random cameras per kind; with `POINTS` samples each, 10^5 samples per kind.
+/// Number of random cameras of each kind. With `POINTS` samples for each camera, there are 10^5
+/// samples for each kind.
 const CAMERAS: usize = 20;
 const POINTS: usize = 5_000;
 
-/// Random value of a realistic size that satisfies a field's constraint.
+/// Returns a random value of a realistic size that satisfies the constraint of a field.
 fn value(field: &Field, random: &mut Random) -> Value {
     let mut rows = |count: usize, width: usize| {
         Value::Rows((0..count).map(|_| (0..width).map(|_| random.between(-2.0, 2.0)).collect()).collect())
@@ -27,7 +28,7 @@ fn value(field: &Field, random: &mut Random) -> Value {
         (_, Constraint::UpTo(high)) => Value::Float(high * random.between(0.1, 1.0)),
         (_, Constraint::Positive) => Value::Float(random.between(0.3, 3.0)),
         (_, Constraint::NonNegative) => Value::Float(random.between(0.0, 0.3)),
-        // Up to twice the distortion of bad lenses.
+        // These values are up to twice the distortion of bad lenses.
         _ if ["p1", "p2"].contains(&field.name) => Value::Float(random.between(-0.01, 0.01)),
         (kind, rule) => {
             assert_eq!((kind, rule), (FieldKind::Float, Constraint::Any), "{}", field.name);
@@ -36,7 +37,7 @@ fn value(field: &Field, random: &mut Random) -> Value {
     }
 }
 
-/// Random rectangle at some distance from the eye.
+/// Returns a random rectangle at some distance from the eye.
 fn wall(random: &mut Random) -> Vec<f32> {
     let turn = random.rotation().as_mat3();
     let (w, h) = (random.between(0.5, 3.0), random.between(0.5, 3.0));
@@ -64,16 +65,16 @@ fn frame(camera: &Camera) -> CameraBasis {
     CameraBasis::of(camera, CameraRules::default())
 }
 
-/// Random sample in the natural picture, and its ray.
+/// Returns a random sample in the natural picture, and its ray.
 fn random_ray(camera: &Camera, random: &mut Random) -> (CameraSample, Option<Ray>) {
     let half = camera.proportions().map_or(Vec2::ONE, |sides| sides / sides.max_element());
-    // Stay off the edge, so that rounding does not leave the picture.
+    // Stay away from the edge, so that rounding does not move the point out of the picture.
     let point = 0.98 * half * Vec2::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0));
     let sample = CameraSample { lens: Vec2::new(random.unit(), random.unit()), ..CameraSample::at(point) };
     (sample, camera.ray(&frame(camera), &sample))
 }
 
-/// Calls `check` with each kind's default camera, then with random ones.
+/// Calls `check` with the default camera of each kind, and then with random ones.
 fn all(seed: u64, mut check: impl FnMut(&Camera, &mut Random)) {
     let mut random = Random(seed);
     for kind in Camera::kinds() {
@@ -85,8 +86,8 @@ fn all(seed: u64, mut check: impl FnMut(&Camera, &mut Random)) {
     }
 }
 
-/// Derivatives of X = ray.at(t) across the ray with respect to the picture's x and y, by
-/// fourth-order differences.
+/// Returns the derivatives of X = ray.at(t) with respect to the x and y of the picture, without the
+/// component along the ray. The derivatives are computed by fourth-order differences.
 fn slopes(camera: &Camera, sample: &CameraSample, t: f32, step: f32) -> Option<[glam::DVec3; 2]> {
     let frame = frame(camera);
     let dir = camera.ray(&frame, sample)?.dir.as_dvec3();
@@ -103,15 +104,16 @@ fn slopes(camera: &Camera, sample: &CameraSample, t: f32, step: f32) -> Option<[
     Some([slope(Vec2::X)?, slope(Vec2::Y)?])
 }
 
-/// Smallest and largest stretch from the picture to the world: the singular values of the 3x2
-/// matrix of slopes.
+/// Returns the smallest and largest stretch from the picture to the world, which are the singular
+/// values of the 3x2 matrix of slopes.
 fn stretch([a, b]: [glam::DVec3; 2]) -> (f64, f64) {
     let (aa, bb, ab) = (a.dot(a), b.dot(b), a.dot(b));
     let (mean, apart) = (0.5 * (aa + bb), (0.25 * (aa - bb) * (aa - bb) + ab * ab).sqrt());
     ((mean - apart).max(0.0).sqrt(), (mean + apart).sqrt())
 }
 
-/// Rounding error of a world-space point computed from an eye in single precision.
+/// Returns the rounding error of a point in world space that is computed from an eye in single
+/// precision.
 fn rounding(ray: &Ray, t: f32) -> f64 {
     4.0 * f64::from(f32::EPSILON) * f64::from(ray.origin.length() + t.abs() + 1.0)
 }
@@ -124,8 +126,8 @@ fn projection_inverts_rays() {
         let mut tried = 0;
         while checked < enough {
             tried += 1;
-            // Give up on cameras that are almost nowhere invertible: a very long path, or a field
-            // of view so narrow that nothing moves in it.
+            // Give up on cameras that are invertible almost nowhere, because their path is very
+            // long or their field of view is so narrow that nothing moves in it.
             if skipped - before.1 > POINTS || tried > 100 * POINTS {
                 (checked, skipped) = before;
                 hopeless += 1;
@@ -134,8 +136,8 @@ fn projection_inverts_rays() {
             let (sample, Some(ray)) = random_ray(camera, random) else { continue };
             assert!((ray.dir.length() - 1.0).abs() < 1e-6, "{camera:?}");
             let t = random.between(0.5, 20.0);
-            // Error of the world-space point, projected to the picture. If it is large, the
-            // projection is ill-conditioned.
+            // Compute the error of the point in world space, projected to the picture. If this
+            // error is large, the projection is ill-conditioned.
             let Some((least, _)) = slopes(camera, &sample, t, 1.0 / 1024.0).map(stretch) else {
                 skipped += 1;
                 continue;
@@ -169,7 +171,7 @@ fn rays_pass_through_projected_points() {
             camera.project(&frame, world, lens, &mut |point| found.push(point));
             for point in found {
                 let sample = CameraSample { lens, ..CameraSample::at(point) };
-                // At the very rim, rounding may leave the picture.
+                // At the very rim, rounding may move the point out of the picture.
                 let inwards = CameraSample { pixel: point * (1.0 - 1e-5), point: point * (1.0 - 1e-6), ..sample };
                 let sample = if camera.ray(&frame, &sample).is_some() { sample } else { inwards };
                 let ray = camera.ray(&frame, &sample).unwrap_or_else(|| panic!("{camera:?} {sample:?}"));
@@ -194,7 +196,7 @@ fn footprints_match_areas_by_differences() {
             let (sample, Some(ray)) = random_ray(camera, random) else { continue };
             let t = random.between(0.5, 20.0);
             let rounded = rounding(&ray, t);
-            // Area, and its rounding error.
+            // Compute the area and its rounding error.
             let area = |step: f32| {
                 let [a, b] = slopes(camera, &sample, t, step)?;
                 Some((a.cross(b).length(), rounded / f64::from(step) * (a.length() + b.length())))

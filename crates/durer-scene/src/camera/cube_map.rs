@@ -1,10 +1,11 @@
-//! Cube map: every direction on the six faces of a cube, as one picture.
+//! A cube map, which shows every direction on the six faces of a cube, in one picture.
 //!
-//! `cross` has four faces in a row (left, front, right, back), with up above and down below the
-//! front, so every fold is an edge of the cube. `strip` has the faces in one row: right, left, up,
-//! down, back, front, which is +x, -x, +y, -y, +z, -z for a camera that looks along -z. Each face
-//! is a square view of 90 degrees, upright as in the cross. The solid angle per area of a face from
-//! -1 to 1 is 1 / |direction|³.
+//! The `cross` layout has four faces in a row (left, front, right, back), with the up face above
+//! the front face and the down face below it. Every fold is therefore an edge of the cube. The
+//! `strip` layout has the faces in one row: right, left, up, down, back, front. In axes, the order
+//! is +x, -x, +y, -y, +z, -z for a camera that looks along -z. Each face is a square view of 90
+//! degrees, and it is upright as in the cross. On a face whose coordinates run from -1 to 1, the
+//! solid angle per unit area is 1 / |direction|³.
 //!
 //! Source: Greene, *Environment Mapping and Other Applications of World Projections*, CG&A 6(11),
 //! 1986.
@@ -36,8 +37,9 @@ described! {
     }
 }
 
-/// Face of the cube: the directions of its centre, its right and its up, in camera space; and its
-/// column and row in the cross and in the strip, counted from the lower left corner.
+/// Face of the cube. `axes` holds the directions of the centre, right and up of the face in camera
+/// space. `cross` and `strip` hold the column and row of the face in each layout, counted from the
+/// lower left corner.
 struct Face {
     axes: [DVec3; 3],
     cross: [f64; 2],
@@ -54,7 +56,7 @@ const FACES: [Face; 6] = [
 ];
 
 impl CubeMapCamera {
-    /// Returns the sheet of the picture, measured in faces.
+    /// Returns the sheet of the picture, whose unit is one face.
     fn sheet(&self) -> PictureSheet {
         PictureSheet(match self.layout {
             Layout::Cross => DVec2::new(4.0, 3.0),

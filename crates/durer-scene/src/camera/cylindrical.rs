@@ -1,9 +1,9 @@
-//! Cylindrical panorama: a picture on a cylinder around the eye. Vertical lines stay straight and
-//! vertical.
+//! A cylindrical panorama, which is a picture on a cylinder around the eye. Vertical lines remain
+//! straight and vertical.
 //!
-//! direction = sin λ right + cos λ forward + h up, where x is the longitude λ and y is the height h
-//! on a cylinder of radius 1. The solid angle of dλ dh is dλ dh / (1 + h²)^(3/2). For one eye of a
-//! pair the ray starts on the viewing circle (`eyes.rs`).
+//! The direction of a ray is sin λ right + cos λ forward + h up, where x is the longitude λ and y
+//! is the height h on a cylinder of radius 1. The solid angle of dλ dh is dλ dh / (1 + h²)^(3/2).
+//! For one eye of a stereo pair, the ray starts on the viewing circle (`eyes.rs`).
 //!
 //! Source: Chen, *QuickTime VR: An Image-Based Approach to Virtual Environment Navigation*,
 //! SIGGRAPH 1995.
@@ -38,7 +38,7 @@ described! {
 }
 
 impl CylindricalCamera {
-    /// Size of one eye's sheet: the unrolled cylinder of radius 1.
+    /// Size of the sheet for one eye, which is the unrolled cylinder of radius 1.
     fn eye_size(&self) -> DVec2 {
         DVec2::new(f64::from(self.angle).to_radians(), 2.0 * half_width(self.vertical_angle))
     }

@@ -1,8 +1,9 @@
-//! Equirectangular picture: x is the longitude, y is the latitude, both linear.
+//! An equirectangular picture, in which x is proportional to the longitude and y to the latitude.
 //!
-//! direction = cos φ (sin λ right + cos λ forward) + sin φ up; the whole sphere is twice as wide as
-//! high. The solid angle of dλ dφ is cos φ dλ dφ. For one eye of a pair the ray starts on the
-//! viewing circle (`eyes.rs`) and is tangent to it, which does not change the area across the ray.
+//! The direction of a ray is cos φ (sin λ right + cos λ forward) + sin φ up. A picture of the whole
+//! sphere is twice as wide as it is high. The solid angle of dλ dφ is cos φ dλ dφ. For one eye of a
+//! stereo pair, the ray starts on the viewing circle (`eyes.rs`) and is tangent to it, which does
+//! not change the area across the ray.
 //!
 //! Source: Snyder, *Map Projections: A Working Manual*, USGS Professional Paper 1395, 1987, chapter
 //! 12.
@@ -39,7 +40,7 @@ described! {
 }
 
 impl EquirectangularCamera {
-    /// Size of one eye's sheet, in radians of longitude and latitude.
+    /// Size of the sheet for one eye, in radians of longitude and latitude.
     fn eye_size(&self) -> DVec2 {
         DVec2::new(f64::from(self.angle), f64::from(self.vertical_angle)) * 1f64.to_radians()
     }
@@ -55,7 +56,7 @@ impl Projection for EquirectangularCamera {
     }
 
     fn proportions(&self) -> Option<Vec2> {
-        // In degrees, so that common pictures have integer sizes.
+        // The proportions are in degrees, so that common pictures have integer sizes.
         Some(self.eyes.sheet(DVec2::new(f64::from(self.angle), f64::from(self.vertical_angle))).0.as_vec2())
     }
 

@@ -1,7 +1,7 @@
 //! One eye or a stereo pair, and the layout of the pair in one picture.
 //!
-//! Omnidirectional stereo: each eye looks along the tangents of the circle on which it moves as the
-//! head turns. Sources: Ishiguro, Yamamoto, Tsuji, *Omni-Directional Stereo*, PAMI 14(2), 1992;
+//! In omnidirectional stereo, each eye looks along the tangents of the circle on which it moves as
+//! the head turns. Sources: Ishiguro, Yamamoto, Tsuji, *Omni-Directional Stereo*, PAMI 14(2), 1992;
 //! Peleg, Ben-Ezra, Pritch, *Omnistereo: Panoramic Stereo Imaging*, PAMI 23(3), 2001.
 
 use super::sheet::PictureSheet;
@@ -17,14 +17,14 @@ described_words! {
 /// Part of a stereo picture that shows the view of one eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EyeView {
-    /// -1 for the left eye, 1 for the right, 0 for the middle between them.
+    /// -1 for the left eye, 1 for the right eye, and 0 for the midpoint between them.
     pub side: f64,
-    /// Position of the lower left corner of its sheet on the full sheet.
+    /// Position of the lower left corner of the view on the full sheet.
     pub corner: DVec2,
 }
 
 impl Eyes {
-    /// Returns the sheet that holds the views of all eyes, each of size `eye_size`.
+    /// Returns the sheet that holds the views of all eyes, each of which has the size `eye_size`.
     pub fn sheet(self, eye_size: DVec2) -> PictureSheet {
         PictureSheet(match self {
             Eyes::SideBySide => DVec2::new(2.0 * eye_size.x, eye_size.y),
@@ -33,8 +33,8 @@ impl Eyes {
         })
     }
 
-    /// Returns the views of all eyes, each of size `eye_size`. The left eye's view is on the left
-    /// or on top.
+    /// Returns the views of all eyes, each of which has the size `eye_size`. The view of the left
+    /// eye is on the left or on top.
     pub fn views(self, eye_size: DVec2) -> impl Iterator<Item = EyeView> {
         let view = |side, x, y| EyeView { side, corner: eye_size * DVec2::new(x, y) };
         let (first, second) = match self {
@@ -47,8 +47,8 @@ impl Eyes {
         std::iter::once(first).chain(second)
     }
 
-    /// Returns the view that contains a pixel, and the position of a point on that view's sheet;
-    /// `None` outside all views.
+    /// Returns the view that contains a pixel, and the position of a point on the sheet of that
+    /// view. Returns `None` if the pixel is outside all views.
     pub fn view(self, eye_size: DVec2, point: DVec2, pixel: DVec2) -> Option<(EyeView, DVec2)> {
         let sheet = self.sheet(eye_size);
         let at = sheet.position(pixel);
@@ -56,39 +56,41 @@ impl Eyes {
         Some((view, sheet.position(point) - view.corner))
     }
 
-    /// Returns the point of the full picture for a position on a view's sheet.
+    /// Returns the point of the full picture for a position on the sheet of a view.
     pub fn point(self, eye_size: DVec2, view: EyeView, position: DVec2) -> DVec2 {
         self.sheet(eye_size).point(position + view.corner)
     }
 }
 
-/// Circle on which an eye moves in omnidirectional stereo. The eye looks along its tangents.
+/// Circle on which an eye moves in omnidirectional stereo. The eye looks along the tangents of the
+/// circle.
 ///
-/// At the heading a (0 ahead, increasing to the right), the head looks along h = (sin a, 0, cos a),
-/// and an eye at the offset r to the right is at r (cos a, 0, -sin a).
+/// At the heading a, which is 0 ahead and increases to the right, the head looks along h = (sin a,
+/// 0, cos a). An eye at the offset r to the right is then at r (cos a, 0, -sin a).
 #[derive(Clone, Copy, Debug)]
 pub struct EyeCircle {
-    /// Signed radius: negative for the left eye.
+    /// Signed radius, which is negative for the left eye.
     pub radius: f64,
 }
 
 impl EyeCircle {
-    /// Returns the eye's position and its horizontal direction at a heading in radians.
+    /// Returns the position of the eye and its horizontal view direction at a heading in radians.
     pub fn tangent(self, heading: f64) -> (DVec3, DVec3) {
         let (sin, cos) = fp::sin_cos_f64(heading);
         (self.radius * DVec3::new(cos, 0.0, -sin), DVec3::new(sin, 0.0, cos))
     }
 
-    /// Returns the heading at which a point is seen, from -pi to pi, and its horizontal distance
-    /// from the eye there; `None` inside the circle and on its axis.
+    /// Returns the heading at which a point is seen, from -pi to pi, and the horizontal distance of
+    /// the point from the eye at that heading. Returns `None` for points inside the circle or on
+    /// its axis.
     pub fn heading(self, point: DVec3) -> Option<(f64, f64)> {
         let square = point.x * point.x + point.z * point.z - self.radius * self.radius;
         if square <= 0.0 {
             return None;
         }
         let distance = square.sqrt();
-        // Seen from the circle's centre, the point is this much farther to the right than seen from
-        // the eye.
+        // Seen from the centre of the circle, the point is farther to the right than seen from the
+        // eye. The second angle accounts for this difference.
         let heading = fp::atan2_f64(point.x, point.z) - fp::atan2_f64(self.radius, distance);
         Some((wrap_angle(heading), distance))
     }

@@ -1,15 +1,16 @@
-//! Fisheye camera: the picture is a disc that shows a cone of directions, up to the full sphere.
+//! A fisheye camera, whose picture is a disc that shows a cone of directions, up to the full
+//! sphere.
 //!
 //! A direction at the angle θ from the axis is shown at the radius r = f(θ) / f(angle / 2) of the
-//! disc, where
+//! disc, where f depends on the projection.
 //!
-//! - `equidistant`: f = θ: equal angles are equal lengths along the radius;
-//! - `equisolid`: f = 2 sin(θ/2): equal solid angles are equal areas;
-//! - `stereographic`: f = 2 tan(θ/2): small circles stay circles;
-//! - `orthographic`: f = sin θ: parallel projection of the hemisphere; equal areas of the picture
-//!   of a uniform sky illuminate a horizontal surface equally.
+//! `equidistant` uses f = θ, which maps equal angles to equal lengths along the radius.
+//! `equisolid` uses f = 2 sin(θ/2), which maps equal solid angles to equal areas. `stereographic`
+//! uses f = 2 tan(θ/2), which maps small circles to circles. `orthographic` uses f = sin θ, which
+//! is a parallel projection of the hemisphere. Under a uniform sky, equal areas of an orthographic
+//! picture illuminate a horizontal surface equally.
 //!
-//! The solid angle per area is sin θ F² / (f f'), with F = f(angle / 2).
+//! The solid angle per unit area is sin θ F² / (f f'), with F = f(angle / 2).
 //!
 //! Source: Miyamoto, *Fish Eye Lens*, Journal of the Optical Society of America 54(8), 1964;
 //! Kannala, Brandt, *A Generic Camera Model and Calibration Method*, PAMI 28(8), 2006, equations 1
@@ -47,7 +48,7 @@ described! {
 }
 
 impl FisheyeProjection {
-    /// Returns the radius for an angle from the axis, and its derivative.
+    /// Returns the radius for an angle from the axis, and the derivative of the radius.
     pub fn radius(self, theta: f64) -> (f64, f64) {
         let (sin, cos) = fp::sin_cos_f64(theta);
         let (half_sin, half_cos) = fp::sin_cos_f64(0.5 * theta);
@@ -59,7 +60,7 @@ impl FisheyeProjection {
         }
     }
 
-    /// Returns the angle from the axis for a radius.
+    /// Returns the angle from the axis at a radius.
     pub fn theta(self, radius: f64) -> f64 {
         match self {
             FisheyeProjection::Equidistant => radius,
@@ -69,8 +70,8 @@ impl FisheyeProjection {
         }
     }
 
-    /// Returns the direction seen at a point of the unit disc, whose rim is at the angle `limit`
-    /// from the axis.
+    /// Returns the direction that is seen at a point of the unit disc, whose rim is at the angle
+    /// `limit` from the axis.
     pub fn direction(self, point: DVec2, limit: f64) -> Option<DVec3> {
         let radius = point.length();
         if radius > 1.0 {
@@ -86,7 +87,7 @@ impl FisheyeProjection {
         let across = direction.truncate();
         let (sin, theta) = (across.length(), fp::atan2_f64(across.length(), direction.z));
         let radius = self.radius(theta).0 / self.radius(limit).0;
-        // Every point of the rim sees straight backwards.
+        // Every point of the rim sees the direction straight backwards.
         let around = if sin > 0.0 { across / sin } else { DVec2::X };
         (theta <= limit).then(|| radius * around)
     }

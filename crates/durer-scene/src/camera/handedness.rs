@@ -16,7 +16,8 @@ impl Handedness {
         if self == Handedness::Left { -1.0 } else { 1.0 }
     }
 
-    /// Converts a vector between camera space and right-handed space. The map is its own inverse.
+    /// Converts a vector between camera space and right-handed space. The conversion is its own
+    /// inverse.
     pub(super) fn convert(self, v: DVec3) -> DVec3 {
         DVec3 { x: self.sign() * v.x, ..v }
     }

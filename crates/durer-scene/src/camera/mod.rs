@@ -1,5 +1,5 @@
 //! Cameras, which map picture points to rays and world-space points back to the picture. Each
-//! camera has its own file; [`Camera`] lists them all.
+//! camera has its own file, and [`Camera`] lists all of them.
 
 mod aperture;
 mod central;
@@ -101,23 +101,24 @@ described_list! {
     }
 }
 
-/// Input for a camera ray: a position in the picture and on the lens.
+/// Input for a camera ray, which consists of a position in the picture and a position on the lens.
 ///
-/// (-1, -1) is the lower left corner of the square that the camera covers, (1, 1) the upper right.
+/// The square that the camera covers has its lower left corner at (-1, -1) and its upper right
+/// corner at (1, 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraSample {
-    /// Point of the picture.
+    /// Point in the picture.
     pub point: Vec2,
     /// Centre of the pixel that the sample contributes to. A filter can extend beyond the pixel,
-    /// and beyond the part of the picture that contains it (a cube face, a wall, an eye). Points
-    /// outside continue the projection of that part.
+    /// and beyond the part of the picture that contains the pixel (a cube face, a wall or an eye).
+    /// Points outside that part continue its projection.
     pub pixel: Vec2,
-    /// Point of the lens, in [0,1)^2; (0.5, 0.5) is the centre.
+    /// Point on the lens, in [0,1)^2, where (0.5, 0.5) is the centre.
     pub lens: Vec2,
 }
 
 impl CameraSample {
-    /// Creates a sample at a pixel's centre, through the centre of the lens.
+    /// Creates a sample at the centre of a pixel, through the centre of the lens.
     pub fn at(point: Vec2) -> Self {
         CameraSample { point, pixel: point, lens: Vec2::splat(0.5) }
     }
@@ -126,16 +127,16 @@ impl CameraSample {
 /// Packet of `N` camera samples in structure-of-arrays layout, for [`Projection::rays`].
 #[derive(Clone, Copy, Debug)]
 pub struct CameraSamples<const N: usize> {
-    /// Points of the picture: all x, then all y.
+    /// Points in the picture, with all x values first, followed by all y values.
     pub points: [[f32; N]; 2],
     /// Centres of the pixels.
     pub pixels: [Vec2; N],
-    /// Points of the lens: all x, then all y.
+    /// Points on the lens, with all x values first, followed by all y values.
     pub lenses: [[f32; N]; 2],
 }
 
 impl<const N: usize> CameraSamples<N> {
-    /// Returns sample `i`.
+    /// Returns the sample with the index `i`.
     pub fn sample(&self, i: usize) -> CameraSample {
         let [point, lens] = [self.points, self.lenses].map(|[x, y]| Vec2::new(x[i], y[i]));
         CameraSample { point, pixel: self.pixels[i], lens }
@@ -150,43 +151,43 @@ impl From<CameraSample> for CameraSamples<1> {
 
 /// Operations that every camera implements: rays, projection and footprints.
 pub trait Projection {
-    /// Position and orientation.
+    /// Position and orientation of the camera.
     fn pose(&self) -> Pose;
 
     /// Natural width and height of the picture, in any unit; `None` if the picture can have any
-    /// aspect ratio. A natural picture is centred in the square, and its longer side spans the
-    /// square.
+    /// aspect ratio. A natural picture is centred in the square, and its longer side is as long as
+    /// a side of the square.
     fn proportions(&self) -> Option<Vec2> {
         None
     }
 
-    /// Half the width of the view at distance 1; 1 if rays do not need it.
+    /// Half the width of the view at distance 1, or 1 if the rays do not need this width.
     fn half_width(&self) -> f64 {
         1.0
     }
 
-    /// True if rays through one point of the picture depend on the point of the lens.
+    /// True if the ray through a point in the picture depends on the point on the lens.
     fn has_aperture(&self) -> bool {
         false
     }
 
-    /// Checks combinations of fields. The constraints in the description check each field
-    /// separately.
+    /// Checks that the fields are valid in combination. The constraints in the description check
+    /// each field separately.
     ///
     /// # Errors
     ///
-    /// A message with the reason why the camera is invalid.
+    /// Returns a message that explains why the camera is invalid.
     fn validate(&self) -> Result<(), String> {
         Ok(())
     }
 
-    /// Returns the ray of a sample; `None` if the camera sees nothing there. The direction has unit
-    /// length, so `t` is a distance.
+    /// Returns the ray of a sample, or `None` if the camera sees nothing there. The direction has
+    /// unit length, so `t` is a distance.
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray>;
 
-    /// Calls `take` with the index and the ray of each sample, in order. See [`Projection::ray`]. A
-    /// callback lets the caller store each ray in place: copying entire packets stalls the
-    /// processor.
+    /// Calls `take` with the index and the ray of each sample, in order. See [`Projection::ray`].
+    /// The callback lets the caller store each ray in place, since copying entire packets stalls
+    /// the processor.
     fn rays<const N: usize>(
         &self,
         frame: &CameraBasis,
@@ -196,17 +197,19 @@ pub trait Projection {
         (0..N).for_each(|i| take(i, self.ray(frame, &samples.sample(i))));
     }
 
-    /// Calls `emit` with every point of the picture at which a world-space point is seen through a
-    /// point of the lens: none, one, or several, as for a pair of eyes. Ignores occlusion. If the
-    /// picture can have any aspect ratio, points may lie outside the square.
+    /// Calls `emit` with every point of the picture at which a point in world space is seen through
+    /// a point on the lens. There may be no such point, one, or several, as for a pair of eyes.
+    /// Occlusion is ignored. If the picture can have any aspect ratio, the points may lie outside
+    /// the square.
     fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, emit: &mut dyn FnMut(Vec2));
 
-    /// Area across the ray at distance `t` per unit area of the picture, for a fixed point of the
-    /// lens.
+    /// Returns the area across the ray at distance `t` per unit area of the picture, for a fixed
+    /// point on the lens.
     ///
-    /// This is the Jacobian |(dX/dx × dX/dy) · dir| of X = origin + t dir with respect to the
-    /// picture's point. If all rays meet in one eye, it is t² times the solid angle per area of the
-    /// picture; for parallel rays it is constant. Undefined without a ray.
+    /// The area is the Jacobian |(dX/dx × dX/dy) · dir| of X = origin + t dir with respect to the
+    /// point in the picture. If all rays meet in one eye, the area is t² times the solid angle per
+    /// unit area of the picture. If the rays are parallel, the area is constant. The result is
+    /// undefined if the sample has no ray.
     fn footprint(&self, frame: &CameraBasis, sample: &CameraSample, t: f32) -> f32;
 }
 

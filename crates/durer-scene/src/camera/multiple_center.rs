@@ -1,20 +1,22 @@
-//! Multiple-centre-of-projection image: every column of the picture has its own eye on a path.
+//! A multiple-centre-of-projection image, in which every column has its own eye on a path.
 //!
-//! Eyes e(u) and their targets c(u) move along Catmull-Rom splines through the rows of `path`, with
-//! equal steps in u from row to row. With w = c - e, right = norm(w x up) and v = right x norm(w),
-//! a column is the fan direction = norm(w) + h v, |h| <= tan(angle / 2). A picture around an object
-//! shows all of its sides at once.
+//! The eyes e(u) and their targets c(u) move along Catmull-Rom splines through the rows of `path`,
+//! with the same step in u from each row to the next. With w = c - e, right = norm(w x up) and v =
+//! right x norm(w), a column is a fan of rays. Their directions are norm(w) + h v, with |h| <=
+//! tan(angle / 2). A picture taken on a path around an object shows all sides of the object at
+//! once.
 //!
-//! A point X is seen in the columns whose plane contains it: (w(u) x up)·(X - e(u)) = 0, a
-//! polynomial of degree 6 in each piece of the spline. `roots.rs` finds all of its roots, so a
-//! point may be seen several times.
+//! A point X is seen in the columns whose plane contains it. These columns satisfy (w(u) x up)·(X -
+//! e(u)) = 0, where the left side is a polynomial of degree 6 in each piece of the spline.
+//! `roots.rs` finds all roots of this polynomial, so a point may be seen several times.
 //!
-//! The area across a ray at distance t is t / (1 + h²) |dX/du·right| per du dh, where
-//! dX/du·right = e'·right + t (w'·right / |w| + h v'·right) / sqrt(1 + h²) and v'·right = -v·(w' x
-//! up) / |w x up|.
+//! The area across a ray at distance t is t / (1 + h²) |dX/du·right| per du dh, where dX/du·right =
+//! e'·right + t (w'·right / |w| + h v'·right) / sqrt(1 + h²) and v'·right = -v·(w' x up) / |w x
+//! up|.
 //!
-//! Source: Rademacher, Bishop, *Multiple-Center-of-Projection Images*, SIGGRAPH 1998. Splines:
-//! Catmull, Rom, *A Class of Local Interpolating Splines*, Computer Aided Geometric Design, 1974.
+//! Source: Rademacher, Bishop, *Multiple-Center-of-Projection Images*, SIGGRAPH 1998. Source of the
+//! splines: Catmull, Rom, *A Class of Local Interpolating Splines*, Computer Aided Geometric
+//! Design, 1974.
 
 mod roots;
 
@@ -46,7 +48,7 @@ fn straight() -> Vec<[f32; 6]> {
     vec![[-1.0, 0.0, 0.0, -1.0, 0.0, -1.0], [1.0, 0.0, 0.0, 1.0, 0.0, -1.0]]
 }
 
-/// Cubic segment of the path of a camera or of its targets, as Bézier control points.
+/// Cubic segment of the path of the eyes or of the targets, given by its Bézier control points.
 type Piece = [DVec3; 4];
 
 fn at(piece: &Piece, s: f64) -> DVec3 {
@@ -59,18 +61,18 @@ fn derivative(piece: &Piece, s: f64) -> DVec3 {
     ((b - a) * (r * r) + (c - b) * (2.0 * r * s) + (d - c) * (s * s)) * 3.0
 }
 
-/// Column of a multiple-centre-of-projection picture: its eye, its axes, and their derivatives with
-/// respect to u from 0 to 1.
+/// Column of a multiple-centre-of-projection picture, with its eye, its axes, and their derivatives
+/// with respect to u from 0 to 1.
 struct Column {
     eye: DVec3,
     right: DVec3,
     up: DVec3,
     forward: DVec3,
-    /// e'·right
+    /// Value of e'·right in the formula of the module.
     eye_moves: f64,
-    /// w'·right / |w|
+    /// Value of w'·right / |w| in the formula of the module.
     forward_turns: f64,
-    /// v'·right
+    /// Value of v'·right in the formula of the module.
     up_turns: f64,
 }
 
@@ -83,7 +85,8 @@ impl MultipleCenterCamera {
         self.path.len() - 1
     }
 
-    /// Returns a piece of the path of the eyes (`column` 0) or of the targets (`column` 3).
+    /// Returns a piece of the path of the eyes (if `column` is 0) or of the targets (if `column` is
+    /// 3).
     fn piece(&self, index: usize, column: usize) -> Piece {
         let last = self.pieces();
         let position = |i: usize| Vec3::from_slice(&self.path[i][column..column + 3]).as_dvec3();
@@ -121,7 +124,8 @@ impl MultipleCenterCamera {
         }
     }
 
-    /// Returns the column of a sample and the height in its fan.
+    /// Returns the column that contains a sample, and the height of the sample in the fan of the
+    /// column.
     fn column_of(&self, sample: &CameraSample) -> Option<(Column, f64)> {
         let sheet = self.sheet();
         let position = sheet.position(sample.point.as_dvec2());
@@ -131,7 +135,7 @@ impl MultipleCenterCamera {
 }
 
 impl Projection for MultipleCenterCamera {
-    /// Pose of the middle column.
+    /// Returns the pose of the middle column.
     fn pose(&self) -> Pose {
         let Column { eye, forward, .. } = self.column(0.5);
         Pose { center: eye.as_vec3(), direction: forward.as_vec3(), up: self.up }
@@ -145,7 +149,7 @@ impl Projection for MultipleCenterCamera {
         if self.path.len() < 2 {
             return Err("`path` must have at least 2 rows".into());
         }
-        // Check between the rows as well: the spline may degenerate there.
+        // Check between the rows as well, since the spline may degenerate there.
         let steps = 16 * self.pieces();
         (0..=steps).try_for_each(|step| {
             let column = self.column(step as f64 / steps as f64);

@@ -1,14 +1,16 @@
-//! Dome picture: a fisheye projector projects it onto a dome, for a viewer at another position.
+//! A dome picture, which a fisheye projector projects onto a dome for a viewer who is not at the
+//! projector.
 //!
-//! A point of the picture leaves the projector P in a direction d (an equidistant fisheye along the
-//! dome's pole) and meets the dome, a part of a unit sphere, at D = P + s d. The viewer V sees it
-//! in the direction D - V, so the picture shows the scene in that direction and looks undistorted
-//! from V. The dome's pole is the scene's `up`, tilted forwards by `tilt`; the front is at the
-//! bottom of the picture, as in dome masters.
+//! A point of the picture leaves the projector P in a direction d, as in an equidistant fisheye
+//! along the pole of the dome. The ray meets the dome, which is part of a unit sphere, at D = P + s
+//! d. The viewer V sees this point in the direction D - V. The picture therefore shows the scene in
+//! that direction, and looks undistorted from V. The pole of the dome is the scene's `up`, tilted
+//! forwards by `tilt`. The front is at the bottom of the picture, as in dome masters.
 //!
-//! The solid angle per area of the picture is that of the projector's fisheye, times s² / (D·d) to
-//! convert it to area on the dome, times (D·e) / v² to convert that to solid angle at the viewer,
-//! where e is the viewer's direction and v its distance.
+//! The solid angle per unit area of the picture is that of the projector's fisheye times two
+//! factors. The factor s² / (D·d) converts solid angle to area on the dome. The factor (D·e) / v²
+//! converts this area to solid angle at the viewer, where e is the direction from the viewer to D
+//! and v is the distance.
 //!
 //! Source: Max, *Computer Graphics Distortion for IMAX and OMNIMAX Projection*, Nicograph '83;
 //! Greene, Heckbert, *Creating Raster Omnimax Images from Multiple Perspective Views Using the
@@ -46,15 +48,15 @@ described! {
     }
 }
 
-/// Distance to the unit sphere from a point inside, along a unit direction.
+/// Returns the distance to the unit sphere from a point inside it, along a unit direction.
 fn to_sphere(point: DVec3, direction: DVec3) -> f64 {
     let along = point.dot(direction);
     (along * along + 1.0 - point.length_squared()).max(0.0).sqrt() - along
 }
 
 impl OmnimaxCamera {
-    /// Axes of the picture in the audience's space, as columns: right, up (the dome's back) and the
-    /// dome's pole.
+    /// Returns the axes of the picture in the space of the audience, as columns. The axes are
+    /// right, up (towards the back of the dome) and the pole of the dome.
     fn axes(&self) -> DMat3 {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(self.tilt));
         DMat3::from_cols(DVec3::X, DVec3::new(0.0, sin, -cos), DVec3::new(0.0, cos, sin))
@@ -64,7 +66,7 @@ impl OmnimaxCamera {
         0.5 * f64::from(self.angle).to_radians()
     }
 
-    /// True if a point of the sphere belongs to the dome.
+    /// True if a point on the sphere belongs to the dome.
     fn on_dome(&self, point: DVec3) -> bool {
         let pole = self.axes().z_axis;
         fp::atan2_f64(point.cross(pole).length(), point.dot(pole)) <= 0.5 * f64::from(self.dome).to_radians()

@@ -1,6 +1,6 @@
-//! The orthographic camera: all rays are parallel.
+//! An orthographic camera, whose rays are all parallel.
 //!
-//! origin = center + x size/2 right + y size/2 up.
+//! The origin of a ray is center + x size/2 right + y size/2 up.
 
 use super::{CameraBasis, CameraSample, Handedness, Pose, Projection};
 use crate::describe::{Constraint, described};
@@ -32,7 +32,8 @@ impl Projection for OrthographicCamera {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
 
-    /// Without `near`, the ray extends both ways: objects behind `center` are seen at negative `t`.
+    /// Without `near`, the ray extends in both directions, and objects behind `center` are seen at
+    /// negative `t`.
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (point, half) = (sample.point, 0.5 * self.size);
         let x = self.handedness.sign() as f32 * point.x;
@@ -49,7 +50,7 @@ impl Projection for OrthographicCamera {
         emit((DVec2::new(p.x, p.y) / (0.5 * f64::from(self.size))).as_vec2());
     }
 
-    /// Constant for all distances.
+    /// The area is the same at all distances.
     fn footprint(&self, frame: &CameraBasis, _: &CameraSample, _: f32) -> f32 {
         let half = 0.5 * f64::from(self.size);
         (half * half * frame.volume()) as f32

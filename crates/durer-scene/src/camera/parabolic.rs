@@ -1,11 +1,13 @@
-//! Paraboloidal mirror below a lens that sees parallel rays: a single viewpoint with a wide view.
+//! A paraboloidal mirror below a lens that receives parallel rays, which gives a wide view from a
+//! single viewpoint.
 //!
-//! The mirror z = (h² - r²) / 2h has its focus at 0 and its axis along z, towards the lens. It
-//! reflects every ray towards the focus along the axis: a direction at the angle θ from the axis is
-//! seen at r = h tan(θ/2). The picture is oriented like a map seen from above; for a viewer in the
-//! focus who looks up, left and right are exchanged. The rim of the disc sees half the field of
-//! view, r = 1 at θ = angle / 2; the horizon is at r = h. The lens, which hides the centre of a
-//! real picture, is omitted.
+//! The mirror z = (h² - r²) / 2h has its focus at 0, and its axis points along z, towards the lens.
+//! Every ray that travels towards the focus is reflected so that it continues along the axis. A
+//! direction at the angle θ from the axis is therefore seen at r = h tan(θ/2). The picture is
+//! oriented like a map seen from above. For a viewer at the focus who looks up, left and right are
+//! exchanged. The rim of the disc sees half the field of view, so r = 1 at θ = angle / 2. The
+//! horizon of the scene is at r = h. The lens, which would hide the centre of a real picture, is
+//! omitted.
 //!
 //! Source: Nayar, *Catadioptric Omnidirectional Camera*, CVPR 1997; Baker, Nayar, *A Theory of
 //! Single-Viewpoint Catadioptric Image Formation*, IJCV 35(2), 1999.
@@ -34,7 +36,7 @@ described! {
     }
 }
 
-/// The picture equals that of a stereographic fisheye along the axis, mirrored.
+/// The picture is the mirror image of that of a stereographic fisheye along the axis.
 const PROJECTION: FisheyeProjection = FisheyeProjection::Stereographic;
 const MIRROR: DVec3 = DVec3::new(-1.0, 1.0, 1.0);
 

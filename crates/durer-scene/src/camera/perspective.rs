@@ -1,8 +1,9 @@
-//! Pinhole camera of the lecture: all rays start at the eye e, with w = forward, u = right, v = up.
+//! The pinhole camera of the lecture, whose rays all start at the eye e, with w = forward, u =
+//! right, v = up.
 //!
-//! direction = D w + x u + y v, with D = 1 / tan(angle / 2) and x, y from -1 to 1 across the larger
-//! side. If the picture is not square, the other side runs from -a to a, where a < 1 is its ratio
-//! to the larger side.
+//! The direction of a ray is D w + x u + y v, where D = 1 / tan(angle / 2), and x and y run from -1
+//! to 1 across the larger side. If the picture is not square, the other coordinate runs from -a to
+//! a, where a < 1 is the ratio of the shorter side to the larger one.
 //!
 //! The solid angle of an area dx dy in the plane at distance D is D |u v w| dx dy / |direction|³.
 
@@ -27,14 +28,15 @@ described! {
     }
 }
 
-/// Half the width of the view at distance 1, for a field of view in degrees.
+/// Returns half the width of the view at distance 1, for a field of view in degrees.
 pub(super) fn half_width(angle: f32) -> f64 {
     fp::tan_f64(f64::from(angle).to_radians() / 2.0)
 }
 
 impl PerspectiveCamera {
-    /// Creates a camera at `eye` that looks at `target`, with +y up, or -z up if it looks along y.
-    /// `angle` is the field of view across the picture's larger side, in degrees from 0 to 180.
+    /// Creates a camera at `eye` that looks at `target`. The up direction is +y, or -z if the
+    /// camera looks along y. `angle` is the field of view across the larger side of the picture, in
+    /// degrees from 0 to 180.
     pub fn look_at(eye: Vec3, target: Vec3, angle: f32) -> Self {
         let direction = target - eye;
         let along = direction.normalize_or_zero().cross(Vec3::Y).length() < 1e-6;

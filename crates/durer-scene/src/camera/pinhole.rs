@@ -1,12 +1,12 @@
-//! Camera obscura: a hole of finite size in front of a film.
+//! A camera obscura, which has a hole of finite size in front of a film.
 //!
-//! The film lies at distance f behind the hole, upside down; a point (x, y) of the picture is the
-//! point -w (x, y) of the film, with w = f tan(angle / 2). Light reaches it along straight lines
-//! through all points h of the hole: direction = (h + w (x, y), f). A far point blurs to a disc as
-//! large as the hole, a near point to a larger disc, so a small hole gives an almost sharp picture.
-//! Diffraction is ignored.
+//! The film lies at distance f behind the hole, and its image is upside down. A point (x, y) of the
+//! picture is the point -w (x, y) of the film, with w = f tan(angle / 2). Light reaches this point
+//! along straight lines through all points h of the hole: direction = (h + w (x, y), f). A far
+//! point is blurred to a disc as large as the hole, and a near point to a larger disc. A small hole
+//! therefore gives an almost sharp picture. Diffraction is ignored.
 //!
-//! Source: Renner, *Pinhole Photography*, 4th edition, 2008, chapter 5, for the geometry.
+//! Source for the geometry: Renner, *Pinhole Photography*, 4th edition, 2008, chapter 5.
 
 use super::perspective::half_width;
 use super::{CameraBasis, CameraSample, Pose, Projection, aperture};
@@ -34,8 +34,8 @@ described! {
 }
 
 impl PinholeCamera {
-    /// Returns the point of the hole, the film's distance, and half the film's width, in camera
-    /// space.
+    /// Returns the point in the hole, the distance of the film, and half the width of the film, in
+    /// camera space.
     fn parts(&self, frame: &CameraBasis, lens: Vec2) -> (DVec2, f64, f64) {
         let film = f64::from(self.film_distance);
         (0.5 * f64::from(self.hole) * aperture::sample(lens, 0, 0.0), film, film * frame.half_width)

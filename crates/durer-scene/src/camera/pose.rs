@@ -18,43 +18,45 @@ pub struct Pose {
     pub up: Vec3,
 }
 
-/// Rule by which a dialect turns a camera's `up` into the up direction of the picture.
+/// Rule by which a dialect derives the up direction of the picture from the `up` of a camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum UpRule {
-    /// Perpendicular to the view direction, unit length.
+    /// The up direction is perpendicular to the view direction and has unit length.
     #[default]
     Perpendicular,
-    /// As written, of any length.
+    /// The up direction is used as written, with any length.
     Raw,
-    /// Unit length, not made perpendicular.
+    /// The up direction has unit length, but it is not made perpendicular.
     Skew,
 }
 
-/// Arithmetic by which a dialect computes perspective rays, down to the rounding.
+/// Arithmetic by which a dialect computes perspective rays, including all rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum RayArithmetic {
     /// Dürer's own arithmetic.
     #[default]
     Own,
-    /// Aim at world-space points on a screen at distance 1, which are rounded to `f32`; from the
-    /// program of 2004.
+    /// Arithmetic of the program of 2004. Rays aim at points in world space on a screen at distance
+    /// 1, and these points are rounded to `f32`.
     ScreenPoint,
-    /// Direction d w + x u + y v in single precision, from `direction` and `up` of any length; from
-    /// the program of 2012.
+    /// Arithmetic of the program of 2012. The direction d w + x u + y v is computed in single
+    /// precision from `direction` and `up` of any length.
     Of2012,
-    /// [`RayArithmetic::Of2012`] with the axes of 2016: `up` as written.
+    /// [`RayArithmetic::Of2012`] with the axes of the program of 2016, in which `up` is used as
+    /// written.
     Of2016,
-    /// [`RayArithmetic::Of2012`] with the axes of 2020: all scaled to unit length by a reciprocal.
+    /// [`RayArithmetic::Of2012`] with the axes of the program of 2020, all of which are multiplied
+    /// by the reciprocal of their length.
     Of2020,
 }
 
 impl RayArithmetic {
-    /// True if a direction is computed as a sum in single precision.
+    /// True if the direction of a ray is computed as a sum in single precision.
     pub(super) fn is_sum(self) -> bool {
         matches!(self, RayArithmetic::Of2012 | RayArithmetic::Of2016 | RayArithmetic::Of2020)
     }
 
-    /// Distance at which a screen from -1 to 1 spans an angle in degrees.
+    /// Returns the distance at which a screen from -1 to 1 spans an angle in degrees.
     pub(super) fn distance(self, angle: f32) -> f32 {
         let radians = (PI_F64 * f64::from(angle) / 180.0) as f32;
         match self {
@@ -64,7 +66,7 @@ impl RayArithmetic {
         }
     }
 
-    /// Normalizes a vector; returns `fallback` if it has no direction.
+    /// Normalizes a vector, or returns `fallback` if it has no direction.
     pub(super) fn normalize_or(self, v: Vec3, fallback: Vec3) -> Vec3 {
         if self != RayArithmetic::Of2020 {
             return normalize_or(v, fallback);
@@ -74,24 +76,25 @@ impl RayArithmetic {
     }
 }
 
-/// Camera rules of a scene's dialect, resolved when the scene is compiled. The defaults are Dürer's
-/// own rules.
+/// Camera rules of the dialect of a scene, which are determined when the scene is compiled. The
+/// defaults are Dürer's own rules.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CameraRules {
     /// Rule for the up direction of the picture.
     pub up: UpRule,
-    /// Arithmetic of perspective rays.
+    /// Arithmetic by which perspective rays are computed.
     pub ray_arithmetic: RayArithmetic,
-    /// True if the centres of the first and last column and row are on the picture's border.
+    /// True if the first and last columns and rows have their pixel centres on the border of the
+    /// picture.
     pub border_pixels: bool,
-    /// True if the camera's square is stretched over a picture that is not square.
+    /// True if the square of the camera is stretched over a picture that is not square.
     pub stretch: bool,
 }
 
-/// Axes of a camera: the view direction, and the picture's right and up. Orthonormal, unless
-/// [`CameraRules`] say otherwise.
+/// Axes of a camera: the view direction, and the right and up directions of the picture. The axes
+/// are orthonormal, unless the [`CameraRules`] specify otherwise.
 ///
-/// Together they span camera space: x to the right, y upwards, z forwards.
+/// Together, the axes span camera space, in which x points to the right, y upwards and z forwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraBasis {
     /// Position of the eye, in world space.
@@ -104,18 +107,19 @@ pub struct CameraBasis {
     pub up: Vec3,
     /// See [`CameraRules::ray_arithmetic`].
     pub ray_arithmetic: RayArithmetic,
-    /// [`Projection::half_width`] of the camera, computed once.
+    /// [`Projection::half_width`] of the camera, which is computed only once.
     pub half_width: f64,
 }
 
-/// Normalizes a vector by dividing each component by the length (glam multiplies by the reciprocal,
-/// which rounds once more). Returns `fallback` if the vector is zero or not finite.
+/// Normalizes a vector by dividing each component by the length. In contrast, glam multiplies by
+/// the reciprocal, which rounds once more. Returns `fallback` if the vector is zero or not finite.
 pub(super) fn normalize_or(v: Vec3, fallback: Vec3) -> Vec3 {
     let [[x], [y], [z]] = normalize_all_or(&[[v.x], [v.y], [v.z]], fallback);
     Vec3::new(x, y, z)
 }
 
-/// Normalizes several vectors, given as arrays of x, y and z. See [`normalize_or`].
+/// Normalizes several vectors, which are given as arrays of their x, y and z components. See
+/// [`normalize_or`].
 #[inline(always)]
 pub(super) fn normalize_all_or<const N: usize>([x, y, z]: &[[f32; N]; 3], fallback: Vec3) -> [[f32; N]; 3] {
     let (mut units, mut all_sound) = ([[0.0; N]; 3], true);
@@ -136,13 +140,15 @@ pub(super) fn normalize_all_or<const N: usize>([x, y, z]: &[[f32; N]; 3], fallba
     units
 }
 
-/// True if a direction is finite and not zero. Branch-free, so that it vectorizes.
+/// True if a direction is finite and not zero. The test has no branches, so that it can be
+/// vectorized.
 #[inline(always)]
 fn is_sound([x, y, z]: [f32; 3]) -> bool {
     (x.is_finite() & y.is_finite() & z.is_finite()) & ((x != 0.0) | (y != 0.0) | (z != 0.0))
 }
 
-/// Version of [`normalize_or`] for the program of 2004: multiplies by the reciprocal of the length.
+/// Version of [`normalize_or`] for the program of 2004, which multiplies by the reciprocal of the
+/// length.
 fn normalize_by_reciprocal_or(v: Vec3, fallback: Vec3) -> Vec3 {
     let unit = v * (1.0 / (v.as_dvec3().length() as f32));
     if unit.is_finite() && unit != Vec3::ZERO { unit } else { normalize_or(v, fallback) }
@@ -154,7 +160,7 @@ impl CameraBasis {
         CameraBasis { half_width: camera.half_width(), ..CameraBasis::new(camera.pose(), rules) }
     }
 
-    /// Computes the axes of a pose: right = norm(direction x up), up = right x direction.
+    /// Computes the axes for a pose: right = norm(direction x up), up = right x direction.
     pub(super) fn new(pose: Pose, CameraRules { up, ray_arithmetic, .. }: CameraRules) -> Self {
         let screen_point = ray_arithmetic == RayArithmetic::ScreenPoint;
         let unit = |v, fallback| {
@@ -165,7 +171,8 @@ impl CameraBasis {
             }
         };
         let forward = unit(pose.direction, Vec3::NEG_Z);
-        // Operands of the cross product: some years use the direction without normalising it.
+        // These are the operands of the cross product. The programs of some years use the direction
+        // without normalising it.
         let (along, over) = match ray_arithmetic {
             RayArithmetic::Of2012 | RayArithmetic::Of2016 => (pose.direction, pose.up),
             RayArithmetic::Of2020 => (forward, ray_arithmetic.normalize_or(pose.up, Vec3::Y)),
@@ -184,7 +191,8 @@ impl CameraBasis {
         CameraBasis { eye: pose.center, forward, right, up, ray_arithmetic, half_width: 1.0 }
     }
 
-    /// Axes as columns, in double precision: the matrix from camera space to world space.
+    /// Returns the axes as the columns of a matrix in double precision, which maps camera space to
+    /// world space.
     fn axes(&self) -> DMat3 {
         DMat3::from_cols(self.right.as_dvec3(), self.up.as_dvec3(), self.forward.as_dvec3())
     }
@@ -199,19 +207,21 @@ impl CameraBasis {
         self.axes().inverse() * vector
     }
 
-    /// Ray from a point along a direction of any length, both in camera space.
+    /// Returns the ray from a point along a direction of any length, both in camera space.
     pub(super) fn ray(&self, origin: DVec3, dir: DVec3) -> Ray {
         let origin = self.eye.as_dvec3() + self.axes() * origin;
         world_ray(origin, self.axes() * dir)
     }
 
-    /// Volume of the unit cube of camera space, whose axes can be skew: 1 if they are orthonormal.
+    /// Returns the volume of the unit cube of camera space, which is 1 if the axes are orthonormal
+    /// and may differ if they are skew.
     pub(super) fn volume(&self) -> f64 {
         self.axes().determinant().abs()
     }
 }
 
-/// Ray from a world-space point along a direction of any length, rounded once.
+/// Returns the ray from a point in world space along a direction of any length. Only the final
+/// result is rounded.
 pub(super) fn world_ray(origin: DVec3, dir: DVec3) -> Ray {
     Ray::new(origin.as_vec3(), dir.normalize_or(DVec3::NEG_Z).as_vec3())
 }

@@ -1,19 +1,21 @@
-//! General projective camera of computer vision: a 3x4 matrix in homogeneous coordinates, and lens
-//! distortion.
+//! The general projective camera of computer vision, which consists of a 3x4 matrix in homogeneous
+//! coordinates and lens distortion.
 //!
-//! P = K [R | t] maps a world-space point to a pixel: (x, y, 1) ~ P (X, Y, Z, 1), x to the right
-//! and y downwards, with the centre of the upper left pixel at (0, 0). The scale of P is arbitrary.
-//! Its left part M = K R is decomposed into an upper triangular K and a rotation R; the eye is -M⁻¹
-//! p4. Between R and K the lens distorts the point (x, y) at depth 1, with s = x² + y², by the
-//! Brown-Conrady model in OpenCV's form:
+//! P = K [R | t] maps a point in world space to a pixel: (x, y, 1) ~ P (X, Y, Z, 1). Here, x
+//! increases to the right and y downwards, and the centre of the upper left pixel is at (0, 0). The
+//! scale of P is arbitrary. The left part M = K R of P is decomposed into an upper triangular
+//! matrix K and a rotation R. The eye is at -M⁻¹ p4, where p4 is the last column of P. Between R
+//! and K, the lens distorts the point (x, y) at depth 1 by the Brown-Conrady model in OpenCV's
+//! form, where s = x² + y²:
 //!
 //! ```text
 //! x' = x (1 + k1 s + k2 s² + k3 s³) + 2 p1 x y + p2 (s + 2 x²)
 //! y' = y (1 + k1 s + k2 s² + k3 s³) + p1 (s + 2 y²) + 2 p2 x y
 //! ```
 //!
-//! Rays need the inverse, by Newton's method. The camera sees nothing where the distortion folds
-//! back on itself, since the model is meaningless there.
+//! Rays need the inverse of this mapping, which is computed by Newton's method. The camera sees
+//! nothing beyond the point where the distortion folds back on itself, since the model is
+//! meaningless there.
 //!
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! sections 6.1, 6.2 and A4.1; Brown, *Decentering Distortion of Lenses*, Photogrammetric
@@ -50,15 +52,15 @@ described! {
     }
 }
 
-/// Matrix of a camera at the origin that looks along -z.
+/// Returns the matrix of a camera at the origin that looks along -z.
 fn plain_matrix() -> Vec<[f32; 4]> {
     vec![[512.0, 0.0, -255.5, 0.0], [0.0, -512.0, -255.5, 0.0], [0.0, 0.0, -1.0, 0.0]]
 }
 
-/// Projection matrix of the camera, decomposed into eye, rotation and intrinsic matrix.
+/// Projection matrix of the camera, decomposed into the eye, the rotation and the intrinsic matrix.
 struct Decomposition {
     eye: DVec3,
-    /// Rows: the camera's right, down and forward, in world space.
+    /// The rows are the right, down and forward directions of the camera in world space.
     rotation: DMat3,
     /// Upper triangular intrinsic matrix, with 1 in the lower right corner.
     intrinsic: DMat3,
@@ -69,14 +71,15 @@ impl ProjectiveCamera {
         PictureSheet(DVec2::new(f64::from(self.width), f64::from(self.height)))
     }
 
-    /// Returns the left three columns of the matrix, by rows, and the fourth column.
+    /// Returns the rows of the left three columns of the matrix, and the fourth column.
     fn rows(&self) -> ([DVec3; 3], DVec3) {
         let row = |i: usize| self.matrix[i].map(f64::from);
         let left = [0, 1, 2].map(|i| DVec3::from_slice(&row(i)[..3]));
         (left, DVec3::new(row(0)[3], row(1)[3], row(2)[3]))
     }
 
-    /// Computes K, R and the eye by Gram-Schmidt on the rows of M, from the last to the first.
+    /// Computes K, R and the eye by applying the Gram-Schmidt process to the rows of M, from the
+    /// last to the first.
     fn parts(&self) -> Decomposition {
         let ([a, b, c], last) = self.rows();
         // Depth is positive in front of the camera if M preserves handedness.
@@ -105,8 +108,8 @@ impl ProjectiveCamera {
     /// point.
     fn is_before_fold(&self, point: DVec2) -> bool {
         let end = point.length_squared();
-        // d/dr of r (1 + k1 r² + ...), as a function of s = r²; its extrema are at the roots of its
-        // derivative.
+        // This is d/dr of r (1 + k1 r² + ...), as a function of s = r². The extrema of this
+        // function are at the roots of its derivative.
         let growth = |s: f64| {
             let (factor, slope) = self.radial(s);
             factor + 2.0 * s * slope
@@ -131,14 +134,15 @@ impl ProjectiveCamera {
         (factor * point + tangential, jacobian)
     }
 
-    /// Returns the point that the lens distorts to `target`, if there is one before the fold.
+    /// Returns the point that the lens distorts to `target`, if there is such a point before the
+    /// fold.
     fn undistort(&self, target: DVec2) -> Option<DVec2> {
-        // The first guess usually converges; otherwise follow the point outwards from the centre.
+        // The first guess usually converges. Otherwise, follow the point outwards from the centre.
         let followed = || (1..=16).try_fold(DVec2::ZERO, |point, i| self.solve(point, target * (f64::from(i) / 16.0)));
         self.solve(target, target).or_else(followed)
     }
 
-    /// Solves by Newton's method from a guess.
+    /// Solves the equation by Newton's method, starting from a guess.
     fn solve(&self, mut point: DVec2, target: DVec2) -> Option<DVec2> {
         for _ in 0..20 {
             let (there, jacobian) = self.distort(point);
@@ -153,7 +157,7 @@ impl ProjectiveCamera {
         (solved && jacobian.determinant() > 0.0 && self.is_before_fold(point)).then_some(point)
     }
 
-    /// Returns the point at depth 1 that is seen at a sample.
+    /// Returns the point at depth 1 that is seen through a sample.
     fn point_of(&self, parts: &Decomposition, sample: &CameraSample) -> Option<DVec2> {
         let sheet = self.sheet();
         if !sheet.contains(sheet.position(sample.pixel.as_dvec2())) {
@@ -182,7 +186,7 @@ impl Projection for ProjectiveCamera {
         }
         let ([a, b, c], _) = self.rows();
         let volume = a.dot(b.cross(c)).abs();
-        // Compare with the volume of orthogonal rows of these lengths.
+        // Compare the volume with that of orthogonal rows of the same lengths.
         let singular = volume <= 1e-9 * a.length() * b.length() * c.length() || !self.pose().center.is_finite();
         match singular {
             true => Err("the left three columns of `matrix` are singular, so the camera has no eye".into()),

@@ -1,10 +1,10 @@
-//! Push-broom camera: a line of pixels that moves in a straight line while it records, as in
-//! satellites and scanners.
+//! A push-broom camera, in which a line of pixels moves along a straight path while it records, as
+//! in satellites and scanners.
 //!
-//! The column at the fraction u of the path is a fan of rays from e(u) = start + u (end - start):
-//! direction = forward + h up, |h| <= tan(angle / 2). The picture has perspective across the path,
-//! but not along it. The area across a ray grows linearly with distance: t |m·right| / |direction|²
-//! per du dh, m = end - start.
+//! The column at the fraction u of the path is a fan of rays from e(u) = start + u (end - start).
+//! Their directions are forward + h up, with |h| <= tan(angle / 2). The picture has perspective
+//! across the path, but not along it. The area across a ray grows linearly with distance. The area
+//! is t |m·right| / |direction|² per du dh, where m = end - start.
 //!
 //! Source: Gupta, Hartley, *Linear Pushbroom Cameras*, PAMI 19(9), 1997.
 
@@ -43,7 +43,7 @@ impl PushBroomCamera {
         self.end.as_dvec3() - self.start.as_dvec3()
     }
 
-    /// Returns the fraction of the path and the height in the fan for a sample.
+    /// Returns the fraction of the path, and the height in the fan, for a sample.
     fn column(&self, sample: &CameraSample) -> Option<(f64, f64)> {
         let sheet = self.sheet();
         let position = sheet.position(sample.point.as_dvec2());
@@ -53,7 +53,7 @@ impl PushBroomCamera {
 }
 
 impl Projection for PushBroomCamera {
-    /// Pose halfway along the path.
+    /// Returns the pose halfway along the path.
     fn pose(&self) -> Pose {
         let center = self.start.as_dvec3() + 0.5 * self.path_vector();
         Pose { center: center.as_vec3(), direction: self.direction, up: self.up }
@@ -66,7 +66,7 @@ impl Projection for PushBroomCamera {
     fn validate(&self) -> Result<(), String> {
         let frame = CameraBasis::new(self.pose(), CameraRules::default());
         let sideways = self.path_vector().dot(frame.right.as_dvec3()).abs();
-        // Also false for a path of length 0.
+        // The test is also false for a path of length 0.
         let moves = sideways > 1e-6 * self.path_vector().length();
         match moves {
             true => Ok(()),

@@ -3,10 +3,11 @@
 use super::{Camera, CameraBasis, CameraSample, Projection};
 use crate::math::Vec2;
 
-/// Cone around a camera ray that covers an area of the picture; its width selects texture detail.
+/// Cone around a camera ray that covers an area of the picture. The width of the cone selects the
+/// texture detail.
 ///
-/// A single cone, at the picture's centre, is used for the full picture. Source: Amanatides, *Ray
-/// Tracing with Cones*, SIGGRAPH 1984.
+/// A single cone, computed at the centre of the picture, is used for the full picture. Source:
+/// Amanatides, *Ray Tracing with Cones*, SIGGRAPH 1984.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayCone {
     /// Width at the camera, in world units.
@@ -16,8 +17,8 @@ pub struct RayCone {
 }
 
 impl RayCone {
-    /// Creates the cone for an area of a camera's picture; `None` if nothing is seen at the
-    /// picture's centre.
+    /// Creates the cone for an area of a camera's picture. Returns `None` if nothing is seen at the
+    /// centre of the picture.
     pub fn new(camera: &Camera, basis: &CameraBasis, area: f32) -> Option<Self> {
         let middle = CameraSample::at(Vec2::ZERO);
         camera.ray(basis, &middle)?;
@@ -26,7 +27,7 @@ impl RayCone {
         (cone.width.is_finite() && cone.spread.is_finite()).then_some(cone)
     }
 
-    /// Returns the width at a distance, in world units.
+    /// Returns the width of the cone at a distance, in world units.
     pub fn width_at(&self, distance: f32) -> f32 {
         self.width + distance * self.spread
     }
@@ -46,7 +47,7 @@ mod tests {
         let perspective = PerspectiveCamera { angle: 90.0, ..Default::default() };
         let cone_of_pixel = cone(Camera::Perspective(perspective), 0.01);
         assert!((cone_of_pixel.width_at(0.0)).abs() < 1e-6);
-        // At distance 2 the square is 4 wide.
+        // At distance 2, the square is 4 wide.
         assert!((cone_of_pixel.width_at(2.0) - 0.02).abs() < 1e-6);
         let orthographic = OrthographicCamera { size: 6.0, ..Default::default() };
         let cone_of_pixel = cone(Camera::Orthographic(orthographic), 0.01);

@@ -1,10 +1,11 @@
-//! Two perspective cameras side by side: a stereo pair.
+//! A stereo pair, made of two perspective cameras side by side.
 //!
-//! `offAxis` shears both views so that they share one window at the convergence distance: objects
-//! there appear on the screen, nearer objects in front of it, without vertical parallax. `toeIn`
-//! turns both cameras towards a point at that distance, as a toed-in camera rig does; the two
-//! pictures then differ vertically towards the corners. `parallel` neither turns nor shears: all
-//! objects appear in front of the screen.
+//! `offAxis` shears both views so that they share one window at the convergence distance. Objects
+//! at the convergence distance appear on the screen, and nearer objects appear in front of it,
+//! without vertical parallax. `toeIn` turns both cameras towards a point at the convergence
+//! distance, as a rig of toed-in cameras does. The two pictures then differ vertically towards the
+//! corners. `parallel` neither turns nor shears the views, so all objects appear in front of the
+//! screen.
 //!
 //! Source: Hodges, McAllister, *Stereo and Alternating-Pair Techniques for Display of
 //! Computer-Generated Images*, IEEE CG&A 5(9), 1985; Bourke, *Calculating Stereo Pairs*, 1999.
@@ -47,8 +48,8 @@ described! {
     }
 }
 
-/// Eye of a stereo camera relative to the midpoint: position, axes as columns, and the shift of its
-/// window.
+/// Eye of a stereo camera relative to the midpoint of both eyes, with its position, its axes (as
+/// columns), and the shift of its window.
 struct Eye {
     at: DVec3,
     axes: DMat3,
@@ -75,12 +76,12 @@ impl StereoCamera {
         }
     }
 
-    /// Window units at distance 1 per unit of one eye's sheet.
+    /// Returns the size at distance 1 of one unit on the sheet for one eye.
     fn scale(&self, frame: &CameraBasis) -> f64 {
         frame.half_width / (0.5 * self.eye_size().max_element())
     }
 
-    /// Returns the eye of a sample, and the direction from it in the eye's axes.
+    /// Returns the eye of a sample, and the direction from this eye in its own axes.
     fn eye_ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<(Eye, DVec3)> {
         let (view, position) = self.eyes.view(self.eye_size(), sample.point.as_dvec2(), sample.pixel.as_dvec2())?;
         let eye = self.eye(view.side);

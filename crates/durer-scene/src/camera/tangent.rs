@@ -1,7 +1,7 @@
-//! Single-precision tangent, as the official programs of 2016 and 2020 compute it.
+//! Computes the tangent in single precision, as the official programs of 2016 and 2020 do.
 //!
-//! The result is off by one unit in the last place for one angle in thirty, for example 60 degrees.
-//! This changes all camera rays.
+//! For one angle in thirty, for example 60 degrees, the result is off by one unit in the last
+//! place. An error in this tangent changes all camera rays.
 //!
 //! Source: fdlibm, Sun Microsystems 1993, in the single-precision version of glibc before 2.40.
 
@@ -26,16 +26,16 @@ const SERIES: [f32; 13] = [
 
 /// Pi/4 as a sum of two numbers.
 const QUARTER: [f32; 2] = [7.8539812565e-01, 3.7748947079e-08];
-/// Pi/2 in parts: the first 17 bits and the remainder; then the next 17 bits and the remainder
-/// after those.
+/// Pi/2 as the sum of its first 17 bits and the remainder. The last two entries are the next 17
+/// bits of pi/2 and the remainder after those bits.
 const HALF: [f32; 4] = [1.5707855225e+00, 1.0804334124e-05, 1.0804273188e-05, 6.0770999344e-11];
-/// Above this, the series is evaluated for pi/4 minus the angle.
+/// Limit above which the series is evaluated at pi/4 minus the angle.
 const LARGE: f32 = f32::from_bits(0x3f2c_a140);
 
-/// Below this, the linear approximation is accurate enough.
+/// Limit below which the linear approximation of the tangent is accurate enough.
 const TINY: f32 = 1.0 / 8192.0;
 
-/// Tangent of an angle in radians, from 0 to pi/2.
+/// Returns the tangent of an angle in radians, from 0 to pi/2.
 pub(super) fn tangent(x: f32) -> f32 {
     if x <= QUARTER[0] {
         return series([x, 0.0], false);
@@ -49,7 +49,8 @@ pub(super) fn tangent(x: f32) -> f32 {
     series([over, (rest - over) - part], true)
 }
 
-/// Tangent of the sum of an angle and its low-order part; the negative reciprocal if `turned`.
+/// Returns the tangent of the sum of an angle and its low-order part, or the negative reciprocal of
+/// the tangent if `turned` is set.
 fn series([mut x, mut rest]: [f32; 2], turned: bool) -> f32 {
     let sign = if turned { -1.0 } else { 1.0 };
     let (is_negative, is_large) = (x < 0.0, x.abs() >= LARGE);
@@ -65,7 +66,7 @@ fn series([mut x, mut rest]: [f32; 2], turned: bool) -> f32 {
     }
     let square = x * x;
     let fourth = square * square;
-    // Every second coefficient, from last to first.
+    // Use every second coefficient, from the last to the first.
     let sum = |first: usize| SERIES.iter().skip(first).step_by(2).rev().copied().reduce(|sum, c| c + fourth * sum);
     let (odd, even) = (sum(1).unwrap_or(0.0), square * sum(2).unwrap_or(0.0));
     let cube = square * x;
@@ -93,7 +94,7 @@ mod tests {
 
     #[test]
     fn tangents_are_those_of_the_library() {
-        // Values from glibc 2.36.
+        // These values are from glibc 2.36.
         for (degrees, bits) in TANGENTS {
             let radians = (std::f64::consts::PI * f64::from(degrees) / 180.0) as f32;
             assert_eq!(tangent(radians / 2.0).to_bits(), bits, "{degrees}");

@@ -1,4 +1,4 @@
-//! Rays of cameras through known points of pictures.
+//! Tests the rays of cameras through known points of pictures.
 
 use super::*;
 
@@ -50,7 +50,7 @@ fn sizes_follow_proportions_and_empty_pixels_are_counted() {
     assert_eq!(Raster::natural_size(None, (512, 512)), (512, 512));
     assert_eq!([size(4.0, 3.0), size(6.0, 1.0), size(360.0, 180.0)], [(592, 444), (1254, 209), (720, 360)]);
     assert_eq!([size(1.0, 1.0), size(4000.0, 1000.0), size(1e4, 1.0)], [(512, 512), (1024, 256), (50000, 5)]);
-    // The proposed size has no empty columns or rows, for any number of pixels.
+    // A picture of the proposed size has no empty columns or rows, for any number of pixels.
     for (pixels, w, h) in [(8, 360.0, 180.0), (40, 360.0, 180.0), (33, 6.25, 2.0), (51, 1.0, 7.3)] {
         let sides = Some(Vec2::new(w, h));
         let (width, height) = Raster::natural_size(sides, (pixels, pixels));
@@ -70,7 +70,7 @@ fn border_pixels_have_centres_on_the_border() {
     let stretched = Raster::new(7, 5, None, CameraRules { border_pixels: true, stretch: true, ..OURS });
     assert_eq!(stretched.point(Vec2::splat(0.5)), Vec2::new(-1.0, 1.0));
     assert_eq!(stretched.point(last), Vec2::new(1.0, -1.0));
-    // A picture of one pixel, or of one row, has its centre at 0.
+    // A picture that consists of one pixel or one row has its centre at 0.
     assert_eq!(
         Raster::new(1, 1, None, CameraRules { border_pixels: true, ..OURS }).point(Vec2::splat(0.5)),
         Vec2::ZERO
@@ -90,7 +90,7 @@ fn basis_is_right_handed_unless_up_is_raw() {
     close(frame.up, Vec3::Y);
     assert_eq!(CameraBasis::new(pose, CameraRules { up: UpRule::Raw, ..OURS }).up, pose.up);
     close(CameraBasis::new(pose, CameraRules { up: UpRule::Skew, ..OURS }).up, pose.up.normalize());
-    // For a view along `up`, the axes are arbitrary but perpendicular.
+    // If the view direction is parallel to `up`, the axes are arbitrary but perpendicular.
     let frame = CameraBasis::new(Pose { up: Vec3::Z, ..pose }, OURS);
     assert!(frame.right.is_normalized() && frame.up.is_normalized());
     assert!(frame.right.dot(frame.up).abs() + frame.right.dot(frame.forward).abs() < 1e-6);
@@ -124,7 +124,7 @@ fn orthographic_rays_start_on_the_picture_and_extend_both_ways() {
         ..OrthographicCamera::default()
     };
     let frame = CameraBasis::of(&camera, OURS);
-    // right = x cross y = z; up = y.
+    // The axes of the picture are right = x cross y = z, and up = y.
     let ray = camera.ray(&frame, &CameraSample::at(Vec2::new(1.0, -0.5))).unwrap();
     close(ray.origin, Vec3::new(1.0, 2.0 - 1.25, 3.0 + 2.5));
     close(ray.dir, Vec3::X);

@@ -1,17 +1,17 @@
-//! Thin lens: sharp at one distance, blurred elsewhere.
+//! A thin lens, for which the picture is sharp at one distance and blurred elsewhere.
 //!
-//! All light from a point of the focus plane that passes the lens meets in one point of the
-//! picture. So the ray through a point l of the lens goes to the point where the ray through the
-//! lens's centre meets the plane at the focus distance F: direction = (F tan(angle / 2) (x + s, y +
-//! r) - l, F). A point at distance z is blurred to the shape of the aperture; in a picture of width
-//! 2 its diameter is aperture |F - z| / (F z tan(angle / 2)).
+//! All light from a point in the focus plane that passes through the lens meets in one point of the
+//! picture. The ray through a point l of the lens therefore goes to the point where the ray through
+//! the centre of the lens meets the plane at the focus distance F: direction = (F tan(angle / 2)
+//! (x + s, y + r) - l, F). A point at distance z is blurred to the shape of the aperture. In a
+//! picture of width 2, the diameter of this shape is aperture |F - z| / (F z tan(angle / 2)).
 //!
-//! The shift (s, r) moves the film in its plane, as view cameras do: the camera stays level and
+//! The shift (s, r) moves the film in its plane, as in view cameras. The camera stays level but
 //! sees more above than below, and vertical lines stay parallel.
 //!
-//! Source: Cook, Porter, Carpenter, *Distributed Ray Tracing*, SIGGRAPH 1984; Potmesil,
-//! Chakravarty, *A Lens and Aperture Camera Model for Synthetic Image Generation*, SIGGRAPH 1981,
-//! for the circle of confusion.
+//! Source: Cook, Porter, Carpenter, *Distributed Ray Tracing*, SIGGRAPH 1984; for the circle of
+//! confusion, Potmesil, Chakravarty, *A Lens and Aperture Camera Model for Synthetic Image
+//! Generation*, SIGGRAPH 1981.
 
 use super::perspective::half_width;
 use super::{CameraBasis, CameraSample, Handedness, Pose, Projection, aperture};
@@ -58,14 +58,15 @@ impl ThinLensCamera {
         DVec2::new(f64::from(self.shift_right), f64::from(self.shift_up))
     }
 
-    /// Returns the point of the lens, the focus distance, and half the width of the view there.
+    /// Returns the point on the lens, the focus distance, and half the width of the view at that
+    /// distance.
     fn parts(&self, frame: &CameraBasis, lens: Vec2) -> (DVec2, f64, f64) {
         let focus = f64::from(self.focus_distance);
         let opening = aperture::sample(lens, self.blades, self.blade_angle);
         (0.5 * f64::from(self.aperture) * opening, focus, focus * frame.half_width)
     }
 
-    /// Origin and direction in camera space.
+    /// Returns the origin and the direction of the ray in camera space.
     fn line(&self, frame: &CameraBasis, sample: &CameraSample) -> (DVec3, DVec3) {
         let (lens, focus, width) = self.parts(frame, sample.lens);
         let target = width * (sample.point.as_dvec2() + self.shift());

@@ -1,4 +1,5 @@
-//! Assets of a scene in memory, instead of files: meshes, pictures, light profiles and densities.
+//! Assets of a scene that are in memory instead of in files: meshes, pictures, light profiles and
+//! densities.
 
 use crate::describe::{Constraint, FileName};
 use crate::dialect::set;
@@ -14,8 +15,9 @@ use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Meshes, pictures, light profiles and densities of a scene in memory, by name. A [`FileName`] of
-/// the scene refers to the asset with that name, or to a file if there is none.
+/// Meshes, pictures, light profiles and densities of a scene that are in memory, with their names
+/// as keys. A [`FileName`] in the scene refers to the asset with that name, or to a file if there
+/// is no such asset.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Assets {
     /// Meshes.
@@ -28,12 +30,12 @@ pub struct Assets {
     pub densities: BTreeMap<String, (Aabb, Arc<DensityGrid>)>,
 }
 
-/// Image of a texture that materials refer to by name, with its mapping onto surfaces.
+/// Image of a texture, with its mapping onto surfaces. Materials refer to the texture by name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextureImage {
-    /// Location of its bytes.
+    /// Location of the bytes of the image.
     pub bytes: PictureBytes,
-    /// Mapping onto surfaces.
+    /// Mapping of the image onto surfaces.
     pub mapping: Mapping,
 }
 
@@ -85,13 +87,14 @@ described! {
 }
 
 impl NamedTexture {
-    /// Describes a picture as a named texture; `None` if its bytes are not in a file.
+    /// Describes a picture as a named texture, or returns `None` if the bytes of the picture are
+    /// not in a file.
     pub fn of(name: &str, picture: &TextureImage) -> Option<Self> {
         let PictureBytes::File(file) = &picture.bytes else { return None };
         Some(NamedTexture::with_mapping(name, file, picture.mapping))
     }
 
-    /// Describes a picture by name, file and mapping.
+    /// Describes a picture as a named texture, given its name, file and mapping.
     pub(super) fn with_mapping(name: &str, file: &str, mapping: Mapping) -> Self {
         let named = |path: &str| FileName { path: path.to_string(), ..FileName::default() };
         let Mapping { wrap: [wrap_u, wrap_v], nearest, mipmaps, second, transform, cutoff, strength, channel, range } =
@@ -130,17 +133,17 @@ impl NamedTexture {
     }
 }
 
-/// Location of the bytes of a texture image: a file or memory.
+/// Location of the bytes of a texture image, which is a file or memory.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PictureBytes {
-    /// File name relative to the scene.
+    /// Name of the image file, relative to the scene.
     File(String),
-    /// Name for messages, and the bytes of a picture file in memory.
+    /// Name for use in messages, and the bytes of a picture file in memory.
     Memory(String, Arc<[u8]>),
 }
 
 impl PictureBytes {
-    /// Name of the file, or the name for messages.
+    /// Returns the name of the file, or the name for use in messages.
     pub fn path(&self) -> &str {
         let (PictureBytes::File(path) | PictureBytes::Memory(path, _)) = self;
         path
@@ -154,7 +157,7 @@ impl Assets {
         meshes.is_empty() && pictures.is_empty() && profiles.is_empty() && densities.is_empty()
     }
 
-    /// True if some assets are not in files, so that a scene file cannot refer to them.
+    /// True if some assets are not in files, which means that a scene file cannot refer to them.
     pub fn has_in_memory(&self) -> bool {
         let loose = |picture: &TextureImage| matches!(picture.bytes, PictureBytes::Memory(..));
         let Assets { meshes, pictures, profiles, densities } = self;

@@ -1,4 +1,5 @@
-//! Builder for scenes in code, which refers to materials and meshes by handles instead of names.
+//! Builder for scenes that are created in code, which refers to materials and meshes by handles
+//! instead of names.
 
 use super::{Background, Group, Material, MatrixOp, Object, ObjectKind, Scene, Spanned};
 use crate::camera::Camera;
@@ -15,8 +16,8 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MaterialId(u32);
 
-/// Handle of a mesh in a [`SceneBuilder`]. The mesh can be added to the scene any number of times
-/// and is stored once.
+/// Handle of a mesh in a [`SceneBuilder`]. The mesh is stored once, and it can be added to the
+/// scene any number of times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MeshId(u32);
 
@@ -26,7 +27,7 @@ pub struct MeshId(u32);
 pub enum Shape {
     /// A primitive, such as a sphere, a box or a disc.
     Primitive(Primitive),
-    /// A mesh of the same builder.
+    /// A mesh that is stored in the same builder.
     Mesh(MeshId),
 }
 
@@ -60,8 +61,8 @@ impl From<HairMaterial> for Material {
     }
 }
 
-/// Builder for a scene in code. Lengths can have any unit, but must be in metres if lights are
-/// given in candela or lumens. y is up.
+/// Builder for a scene that is created in code. Lengths can be in any unit, but they must be in
+/// metres if lights are given in candela or lumens. The y axis points upwards.
 ///
 /// ```
 /// use durer_scene::camera::PerspectiveCamera;
@@ -96,13 +97,13 @@ pub struct ObjectBuilder {
 }
 
 impl ObjectBuilder {
-    /// Sets the material. Objects without one are plain grey.
+    /// Sets the material. Objects without a material are plain grey.
     pub fn material(&mut self, material: MaterialId) -> &mut Self {
         self.material = Some(material);
         self
     }
 
-    /// Appends a transform by a matrix.
+    /// Appends a transform that is given by a matrix.
     pub fn transform(&mut self, op: MatrixOp) -> &mut Self {
         // The first factor of a product is applied last.
         self.ops.insert(0, op);
@@ -119,8 +120,8 @@ impl ObjectBuilder {
         self.transform(MatrixOp::UniformScale(factor))
     }
 
-    /// Appends a rotation by degrees about an axis of any length through the origin:
-    /// counter-clockwise, seen from the tip of the axis.
+    /// Appends a rotation about an axis through the origin, by an angle in degrees. The axis can
+    /// have any length, and the rotation is counter-clockwise as seen from its tip.
     pub fn rotate(&mut self, axis: Vec3, degrees: f32) -> &mut Self {
         self.transform(MatrixOp::Rotate(axis, degrees))
     }
@@ -152,26 +153,27 @@ impl SceneBuilder {
         self
     }
 
-    /// Adds a light without extent. Emissive surfaces are defined by their material.
+    /// Adds a light that has no extent. Emissive surfaces are defined by their material instead.
     pub fn light(&mut self, light: impl Into<Light>) -> &mut Self {
         self.scene.lights.get_or_insert_default().push(Spanned { value: light.into(), span: Span::default() });
         self
     }
 
-    /// Adds a material, for any number of objects.
+    /// Adds a material that any number of objects can use.
     pub fn material(&mut self, material: impl Into<Material>) -> MaterialId {
         self.scene.materials.push(Spanned { value: material.into(), span: Span::default() });
         MaterialId(self.scene.materials.len() as u32 - 1)
     }
 
-    /// Stores a mesh: positions, and triangles of three position indices each, counter-clockwise
-    /// seen from outside. It is not visible until it is added to the scene.
+    /// Stores a mesh that is given by positions and triangles. A triangle consists of three
+    /// position indices, counter-clockwise as seen from outside. The mesh is not visible until it
+    /// is added to the scene.
     pub fn mesh(&mut self, positions: &[impl Into<Vec3> + Copy], triangles: &[[u32; 3]]) -> MeshId {
         let positions = positions.iter().map(|&position| position.into()).collect();
         self.mesh_data(MeshData { positions, triangles: triangles.to_vec(), ..MeshData::default() })
     }
 
-    /// Stores a mesh with all its attributes: normals, texture coordinates, colours.
+    /// Stores a mesh with all its attributes, which are normals, texture coordinates and colours.
     pub fn mesh_data(&mut self, data: impl Into<Arc<MeshData>>) -> MeshId {
         let mesh = MeshId(self.meshes);
         self.scene.assets.meshes.insert(mesh.name(), data.into());
@@ -179,7 +181,8 @@ impl SceneBuilder {
         mesh
     }
 
-    /// Adds a primitive or a mesh to the scene. Set its material and transforms on the result.
+    /// Adds a primitive or a mesh to the scene. The material and transforms of the object can be
+    /// set on the result.
     pub fn add(&mut self, shape: impl Into<Shape>) -> &mut ObjectBuilder {
         let node = match shape.into() {
             Shape::Primitive(primitive) => ObjectKind::Primitive(primitive),
@@ -196,7 +199,7 @@ impl SceneBuilder {
     ///
     /// # Errors
     ///
-    /// All errors that were found: see [`Scene::validate`].
+    /// Returns all errors that were found; see [`Scene::validate`].
     pub fn build(&self) -> Result<Scene, Diagnostics> {
         let mut scene = self.scene.clone();
         let object = |placed: &ObjectBuilder| {
@@ -228,7 +231,8 @@ impl SceneBuilder {
 }
 
 impl MeshId {
-    /// Name of its asset, which cannot be a file name in a scene text.
+    /// Returns the name of the asset for this mesh, which cannot be a file name in the text of a
+    /// scene.
     fn name(self) -> String {
         format!("<mesh {}>", self.0)
     }

@@ -1,4 +1,5 @@
-//! Defaults for models: a camera that shows the full model, lights, a ground and a material.
+//! Defaults for models, which consist of a camera that shows the full model, lights, a ground and a
+//! material.
 
 use super::extent::points;
 use super::{Background, Group, Material, Object, ObjectKind, Scene, Spanned};
@@ -22,19 +23,19 @@ pub enum Axis {
     Z,
 }
 
-/// Preset view of a model, for models without a camera or to replace their camera.
+/// Preset view of a model, for models that have no camera or whose camera is to be replaced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PresetView {
-    /// Perspective, from the front, slightly from the right and from above.
+    /// Perspective view from the front, slightly from the right and from above.
     #[default]
     ThreeQuarter,
-    /// Parallel, from the front.
+    /// Parallel view from the front.
     Front,
-    /// Parallel, from the right.
+    /// Parallel view from the right.
     Side,
-    /// Parallel, from above.
+    /// Parallel view from above.
     Top,
-    /// Parallel, such that edges along all three axes have equal lengths.
+    /// Parallel view in which edges along all three axes have equal lengths.
     Iso,
 }
 
@@ -43,47 +44,52 @@ pub enum PresetView {
 pub enum DefaultLighting {
     /// No light and no ground.
     None,
-    /// A key light from the upper left, a weaker light from the right, a bright ground.
+    /// A key light from the upper left, a weaker light from the right, and a bright ground.
     #[default]
     Soft,
-    /// A low sun under a blue sky, a bright ground.
+    /// A low sun under a blue sky, and a bright ground.
     Sun,
 }
 
-/// Options for completing a model to a scene, with a camera, lights, a ground and a material.
+/// Options for turning a model into a complete scene with a camera, lights, a ground and a
+/// material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneDefaults {
-    /// Up axis; `None` for the usual axis of the format.
+    /// Up axis, or `None` for the usual axis of the format.
     pub up: Option<Axis>,
-    /// View; `None` for the model's own camera, or a three-quarter view if it has none.
+    /// Preset view, or `None` for the model's own camera. If the model has no camera, `None`
+    /// selects a three-quarter view.
     pub view: Option<PresetView>,
-    /// Lighting; `None` for the model's own lights, or [`DefaultLighting::Soft`] if it has none.
+    /// Preset lighting, or `None` for the model's own lights. If the model has no lights, `None`
+    /// selects [`DefaultLighting::Soft`].
     pub lighting: Option<DefaultLighting>,
-    /// Name of the camera to use; `None` for the first.
+    /// Name of the camera to use, or `None` for the first camera.
     pub camera: Option<String>,
-    /// Name of the glTF material variant to use (KHR_materials_variants); `None` for the default
+    /// Name of the glTF material variant to use (KHR_materials_variants), or `None` for the default
     /// materials.
     pub variant: Option<String>,
-    /// Time of the animation in seconds; `None` for no animation.
+    /// Time of the animation in seconds, or `None` for no animation.
     pub animation_time: Option<f32>,
-    /// File of Radiance views; the last of them becomes the camera.
+    /// File of Radiance views, the last of which becomes the camera.
     pub view_file: Option<PathBuf>,
     /// Environment map that lights the model instead of the default lights.
     pub environment: Option<PathBuf>,
     /// True to move the model's own camera to a position from which the full model is visible.
     pub fit: bool,
-    /// Degrees by which the camera orbits the model, counter-clockwise as seen from above, at a
-    /// distance that shows the full model at all angles; `None` for a single picture.
+    /// Angle in degrees by which the camera orbits the model, counter-clockwise as seen from above,
+    /// or `None` for a single picture. The distance of the camera is chosen so that the full model
+    /// is visible at all angles.
     pub orbit_degrees: Option<f32>,
-    /// True to neither add nor replace anything, because the scene is converted to another format.
+    /// True to neither add nor replace anything, because the scene is being converted to another
+    /// format.
     pub convert_only: bool,
     /// True to use only the model's own light, even if it has none.
     pub own_light: bool,
-    /// Width over height of the picture that the camera should fill; `None` for 1.
+    /// Ratio of width to height of the picture that the camera should fill, or `None` for 1.
     pub aspect: Option<f32>,
 }
 
-/// Right, up and front directions of a model, as seen by a viewer in front of it.
+/// Right, up and front directions of a model, for a viewer in front of it.
 pub struct ModelAxes {
     /// Direction to the viewer's right.
     pub right: DVec3,
@@ -94,7 +100,7 @@ pub struct ModelAxes {
 }
 
 impl ModelAxes {
-    /// Creates the directions for a model with this up axis.
+    /// Creates the directions for a model with the given up axis.
     pub fn new(up: Axis) -> Self {
         let (right, up) = match up {
             Axis::X => (DVec3::NEG_Y, DVec3::X),
@@ -107,14 +113,14 @@ impl ModelAxes {
 
 /// Field of view across the larger side of the picture, in degrees.
 const ANGLE: f32 = 30.0;
-/// Number of angles of an orbiting camera at which the model must be visible.
+/// Number of angles of an orbiting camera from which the model must be visible.
 const ORBIT_STEPS: u32 = 48;
-/// Fraction of the picture's width or height that a model fills.
+/// Fraction of the width or height of the picture that a model fills.
 const FILL: f64 = 0.86;
 
 impl SceneDefaults {
-    /// Adds the parts that a scene lacks. `up` is the usual up axis of its format. With `dark`, a
-    /// scene without lights is complete if it has a camera or emitters.
+    /// Adds the parts that the scene lacks. `up` is the usual up axis of the format of the scene.
+    /// If `dark` is set, a scene without lights counts as complete if it has a camera or emitters.
     pub fn complete(&self, scene: &mut Scene, up: Axis, dark: bool) {
         let sides = ModelAxes::new(self.up.unwrap_or(up));
         let framed = scene.camera.is_none() || self.view.is_some() || self.orbit_degrees.is_some();
@@ -133,18 +139,18 @@ impl SceneDefaults {
         if let Some(studio) = studio {
             self.light(scene, &sides, studio, framed);
         }
-        // The background of a scene with its own light is black, unless the file sets it.
+        // The background of a scene that has its own light is black, unless the file sets it.
         let emits = scene.emits_light() || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
         if (emits || self.own_light) && scene.background == Background::default() {
             scene.background.color = Vec3::ZERO;
         }
     }
 
-    /// Creates a centred camera that shows the full scene.
+    /// Creates a camera that shows the full scene, centred in the picture.
     fn camera(&self, scene: &Scene, sides: &ModelAxes, view: PresetView) -> Camera {
         let &ModelAxes { right, up, front } = sides;
         let (back, above) = match view {
-            // 35 degrees to the right and 22 degrees up.
+            // The camera is 35 degrees to the right and 22 degrees above.
             PresetView::ThreeQuarter => (0.927 * (0.819 * front + 0.574 * right) + 0.375 * up, up),
             PresetView::Front => (front, up),
             PresetView::Side => (right, up),
@@ -154,7 +160,7 @@ impl SceneDefaults {
         self.framing_camera(scene, sides, (back, above), view == PresetView::ThreeQuarter)
     }
 
-    /// Creates a camera that shows the full scene from a direction.
+    /// Creates a camera that shows the full scene from the given direction.
     fn framing_camera(
         &self,
         scene: &Scene,
@@ -166,7 +172,8 @@ impl SceneDefaults {
         let across = forward.cross(above).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
         let upwards = across.cross(forward);
         let aspect = f64::from(self.aspect.unwrap_or(1.0)).clamp(1e-3, 1e3);
-        // Half the width and height of the picture, whose larger side is from -1 to 1.
+        // Compute half the width and half the height of the picture, whose larger side runs from -1
+        // to 1.
         let (wide, high) = (aspect.min(1.0), (1.0 / aspect).min(1.0));
         let mut extent = VisibleExtent::new(tan_half_angle() * FILL * wide, tan_half_angle() * FILL * high);
         let mut add = |p: DVec3| extent.add(p.dot(across), p.dot(upwards), p.dot(forward));
@@ -195,7 +202,7 @@ impl SceneDefaults {
         OrthographicCamera { center, direction, up, size, ..Default::default() }.into()
     }
 
-    /// Adds light and, with a default camera, a ground.
+    /// Adds light, and also a ground if the camera is a default camera.
     fn light(&self, scene: &mut Scene, sides: &ModelAxes, studio: DefaultLighting, framed: bool) {
         if studio == DefaultLighting::None {
             scene.lights.get_or_insert_default();
@@ -203,7 +210,8 @@ impl SceneDefaults {
         }
         let pose = scene.camera.as_ref().map(crate::camera::Projection::pose);
         let forward = pose.map_or(-sides.front, |pose| pose.direction.as_dvec3().normalize_or(-sides.front));
-        // Use the horizontal part, so that light comes from above even if the camera looks down.
+        // Use the horizontal part of the view direction, so that light comes from above even if the
+        // camera looks down.
         let forward = forward.reject_from(sides.up).try_normalize().unwrap_or(-sides.front);
         let right = forward.cross(sides.up);
         let from = |x: f64, y: f64, z: f64| -(x * right + y * sides.up - z * forward).normalize().as_vec3();
@@ -218,8 +226,8 @@ impl SceneDefaults {
                 Vec3::new(0.3, 0.5, 0.85),
                 Vec3::new(0.55, 0.5, 0.42),
             ),
-            // Chosen so that a white object is brighter than the background, for path tracing and
-            // for Whitted's method.
+            // These values are chosen so that a white object is brighter than the background, both
+            // for path tracing and for Whitted's method.
             _ => (
                 vec![
                     light(from(-0.6, 1.0, 0.7), Vec3::splat(0.75)),
@@ -261,7 +269,8 @@ impl Scene {
     }
 }
 
-/// Point on the axis about which the camera orbits: the centre of the bounds.
+/// Returns a point on the axis around which the camera orbits. The axis passes through the centre
+/// of the bounds.
 fn axis(scene: &Scene, sides: &ModelAxes) -> DVec3 {
     let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     points(scene, &mut |p| (least, most) = (least.min(p), most.max(p)));
@@ -269,7 +278,7 @@ fn axis(scene: &Scene, sides: &ModelAxes) -> DVec3 {
     if middle.is_finite() { middle.reject_from(sides.up) } else { DVec3::ZERO }
 }
 
-/// Rotation about an axis by degrees.
+/// Returns the rotation about an axis by an angle in degrees.
 fn rotation(axis: DVec3, degrees: f64) -> DMat3 {
     let (sin, cos) = fp::sin_cos_degrees(degrees);
     let (x, y, z) = (axis.x, axis.y, axis.z);
@@ -277,12 +286,12 @@ fn rotation(axis: DVec3, degrees: f64) -> DMat3 {
     DMat3::IDENTITY + cross * sin + cross * cross * (1.0 - cos)
 }
 
-/// Tangent of half the field of view.
+/// Returns the tangent of half the field of view.
 fn tan_half_angle() -> f64 {
     crate::math::fp::tan_f64(f64::from(ANGLE).to_radians() / 2.0)
 }
 
-/// Assigns a neutral material to objects without one.
+/// Assigns a neutral material to objects that have no material.
 fn assign_default_material(scene: &mut Scene) {
     fn visit(object: &mut Object, material: u32, used: &mut bool) {
         match &mut object.node {
@@ -310,12 +319,12 @@ fn assign_default_material(scene: &mut Scene) {
     }
 }
 
-/// Extent of a model's points along the camera axes, from which the closest camera that shows all
-/// of them is computed.
+/// Extent of the points of a model along the camera axes. The closest camera that shows all points
+/// is computed from this extent.
 struct VisibleExtent {
-    /// Half the picture's width and height at distance 1.
+    /// Half the width and half the height of the picture at distance 1.
     slopes: [f64; 2],
-    /// Maximum of p - slope z and minimum of p + slope z, for both picture axes.
+    /// Maximum of p - slope z and minimum of p + slope z, for both axes of the picture.
     reach: [[f64; 2]; 2],
     low: [f64; 3],
     high: [f64; 3],
@@ -347,8 +356,8 @@ impl VisibleExtent {
         self.low[0] > self.high[0]
     }
 
-    /// Position of a perspective camera. Each side plane of the frustum touches a point: x = A + s
-    /// z and x = B - s z meet in the eye.
+    /// Returns the position of a perspective camera. Each side plane of the frustum touches a
+    /// point, and the lines x = A + s z and x = B - s z meet in the eye.
     fn perspective_eye(&self) -> [f64; 3] {
         if self.is_empty() {
             return [0.0, 0.0, -4.0];
@@ -356,7 +365,7 @@ impl VisibleExtent {
         let [x, y] = self.reach.map(|[a, b]| 0.5 * (a + b));
         let far = |i: usize| (self.reach[i][1] - self.reach[i][0]) / (2.0 * self.slopes[i]);
         let z = far(0).min(far(1));
-        // A single point needs a distance, too.
+        // Even a single point needs some distance from the camera.
         let size = (0..3).map(|i| self.high[i] - self.low[i]).fold(0.0, f64::max);
         let near = self.low[2] - z;
         [x, y, if near > 1e-6 * size && size > 0.0 { z } else { self.low[2] - size.max(1.0) }]
@@ -366,7 +375,8 @@ impl VisibleExtent {
         if self.is_empty() { [1.0; 2] } else { std::array::from_fn(|i| 0.5 * (self.high[i] - self.low[i])) }
     }
 
-    /// Position of a parallel camera at a distance in front of all points.
+    /// Returns the position of a parallel camera that is at the given distance in front of all
+    /// points.
     fn orthographic_eye(&self, distance: f64) -> [f64; 3] {
         if self.is_empty() {
             return [0.0; 3];

@@ -1,4 +1,4 @@
-//! Extent of a scene, computed from its description.
+//! Computes the extent of a scene from its description.
 
 use super::{MatrixOp, MatrixRules, Object, ObjectKind, Scene};
 use crate::math::Vec3;
@@ -13,7 +13,8 @@ pub fn points(scene: &Scene, found: &mut dyn FnMut(DVec3)) {
     }
 }
 
-/// Calls `found` with points whose convex hull contains one object, in its own space.
+/// Calls `found` with points whose convex hull contains one object, in the coordinate system of its
+/// parent.
 pub fn object_points(scene: &Scene, object: &Object, found: &mut dyn FnMut(DVec3)) {
     visit(scene, object, DAffine3::IDENTITY, found);
 }
@@ -28,7 +29,7 @@ fn visit(scene: &Scene, object: &Object, to_world: DAffine3, found: &mut dyn FnM
         ObjectKind::Solid(_, parts) => parts.iter().for_each(|part| visit(scene, part, to_world, found)),
         ObjectKind::Mesh(mesh) => {
             let Some(data) = scene.assets.meshes.get(&mesh.obj_file.path) else { return };
-            // Unused vertices do not count.
+            // Vertices that no triangle uses are ignored.
             let mut used = vec![false; data.positions.len()];
             data.triangles.iter().flatten().for_each(|&index| used[index as usize] = true);
             data.positions.iter().zip(used).filter(|(_, used)| *used).for_each(|(p, _)| offer(*p));

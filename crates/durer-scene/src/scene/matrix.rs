@@ -1,10 +1,11 @@
-//! Matrices of a transform, as written in a scene.
+//! Matrices of a transform, as they are written in a scene.
 
 use crate::math::{Vec3, fp};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// Matrix of a transform, as one operation in a scene file. Rotations are right-handed, in degrees.
+/// Matrix of a transform, which is one operation in a scene file. Rotations are right-handed, and
+/// their angles are in degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum MatrixOp {
     /// Translation.
@@ -13,11 +14,11 @@ pub enum MatrixOp {
     Scale(Vec3),
     /// Uniform scaling.
     UniformScale(f32),
-    /// Rotation about x.
+    /// Rotation about the x axis.
     XRotate(f32),
-    /// Rotation about y.
+    /// Rotation about the y axis.
     YRotate(f32),
-    /// Rotation about z.
+    /// Rotation about the z axis.
     ZRotate(f32),
     /// Rotation about an axis of any length.
     Rotate(Vec3, f32),
@@ -29,10 +30,10 @@ pub enum MatrixOp {
 /// rules.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MatrixRules {
-    /// True if a `Matrix` is multiplied on the left of everything before it.
+    /// True if a `Matrix` is multiplied from the left onto the product of all preceding matrices.
     pub matrix_on_left: bool,
-    /// True if the product of the matrices of one transform loses its shear: it is decomposed into
-    /// translation, rotation and scale.
+    /// True if shear is removed from the product of the matrices of one transform. The product is
+    /// then decomposed into translation, rotation and scale.
     pub drop_shear: bool,
     /// True if a transform whose determinant is almost 0 is ignored.
     pub ignore_tiny: bool,
@@ -83,8 +84,8 @@ impl MatrixOp {
         }
     }
 
-    /// True if the product of the matrices of one transform counts as singular: its determinant is
-    /// at most the rounding error of 1 in single precision.
+    /// True if the product of the matrices of one transform is treated as singular. A product is
+    /// singular if its determinant is at most the rounding error of 1 in single precision.
     pub fn is_tiny(ops: &[MatrixOp], rules: MatrixRules) -> bool {
         is_tiny(MatrixOp::product(ops, MatrixRules { drop_shear: false, ignore_tiny: false, ..rules }))
     }
@@ -94,21 +95,21 @@ fn is_tiny(map: DAffine3) -> bool {
     map.matrix3.determinant().abs() < f64::from(f32::EPSILON)
 }
 
-/// Makes the axes of a map perpendicular, one after another, which leaves only translation,
-/// rotation and scale.
+/// Makes the axes of a map perpendicular, one after the other, so that only translation, rotation
+/// and scale remain.
 ///
-/// Source: Spencer W. Thomas, *Decomposing a Matrix into Simple Transformations*, Graphics Gems II
-/// (1991), VII.1.
+/// Source: Thomas, *Decomposing a Matrix into Simple Transformations*, Graphics Gems II (1991),
+/// VII.1.
 fn without_shear(map: DAffine3) -> DAffine3 {
     let DMat3 { x_axis: x, y_axis, z_axis } = map.matrix3;
-    // An axis of length 0 has no direction to remove.
+    // An axis of length 0 has no direction that could be removed.
     let along = |v: DVec3, axis: DVec3| v.project_onto_normalized(axis.normalize_or_zero());
     let y = y_axis - along(y_axis, x);
     let z = z_axis - along(z_axis, x) - along(z_axis, y);
     DAffine3 { matrix3: DMat3::from_cols(x, y, z), ..map }
 }
 
-/// Rodrigues' rotation about a unit axis.
+/// Returns the rotation about a unit axis by Rodrigues' formula.
 fn rotation(axis: DVec3, degrees: f32) -> DAffine3 {
     let (sin, cos) = fp::sin_cos_degrees(f64::from(degrees));
     let column = |v: DVec3| v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));

@@ -1,6 +1,7 @@
-//! Scene as its author wrote it: plain data with names, degrees, nested groups and file paths.
+//! Scene as its author wrote it, which is plain data with names, degrees, nested groups and file
+//! paths.
 //!
-//! Nothing here is computed, cached or looked up; `compile` turns it into a world.
+//! Nothing in this module is computed, cached or looked up. `compile` turns a scene into a world.
 
 pub mod assets;
 pub mod builder;
@@ -86,16 +87,16 @@ described! {
 }
 
 impl Background {
-    /// Turbidity of the air.
+    /// Returns the turbidity of the air.
     pub fn turbidity(&self) -> f32 {
         self.turbidity.unwrap_or(3.0)
     }
 
-    /// Direction to the sun, of any length; `None` if the background has no sun.
+    /// Returns the direction to the sun, of any length, or `None` if the background has no sun.
     ///
     /// # Errors
     ///
-    /// A message if the sun's position is given twice, incompletely, or by an invalid date or time.
+    /// Fails if the sun's position is given twice, is incomplete, or has an invalid date or time.
     pub fn sun_direction(&self) -> Result<Option<Vec3>, String> {
         let angles = [("sunAltitude", self.sun_altitude.is_some()), ("sunAzimuth", self.sun_azimuth.is_some())];
         let clock = [
@@ -113,7 +114,7 @@ impl Background {
         {
             return Err(format!("the sun's position is given twice, by `{first}` and by `{second}`"));
         }
-        // A clock without a time zone is in UTC.
+        // A time without a time zone is in UTC.
         let missing = |words: &[(&'static str, bool)]| match first_set(words) {
             Some(word) => match words.iter().find(|(word, first_set)| !first_set && *word != "timeZone") {
                 Some((missing_field, _)) => {
@@ -147,39 +148,42 @@ impl Background {
         Ok(Some(almanac::direction(almanac::sun([latitude, longitude].map(f64::from), &moment))))
     }
 
-    /// Direction to the sun, of any length; `None` if the background has no sun, or an invalid one.
+    /// Returns the direction to the sun, of any length, or `None` if the background has no sun or
+    /// an invalid one.
     pub fn sun(&self) -> Option<Vec3> {
         self.sun_direction().ok().flatten()
     }
 
-    /// True if the sun is below the horizon, so that neither the sun nor its sky emits light.
+    /// True if the sun is below the horizon, in which case neither the sun nor its sky emits light.
     pub fn is_night(&self) -> bool {
         self.sun().is_some_and(|way| way.y < 0.0)
     }
 
-    /// Returns the CIE standard sky, if the background has one.
+    /// Returns the CIE standard sky if the background has one.
     pub fn cie_sky(&self) -> Option<CieSky> {
         let (zenith, ground) = (self.zenith_luminance.unwrap_or(10_000.0), self.ground_reflectance.unwrap_or(0.2));
         self.cie_sky.map(|number| CieSky::new(number, self.sun().unwrap_or(Vec3::Y), zenith, ground))
     }
 
-    /// Rotation of the environment about y in degrees, and its scale.
+    /// Returns the rotation of the environment about the y axis in degrees, and the scale of the
+    /// environment.
     pub fn environment_transform(&self) -> (f32, Vec3) {
         (self.environment_rotation.unwrap_or(0.0), self.environment_scale.unwrap_or(Vec3::ONE))
     }
 }
 
-/// Render settings that a scene file requests for its picture; command-line options override them.
+/// Render settings that a scene file requests for its picture. Command-line options override these
+/// settings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RenderDefaults {
     /// Width and height in pixels.
     pub size: Option<(u32, u32)>,
-    /// Part of the picture to render: first column, first row, width and height.
+    /// Part of the picture to render, given by its first column, first row, width and height.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crop: Option<(u32, u32, u32, u32)>,
     /// Samples per pixel.
     pub samples: Option<u32>,
-    /// Maximum number of scatterings after the first.
+    /// Maximum number of scattering events after the first.
     pub bounces: Option<u32>,
 }
 
@@ -189,23 +193,23 @@ impl RenderDefaults {
     }
 }
 
-/// Complete scene description: camera, background, lights, materials and objects.
+/// Complete description of a scene, with its camera, background, lights, materials and objects.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
     /// The camera.
     pub camera: Option<Camera>,
-    /// The background and the light from it.
+    /// The background and the light that comes from it.
     pub background: Background,
     /// The fog.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fog: Option<Spanned<Fog>>,
-    /// Lights; `None` if the file has no section for them.
+    /// Lights in the scene, or `None` if the file has no section for lights.
     pub lights: Option<Vec<Spanned<Light>>>,
-    /// Materials, by number.
+    /// Materials of the scene. Objects refer to materials by number.
     pub materials: Vec<Spanned<Material>>,
     /// The objects.
     pub root: Option<Group>,
-    /// Assets in memory, instead of in files.
+    /// Assets that are in memory instead of in files.
     #[serde(skip_serializing_if = "Assets::is_empty", skip_deserializing)]
     pub assets: Assets,
     /// Settings that the file requests for its picture.
@@ -214,26 +218,26 @@ pub struct Scene {
     /// Up axis, if the format defines one.
     #[serde(skip)]
     pub up: Option<Axis>,
-    /// Lumens per watt of red, green and blue, if its light is in watts.
+    /// Lumens per watt for red, green and blue, if the light in the scene is given in watts.
     #[serde(skip)]
     pub lumens_per_watt: Option<Vec3>,
-    /// Span of the camera.
+    /// Span of the camera in the scene file.
     #[serde(skip)]
     pub camera_span: Span,
-    /// Span of the background.
+    /// Span of the background in the scene file.
     #[serde(skip)]
     pub background_span: Span,
 }
 
 impl Scene {
-    /// Adds a mesh in memory under a unique `name`, and returns a node that uses it.
+    /// Adds a mesh in memory under `name`, which must be unique, and returns a node that uses it.
     pub fn add_mesh(&mut self, name: &str, data: Arc<MeshData>, span: Span) -> ObjectKind {
         self.assets.meshes.insert(name.to_string(), data);
         ObjectKind::Mesh(TriangleMesh { obj_file: FileName { path: name.to_string(), span } })
     }
 
-    /// True if the scene has lights or materials that only a path tracer can render: principled or
-    /// hair materials, fog, an environment, a sun or a sky.
+    /// True if the scene has lights or materials that only a path tracer can render. Such features
+    /// are principled or hair materials, fog, an environment, a sun and a sky.
     pub fn is_physical(&self) -> bool {
         let layered = |m: &Spanned<Material>| matches!(m.value, Material::Principled(_) | Material::Hair(_));
         let background = &self.background;
@@ -256,50 +260,52 @@ impl Scene {
     }
 }
 
-/// Value in a scene and its position in the scene file, for diagnostics.
+/// Value in a scene, together with its position in the scene file for diagnostics.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spanned<T> {
     /// The value.
     pub value: T,
-    /// Position of the value.
+    /// Position of the value in the scene file.
     #[serde(skip)]
     pub span: Span,
 }
 
-/// Material of a scene, of any kind.
+/// Material of a scene, which can be of any kind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Material {
-    /// Diffuse colour, highlight, mirror, glass; noise can replace the diffuse colour.
+    /// Material with a diffuse colour, highlight, mirror and glass. Noise can replace the diffuse
+    /// colour.
     Phong(Box<PhongMaterial>, Option<ColorNoise>),
     /// Principled material with layers, as in OpenPBR.
     Principled(Box<PrincipledMaterial>),
-    /// Fibres of hair or fur.
+    /// Material for fibres of hair or fur.
     Hair(HairMaterial),
-    /// Two earlier materials mixed by a pattern, and the transform from world to pattern space.
+    /// Two earlier materials that are mixed by a pattern, and the transform from world space to
+    /// pattern space.
     Solid(PatternMaterial, Vec<MatrixOp>),
 }
 
-/// Group of objects in a scene; the root of the scene is such a group.
+/// Group of objects in a scene. The root of the scene is such a group.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Group {
-    /// Objects in file order.
+    /// Objects in the order of the file.
     pub objects: Vec<Object>,
 }
 
-/// Object of a scene, with the material that was current at its position in the file.
+/// Object of a scene, with the material that was current at the position of the object in the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Object {
-    /// Kind of object.
+    /// Kind of the object.
     pub node: ObjectKind,
-    /// Number of the current material; `None` before the first one.
+    /// Number of the current material, or `None` before the first material.
     pub material: Option<u32>,
-    /// Span of its keyword in the file.
+    /// Span of the object's keyword in the file.
     #[serde(skip)]
     pub span: Span,
 }
 
 impl Object {
-    /// Wraps the object in a transform; returns it unchanged for the identity.
+    /// Wraps the object in a transform, or returns it unchanged if the transform is the identity.
     pub fn transformed(self, map: DAffine3) -> Object {
         if map == DAffine3::IDENTITY {
             return self;
@@ -310,18 +316,18 @@ impl Object {
     }
 }
 
-/// Kind of an object in a scene: a group, a transform, a shape, a mesh or a solid.
+/// Kind of an object in a scene, such as a group, a transform, a shape, a mesh or a solid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ObjectKind {
     /// Group of objects.
     Group(Group),
-    /// An object transformed by M = M1 M2 ...
+    /// An object that is transformed by M = M1 M2 ...
     Transform(Vec<MatrixOp>, Box<Object>),
     /// A shape.
     Primitive(Primitive),
     /// A mesh in a file.
     Mesh(TriangleMesh),
-    /// Grid of cells, of which those inside the balls are filled.
+    /// Grid of cells, in which the cells inside the balls are filled.
     Voxels(VoxelGrid, Vec<Sphere>),
     /// A terrain from a picture.
     HeightField(HeightField),
@@ -347,7 +353,7 @@ pub enum CsgOperation {
 }
 
 impl CsgOperation {
-    /// Operations with their keywords.
+    /// All operations, each with its keyword.
     pub const ALL: [(&str, CsgOperation); 5] = [
         ("Union", CsgOperation::Union),
         ("Merge", CsgOperation::Merge),
@@ -356,7 +362,7 @@ impl CsgOperation {
         ("Xor", CsgOperation::Xor),
     ];
 
-    /// Description of the points inside the result.
+    /// Returns a description of the points inside the result.
     pub fn doc(self) -> &'static str {
         match self {
             CsgOperation::Union => {
@@ -375,7 +381,7 @@ impl CsgOperation {
         CsgOperation::ALL.iter().find(|row| row.0 == word).map(|row| row.1)
     }
 
-    /// Keyword of the operation.
+    /// Returns the keyword of the operation.
     pub fn keyword(self) -> &'static str {
         CsgOperation::ALL[self as usize].0
     }

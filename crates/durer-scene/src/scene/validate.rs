@@ -1,7 +1,8 @@
-//! Validation of a scene: every field against its constraint, and combinations of fields.
+//! Validation of a scene, which checks every field against its constraint, and combinations of
+//! fields.
 //!
-//! Readers check their input and report errors with spans. This check is for scenes built in code,
-//! and for formats whose readers do not check values.
+//! Readers check their input and report errors with spans. The check in this module is for scenes
+//! that are built in code, and for formats whose readers do not check values.
 
 use super::{Background, Group, Material, MatrixOp, NamedTexture, Object, ObjectKind, Scene, Spanned};
 use crate::camera::Projection;
@@ -14,27 +15,28 @@ use crate::shape::Shape;
 use crate::texture::CieSky;
 use durer_diag::{Diagnostic, Diagnostics, Span};
 
-/// Maximum nesting of objects. The scene language allows 200 levels, each of which becomes at most
-/// three levels in a scene.
+/// Maximum nesting depth of objects. The scene language allows 200 levels, each of which becomes at
+/// most three levels in a scene.
 pub const MAX_NESTING: usize = 640;
 
-/// Maximum nesting of materials made of other materials, and maximum number of leaves of one
-/// material.
+/// Maximum nesting depth of materials that are made of other materials, and maximum number of
+/// leaves in one material.
 const MAX_MATERIAL_NESTING: u32 = 64;
 const MAX_MATERIAL_PARTS: u64 = 4096;
 
 impl Scene {
-    /// Checks all values: each field against its constraint, that numbers are finite, combinations
-    /// of fields, numbers of materials, and nesting. Reports errors only. The compiler calls it
-    /// first.
+    /// Checks all values. Each field is checked against its constraint, and numbers must be finite.
+    /// Combinations of fields, the numbers of materials, and nesting depths are also checked. Only
+    /// errors are reported. The compiler calls this method first.
     ///
-    /// An object read from a file may have a material number that does not exist. Readers warn, and
-    /// the object is rendered in plain grey, as in the course's programs.
+    /// An object that was read from a file may have a material number that does not exist. In this
+    /// case, the reader reports a warning, and the object is rendered in plain grey, as in the
+    /// course's programs.
     pub fn validate(&self) -> Diagnostics {
         self.validate_as(0)
     }
 
-    /// Version of [`Scene::validate`] that accepts values that official programs render, if
+    /// Version of [`Scene::validate`] that accepts all values that official programs render, if
     /// [`Quirk::AnyValues`] is set.
     pub fn validate_as(&self, compat: QuirkSet) -> Diagnostics {
         let accept_any = compat & Quirk::AnyValues.bit() != 0;
@@ -64,12 +66,12 @@ impl Scene {
 }
 
 impl Background {
-    /// Checks combinations of fields.
+    /// Checks that the fields are valid in combination.
     ///
     /// # Errors
     ///
-    /// A message if the sun's position is given twice, incompletely or by an invalid time, or if a
-    /// standard sky that depends on the sun has none.
+    /// Fails if the sun's position is given twice, is incomplete, or has an invalid time, or if a
+    /// standard sky depends on the sun but there is no sun.
     pub fn validate(&self) -> Result<(), String> {
         let sun = self.sun_direction()?;
         let lacks_sun = self.environment.is_none() && self.cie_sky.is_some_and(CieSky::depends_on_sun) && sun.is_none();
@@ -81,11 +83,11 @@ impl Background {
 }
 
 impl Fog {
-    /// Checks combinations of fields.
+    /// Checks that the fields are valid in combination.
     ///
     /// # Errors
     ///
-    /// A message if only one corner of the box is given, or if the box is empty.
+    /// Fails if only one corner of the box is given, or if the box is empty.
     pub fn validate(&self) -> Result<(), String> {
         match (self.min, self.max) {
             (Some(min), Some(max)) if !min.cmplt(max).all() => {
@@ -100,7 +102,7 @@ impl Fog {
 /// Checks the values of a scene and collects the errors, for [`Scene::validate`].
 struct Validator {
     diagnostics: Diagnostics,
-    /// Number of materials of the scene.
+    /// Number of materials in the scene.
     materials: usize,
     /// True to accept values that official programs render.
     accept_any: bool,
@@ -111,13 +113,15 @@ impl Validator {
         self.report(Diagnostic::error(message), span);
     }
 
-    /// Reports an error, with its span if it has one: scenes built in code have none.
+    /// Reports an error with its span, if the error has one. Errors in scenes that are built in
+    /// code have no span.
     fn report(&mut self, error: Diagnostic, span: Span) {
         let error = error.code("bad-value");
         self.diagnostics.push(if span.has_position() { error.at(span) } else { error });
     }
 
-    /// Checks the fields of an object one by one and, if all are valid, in combination.
+    /// Checks each field of an object. If all fields are valid, the method also checks them in
+    /// combination.
     fn check_fields<T: DescribedKind>(
         &mut self,
         entry: &T,
@@ -162,8 +166,8 @@ impl Validator {
         }
     }
 
-    /// Rejects materials that consist of themselves or of later ones, nested too deeply, or made of
-    /// too many parts.
+    /// Rejects materials that consist of themselves or of later materials, are nested too deeply,
+    /// or have too many parts.
     fn nested_materials(&mut self, scene: &Scene) {
         // Nesting depth and maximum number of parts of each material.
         let mut sizes: Vec<(u32, u64)> = Vec::with_capacity(scene.materials.len());
@@ -220,8 +224,8 @@ impl Validator {
     }
 
     fn matrices(&mut self, ops: &[MatrixOp], span: Span) {
-        // A rotation about a NaN axis has a finite matrix, that of a rotation about y, so check the
-        // axis too.
+        // A rotation about a NaN axis has a finite matrix, which is that of a rotation about y.
+        // Therefore, check the axis as well.
         let is_finite = |op: &MatrixOp| match op {
             MatrixOp::Rotate(axis, _) => axis.is_finite() && op.matrix().is_finite(),
             _ => op.matrix().is_finite(),
@@ -244,7 +248,7 @@ impl Validator {
     }
 }
 
-/// Formats a short value for a message, with a leading space; empty for rows.
+/// Formats a short value for a message, with a leading space. Returns an empty string for rows.
 fn format_value(value: &Value) -> String {
     match value {
         Value::Float(x) => format!(" {x}"),

@@ -1,9 +1,9 @@
-//! The part of a line inside a convex solid, clipped by one face after the other.
+//! Computes the part of a line that lies inside a convex solid by clipping the line at each face.
 
 use crate::math::Vec2;
 
-/// Interval of a line inside a convex solid, with the numbers of the faces where the line enters
-/// and leaves.
+/// Interval of a line that lies inside a convex solid, with the numbers of the faces through which
+/// the line enters and leaves.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chord {
     enter: (f64, f32),
@@ -11,10 +11,10 @@ pub(super) struct Chord {
 }
 
 impl Chord {
-    /// The full line.
+    /// The full line, which has not been clipped.
     pub(super) const LINE: Chord = Chord { enter: (f64::NEG_INFINITY, 0.0), leave: (f64::INFINITY, 0.0) };
 
-    /// Clips to an interval whose ends have these faces.
+    /// Clips the chord to an interval whose ends lie on the given faces.
     #[inline(always)]
     pub(super) fn clip(mut self, enter: f64, leave: f64, faces: [u32; 2]) -> Chord {
         if enter > self.enter.0 {
@@ -26,12 +26,12 @@ impl Chord {
         self
     }
 
-    /// Clips to the interval where a coordinate, `o + t d`, is between two bounds; each bound has
-    /// the number of its face.
+    /// Clips the chord to the interval where the coordinate `o + t d` lies between two bounds.
+    /// `faces` holds the number of the face at each bound.
     #[inline(always)]
     pub(super) fn slab(mut self, o: f64, d: f64, [low, high]: [f64; 2], faces: [u32; 2]) -> Chord {
         if d == 0.0 {
-            // Select single numbers: selecting whole structs would go through memory.
+            // Select scalars here, since selecting whole structs would go through memory.
             self.leave.0 = if o < low || o > high { f64::NEG_INFINITY } else { self.leave.0 };
             return self;
         }
@@ -39,7 +39,8 @@ impl Chord {
         if d > 0.0 { self.clip(a, b, faces) } else { self.clip(b, a, [faces[1], faces[0]]) }
     }
 
-    /// Clips to the interval where a t^2 + 2 b t + c is not positive, for a > 0 or a = b = 0.
+    /// Clips the chord to the interval where a t^2 + 2 b t + c is at most 0, for a > 0 or a = b =
+    /// 0.
     #[inline(always)]
     pub(super) fn quadratic(mut self, a: f64, b: f64, c: f64, face: u32) -> Chord {
         if a > 0.0
@@ -51,13 +52,13 @@ impl Chord {
         self
     }
 
-    /// Returns both ends, unless the interval is empty.
+    /// Returns both ends of the interval, or `None` if it is empty.
     #[inline(always)]
     pub(super) fn ends(self) -> Option<(f64, f64)> {
         (self.enter.0 < self.leave.0).then_some((self.enter.0, self.leave.0))
     }
 
-    /// Offers both ends as crossings.
+    /// Reports both ends of the interval as crossings.
     #[inline(always)]
     pub(super) fn emit_ends(self, emit: &mut impl FnMut(f64, Vec2)) {
         if self.ends().is_some() {

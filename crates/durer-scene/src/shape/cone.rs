@@ -1,4 +1,4 @@
-//! The cone or frustum between two points, with its caps.
+//! A cone or frustum between two points, including its caps.
 
 use super::chord::Chord;
 use super::cylinder::{Axis, BASE, SIDE, TOP};
@@ -44,10 +44,11 @@ impl Cone {
         base * (1.0 - share) + top * share
     }
 
-    /// Solves |q - (q·a) a|^2 = r(q·a)^2 for q relative to the base, a the axis and r the radius,
-    /// linear in the height.
+    /// Solves |q - (q·a) a|^2 = r(q·a)^2, where q is relative to the base, a is the axis, and the
+    /// radius r is linear in the height.
     ///
-    /// Steep lines are inside both nappes of the double cone; only the nappe where r > 0 is kept.
+    /// A steep line can lie inside both nappes of the double cone. Only the nappe where r > 0 is
+    /// kept.
     fn cut(&self, axis: &Axis, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         let (shift, near) = axis.near(line);
         let ((y, o), (slope, d)) = (axis.split(near.origin), axis.split(near.dir));
@@ -58,7 +59,7 @@ impl Cone {
             Some((first, second)) if a > 0.0 => slabbed.clip(first, second, [SIDE; 2]),
             Some((_, second)) if dr > 0.0 => slabbed.clip(second, f64::INFINITY, [SIDE; 2]),
             Some((first, _)) => slabbed.clip(f64::NEG_INFINITY, first, [SIDE; 2]),
-            // Parallel to the side: a single crossing.
+            // The line is parallel to the side, so there is only one crossing.
             None if a == 0.0 && b > 0.0 => slabbed.clip(f64::NEG_INFINITY, -0.5 * c / b, [SIDE; 2]),
             None if a == 0.0 && b < 0.0 => slabbed.clip(-0.5 * c / b, f64::INFINITY, [SIDE; 2]),
             None if a < 0.0 || a == 0.0 && c < 0.0 => slabbed,
@@ -106,7 +107,8 @@ impl Shape for Cone {
         let r = self.radius_at(&axis, y);
         let normal = around - self.growth(&axis) * axis.dir;
         let largest = base.max(top);
-        // The curvature is unbounded at a tip; the point's error is far larger than this limit.
+        // The curvature is unbounded at a tip, but the error of the point is far larger than the
+        // limit used here.
         let curvature = 1.0 / r.max(1e-6 * largest);
         let position = axis.base + y * axis.dir + r * around;
         let floor = gamma(2) * (largest + axis.height) as f32;

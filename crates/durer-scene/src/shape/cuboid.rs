@@ -1,4 +1,4 @@
-//! The axis-aligned box.
+//! An axis-aligned box.
 
 use super::chord::Chord;
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, SurfacePoint, exact_offsets, inset, padded_box, tessellate};
@@ -23,8 +23,8 @@ impl Shape for Cuboid {
         Some(padded_box(self.min.as_dvec3(), self.max.as_dvec3()))
     }
 
-    /// Clips the line by three slabs. Source: Kay and Kajiya, *Ray Tracing Complex Scenes*,
-    /// SIGGRAPH 1986.
+    /// Clips the line by the three slabs of the box. Source: Kay and Kajiya, *Ray Tracing Complex
+    /// Scenes*, SIGGRAPH 1986.
     fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         let (min, max) = (self.min.as_dvec3(), self.max.as_dvec3());
         let cut = |chord: Chord, axis: usize| {

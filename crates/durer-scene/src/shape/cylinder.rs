@@ -1,4 +1,4 @@
-//! The cylinder between two points, with its caps.
+//! A cylinder between two points, including its caps.
 
 use super::chord::Chord;
 use super::{
@@ -23,10 +23,10 @@ described! {
     }
 }
 
-/// Axis of a solid of revolution (cylinder or cone), along which heights are measured.
+/// Axis of a solid of revolution (a cylinder or a cone). Heights are measured along this axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Axis {
-    /// Start of the axis, where the height is 0.
+    /// Point where the axis starts and the height is 0.
     pub base: DVec3,
     /// Unit direction.
     pub dir: DVec3,
@@ -34,7 +34,7 @@ pub struct Axis {
     pub height: f64,
 }
 
-/// Numbers of the faces of a solid of revolution.
+/// Numbers that identify the faces of a solid of revolution.
 pub(super) const BASE: u32 = 0;
 pub(super) const TOP: u32 = 1;
 pub(super) const SIDE: u32 = 2;
@@ -51,19 +51,20 @@ impl Axis {
         (along, v - along * self.dir)
     }
 
-    /// Returns a line relative to the base whose origin is the point nearest to the middle of the
-    /// axis, and the `t` of that point. This avoids cancellation for distant lines.
+    /// Moves the origin of a line to the point nearest to the middle of the axis, and returns the
+    /// line relative to the base together with the `t` of that point. This avoids cancellation for
+    /// distant lines.
     pub(super) fn near(&self, line: &Line) -> (f64, Line) {
         let shift = line.nearest(self.base + 0.5 * self.height * self.dir);
         (shift, Line { origin: line.at(shift) - self.base, dir: line.dir })
     }
 
-    /// Bound on the error of a point at most `radius` away from the axis.
+    /// Returns a bound on the error of a point that is at most `radius` away from the axis.
     pub(super) fn error(&self, radius: f64) -> f32 {
         gamma(4) * (self.base.abs().max_element() + self.height + radius) as f32
     }
 
-    /// Bounds of discs with these radii at both ends.
+    /// Returns the bounds of two discs with the given radii, one at each end of the axis.
     pub(super) fn bounds(&self, [base_radius, top_radius]: [f64; 2]) -> Aabb {
         let reach = disc_reach(self.dir);
         let top = self.base + self.height * self.dir;
@@ -71,19 +72,19 @@ impl Axis {
         padded_box((self.base - a).min(top - b), (self.base + a).max(top + b))
     }
 
-    /// Texture coordinates: the angle about the axis, and `v`.
+    /// Returns texture coordinates, where u is the angle around the axis and `v` is passed in.
     pub(super) fn uv(&self, around: DVec3, v: f64) -> Uv {
         let (x, z) = self.dir.any_orthonormal_pair();
         Uv::Angle(DVec2::new(around.dot(x), around.dot(z)).as_vec2(), v.clamp(0.0, 1.0) as f32)
     }
 
-    /// Surface of a cap, a plane perpendicular to the axis.
+    /// Returns the surface of a cap, which is a plane perpendicular to the axis.
     pub(super) fn cap(&self, point: DVec3, face: u32, radius: f64) -> SurfacePoint {
         let (height, normal) = if face == TOP { (self.height, self.dir) } else { (0.0, -self.dir) };
         let (_, around) = self.split(point - self.base);
         let within = radius - f64::from(INSET * self.error(radius)).min(0.25 * radius);
         let position = self.base + height * self.dir + around.clamp_length_max(within);
-        // Points on planes perpendicular to a tilted axis are accurate to double precision.
+        // Points on a plane perpendicular to a tilted axis are accurate to double precision.
         let floor = 1e-14 * (self.base.abs().max_element() + self.height + radius);
         SurfacePoint::new(position, normal, floor as f32, self.uv(around, around.length() / radius))
     }
@@ -94,13 +95,13 @@ impl Cylinder {
         Axis::new(self.base, self.top)
     }
 
-    /// Solves |q - (q·a) a|^2 = radius^2 for q relative to the base, a the axis, between two planes
-    /// perpendicular to it.
+    /// Solves |q - (q·a) a|^2 = radius^2 between two planes perpendicular to the axis a, where q is
+    /// relative to the base.
     fn cut(&self, axis: &Axis, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         let (shift, near) = axis.near(line);
         let ((y, o), (slope, d)) = (axis.split(near.origin), axis.split(near.dir));
         let r = f64::from(self.radius);
-        // Treat a line as parallel to the axis if its perpendicular component is pure rounding
+        // Treat a line as parallel to the axis if its perpendicular component is merely rounding
         // error.
         let across = d.length_squared();
         let across = if across > 1e-30 * near.dir.length_squared() { across } else { 0.0 };

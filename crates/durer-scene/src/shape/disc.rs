@@ -1,4 +1,4 @@
-//! The disc, optionally with a hole.
+//! A disc, optionally with a hole.
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, SurfacePoint, Uv, disc_reach, padded_box, tessellate};
 use crate::bsdf::Frame;
@@ -23,7 +23,7 @@ described! {
 }
 
 impl Disc {
-    /// Unit normal in object space.
+    /// Returns the unit normal in object space.
     pub fn unit_normal(&self) -> DVec3 {
         self.normal.as_dvec3().normalize_or(DVec3::Y)
     }
@@ -39,7 +39,7 @@ impl Shape for Disc {
         let (n, center) = (self.unit_normal(), self.center.as_dvec3());
         let t = n.dot(center - line.origin) / n.dot(line.dir);
         let distance = (line.at(t) - center).length();
-        // For a parallel line t is infinite or NaN, and the comparison fails.
+        // For a line parallel to the disc, t is infinite or NaN, and the comparison fails.
         if distance <= f64::from(self.radius) && distance >= f64::from(self.inner_radius) {
             emit(t, Vec2::ZERO);
         }

@@ -1,4 +1,4 @@
-//! The ellipsoid whose axes are parallel to the coordinate axes.
+//! An ellipsoid whose axes are parallel to the coordinate axes.
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, SurfacePoint, angle_fraction, padded_box, tessellate};
 use crate::describe::{Constraint, described};
@@ -23,8 +23,8 @@ impl Shape for Ellipsoid {
         Some(padded_box(center - radii, center + radii))
     }
 
-    /// Solves |(p - center) / radii|^2 = 1, measured from the point of the line nearest to the
-    /// centre of the unit sphere.
+    /// Solves |(p - center) / radii|^2 = 1. Ray parameters are measured from the point of the line
+    /// that is nearest to the centre of the unit sphere.
     fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         let radii = self.radii.as_dvec3();
         let unit = Line { origin: (line.origin - self.center.as_dvec3()) / radii, dir: line.dir / radii };
@@ -43,7 +43,7 @@ impl Shape for Ellipsoid {
     fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> SurfacePoint {
         let (center, radii) = (self.center.as_dvec3(), self.radii.as_dvec3());
         let unit = ((point - center) / radii).normalize_or(DVec3::Z);
-        // Longitude and latitude, as on a sphere.
+        // Use longitude and latitude as texture coordinates, as on a sphere.
         let v = fp::asin((unit.y as f32).clamp(-1.0, 1.0)) / std::f32::consts::PI + 0.5;
         let uv = Vec2::new(angle_fraction(-unit.z, unit.x), v);
         let (least, largest) = (radii.min_element(), radii.max_element());

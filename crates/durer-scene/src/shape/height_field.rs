@@ -1,4 +1,5 @@
-//! Height field: a terrain whose heights are the pixels of a picture, as a closed mesh.
+//! A height field: a terrain whose heights are the pixels of an image, represented as a closed
+//! mesh.
 
 use super::MeshData;
 use super::mesh_data::Triangles;
@@ -26,14 +27,14 @@ described! {
 }
 
 impl HeightField {
-    /// Maximum number of pixels.
+    /// Maximum number of pixels in a height image.
     pub const MAX_PIXELS: usize = 1 << 24;
 
-    /// Checks combinations of fields.
+    /// Checks that the fields are valid in combination.
     ///
     /// # Errors
     ///
-    /// `min` is not less than `max` in some coordinate.
+    /// Fails if `min` is not less than `max` in some coordinate.
     pub fn validate(&self) -> Result<(), String> {
         let wide = self.min.cmplt(self.max).all();
         match wide {
@@ -42,11 +43,11 @@ impl HeightField {
         }
     }
 
-    /// Builds the terrain: two triangles between each four neighbouring pixels, walls around them
-    /// and a floor below.
+    /// Builds the terrain. The mesh has two triangles between each group of four neighbouring
+    /// pixels, walls around them, and a floor below.
     ///
-    /// `heights` are rows from the top, `columns` wide; both sides must be at least 2. `None` if
-    /// coordinates exceed the range of `f32`.
+    /// `heights` holds rows of `columns` values, starting with the top row. The terrain must have
+    /// at least 2 rows and 2 columns. Returns `None` if any coordinate exceeds the range of `f32`.
     pub fn terrain(&self, columns: usize, mut heights: Vec<f32>) -> Option<Terrain> {
         let rows = heights.len() / columns;
         let size = self.max - self.min;
@@ -59,17 +60,18 @@ impl HeightField {
     }
 }
 
-/// Position of item `i` of `count`, from 0 for the first to 1 for the last.
+/// Returns the relative position of item `i` of `count`, from 0 for the first item to 1 for the
+/// last.
 fn share(i: usize, count: usize) -> f32 {
     i as f32 / (count - 1) as f32
 }
 
-/// Closed mesh of a height field: a terrain with walls down from its border, and a floor. Its
-/// triangles are computed on demand.
+/// Closed mesh of a height field, made of the terrain, walls that go down from its border, and a
+/// floor. The triangles are computed on demand.
 ///
-/// The vertices are those of the terrain, one on the floor below each border vertex, and the centre
-/// of the floor. The triangles are those of the terrain, then two wall triangles per step along the
-/// border, then one floor triangle per step.
+/// The vertices of the terrain come first, followed by one vertex on the floor below each border
+/// vertex, and the centre of the floor. The triangles of the terrain come first, followed by two
+/// wall triangles for each step along the border, and one floor triangle for each step.
 #[derive(Clone, Debug)]
 pub struct Terrain {
     /// The terrain.
@@ -79,7 +81,7 @@ pub struct Terrain {
 }
 
 impl Terrain {
-    /// The terrain without walls and floor.
+    /// Returns the terrain without its walls and floor.
     pub fn grid(&self) -> &HeightGrid {
         &self.grid
     }
@@ -94,13 +96,13 @@ impl Terrain {
         }
     }
 
-    /// Bounds of terrain, walls and floor.
+    /// Returns the bounds of the terrain, walls and floor.
     pub fn bounds(&self) -> Aabb {
         let bounds = self.grid.bounds();
         Aabb { min: bounds.min.min(self.floor_center), ..bounds }
     }
 
-    /// For each axis, true if `holds` is true for all coordinates along it.
+    /// Returns, for each axis, true if `holds` is true for every coordinate along that axis.
     pub fn all_along(&self, holds: impl Fn(usize, f32) -> bool) -> [bool; 3] {
         let lists = [self.grid.xs(), self.grid.heights(), self.grid.zs()];
         [0, 1, 2].map(|axis| holds(axis, self.floor_center[axis]) && lists[axis].iter().all(|x| holds(axis, *x)))
@@ -115,13 +117,13 @@ impl Terrain {
         [self.grid.xs().len(), self.grid.zs().len()]
     }
 
-    /// Number of vertices of the border.
+    /// Number of vertices along the border.
     fn border_len(&self) -> usize {
         let [columns, rows] = self.sides();
         2 * (columns + rows) - 4
     }
 
-    /// Index of the i-th border vertex, counter-clockwise seen from above.
+    /// Returns the index of the i-th border vertex, counted counter-clockwise as seen from above.
     fn border(&self, i: usize) -> u32 {
         let [columns, rows] = self.sides();
         let [wide, deep] = [columns - 1, rows - 1];
@@ -134,7 +136,8 @@ impl Terrain {
         (row * columns + column) as u32
     }
 
-    /// Index of the grid point at or above a vertex; `None` for the centre of the floor.
+    /// Returns the index of the grid point at or directly above a vertex, or `None` for the centre
+    /// of the floor.
     fn grid_point(&self, vertex: u32) -> Option<usize> {
         match (vertex as usize).checked_sub(self.grid.heights().len()) {
             None => Some(vertex as usize),
@@ -142,8 +145,8 @@ impl Terrain {
         }
     }
 
-    /// Texture coordinates at a vertex: from 0 to 1 over the picture. The walls have those of the
-    /// border above them.
+    /// Returns the texture coordinates of a vertex, which run from 0 to 1 across the image. A wall
+    /// vertex has the texture coordinates of the border vertex above it.
     pub fn uv(&self, vertex: u32) -> Vec2 {
         let [columns, rows] = self.sides();
         let Some(vertex) = self.grid_point(vertex) else { return Vec2::splat(0.5) };
@@ -163,7 +166,7 @@ impl Terrain {
         }
     }
 
-    /// Hash of the whole terrain.
+    /// Computes a hash of the whole terrain.
     pub fn digest(&self) -> Digest {
         let mut hasher = Digest::hasher();
         for list in [self.grid.xs(), self.grid.zs(), self.grid.heights(), &self.floor_center.to_array()] {
@@ -187,7 +190,7 @@ impl Triangles for Terrain {
     fn triangle(&self, number: usize) -> [u32; 3] {
         let (crossings, around) = (self.grid.heights().len(), self.border_len());
         let Some(other) = number.checked_sub(self.grid.triangle_count()) else { return self.grid.triangle(number) };
-        // Find the step along the border, and the vertices below its ends.
+        // Find the step along the border, and the vertices below both of its ends.
         let step = if other < 2 * around { other / 2 } else { other - 2 * around };
         let ends = [step, (step + 1) % around];
         let ([p, q], [below_p, below_q]) = (ends.map(|i| self.border(i)), ends.map(|i| (crossings + i) as u32));
@@ -222,8 +225,8 @@ impl Triangles for Terrain {
     fn ordered_around(&self, vertex: u32, mut emit: impl FnMut(u32)) {
         let ([columns, rows], vertex) = (self.sides(), vertex as usize);
         let (column, row) = (vertex % columns, vertex / columns);
-        // For each cell at the vertex: its offset from the vertex, and the corner that the vertex
-        // forms in each of its two triangles.
+        // Each entry describes a cell that touches the vertex. The entry holds the offset of the
+        // cell, and the corner at which each of the two triangles in the cell touches the vertex.
         for (across, down, corners) in
             [(1, 1, [Some(2), Some(1)]), (0, 1, [Some(1), None]), (1, 0, [None, Some(2)]), (0, 0, [Some(0); 2])]
         {

@@ -21,20 +21,21 @@ described! {
     }
 }
 
-/// Triangle mesh that is ready for rendering, from mesh data or a height field, with computed
-/// normals.
+/// Triangle mesh that is ready for rendering. The mesh is made from mesh data or a height field,
+/// and its normals have been computed.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     storage: TriangleStorage,
-    /// Computed normals, which replace those of `storage`.
+    /// Computed normals, which replace the normals in `storage`.
     computed_normals: Option<Normals>,
     center: Vec3,
 }
 
-/// Storage of the triangles of a mesh: lists, or a terrain that computes them.
+/// Storage for the triangles of a mesh: either lists, or a terrain that computes the triangles on
+/// demand.
 #[derive(Clone, Debug)]
 enum TriangleStorage {
-    /// Lists, shared with the scene description unless they were changed.
+    /// Lists of triangles, which are shared with the scene description unless they were changed.
     Lists(Arc<MeshData>),
     Terrain(Terrain),
 }
@@ -46,22 +47,22 @@ impl Default for TriangleStorage {
 }
 
 impl Mesh {
-    /// Creates a mesh from a mesh file's data. `rule` computes normals for triangles without
-    /// normals, or for all triangles unless `file_normals` is set.
+    /// Creates a mesh from the data of a mesh file. `rule` computes the normals of all triangles,
+    /// or only those of triangles without normals if `file_normals` is set.
     pub fn new(data: impl Into<Arc<MeshData>>, rule: MeshNormals, file_normals: bool) -> Self {
         let data = data.into();
         let computed_normals = computed(&data, rule, file_normals);
         Mesh { storage: TriangleStorage::Lists(data), computed_normals, center: Vec3::ZERO }
     }
 
-    /// Creates a mesh from a height field, with normals computed by `rule`.
+    /// Creates a mesh from a height field, and computes its normals with `rule`.
     pub fn of_terrain(terrain: Terrain, rule: MeshNormals) -> Self {
         let computed_normals = of_terrain(&terrain, rule);
         Mesh { storage: TriangleStorage::Terrain(terrain), computed_normals, center: Vec3::ZERO }
     }
 
-    /// Moves a mesh that is [far](Aabb::is_far) from the origin to the origin, along those axes
-    /// where `f32` represents the result exactly.
+    /// Moves the mesh to the origin if it is [far](Aabb::is_far) from the origin. The mesh moves
+    /// only along axes for which `f32` represents the result exactly.
     pub fn centered(mut self) -> Self {
         let bounds = match &self.storage {
             TriangleStorage::Lists(data) => Aabb::around(data.positions.iter().copied()),
@@ -89,12 +90,13 @@ impl Mesh {
         self
     }
 
-    /// True if no triangle has vertex normals.
+    /// True if none of the triangles has vertex normals.
     pub fn is_flat(&self) -> bool {
         (0..self.len() as u32).all(|triangle| self.corner_normals(triangle).is_none())
     }
 
-    /// Returns the vertex normals, and three indices for each triangle; both may be empty.
+    /// Returns the vertex normals and three normal indices for each triangle. Both lists may be
+    /// empty.
     pub fn normals(&self) -> (&[Vec3], Cow<'_, [[u32; 3]]>) {
         match (&self.computed_normals, &self.storage) {
             (Some(made), TriangleStorage::Lists(data)) => (&made.values, made.listed(&**data)),
@@ -104,7 +106,7 @@ impl Mesh {
         }
     }
 
-    /// Returns the mesh with normals computed by `rule`, replacing its normals.
+    /// Returns the mesh with its normals replaced by normals that `rule` computes.
     pub fn with_normals(&self, rule: MeshNormals) -> Mesh {
         let mesh = match &self.storage {
             TriangleStorage::Lists(data) => Mesh::new(data.clone(), rule, false),
@@ -113,8 +115,8 @@ impl Mesh {
         Mesh { center: self.center, ..mesh }
     }
 
-    /// Returns the mesh with every triangle extended to a parallelogram by a second triangle; the
-    /// normals are extrapolated.
+    /// Returns the mesh with a second triangle added to each triangle, so that the two form a
+    /// parallelogram. The normals are extrapolated.
     pub fn with_parallelograms(&self) -> Mesh {
         let mut data = self.to_data().into_owned();
         let (normals, triangle_normals) = self.normals();
@@ -135,8 +137,8 @@ impl Mesh {
         Mesh { storage: TriangleStorage::Lists(data.into()), computed_normals: None, center: self.center }
     }
 
-    /// Returns the mesh with every triangle scaled by `times` about one of its corners; the normals
-    /// are extrapolated.
+    /// Returns the mesh with each triangle scaled by the factor `times` about one of its corners.
+    /// The normals are extrapolated.
     pub fn with_scaled_triangles(&self, corner: usize, times: f32) -> Mesh {
         let mut data = self.to_data().into_owned();
         let (normals, triangle_normals) = self.normals();
@@ -158,7 +160,7 @@ impl Mesh {
         Mesh { storage: TriangleStorage::Lists(data.into()), computed_normals: None, center: self.center }
     }
 
-    /// Hash of the whole mesh.
+    /// Computes a hash of the whole mesh.
     pub fn digest(&self) -> Digest {
         let (normals, triangles) = self.normals();
         let (normals, triangles) = (normals.to_vec(), triangles.into_owned());
@@ -170,7 +172,8 @@ impl Mesh {
         Digest::of(format!("{of_form} {} {:?}", own.digest(), self.center).as_bytes())
     }
 
-    /// Returns the mesh as lists, whose normals may differ from [`Mesh::normals`].
+    /// Returns the mesh as lists. The normals in these lists may differ from those that
+    /// [`Mesh::normals`] returns.
     pub fn to_data(&self) -> Cow<'_, MeshData> {
         match &self.storage {
             TriangleStorage::Lists(data) => Cow::Borrowed(data),
@@ -186,12 +189,12 @@ impl Mesh {
         }
     }
 
-    /// Linear colours and opacities by vertex; may be empty.
+    /// Returns the linear colour and opacity of each vertex. The list may be empty.
     pub fn colors(&self) -> &[[f32; 4]] {
         self.lists().map_or(&[], |data| &data.colors)
     }
 
-    /// Returns the texture coordinates if they are equal at all corners.
+    /// Returns the texture coordinates of a triangle if they are equal at all three corners.
     pub fn constant_uv(&self) -> Option<Vec2> {
         let uvs = &self.lists()?.uvs;
         let first = *uvs.first()?;
@@ -210,7 +213,8 @@ impl Mesh {
         }
     }
 
-    /// Point that [`Mesh::centered`] moved to the origin; zero if it did not.
+    /// Returns the point that [`Mesh::centered`] moved to the origin, or zero if the mesh was not
+    /// moved.
     pub fn center(&self) -> Vec3 {
         self.center
     }
@@ -223,12 +227,12 @@ impl Mesh {
         }
     }
 
-    /// True if the mesh has no triangle.
+    /// True if the mesh has no triangles.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Size in memory in bytes, without the acceleration structure.
+    /// Size of the mesh in memory, in bytes, without the acceleration structure.
     pub fn bytes(&self) -> usize {
         let made = self.computed_normals.as_ref();
         let own = match &self.storage {
@@ -238,11 +242,11 @@ impl Mesh {
         own + made.map_or(0, Normals::bytes)
     }
 
-    /// Returns an edge with an odd number of adjacent triangles; `None` if there is none, so that
-    /// every line crosses the mesh an even number of times. Corners at equal positions count as
-    /// one.
+    /// Returns an edge that is shared by an odd number of triangles, or `None` if there is no such
+    /// edge. In a mesh without such an edge, every line crosses the surface an even number of
+    /// times. Corners at the same position count as one corner.
     pub fn open_edge(&self) -> Option<[Vec3; 2]> {
-        // A height field with walls and floor is closed.
+        // A height field with walls and a floor is always closed.
         self.lists()?;
         let mut edges: Vec<([[u32; 3]; 2], [Vec3; 2])> = Vec::with_capacity(3 * self.len());
         for triangle in 0..self.len() as u32 {
@@ -267,19 +271,19 @@ impl Mesh {
         }
     }
 
-    /// Interpolated normal of a triangle at a crossing, not normalized; `None` if the triangle is
-    /// flat.
+    /// Returns the interpolated normal of a triangle at a crossing, without normalizing it, or
+    /// `None` if the triangle is flat.
     pub fn interpolated_normal(&self, triangle: u32, uv: Vec2) -> Option<Vec3> {
         let [a, b, c] = self.corner_normals(triangle)?.map(Vec3::normalize_or_zero);
         Some((1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c)
     }
 
-    /// True if triangles may have vertex normals.
+    /// True if some triangles may have vertex normals.
     pub fn has_normals(&self) -> bool {
         self.computed_normals.is_some() || self.lists().is_some_and(|data| !data.normals.is_empty())
     }
 
-    /// Returns the normals at a triangle's corners, if it has any.
+    /// Returns the normals at the corners of a triangle, if it has normals.
     #[inline]
     pub fn corner_normals(&self, triangle: u32) -> Option<[Vec3; 3]> {
         match (&self.computed_normals, &self.storage) {
@@ -290,7 +294,7 @@ impl Mesh {
         }
     }
 
-    /// Returns the texture coordinates at a triangle's corners, if it has any.
+    /// Returns the texture coordinates at the corners of a triangle, if it has any.
     #[inline]
     fn corner_uvs(&self, triangle: u32) -> Option<[Vec2; 3]> {
         match &self.storage {
@@ -301,7 +305,7 @@ impl Mesh {
         }
     }
 
-    /// Interpolated vertex colour and opacity at a point of a triangle.
+    /// Returns the interpolated vertex colour and opacity at a point on a triangle.
     fn color(&self, triangle: u32, barycentric: Vec3) -> Option<[f32; 4]> {
         let data = self.lists()?;
         let [a, b, c] = attribute(&data.triangles, &data.colors, triangle)?;
@@ -309,15 +313,16 @@ impl Mesh {
         Some(std::array::from_fn(|i| x * a[i] + y * b[i] + z * c[i]))
     }
 
-    /// Interpolated second texture coordinates at a point of a triangle.
+    /// Returns the second set of texture coordinates, interpolated at a point on a triangle.
     pub fn second_uv(&self, triangle: u32, barycentric: Vec3) -> Option<Vec2> {
         let data = self.lists()?;
         let [a, b, c] = attribute(&data.triangles, &data.second_uvs, triangle)?;
         Some(barycentric.x * a + barycentric.y * b + barycentric.z * c)
     }
 
-    /// Directions of increasing u and v at a point of a triangle: from the file's tangents, or else
-    /// from the triangle's texture coordinates.
+    /// Returns the directions of increasing u and v at a point on a triangle. The directions come
+    /// from the tangents in the file, or from the texture coordinates of the triangle if the file
+    /// has no tangents.
     pub fn tangents(&self, triangle: u32, barycentric: Vec3, normal: Vec3, second: bool) -> Option<[Vec3; 2]> {
         let tangents = self.lists().and_then(|data| attribute(&data.triangles, &data.tangents, triangle));
         if let Some(corners) = tangents.filter(|_| !second) {
@@ -330,7 +335,7 @@ impl Mesh {
         self.derivatives(triangle, second)
     }
 
-    /// Partial derivatives of the position with respect to u and v on a triangle.
+    /// Returns the partial derivatives of the position on a triangle with respect to u and v.
     pub fn derivatives(&self, triangle: u32, second: bool) -> Option<[Vec3; 2]> {
         let [a, b, c] = match second {
             true => self.lists().and_then(|data| attribute(&data.triangles, &data.second_uvs, triangle))?,
@@ -344,7 +349,7 @@ impl Mesh {
         (u.is_finite() && v.is_finite() && u != Vec3::ZERO && v != Vec3::ZERO).then_some([u, v])
     }
 
-    /// Computes the surface of a triangle at a crossing.
+    /// Computes the surface properties of a triangle at a crossing.
     #[inline]
     pub fn surface(&self, triangle: u32, crossing: &ShapeHit) -> SurfacePoint {
         // Load everything that may miss the cache before starting any computation that depends on
@@ -359,7 +364,7 @@ impl Mesh {
     }
 }
 
-/// Values of an attribute at the corners of a triangle, if it has all of them.
+/// Returns the values of an attribute at the corners of a triangle, if all three corners have one.
 fn attribute<T: Copy>(indices: &[[u32; 3]], values: &[T], triangle: u32) -> Option<[T; 3]> {
     let [a, b, c] = *indices.get(triangle as usize)?;
     Some([*values.get(a as usize)?, *values.get(b as usize)?, *values.get(c as usize)?])

@@ -1,17 +1,19 @@
-//! Mesh data as read from a file.
+//! Mesh data as it is read from a file.
 
 use crate::math::{Vec2, Vec3};
 use crate::source::Digest;
 
-/// Index that stands for a missing attribute.
+/// Index that marks a missing attribute.
 pub const NO_INDEX: u32 = u32::MAX;
 
-/// Key of a position: equal for corners at the same position, where zeros of both signs are equal.
+/// Returns a key for a position. Corners at the same position have equal keys, and positive and
+/// negative zero count as equal.
 pub fn position_key(p: Vec3) -> [u32; 3] {
     (p + 0.0).to_array().map(f32::to_bits)
 }
 
-/// Triangle mesh as read from a file or built in code: lists of vertex attributes and indices.
+/// Triangle mesh that was read from a file or built in code. The mesh consists of lists of vertex
+/// attributes and indices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshData {
     /// Positions of the vertices.
@@ -20,27 +22,31 @@ pub struct MeshData {
     pub uvs: Vec<Vec2>,
     /// Normals, not necessarily of unit length; may be empty.
     pub normals: Vec<Vec3>,
-    /// Three position indices for each triangle, counter-clockwise seen from outside.
+    /// Three position indices for each triangle, counter-clockwise as seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// Three texture coordinate indices for each triangle, or [`NO_INDEX`]; empty if no triangle
-    /// has any.
+    /// Three texture coordinate indices for each triangle, or [`NO_INDEX`]. The list is empty if no
+    /// triangle has texture coordinates.
     pub triangle_uvs: Vec<[u32; 3]>,
-    /// Three normal indices for each triangle, or [`NO_INDEX`]; empty if no triangle has any.
+    /// Three normal indices for each triangle, or [`NO_INDEX`]. The list is empty if no triangle
+    /// has normals.
     pub triangle_normals: Vec<[u32; 3]>,
-    /// Three original vertices for each triangle after [`MeshData::loosen`]; otherwise empty.
+    /// Three original vertices for each triangle, or an empty list unless [`MeshData::loosen`] was
+    /// called.
     pub vertices: Vec<[u32; 3]>,
-    /// Linear red, green, blue and opacity by position index; empty if no vertex has a colour.
+    /// Linear red, green, blue and opacity for each position. The list is empty if no vertex has a
+    /// colour.
     pub colors: Vec<[f32; 4]>,
-    /// Second texture coordinates by position index; may be empty.
+    /// Second set of texture coordinates, one for each position; may be empty.
     pub second_uvs: Vec<Vec2>,
-    /// Tangents by position index: the direction of increasing u, and the sign of the bitangent
-    /// relative to the cross product of normal and tangent; may be empty.
+    /// Tangents, one for each position; may be empty. The first three components of a tangent are
+    /// the direction of increasing u. The fourth component is the sign of the bitangent relative to
+    /// the cross product of normal and tangent.
     pub tangents: Vec<[f32; 4]>,
-    /// True if triangles without normals are flat, regardless of the rule for missing normals.
+    /// True if triangles without normals stay flat, regardless of the rule for missing normals.
     pub flat: bool,
 }
 
-/// Access to the indexed triangles of a mesh, independent of their storage.
+/// Interface to the indexed triangles of a mesh that does not depend on how they are stored.
 pub trait Triangles: Sync {
     /// Number of triangles.
     fn len(&self) -> usize;
@@ -53,13 +59,13 @@ pub trait Triangles: Sync {
     /// Number of vertices.
     fn vertices(&self) -> usize;
 
-    /// Vertices at the corners of a triangle, counter-clockwise seen from outside.
+    /// Returns the vertices at the corners of a triangle, counter-clockwise as seen from outside.
     fn triangle(&self, number: usize) -> [u32; 3];
 
-    /// Position of a vertex.
+    /// Returns the position of a vertex.
     fn position(&self, vertex: u32) -> Vec3;
 
-    /// Positions of the corners of a triangle.
+    /// Returns the positions of the corners of a triangle.
     #[inline]
     fn corners(&self, number: usize) -> [Vec3; 3] {
         // A closure passed to `map` would not be inlined here.
@@ -67,13 +73,14 @@ pub trait Triangles: Sync {
         [self.position(a), self.position(b), self.position(c)]
     }
 
-    /// Number of leading triangles whose corners [`Triangles::ordered_around`] finds without lists.
+    /// Number of leading triangles of the mesh for which [`Triangles::ordered_around`] finds
+    /// corners without lists.
     fn ordered_count(&self) -> usize {
         0
     }
 
-    /// Offers the corners at a vertex of those leading triangles, in order: corner k of triangle i
-    /// as 3 i + k.
+    /// Calls `offer` for each corner of the leading triangles that is at the given vertex, in
+    /// order. Corner k of triangle i has the number 3 i + k.
     fn ordered_around(&self, _vertex: u32, _offer: impl FnMut(u32)) {}
 }
 
@@ -100,8 +107,9 @@ impl Triangles for MeshData {
 }
 
 impl MeshData {
-    /// Winds each triangle to face the side of its normals. With `reversed`, the normals are
-    /// negated first, and triangles without normals are flipped. Marks the mesh as flat.
+    /// Reorders the corners of each triangle so that it faces the same side as its normals. If
+    /// `reversed` is set, the normals are negated first, and triangles without normals are flipped.
+    /// Afterwards, the mesh is marked as flat.
     pub fn oriented(mut self, reversed: bool) -> MeshData {
         if reversed {
             self.normals.iter_mut().for_each(|n| *n = -*n);
@@ -125,12 +133,12 @@ impl MeshData {
         self
     }
 
-    /// Checks that the lists are consistent.
+    /// Checks that the lists are consistent with each other.
     ///
     /// # Errors
     ///
-    /// A message if an index is out of range, a position is not finite, or the lengths of
-    /// per-triangle or per-position lists differ.
+    /// Fails if an index is out of range, a position is not finite, or the per-triangle or
+    /// per-position lists differ in length.
     pub fn validate(&self) -> Result<(), String> {
         let below = |triangles: &[[u32; 3]], count: usize| {
             triangles.iter().flatten().all(|&i| (i as usize) < count || i == NO_INDEX)
@@ -163,7 +171,7 @@ impl MeshData {
         }
     }
 
-    /// Size in memory in bytes.
+    /// Size of the mesh data in memory, in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.positions)
             + size_of_val(&*self.uvs)
@@ -177,7 +185,7 @@ impl MeshData {
             + size_of_val(&*self.tangents)
     }
 
-    /// Hash of the whole mesh.
+    /// Computes a hash of the whole mesh.
     pub fn digest(&self) -> Digest {
         let mut hasher = Digest::hasher();
         let floats: [(usize, &mut dyn Iterator<Item = f32>); 6] = [
@@ -200,8 +208,8 @@ impl MeshData {
         hasher.finish()
     }
 
-    /// Assigns to every corner the normal with its position index; returns false if there are fewer
-    /// normals than positions.
+    /// Assigns normals to corners by position index. Returns false if there are fewer normals than
+    /// positions.
     pub fn use_normals_by_vertex(&mut self) -> bool {
         let enough = self.normals.len() >= self.positions.len();
         if enough {
@@ -210,7 +218,8 @@ impl MeshData {
         enough
     }
 
-    /// Separates all triangles and enlarges each of them slightly; see [`enlarged`].
+    /// Separates all triangles from each other and enlarges each of them slightly; see
+    /// [`enlarged`].
     pub fn separate_and_enlarge(&mut self) {
         let corners = |t: &[u32; 3]| enlarged(t.map(|i| self.positions[i as usize]));
         self.positions = self.triangles.iter().flat_map(corners).collect();
@@ -227,8 +236,9 @@ impl MeshData {
     }
 }
 
-/// Returns the triangle of all points whose barycentric coordinates are at least -0.00001: the
-/// original triangle enlarged about its centroid by three times that.
+/// Returns the triangle that contains all points whose barycentric coordinates are at least
+/// -0.00001. The result is the original triangle, enlarged about its centroid by the factor
+/// 1.00003.
 pub fn enlarged([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
     const SLACK: f64 = 1e-5;
     let corners = [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()];

@@ -1,4 +1,4 @@
-//! Shapes that a ray can hit. Each has its own file; [`Primitive`] lists them all.
+//! Shapes that a ray can hit. Each shape has its own file, and [`Primitive`] lists all of them.
 
 mod chord;
 pub mod cone;
@@ -50,7 +50,8 @@ pub use voxels::VoxelGrid;
 
 macro_rules! delegate {
     ($($variant:ident),+) => {
-        // Without this lint, an omitted method would silently use its default for every shape.
+        // Without this lint, a method that the macro omits would silently use its default for every
+        // shape.
         #[deny(clippy::missing_trait_methods)]
         impl Shape for Primitive {
             fn bounds(&self) -> Option<Aabb> {
@@ -129,60 +130,64 @@ described_list! {
     }
 }
 
-/// Edit of a scene file that swaps the front and the back of a surface.
+/// Edit of a scene file that swaps the front and back of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flip {
-    /// Swap any two corners, such as these.
+    /// Swap any two corners, such as the two corners named here.
     Corners([&'static str; 2]),
-    /// Swap the two edges.
+    /// Swap the two named edges.
     Edges([&'static str; 2]),
-    /// Negate these fields, of which the first is the normal.
+    /// Negate the named fields, the first of which is the normal.
     Negate(&'static [&'static str]),
 }
 
-/// Intersection of a ray with a shape, from which [`Shape::surface`] computes the surface.
+/// Intersection of a ray with a shape, from which [`Shape::surface`] computes the surface
+/// properties.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeHit {
     /// Ray parameter.
     pub t: f32,
-    /// Coordinates that [`Shape::surface`] needs: on triangles the second and third barycentric
-    /// coordinate; on shapes with several faces, x is the number of the face.
+    /// Coordinates that [`Shape::surface`] needs. On triangles, they are the second and third
+    /// barycentric coordinates. On shapes with several faces, x is the number of the face.
     pub uv: Vec2,
 }
 
-/// Point where a ray crosses the surface of a shape, with its normals and error bounds, in object
-/// space.
+/// Point where a ray crosses the surface of a shape, in object space, with its normals and error
+/// bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
     /// The point, rounded to single precision.
     pub position: Vec3,
-    /// Rounding error of `position`: see [`SurfacePoint::point`].
+    /// Rounding error of `position`; see [`SurfacePoint::point`].
     pub rounding_error: Vec3,
-    /// Bound on the absolute error of the point, by axis.
+    /// Bound on the absolute error of the point along each axis.
     pub error: Vec3,
-    /// Bound on the curvature in object space: 1 over the smallest radius. Zero if flat.
+    /// Bound on the curvature in object space, which is 1 over the smallest radius of curvature.
+    /// The bound is zero if the surface is flat.
     pub curvature: f32,
-    /// Unit normal of the true surface.
+    /// Unit normal of the actual surface, in contrast to `n_shade`.
     pub n_geo: Vec3,
-    /// Unit normal for shading: interpolated on smooth meshes.
+    /// Unit normal for shading, which is interpolated on smooth meshes.
     pub n_shade: Vec3,
     /// Texture coordinates.
     pub uv: Uv,
-    /// Barycentric coordinates; for triangles only.
+    /// Barycentric coordinates, which are only set on triangles.
     pub barycentric: Vec3,
-    /// Offsets from the point to the curved surface that a flat triangle approximates, for the side
-    /// of `n_shade` and for the other side. Zero on other shapes. Shadow rays start there; after
-    /// Hanika, *Hacking the Shadow Terminator*.
+    /// Offsets from the point to the curved surface that a flat triangle approximates. The first
+    /// offset is for the side of `n_shade`, and the second is for the other side. On other shapes,
+    /// both offsets are zero. Shadow rays start at the offset points, as described by Hanika,
+    /// *Hacking the Shadow Terminator*.
     pub shadow_offsets: [Vec3; 2],
-    /// Linear red, green, blue and opacity of the mesh's vertices; all 1 without vertex colours.
+    /// Linear red, green, blue and opacity, interpolated from the vertices of the mesh; all 1 if it
+    /// has no vertex colours.
     pub color: [f32; 4],
-    /// Number of the solid whose boundary this is, if the solid has several parts; a ray that
-    /// leaves it uses the number to determine the side where it starts.
+    /// Number of the solid that this surface bounds, if the solid has several parts. A ray that
+    /// leaves the surface uses the number to determine on which side it starts.
     pub solid: Option<u32>,
 }
 
 impl SurfacePoint {
-    /// Placeholder of zeros, which are the fastest to write.
+    /// Placeholder that consists of zeros, since zeros are the fastest values to write.
     pub const ZERO: SurfacePoint = SurfacePoint {
         position: Vec3::ZERO,
         rounding_error: Vec3::ZERO,
@@ -197,8 +202,8 @@ impl SurfacePoint {
         solid: None,
     };
 
-    /// Creates the surface at a point that was projected onto it in double precision. Its error is
-    /// its rounding plus `floor`; it is flat unless a curvature is set.
+    /// Creates the surface at a point that was projected onto it in double precision. The error of
+    /// the point is its rounding error plus `floor`. The surface is flat unless a curvature is set.
     pub fn new(point: DVec3, normal: DVec3, floor: f32, uv: impl Into<Uv>) -> Self {
         let position = point.as_vec3();
         let n = normal.normalize_or(DVec3::Y).as_vec3();
@@ -218,13 +223,13 @@ impl SurfacePoint {
         }
     }
 
-    /// Creates a flat surface at a point in space, accurate to a few roundings.
+    /// Creates a flat surface at a point in space that is accurate to a few roundings.
     pub fn around(point: DVec3, normal: Vec3) -> Self {
         let floor = gamma(4) * point.abs().max_element() as f32;
         SurfacePoint::new(point, normal.as_dvec3(), floor.max(f32::MIN_POSITIVE), Vec2::ZERO)
     }
 
-    /// The point in full precision, which is higher than `f32` far from the origin.
+    /// Returns the point in full precision, which is higher than that of `f32` far from the origin.
     #[inline]
     pub fn point(&self) -> DVec3 {
         self.position.as_dvec3() + self.rounding_error.as_dvec3()
@@ -234,7 +239,8 @@ impl SurfacePoint {
         SurfacePoint { curvature: curvature as f32, ..self }
     }
 
-    /// Bound on the distance of the surface from its tangent plane within an error of the point.
+    /// Returns a bound on the distance between the surface and its tangent plane within `error` of
+    /// the point.
     #[inline]
     pub fn bulge(&self, error: Vec3) -> Vec3 {
         0.5 * self.curvature * error.length_squared() * self.n_geo.abs()
@@ -242,39 +248,40 @@ impl SurfacePoint {
 }
 
 /// Distance that points keep from the edges of a shape, in units of their error, so that secondary
-/// rays start in front of the neighbouring face too. This holds for faces that meet at more than
-/// about 10 degrees, since the start moves by two errors along the normal.
+/// rays also start in front of the neighbouring face. This distance suffices for faces that meet at
+/// an angle of more than about 10 degrees, since the start of a ray moves by two errors along the
+/// normal.
 const INSET: f32 = 16.0;
 
-/// Clamps a coordinate on a face from 0 to `end`, so that it is [`INSET`] errors away from both
-/// ends.
+/// Clamps a coordinate that runs from 0 to `end` across a face, so that it stays [`INSET`] errors
+/// away from both ends.
 fn inset(x: f64, end: f64, error: f32) -> f64 {
     let margin = f64::from(INSET * error).min(0.25 * end);
     x.clamp(margin, end - margin)
 }
 
-/// Returns points relative to a centre, if `f32` represents them exactly.
+/// Returns the points relative to a centre, or `None` if `f32` cannot represent them exactly.
 fn exact_offsets<const N: usize>(points: [Vec3; N], center: Vec3) -> Option<[Vec3; N]> {
     let exact = |p: &Vec3| (*p - center).as_dvec3() == p.as_dvec3() - center.as_dvec3();
     points.iter().all(exact).then(|| points.map(|p| p - center))
 }
 
 /// Operations that every shape implements. A method has a default only if the default is correct
-/// for every shape, and overrides are merely faster.
+/// for every shape. A shape overrides such a method only to make it faster.
 pub trait Shape {
-    /// Bounds in object space; `None` for an infinite shape.
+    /// Returns the bounds in object space, or `None` for an infinite shape.
     fn bounds(&self) -> Option<Aabb>;
 
-    /// True if the shape may intersect a box that overlaps its bounds.
+    /// True if the shape may intersect a box that overlaps the bounds of the shape.
     fn overlaps(&self, _cell: &Aabb) -> bool {
         true
     }
 
-    /// Offers every crossing of a line with the surface, as `t` and coordinates on the shape, in
-    /// any order.
+    /// Calls `emit` for every crossing of a line with the surface, in any order, with the `t` of
+    /// the crossing and its coordinates on the shape.
     ///
-    /// A closed shape is crossed only where the line enters or leaves. A line that touches it does
-    /// not count, so that entries and exits alternate along the line.
+    /// A line crosses a closed shape only where it enters or leaves the shape. Points where a line
+    /// merely touches the shape do not count, so that entries and exits alternate along the line.
     fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2));
 
     /// Returns the crossing with the smallest `t` inside the ray's open interval.
@@ -292,80 +299,90 @@ pub trait Shape {
         first
     }
 
-    /// Axis of a solid of revolution, computed once for many rays: see [`Shape::crossings_about`].
+    /// Returns the axis of a solid of revolution, which is computed once for many rays; see
+    /// [`Shape::crossings_about`].
     fn axis(&self) -> Option<Axis> {
         None
     }
 
-    /// Offers crossings as [`Shape::crossings`] does, given the result of [`Shape::axis`].
+    /// Reports crossings as [`Shape::crossings`] does, but reuses the result of [`Shape::axis`].
     #[inline(always)]
     fn crossings_about(&self, _axis: Option<&Axis>, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         self.crossings(line, emit);
     }
 
-    /// Computes the surface at a crossing; `point` is on it up to rounding.
+    /// Computes the surface properties at a crossing. Apart from rounding, `point` lies on the
+    /// surface.
     fn surface(&self, point: DVec3, crossing: &ShapeHit) -> SurfacePoint;
 
-    /// True if a point is inside; `None` for shapes that are surfaces only.
+    /// True if the point is inside the shape; `None` for shapes that have no inside.
     fn inside(&self, point: DVec3) -> Option<bool>;
 
-    /// True if a line is inside the shape at t = -infinity; `false` for every bounded shape.
+    /// True if the line is inside the shape at t = -infinity, which is never the case for a bounded
+    /// shape.
     fn starts_inside(&self, line: &Line) -> bool;
 
-    /// Returns the shape translated to the origin, and the translation; `None` if it has no
-    /// position, or if `f32` cannot represent the result exactly.
+    /// Returns the shape moved to the origin, and the translation that moves it back. Returns
+    /// `None` if the shape has no position, or if `f32` cannot represent the result exactly.
     fn centered(&self) -> Option<(Self, Vec3)>
     where
         Self: Sized;
 
-    /// Checks combinations of fields. The constraints in the description check each field
-    /// separately.
+    /// Checks that the fields are valid in combination. The constraints in the description check
+    /// each field separately.
     ///
     /// # Errors
     ///
-    /// A message that names the fields.
+    /// Returns a message that names the fields.
     fn validate(&self) -> Result<(), String>;
 
-    /// Returns the edit that flips a flat shape; `None` for shapes that are not flat.
+    /// Returns the edit that flips the shape, or `None` if the shape is not flat.
     fn flip(&self) -> Option<Flip>;
 
-    /// Returns the shape itself if it is an infinite plane, which divides space into two half
-    /// spaces.
+    /// Returns the shape itself if it is an infinite plane, which divides space into two
+    /// half-spaces.
     fn plane(&self) -> Option<&Plane>;
 
-    /// Returns the flat convex faces, each by its corners in order, in object space. Empty for
-    /// shapes that are infinite or have a curved face or edge.
+    /// Returns the faces, which are flat and convex, in object space. Each face is a list of its
+    /// corners in order. The result is empty for shapes that are infinite or have a curved face or
+    /// edge.
     fn polygons(&self) -> Vec<Vec<Vec3>>;
 
-    /// Returns the surface to sample as a light, in world space, and its outward unit normal; the
-    /// normal is zero if it varies. With `None`, only rays that hit the shape by chance find its
-    /// light, which is noisy.
+    /// Returns the surface to sample as a light, in world space, and its outward unit normal. The
+    /// normal is zero if it varies over the surface. If the result is `None`, only rays that hit
+    /// the shape by chance find its light, which causes noise.
     fn emitter(&self, transform: &EmitterTransform) -> Option<(EmitterShape, Vec3)>;
 
-    /// Direction of the texture coordinate u at a point, in object space, of any length; the
-    /// direction of anisotropic highlights. `None`: horizontal and perpendicular to the normal.
+    /// Returns the direction in which the texture coordinate u increases at a point, in object
+    /// space. The vector can have any length, and it defines the direction of anisotropic
+    /// highlights. If the result is `None`, a direction that is horizontal and perpendicular to the
+    /// normal is used.
     fn tangent(&self, point: Vec3) -> Option<Vec3>;
 
-    /// Returns triangles that approximate the shape, in object space; `None` for an infinite shape.
+    /// Returns triangles that approximate the shape in object space, or `None` for an infinite
+    /// shape.
     fn to_mesh(&self) -> Option<MeshData>;
 
-    /// Returns polylines that depict the shape in a drawing, in object space. An infinite shape
-    /// draws its part near `around`. With `None`, the box of its bounds is drawn.
+    /// Returns polylines that depict the shape in a drawing, in object space. For an infinite
+    /// shape, only the part near `around` is drawn. If the result is `None`, the bounding box is
+    /// drawn.
     fn outline(&self, around: &Aabb) -> Option<Vec<Vec<Vec3>>>;
 }
 
-/// Angle of (x, y) about an axis as a fraction of a full turn, in [0, 1], measured from -x.
+/// Returns the angle of (x, y) around an axis as a fraction of a full turn, in [0, 1], measured
+/// from -x.
 fn angle_fraction(x: f64, y: f64) -> f32 {
     (fp::atan2(y as f32, x as f32) / std::f32::consts::TAU + 0.5).clamp(0.0, 1.0)
 }
 
-/// Box of points in double precision, enlarged by their rounding to `f32`.
+/// Returns the bounding box of points in double precision, enlarged by the error of rounding them
+/// to `f32`.
 fn padded_box(min: DVec3, max: DVec3) -> Aabb {
     let pad = gamma(6) * min.abs().max(max.abs()).max_element() as f32;
     Aabb { min: min.as_vec3() - pad, max: max.as_vec3() + pad }
 }
 
-/// Half the size of the bounds of a unit disc.
+/// Returns half the size of the bounding box of a unit disc.
 fn disc_reach(normal: DVec3) -> DVec3 {
     (DVec3::ONE - normal * normal).max(DVec3::ZERO).map(f64::sqrt)
 }

@@ -1,4 +1,4 @@
-//! Normals computed at the corners of triangles, for meshes without normals.
+//! Computes normals at the corners of triangles, for meshes that have no normals.
 
 use super::height_field::Terrain;
 use super::mesh_data::{MeshData, NO_INDEX, Triangles};
@@ -11,12 +11,13 @@ use std::ops::Range;
 
 /// Maximum number of faces at a vertex that are compared with each other.
 const MANY: usize = 64;
-/// Minimum number of vertices per thread.
+/// Minimum number of vertices for each thread.
 const AT_ONCE: usize = 256;
-/// Number of vertices processed in parallel; processing all at once would need too much memory.
+/// Number of vertices that are processed in parallel. Processing all of them at once would need too
+/// much memory.
 const PER_TASK: usize = 64 * AT_ONCE;
 
-/// Computed normals of a mesh, one at each corner of its triangles.
+/// Computed normals of a mesh, with one normal at each corner of its triangles.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Normals {
     /// Normals, not necessarily of unit length; may be empty.
@@ -28,10 +29,11 @@ pub(super) struct Normals {
 /// Mapping from the corners of a mesh's triangles to normals.
 #[derive(Clone, Debug)]
 pub(super) enum CornerMap {
-    /// Three indices per triangle, or [`NO_INDEX`]; empty if no triangle has any.
+    /// Three indices for each triangle, or [`NO_INDEX`]. The list is empty if no triangle has
+    /// normals.
     Listed(Vec<[u32; 3]>),
-    /// Index of the first normal of each vertex, and each corner's offset from it: a third of the
-    /// memory, but slower.
+    /// Index of the first normal of each vertex, and the offset of each corner from that index.
+    /// This representation needs a third of the memory of the list, but it is slower.
     ByVertex(Vec<u32>, Vec<[u8; 3]>),
 }
 
@@ -51,7 +53,7 @@ impl Normals {
             }
     }
 
-    /// Returns three normal indices per triangle of a mesh.
+    /// Returns three normal indices for each triangle of the mesh.
     pub fn listed(&self, mesh: &impl Triangles) -> Cow<'_, [[u32; 3]]> {
         match &self.corners {
             CornerMap::Listed(triangles) => Cow::Borrowed(triangles),
@@ -59,7 +61,8 @@ impl Normals {
         }
     }
 
-    /// Returns the normal indices of a triangle, or [`NO_INDEX`] if none are listed.
+    /// Returns the three normal indices of a triangle, or [`NO_INDEX`] if no indices are listed for
+    /// it.
     #[inline]
     fn at_corners(&self, mesh: &impl Triangles, triangle: usize) -> [u32; 3] {
         match &self.corners {
@@ -71,7 +74,7 @@ impl Normals {
         }
     }
 
-    /// Returns the normals at the corners of a triangle, if it has any.
+    /// Returns the normals at the corners of a triangle, if it has normals.
     #[inline]
     pub fn of_triangle(&self, mesh: &impl Triangles, triangle: usize) -> Option<[Vec3; 3]> {
         let [a, b, c] = self.at_corners(mesh, triangle);
@@ -79,8 +82,9 @@ impl Normals {
     }
 }
 
-/// Computes normals for triangles without normals, or for all triangles unless `file_normals` is
-/// set. Returns the normals of all triangles; `None` if the mesh needs only its own normals.
+/// Computes normals for all triangles, or only for triangles without normals if `file_normals` is
+/// set. Returns the normals of all triangles, or `None` if the mesh needs only the normals that it
+/// already has.
 pub(super) fn computed(data: &MeshData, rule: MeshNormals, file_normals: bool) -> Option<Normals> {
     let own: (&[Vec3], &[[u32; 3]]) = match file_normals {
         true => (&data.normals, &data.triangle_normals),
@@ -104,15 +108,15 @@ pub(super) fn computed(data: &MeshData, rule: MeshNormals, file_normals: bool) -
     Some(computed_normals)
 }
 
-/// Computes the normals of a terrain. Each vertex has few normals, because few triangles meet there
-/// or all lie in one plane.
+/// Computes the normals of a terrain. Each vertex has few normals, because either few triangles
+/// meet there or all of them lie in one plane.
 pub(super) fn of_terrain(terrain: &Terrain, rule: MeshNormals) -> Option<Normals> {
     by_rule(terrain, &[], rule, true)
 }
 
-/// Computes normals for all triangles by a rule; `None` if they are flat. If `vertices` is not
-/// empty, triangles that share its entries are smooth along common edges. With `by_vertex`, creases
-/// are stored by vertex.
+/// Computes normals for all triangles by the given rule. Returns `None` if the triangles stay flat.
+/// If `vertices` is not empty, triangles that refer to the same entries are smooth along their
+/// common edges. If `by_vertex` is set, the normals of creased meshes are stored by vertex.
 fn by_rule(mesh: &impl Triangles, vertices: &[[u32; 3]], rule: MeshNormals, by_vertex: bool) -> Option<Normals> {
     match rule {
         MeshNormals::SmoothAbove(count) if mesh.vertices() <= count => None,
@@ -126,14 +130,15 @@ fn by_rule(mesh: &impl Triangles, vertices: &[[u32; 3]], rule: MeshNormals, by_v
     }
 }
 
-/// Twice the area of a triangle times its normal, in double precision: tiny areas underflow in
-/// single precision.
+/// Returns the normal of a triangle times twice its area, in double precision because tiny areas
+/// underflow in single precision.
 fn cross(mesh: &impl Triangles, triangle: usize) -> DVec3 {
     let [a, b, c] = mesh.corners(triangle).map(|p| p.as_dvec3());
     (b - a).cross(c - a)
 }
 
-/// One normal per vertex: the sum over its faces, each weighted by a function of its cross product.
+/// Computes one normal for each vertex. The normal is the sum over the faces of the vertex, each
+/// weighted by a function of its cross product.
 fn smooth(mesh: &impl Triangles, vertices: &[[u32; 3]], weigh: impl Fn(DVec3) -> DVec3) -> Normals {
     let triangles = match vertices.is_empty() {
         true => (0..mesh.len()).map(|i| mesh.triangle(i)).collect(),
@@ -151,7 +156,8 @@ fn smooth(mesh: &impl Triangles, vertices: &[[u32; 3]], weigh: impl Fn(DVec3) ->
     Normals { values, corners: CornerMap::Listed(triangles) }
 }
 
-/// Normals from faces with equal weights; NaN at the vertices of a degenerate face.
+/// Computes normals from faces with equal weights. The normals at the vertices of a degenerate face
+/// are NaN.
 fn smooth_or_nan(mesh: &impl Triangles, vertices: &[[u32; 3]]) -> Normals {
     let mut normals = smooth(mesh, vertices, DVec3::normalize_or_zero);
     let CornerMap::Listed(triangles) = &normals.corners else { unreachable!("rules list") };
@@ -163,15 +169,16 @@ fn smooth_or_nan(mesh: &impl Triangles, vertices: &[[u32; 3]]) -> Normals {
     normals
 }
 
-/// True if any vertex belongs to two triangles.
+/// True if any vertex belongs to more than one triangle.
 fn shares_vertices(mesh: &impl Triangles) -> bool {
     let mut visited = vec![false; mesh.vertices()];
     let mut is_second = |vertex: u32| std::mem::replace(&mut visited[vertex as usize], true);
     (0..mesh.len()).any(|i| mesh.triangle(i).into_iter().any(&mut is_second))
 }
 
-/// One normal per corner: the sum, weighted by angle, over the faces around its vertex that are not
-/// beyond a crease. Corners of one vertex mostly have equal normals, which are stored once.
+/// Computes one normal for each corner. A normal is the sum of the normals of the faces around the
+/// vertex, weighted by angle and without the faces beyond a crease. Most corners that share a
+/// vertex have equal normals, which are stored only once.
 ///
 /// Source of the weights: Thürmer and Wüthrich, *Computing Vertex Normals from Polygonal Facets*,
 /// JGT 3(1), 1998.
@@ -186,8 +193,8 @@ fn creased(mesh: &impl Triangles, degrees: f32, by_vertex: bool) -> Normals {
         let (e, f) = (edge(k + 1), edge(k + 2));
         fp::atan2(e.cross(f).length(), e.dot(f))
     };
-    // Normals of some vertices, the index of the first for each vertex, and the offset of each
-    // corner.
+    // Normals of some of the vertices, the index of the first normal of each vertex, and the offset
+    // of each corner.
     let some = |vertices: Range<usize>| {
         let (mut values, mut firsts, mut numbers): (Vec<Vec3>, Vec<u32>, Vec<[u32; 2]>) = Default::default();
         let (mut corners, mut faces): (Vec<u32>, Vec<(Vec3, f32)>) = Default::default();
@@ -195,7 +202,8 @@ fn creased(mesh: &impl Triangles, degrees: f32, by_vertex: bool) -> Normals {
             corners.clear();
             around.for_each_corner(mesh, vertex as u32, |corner| corners.push(corner));
             faces.clear();
-            // A vertex with very many faces stays faceted, to avoid quadratic time.
+            // A vertex with very many faces stays faceted, because smoothing it would take
+            // quadratic time.
             let is_faceted = corners.len() > MANY;
             if !is_faceted {
                 faces.extend(corners.iter().map(|&corner| (face(corner), angle(corner))));
@@ -247,10 +255,10 @@ fn creased(mesh: &impl Triangles, degrees: f32, by_vertex: bool) -> Normals {
     Normals { values, corners: of_corners }
 }
 
-/// Corners at each vertex of a mesh, as one flat list, for computing normals: corner k of triangle
-/// i is 3 i + k. Omits the triangles that [`Triangles::ordered_count`] covers.
+/// List of the corners at each vertex of a mesh, for computing normals. Corner k of triangle i has
+/// the number 3 i + k. The list omits the triangles that [`Triangles::ordered_count`] covers.
 struct VertexCorners {
-    /// Start of each vertex's corners, then the end of the last.
+    /// Index of the first corner of each vertex, followed by the end of the last vertex.
     starts: Vec<u32>,
     corners: Vec<u32>,
 }
@@ -273,13 +281,13 @@ impl VertexCorners {
                 *next += 1;
             }
         }
-        // Each start has advanced to the next vertex's start.
+        // Each start has now advanced to the start of the next vertex.
         starts.rotate_right(1);
         starts[0] = 0;
         VertexCorners { starts, corners }
     }
 
-    /// Offers all corners at a vertex, in the order of the triangles.
+    /// Calls `emit` for each corner at a vertex, in the order of the triangles.
     fn for_each_corner(&self, mesh: &impl Triangles, vertex: u32, mut emit: impl FnMut(u32)) {
         mesh.ordered_around(vertex, &mut emit);
         let [start, end] = [0, 1].map(|next| self.starts[vertex as usize + next] as usize);

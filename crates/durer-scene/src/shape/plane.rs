@@ -1,4 +1,4 @@
-//! The infinite plane normal · p = offset.
+//! An infinite plane with the equation normal · p = offset.
 
 use super::{Flip, MeshData, Shape, ShapeHit, SurfacePoint, Uv};
 use crate::describe::{Constraint, described};
@@ -26,7 +26,8 @@ impl Shape for Plane {
     fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
         let n = self.normal.as_dvec3();
         let slope = n.dot(ray.dir.as_dvec3());
-        // For a parallel ray this divides by zero, for an infinite one by infinity: neither hits.
+        // For a ray parallel to the plane, the slope is zero. If the direction of the ray is
+        // infinite, so is the slope. In both cases, the ray does not count as a hit.
         let t = ((f64::from(self.offset) - n.dot(ray.origin.as_dvec3())) / slope) as f32;
         (slope.is_finite() && t.is_finite() && ray.contains(t)).then_some(ShapeHit { t, uv: Vec2::ZERO })
     }
@@ -52,7 +53,7 @@ impl Shape for Plane {
     #[inline(always)]
     fn surface(&self, p: DVec3, _crossing: &ShapeHit) -> SurfacePoint {
         let n = self.normal.as_dvec3();
-        // Project the point back onto the plane, so that its error is the rounding of the
+        // Project the point back onto the plane, so that its only error is the rounding of its
         // coordinates.
         let on = p - n * ((n.dot(p) - f64::from(self.offset)) / n.dot(n));
         let position = on.as_vec3();
@@ -104,7 +105,7 @@ impl Shape for Plane {
         None
     }
 
-    /// Draws a grid around the projection of the centre of `around` onto the plane.
+    /// Draws a grid around the point of the plane that is closest to the centre of `around`.
     fn outline(&self, around: &Aabb) -> Option<Vec<Vec<Vec3>>> {
         let n = self.normal.normalize_or(Vec3::Y);
         let (u, v) = n.any_orthonormal_pair();

@@ -1,4 +1,4 @@
-//! General quadric: the zeros of a polynomial of degree two in x, y and z.
+//! A general quadric, which is the set of zeros of a polynomial of degree two in x, y and z.
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, SurfacePoint, angle_fraction, padded_box};
 use crate::describe::{Constraint, described};
@@ -23,7 +23,7 @@ described! {
 }
 
 impl Quadric {
-    /// Symmetric matrix M of p·M p + g·p + j.
+    /// Returns the symmetric matrix M of the polynomial p·M p + g·p + j.
     fn matrix(&self) -> DMat3 {
         let ([a, b, c], [d, e, f]) = (self.squares.as_dvec3().to_array(), (0.5 * self.products.as_dvec3()).to_array());
         DMat3::from_cols(DVec3::new(a, d, e), DVec3::new(d, b, f), DVec3::new(e, f, c))
@@ -37,8 +37,8 @@ impl Quadric {
         2.0 * (self.matrix() * p) + self.linear.as_dvec3()
     }
 
-    /// Returns the polynomial a t^2 + 2 b t + c along a line, measured from its point nearest to
-    /// the origin, and the `t` of that point.
+    /// Returns the polynomial a t^2 + 2 b t + c along a line, where t is measured from the point of
+    /// the line nearest to the origin. The function also returns the original `t` of that point.
     fn along(&self, line: &Line) -> (f64, [f64; 3]) {
         let shift = line.nearest(DVec3::ZERO);
         let (o, d) = (line.at(shift), line.dir);
@@ -47,8 +47,8 @@ impl Quadric {
 }
 
 impl Shape for Quadric {
-    /// Only an ellipsoid has bounds: if M is positive definite, |p_i - center_i|^2 <= -q(center)
-    /// (M^-1)_ii.
+    /// Only ellipsoids have bounds. If M is positive definite, then |p_i - center_i|^2 <=
+    /// -q(center) (M^-1)_ii.
     fn bounds(&self) -> Option<Aabb> {
         let m = self.matrix();
         let minor = m.x_axis.x * m.y_axis.y - m.x_axis.y * m.x_axis.y;
@@ -75,7 +75,7 @@ impl Shape for Quadric {
     }
 
     fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> SurfacePoint {
-        // Move back onto the surface by Newton steps along the gradient.
+        // Move the point back onto the surface by Newton steps along the gradient.
         let mut p = point;
         let mut gradient = self.gradient(p);
         for _ in 0..3 {
@@ -88,10 +88,10 @@ impl Shape for Quadric {
         let steepness = gradient.length();
         let bend = 2.0 * self.matrix().to_cols_array().iter().fold(0.0, |sum: f64, x| sum + x.abs());
         let size = p.abs().max_element();
-        // Where all terms cancel, as at the tip of a cone, the normal is undefined and the
-        // curvature unbounded.
+        // Where all terms cancel, for example at the tip of a cone, the normal is undefined and the
+        // curvature is unbounded.
         let curvature = (bend / steepness.max(1e-6 * bend * size)).min(1e30);
-        // Texture coordinates: longitude and latitude seen from the origin.
+        // Use longitude and latitude, as seen from the origin, as texture coordinates.
         let direction = p.normalize_or(DVec3::Z);
         let v = fp::asin((direction.y as f32).clamp(-1.0, 1.0)) / std::f32::consts::PI + 0.5;
         let floor = gamma(2) * size as f32;

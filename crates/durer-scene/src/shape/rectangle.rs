@@ -1,4 +1,4 @@
-//! The rectangle or parallelogram.
+//! A rectangle or parallelogram.
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, SurfacePoint, inset, padded_box, tessellate};
 use crate::describe::{Constraint, described};
@@ -25,22 +25,23 @@ impl Rectangle {
         [self.edge0.as_dvec3(), self.edge1.as_dvec3()]
     }
 
-    /// Ray parameter where a line meets the plane; infinite or NaN for a parallel line.
+    /// Returns the ray parameter at which a line meets the plane. The parameter is infinite or NaN
+    /// if the line is parallel to the plane.
     fn plane_at(&self, line: &Line) -> f64 {
         let [e, f] = self.edges();
         let n = e.cross(f);
         n.dot(self.corner.as_dvec3() - line.origin) / n.dot(line.dir)
     }
 
-    /// Edge coordinates of a point of the plane if it is on the rectangle. NaN coordinates fail the
-    /// test.
+    /// Returns the edge coordinates of a point of the plane if the point is on the rectangle. The
+    /// test fails if a coordinate is NaN.
     fn local_uv(&self, point: DVec3) -> Option<Vec2> {
         let [u, v] = self.shares(point);
         let inside = (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v);
         inside.then(|| Vec2::new(u as f32, v as f32))
     }
 
-    /// Coordinates of a point of the plane along both edges, by Cramer's rule.
+    /// Returns the coordinates of a point of the plane along both edges, computed by Cramer's rule.
     fn shares(&self, point: DVec3) -> [f64; 2] {
         let [e, f] = self.edges();
         let (n, q) = (e.cross(f), point - self.corner.as_dvec3());
@@ -63,8 +64,8 @@ impl Shape for Rectangle {
     }
 
     fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
-        // Most rays miss the plane in their interval, so compute the edge coordinates only for the
-        // rest.
+        // For most rays, the plane is not hit within the interval, so compute the edge coordinates
+        // only for the others.
         let line = ray.line();
         let t = self.plane_at(&line);
         let hit = ray.contains(t as f32) && line.is_valid();

@@ -1,4 +1,4 @@
-//! The sphere |p - center|^2 = radius^2.
+//! A sphere with the equation |p - center|^2 = radius^2.
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, SurfacePoint, Uv, tessellate};
 use crate::describe::{Constraint, described};
@@ -20,9 +20,9 @@ described! {
 impl Sphere {
     /// Solves |origin + t dir - center|^2 = radius^2 in double precision.
     ///
-    /// The discriminant is computed from the point of the ray nearest to the centre, which keeps it
-    /// accurate for small, distant spheres. Source: Haines, Günther, Akenine-Möller, *Ray Tracing
-    /// Gems* (2019), chapter 7.
+    /// The discriminant is computed from the point of the ray that is nearest to the centre, so it
+    /// is accurate even for small, distant spheres. Source: Haines, Günther, Akenine-Möller, *Ray
+    /// Tracing Gems* (2019), chapter 7.
     fn roots(&self, line: &Line) -> Option<[f64; 2]> {
         let o = line.origin - self.center.as_dvec3();
         let d = line.dir;
@@ -31,11 +31,11 @@ impl Sphere {
         let b = -o.dot(d);
         let nearest = o + (b / dd) * d;
         let discriminant = r * r - nearest.dot(nearest);
-        // A zero direction gives NaN.
+        // A direction of zero gives NaN.
         if discriminant.is_nan() || discriminant < 0.0 {
             return None;
         }
-        // q has the sign of b, so that neither root suffers from cancellation.
+        // Give q the sign of b, so that neither root suffers from cancellation.
         let c = o.dot(o) - r * r;
         let q = b + (dd * discriminant).sqrt().copysign(b);
         let (t0, t1) = if q == 0.0 { (0.0, 0.0) } else { (c / q, q / dd) };
@@ -49,8 +49,8 @@ impl Shape for Sphere {
         Some(Aabb { min: self.center - self.radius - pad, max: self.center + self.radius + pad })
     }
 
-    /// True if the box's bounding sphere intersects this sphere. This is the course's test, which
-    /// has false positives.
+    /// True if the bounding sphere of the box intersects this sphere. This box test is the one used
+    /// in the course, and it has false positives.
     fn overlaps(&self, cell: &Aabb) -> bool {
         let reach = self.radius + 0.5 * cell.size().length();
         (cell.center() - self.center).length() <= reach * (1.0 + gamma(8))
@@ -81,7 +81,8 @@ impl Shape for Sphere {
     fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> SurfacePoint {
         let offset = point - self.center.as_dvec3();
         let normal = offset.normalize_or(DVec3::Z).as_vec3();
-        // Project the point back onto the sphere, which makes it as exact as its coordinates.
+        // Project the point back onto the sphere, so that it is as accurate as its coordinates can
+        // be.
         let position = self.center + self.radius * normal;
         let error = gamma(3) * (self.center.abs() + self.radius * normal.abs());
         SurfacePoint {
@@ -122,7 +123,7 @@ impl Shape for Sphere {
     fn emitter(&self, transform: &EmitterTransform) -> Option<(EmitterShape, Vec3)> {
         let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| transform.vector(self.radius * axis));
         let radius = axes[0].length();
-        // A transform can make it an ellipsoid, which is sampled as an affine body.
+        // A transform can turn the sphere into an ellipsoid, which is sampled as an affine body.
         let round = axes.iter().all(|axis| (axis.length() - radius).abs() < 1e-5 * radius)
             && axes[0].dot(axes[1]).abs() + axes[1].dot(axes[2]).abs() + axes[2].dot(axes[0]).abs()
                 < 1e-5 * radius * radius;
@@ -146,7 +147,7 @@ impl Shape for Sphere {
     }
 
     fn outline(&self, _: &Aabb) -> Option<Vec<Vec<Vec3>>> {
-        /// Number of segments of a circle.
+        /// Number of segments in a circle.
         const STEPS: u32 = 32;
         let circle = |u: Vec3, v: Vec3| {
             let point = |i: u32| {

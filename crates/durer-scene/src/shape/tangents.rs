@@ -1,9 +1,11 @@
-//! Vertex tangents for normal maps, compatible with MikkTSpace, which normal maps are baked for.
+//! Computes vertex tangents for normal maps. The tangents are compatible with MikkTSpace, for which
+//! most normal maps are baked.
 //!
 //! Source: Morten Mikkelsen, *Simulation of Wrinkled Surfaces Revisited*, University of Copenhagen,
-//! 2008, and his program. Triangle corners share one tangent if they agree in position, normal and
-//! texture coordinates, are connected by edges, and have texture coordinates of the same
-//! orientation. It is the mean of the triangles' tangents, weighted by their angles.
+//! 2008, and his program. Triangle corners share one tangent if they have the same position, normal
+//! and texture coordinates, are connected by edges, and their texture coordinates have the same
+//! orientation. The shared tangent is the mean of the tangents of the triangles, weighted by their
+//! angles.
 
 use super::MeshData;
 use super::mesh::NO_INDEX;
@@ -12,9 +14,10 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 
 impl MeshData {
-    /// Computes tangents for vertices with normals and texture coordinates. A vertex whose corners
-    /// have different tangents is split. Returns the original of each vertex that is appended at
-    /// the end. Does nothing if a corner lacks either attribute.
+    /// Computes tangents for vertices that have normals and texture coordinates. A vertex whose
+    /// corners have different tangents is split. Returns the index of the original vertex for each
+    /// vertex that is appended at the end. Does nothing if a corner lacks a normal or texture
+    /// coordinates.
     pub fn make_tangents(&mut self) -> Vec<u32> {
         let complete = |list: &[[u32; 3]]| {
             list.len() == self.triangles.len() && list.iter().flatten().all(|&index| index != NO_INDEX)
@@ -26,8 +29,8 @@ impl MeshData {
         self.split(&tangents)
     }
 
-    /// Assigns to each vertex the tangent of its corners, and appends a copy of the vertex for each
-    /// further tangent.
+    /// Assigns to each vertex the tangent of its corners. If the corners have several tangents, a
+    /// copy of the vertex is appended for each additional one.
     fn split(&mut self, tangents: &[[f32; 4]]) -> Vec<u32> {
         self.tangents = vec![[0.0; 4]; self.positions.len()];
         let mut taken = vec![false; self.positions.len()];
@@ -57,15 +60,15 @@ impl MeshData {
     }
 }
 
-/// Corners of all triangles of a mesh, for computing tangents: corner 3 t + k is the k-th of
+/// Corners of all triangles of a mesh, for computing tangents. Corner 3 t + k is the k-th corner of
 /// triangle t.
 struct Corners {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
-    /// Direction of increasing u on each triangle, of length 1 or 0; true if the texture
-    /// coordinates have the triangle's orientation.
+    /// Direction of length 1 or 0 in which u increases on each triangle. The flag is true if the
+    /// texture coordinates have the same orientation as the triangle.
     triangles: Vec<(Vec3, bool)>,
-    /// Equal numbers for corners that agree in all attributes.
+    /// Numbers that are equal for corners with the same values of all attributes.
     vertices: Vec<u32>,
 }
 
@@ -75,7 +78,7 @@ impl Corners {
         let positions: Vec<Vec3> = of(&data.triangles).into_iter().map(|i| data.positions[i]).collect();
         let normals: Vec<Vec3> = of(&data.triangle_normals).into_iter().map(|i| data.normals[i]).collect();
         let uvs: Vec<Vec2> = of(&data.triangle_uvs).into_iter().map(|i| data.uvs[i]).collect();
-        // Treat zeros of both signs as equal.
+        // Treat positive and negative zero as equal.
         let bits = |x: f32| (x + 0.0).to_bits();
         let key = |&corner: &u32| {
             let (p, n, uv) = (positions[corner as usize], normals[corner as usize], uvs[corner as usize]);
@@ -91,20 +94,20 @@ impl Corners {
         Corners { positions, normals, triangles, vertices }
     }
 
-    /// True if the triangle and its texture coordinates have an area.
+    /// True if both the triangle and its texture coordinates have a nonzero area.
     fn has_area(&self, triangle: usize) -> bool {
         self.triangles[triangle].0 != Vec3::ZERO
     }
 
-    /// Finds pairs of corners that share a tangent, at common edges of triangles.
+    /// Finds pairs of corners that share a tangent at the common edges of triangles.
     fn pairs(&self) -> Vec<[u32; 2]> {
         let mut edges: Vec<([u32; 2], bool, [u32; 2])> = (0..self.positions.len())
             .filter(|corner| self.has_area(corner / 3))
             .map(|corner| {
                 let next = corner - corner % 3 + (corner + 1) % 3;
                 let (a, b) = (self.vertices[corner], self.vertices[next]);
-                // The corners in the order of their vertices, regardless of the triangle's
-                // direction.
+                // Sort the corners in the order of their vertices, regardless of the direction of
+                // the triangle.
                 match a <= b {
                     true => ([a, b], true, [corner as u32, next as u32]),
                     false => ([b, a], false, [next as u32, corner as u32]),
@@ -114,7 +117,7 @@ impl Corners {
         edges.par_sort_unstable();
         let mut pairs = Vec::new();
         for edge in edges.chunk_by(|a, b| a.0 == b.0) {
-            // Neighbours traverse their common edge in opposite directions.
+            // Neighbouring triangles traverse their common edge in opposite directions.
             let (back, forth) = edge.split_at(edge.partition_point(|e| !e.1));
             for (a, b) in back.iter().zip(forth) {
                 if self.triangles[a.2[0] as usize / 3].1 == self.triangles[b.2[0] as usize / 3].1 {
@@ -125,7 +128,7 @@ impl Corners {
         pairs
     }
 
-    /// Contribution of a corner to its shared tangent.
+    /// Returns the contribution of a corner to its shared tangent.
     fn share(&self, corner: usize) -> Vec3 {
         let n = self.normals[corner];
         let flat = |v: Vec3| (v - n.dot(v) * n).normalize_or_zero();
@@ -135,7 +138,8 @@ impl Corners {
         angle * flat(self.triangles[corner / 3].0)
     }
 
-    /// Tangent of each corner, and 1 or -1 for the bitangent's sign; zero if undefined.
+    /// Returns the tangent of each corner, or zero if it is undefined, and 1 or -1 as the sign of
+    /// the bitangent.
     fn tangents(&self) -> Vec<[f32; 4]> {
         let mut groups = UnionFind((0..self.positions.len() as u32).collect());
         self.pairs().into_iter().for_each(|[a, b]| groups.join(a, b));
@@ -143,7 +147,7 @@ impl Corners {
         for corner in (0..self.positions.len()).filter(|corner| self.has_area(corner / 3)) {
             sums[groups.of(corner as u32) as usize] += self.share(corner);
         }
-        // Corners of degenerate triangles use the tangent of a neighbour at the vertex.
+        // Corners of degenerate triangles use the tangent of a neighbour at the same vertex.
         let mut any = vec![[0.0; 4]; self.positions.len()];
         let mut tangents: Vec<[f32; 4]> = Vec::with_capacity(self.positions.len());
         for corner in 0..self.positions.len() {
@@ -161,8 +165,8 @@ impl Corners {
     }
 }
 
-/// Unit direction of increasing u on a triangle, zero if undefined; true if u and v have the
-/// orientation of its corners.
+/// Returns the unit direction in which u increases on a triangle, or zero if it is undefined. The
+/// flag is true if u and v have the same orientation as the corners.
 fn growth([p, q, r]: &[Vec3; 3], [a, b, c]: &[Vec2; 3]) -> (Vec3, bool) {
     let (along, across) = (*b - *a, *c - *a);
     let area = along.perp_dot(across);
@@ -171,8 +175,8 @@ fn growth([p, q, r]: &[Vec3; 3], [a, b, c]: &[Vec2; 3]) -> (Vec3, bool) {
     (if solid { u.normalize_or_zero() } else { Vec3::ZERO }, area > 0.0)
 }
 
-/// Union-find structure that groups corners with a shared tangent. Each corner refers to another
-/// one in its group, the root to itself.
+/// Union-find structure that groups the corners that share a tangent. Each corner refers to another
+/// corner in its group, and the root refers to itself.
 struct UnionFind(Vec<u32>);
 
 impl UnionFind {
@@ -188,7 +192,7 @@ impl UnionFind {
 
     fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.of(a), self.of(b));
-        // The lower index becomes the root, so the order of joins has no effect.
+        // The lower index becomes the root, so that the order of joins has no effect.
         self.0[a.max(b) as usize] = a.min(b);
     }
 }

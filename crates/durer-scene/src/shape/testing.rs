@@ -1,12 +1,12 @@
-//! Reference definitions of the shapes, for tests here and in dependent crates: samples of each
-//! shape, and distances from their surfaces in double precision.
+//! Reference definitions of the shapes, for tests in this crate and in dependent crates. The
+//! definitions provide samples of each shape, and distances from its surface in double precision.
 
 use super::*;
 use crate::describe::DescribedKind;
 use crate::math::random::Random;
 
-/// One shape of each kind, about `size` large and about `distance` from the origin. Add a new shape
-/// here and in [`faces`].
+/// Returns one shape of each kind, with a size of about `size`, at a distance of about `distance`
+/// from the origin. New shapes must be added here and in [`faces`].
 pub fn samples(random: &mut Random, size: f32, distance: f32) -> Vec<Primitive> {
     let center = distance * random.direction();
     let mut corner = || center + size * random.point();
@@ -19,7 +19,7 @@ pub fn samples(random: &mut Random, size: f32, distance: f32) -> Vec<Primitive> 
     let height = length(0.3) * random.direction();
     let mut edge = || size * random.between(0.6, 1.0) * random.direction();
     let (e, f) = (edge(), edge());
-    // A third of the cones have a tip, at either end.
+    // A third of the cones have a tip at the base, and a third have one at the top.
     let [base_radius, top_radius] = [[r0, r1], [r0, 0.0], [0.0, r0]][random.below(3)];
     let shapes: Vec<Primitive> = vec![
         Sphere { center, radius }.into(),
@@ -38,7 +38,7 @@ pub fn samples(random: &mut Random, size: f32, distance: f32) -> Vec<Primitive> 
     shapes
 }
 
-/// An ellipsoid, hyperboloid, cone, cylinder or paraboloid.
+/// Returns a random ellipsoid, hyperboloid, cone, cylinder or paraboloid.
 fn quadric(random: &mut Random, center: Vec3, size: f32) -> Quadric {
     let size = f64::from(size);
     let turned = random.rotation();
@@ -46,7 +46,7 @@ fn quadric(random: &mut Random, center: Vec3, size: f32) -> Quadric {
     let mut stretch = || f64::from(random.between(1.0, 3.0)) / (size * size);
     let diagonal = DVec3::from(curve) * DVec3::new(stretch(), stretch(), stretch());
     let m = turned * glam::DMat3::from_diagonal(diagonal) * turned.transpose();
-    // The last kind is a cylinder, or a paraboloid along its axis.
+    // The last kind is a cylinder, or a paraboloid along the axis of the cylinder.
     let along = if curve[2] == 0.0 && random.below(2) == 0 { turned.z_axis / size } else { DVec3::ZERO };
     let constant = [-1.0, -1.0, -0.5][random.below(3)];
     let c = center.as_dvec3();
@@ -58,11 +58,12 @@ fn quadric(random: &mut Random, center: Vec3, size: f32) -> Quadric {
     }
 }
 
-/// Signed distance of a point from each face or its continuation, along the normal. Only the
-/// largest must be exact, and only where it is zero.
+/// Returns the signed distance of a point from each face or its continuation, measured along the
+/// normal. Only the largest distance must be exact, and only where it is zero.
 pub fn faces(shape: &Primitive, p: DVec3) -> Vec<f64> {
     let flat = |n: DVec3, at: Vec3| vec![n.normalize().dot(p - at.as_dvec3())];
-    // Height and distance from the axis between two points, and the height of the other end.
+    // Computes the height of the point along the axis between two points, its distance from that
+    // axis, and the height of the other end.
     let round = |base: Vec3, top: Vec3| {
         let (base, along) = (base.as_dvec3(), top.as_dvec3() - base.as_dvec3());
         let y = (p - base).dot(along.normalize());
@@ -116,24 +117,25 @@ pub fn faces(shape: &Primitive, p: DVec3) -> Vec<f64> {
     }
 }
 
-/// Signed distance of a point from the surface or its continuation, along the normal.
+/// Returns the signed distance of a point from the surface or its continuation, measured along the
+/// normal.
 pub fn distance(shape: &Primitive, p: DVec3) -> f64 {
     faces(shape, p).into_iter().fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// True for a point on a quadric that is so far from the origin that rounding dominates the
-/// polynomial's terms.
+/// True for a point on a quadric that is so far from the origin that rounding errors dominate the
+/// terms of the polynomial.
 pub fn too_far(shape: &Primitive, p: DVec3, reach: f64) -> bool {
     matches!(shape, Primitive::Quadric(_)) && p.length() > 20.0 * reach
 }
 
-/// True if more than one face is within `reach` of a point.
+/// True if more than one face is within the distance `reach` of a point.
 pub fn near_edge(shape: &Primitive, p: DVec3, reach: f64) -> bool {
     let all = faces(shape, p);
     all.iter().filter(|f| f.abs() < reach).count() > 1
 }
 
-/// Returns a ray from outside and its hit on the shape.
+/// Returns a ray that starts outside the shape, and its hit on the shape.
 pub fn surface_point(shape: &Primitive, random: &mut Random, size: f32, distance: f32) -> Option<(Ray, ShapeHit)> {
     let middle = shape.bounds().map_or(distance * random.direction(), |b| b.center());
     let target = middle + size * random.point();

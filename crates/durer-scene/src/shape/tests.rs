@@ -1,4 +1,4 @@
-//! Tests of all shapes, each against an independent definition in double precision.
+//! Tests all shapes, each against an independent definition in double precision.
 
 mod inside;
 mod mesh_rules;
@@ -9,8 +9,8 @@ use super::testing::{distance, near_edge, samples, surface_point, too_far};
 use super::*;
 use crate::math::random::Random;
 
-/// Every intersection of a line with the shape; `false` marks those that single precision cannot
-/// decide.
+/// Returns every intersection of a line with the shape. The flag is `false` for intersections that
+/// single precision cannot decide.
 fn crossings(shape: &Primitive, o: DVec3, d: DVec3) -> Vec<(f64, bool)> {
     match shape {
         Primitive::Sphere(s) => {
@@ -32,15 +32,16 @@ fn crossings(shape: &Primitive, o: DVec3, d: DVec3) -> Vec<(f64, bool)> {
             let n = (b - a).cross(c - a);
             let t = n.dot(a - o) / n.dot(d);
             let p = o + t * d;
-            // Heights over the three edges. The ray is sheared in single precision: 8 roundings of
-            // the distance, which have more effect if the triangle is seen edge-on.
+            // Compute the height of the point above each of the three edges. The ray is sheared in
+            // single precision. The shear causes 8 roundings of the distance, which have more
+            // effect if the triangle is seen edge-on.
             let heights = [(a, b), (b, c), (c, a)].map(|(e, f)| n.cross(f - e).normalize().dot(p - e));
             let least = heights.into_iter().fold(f64::INFINITY, f64::min);
             let reach = [a, b, c].map(|x| (x - o).length()).into_iter().fold(0.0, f64::max);
             let slack = 8.0 * f64::from(f32::EPSILON) * reach * n.length() * d.length() / n.dot(d).abs();
             if least < -slack { Vec::new() } else { vec![(t, least > slack)] }
         }
-        // The other shapes are tested against their insides, or are flat.
+        // The other shapes are flat, or their crossings are compared with `inside` in another test.
         _ => {
             let mut all = Vec::new();
             shape.crossings(&Line { origin: o, dir: d }, &mut |t, _| all.push((t, true)));
@@ -54,7 +55,7 @@ fn first_crossing_in_the_open_interval_is_returned() {
     let mut random = Random(1);
     let mut found = [0; 11];
     for round in 0..40_000 {
-        // Sizes from 1e-6 to 1e6, far beyond those in real scenes.
+        // Test sizes from 1e-6 to 1e6, a range that is far larger than that of real scenes.
         let size = match round % 16 {
             14 => 1e-16,
             15 => 1e16,
@@ -65,7 +66,8 @@ fn first_crossing_in_the_open_interval_is_returned() {
             let target = shape.bounds().map_or(size * random.point(), |b| b.center() + 0.7 * size * random.point());
             let ray = Ray::new(origin, random.between(0.01, 100.0) * (target - origin));
             let all = crossings(shape, origin.as_dvec3(), ray.dir.as_dvec3());
-            // Intervals: a half line, a line, and pieces that begin or end between crossings.
+            // The intervals are a half-line, a full line, and pieces that begin or end between
+            // crossings.
             let middle = all.iter().map(|c| c.0).sum::<f64>() as f32 / all.len().max(1) as f32;
             let (t_min, t_max) = [
                 (0.0, f32::INFINITY),
@@ -76,8 +78,8 @@ fn first_crossing_in_the_open_interval_is_returned() {
             ][random.below(5)];
             let ray = Ray { t_min, t_max, ..ray };
             let crossing = shape.intersect(&ray);
-            // Roots are accurate to a rounding of the largest of them; on curved shapes, of the
-            // shape's size.
+            // Each root is accurate to a rounding of the largest root. On curved shapes, a root is
+            // accurate to a rounding of the size of the shape.
             let rounding = if kind == 0 || kind > 2 { f64::from(size) / ray.dir.as_dvec3().length() } else { 0.0 };
             let near = |a: f64, b: f64| (a - b).abs() <= 2e-7 * (a.abs() + rounding);
             if let Some(crossing) = crossing {
@@ -87,7 +89,7 @@ fn first_crossing_in_the_open_interval_is_returned() {
                 assert!(grazing || all.iter().any(|c| near(c.0, t)), "{shape:?} {ray:?} {crossing:?} {all:?}");
                 found[kind] += 1;
             }
-            // A certain crossing inside the interval must not be missed.
+            // A crossing inside the interval must not be missed if it is certain.
             for &(t, _) in all.iter().filter(|c| c.1) {
                 let clear = |end: f32| !near(t, f64::from(end));
                 if clear(t_min) && clear(t_max) && ray.contains(t as f32) {
@@ -133,7 +135,7 @@ fn surface_is_on_the_shape_within_its_error_and_bounds() {
             let sag = 0.5 * f64::from(surface.curvature) * surface.error.as_dvec3().length_squared();
             let off = distance(&shape, p);
             assert!(off.abs() <= bound + sag + 1e-15 * p.length(), "{shape:?} {surface:?} {off}");
-            // The error is of the order of the rounding error.
+            // The error bound has the same order of magnitude as the rounding error.
             let reach = p.length() + f64::from(size + away);
             assert!(surface.error.as_dvec3().max_element() <= 1e-5 * reach, "{surface:?}");
             assert!((n.length() - 1.0).abs() < 2e-7 && (surface.n_shade.length() - 1.0).abs() < 2e-7);
@@ -142,7 +144,7 @@ fn surface_is_on_the_shape_within_its_error_and_bounds() {
                     (surface.position + surface.error).cmpge(b.min) & (surface.position - surface.error).cmple(b.max);
                 assert!(inside.all(), "{shape:?} {surface:?} {b:?}");
             }
-            // The normal is the gradient of the distance, by central differences.
+            // The normal is the gradient of the distance, which is computed by central differences.
             let step = 1e-5 * f64::from(size);
             if near_edge(&shape, p, 10.0 * step) {
                 continue;
@@ -150,14 +152,14 @@ fn surface_is_on_the_shape_within_its_error_and_bounds() {
             let difference =
                 |v: DVec3| (distance(&shape, p + step * v) - distance(&shape, p - step * v)) / (2.0 * step);
             let gradient = DVec3::new(difference(DVec3::X), difference(DVec3::Y), difference(DVec3::Z));
-            // A step of 1e-5 of the size has third-order terms in the square of the step relative
-            // to the smallest radius of curvature; the rounding of the point adds an error relative
-            // to that radius.
+            // With a step of 1e-5 times the size, the third-order terms are about the square of the
+            // ratio of the step to the smallest radius of curvature. The rounding of the point adds
+            // an error relative to the radius of curvature.
             let bend = f64::from(surface.curvature * size);
             let slack = 1e-6 + (1e-5 * bend) * (1e-5 * bend) + 2e-7 * (1.0 + bend) * f64::from(1.0 + away / size);
             assert!((gradient - n).length() < slack, "{shape:?} {surface:?} {gradient}");
             let uv = surface.uv.get().unwrap();
-            // Only planes and triangles have coordinates outside [0,1].
+            // Only planes and triangles have texture coordinates outside [0,1].
             let range = matches!(shape, Primitive::Plane(_)) || (uv.cmpge(Vec2::ZERO) & uv.cmple(Vec2::ONE)).all();
             assert!(uv.is_finite() && range, "{shape:?} {uv}");
         }
@@ -183,7 +185,7 @@ fn invalid_ray_hits_nothing() {
                         let mut broken = ray;
                         broken.dir[axis] = value;
                         assert_eq!(shape.intersect(&broken), None, "{shape:?} {broken:?}");
-                        // Also if all other components are zero.
+                        // The ray must also miss if all other components are zero.
                         broken.dir = Vec3::AXES[axis] * value;
                         assert_eq!(shape.intersect(&broken), None, "{shape:?} {broken:?}");
                         broken = ray;

@@ -1,4 +1,4 @@
-//! Torus: all points at a fixed distance from a circle.
+//! A torus, which consists of all points at a fixed distance from a circle.
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, SurfacePoint, angle_fraction, disc_reach, padded_box, tessellate};
 use crate::bsdf::Frame;
@@ -31,7 +31,7 @@ impl Torus {
         (f64::from(self.major_radius), f64::from(self.minor_radius))
     }
 
-    /// Nearest point of the circle, relative to the centre.
+    /// Returns the nearest point on the circle, relative to the centre.
     fn nearest(&self, q: DVec3) -> DVec3 {
         let a = self.axis();
         self.radii().0 * (q - q.dot(a) * a).normalize_or(a.any_orthonormal_vector())
@@ -46,12 +46,13 @@ impl Shape for Torus {
         Some(padded_box(center - reach, center + reach))
     }
 
-    /// Solves (|p|^2 + R^2 - r^2)^2 = 4 R^2 (|p|^2 - (p·a)^2) for p relative to the centre, a the
-    /// axis.
+    /// Solves (|p|^2 + R^2 - r^2)^2 = 4 R^2 (|p|^2 - (p·a)^2), where p is relative to the centre
+    /// and a is the axis.
     ///
-    /// Lengths are in units of R, measured from the point of the line nearest to the centre along a
-    /// unit direction, so that all coefficients have the same order of magnitude. Source of the
-    /// equation: Hanrahan in Glassner, *An Introduction to Ray Tracing* (1989), chapter 3.
+    /// Lengths are in units of R, and they are measured along a unit direction from the point of
+    /// the line that is nearest to the centre. All coefficients then have the same order of
+    /// magnitude. Source of the equation: chapter 3 by Hanrahan in Glassner (ed.), *An Introduction
+    /// to Ray Tracing* (1989).
     fn crossings(&self, line: &Line, emit: &mut impl FnMut(f64, Vec2)) {
         let ((major, minor), a) = (self.radii(), self.axis());
         let shift = line.nearest(self.center.as_dvec3());
@@ -59,7 +60,7 @@ impl Shape for Torus {
         let (o, d) = ((line.at(shift) - self.center.as_dvec3()) / major, line.dir.normalize_or_zero());
         let ratio = minor / major;
         let oo = o.length_squared();
-        // Slightly beyond the bounding sphere, both ends of the line are outside.
+        // Slightly beyond the bounding sphere, both ends of the line are outside the torus.
         let reach = 1.001 * (1.0 + ratio);
         let beside = reach * reach - oo;
         let thickness = 1.001 * ratio;
@@ -68,7 +69,7 @@ impl Shape for Torus {
             return;
         }
         let half = beside.sqrt();
-        // |p|^2 = s^2 + 2 e s + oo; e = o·d is zero up to rounding.
+        // Use |p|^2 = s^2 + 2 e s + oo, where e = o·d is zero up to rounding.
         let e = o.dot(d);
         let k = oo + 1.0 - ratio * ratio;
         let coefficients = [

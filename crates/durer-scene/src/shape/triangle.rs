@@ -48,8 +48,8 @@ impl Shape for Triangle {
         found.into_iter().for_each(|crossing| emit(f64::from(crossing.t), crossing.uv));
     }
 
-    /// Moves the triangle by a multiple of a power of two above its size, so that neighbours mostly
-    /// move by the same vector and still share edges.
+    /// Moves the triangle by a multiple of a power of two that is larger than its size.
+    /// Neighbouring triangles are then mostly moved by the same vector, so they still share edges.
     fn centered(&self) -> Option<(Self, Vec3)> {
         let corners = self.corners();
         let size = Aabb::around(corners).size().max_element().max(f32::MIN_POSITIVE);
@@ -104,8 +104,8 @@ impl Shape for Triangle {
     }
 }
 
-/// Returns the point with barycentric coordinates (1 - u - v, u, v), a bound on its error, and all
-/// three coordinates. The point keeps away from the edges: see [`inset`].
+/// Returns the point with the barycentric coordinates (1 - u - v, u, v), a bound on its error, and
+/// all three coordinates. The point is kept away from the edges; see [`inset`].
 ///
 /// Source of the bound: *Physically Based Rendering*, 4th edition, section 6.8.3.
 #[inline(always)]
@@ -124,12 +124,12 @@ fn weighted([a, b, c]: [Vec3; 3], weights: Vec3) -> (Vec3, Vec3) {
     (wa + ub + vc, gamma(7) * (wa.abs() + ub.abs() + vc.abs()))
 }
 
-/// Returns the barycentric coordinates of a point at least [`INSET`] errors away from all edges;
-/// `None` if the given point already is.
+/// Returns the barycentric coordinates of a nearby point that is at least [`INSET`] errors away
+/// from all edges, or `None` if the given point already is.
 #[inline(always)]
 fn inset([a, b, c]: [Vec3; 3], barycentric: Vec3, error: Vec3) -> Option<Vec3> {
-    // The distance from an edge is the barycentric coordinate times twice the area over the edge's
-    // length; compared as squares.
+    // The distance from an edge is the barycentric coordinate times twice the area, divided by the
+    // length of the edge. The comparison uses squares.
     let areas = (b - a).cross(c - a).length_squared();
     let lengths = Vec3::new((c - b).length_squared(), (a - c).length_squared(), (b - a).length_squared());
     let least = lengths * (INSET * INSET * error.length_squared());
@@ -141,15 +141,15 @@ fn inset([a, b, c]: [Vec3; 3], barycentric: Vec3, error: Vec3) -> Option<Vec3> {
     Some(moved / moved.element_sum())
 }
 
-/// Unit normal of (b - a) x (c - a); +y for a degenerate triangle.
+/// Returns the unit normal of (b - a) x (c - a), or +y for a degenerate triangle.
 #[inline(always)]
 pub fn face_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
     let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
     (b - a).cross(c - a).normalize_or(DVec3::Y).as_vec3()
 }
 
-/// Computes the surface of a triangle at a crossing, without texture coordinates and colour. A zero
-/// shading normal is replaced by the geometric one.
+/// Computes the surface of a triangle at a crossing, without texture coordinates or colour. If the
+/// shading normal is zero, it is replaced by the geometric normal.
 #[inline(always)]
 pub fn triangle_surface(corners: [Vec3; 3], normals: Option<[Vec3; 3]>, uv: Vec2) -> SurfacePoint {
     let (position, error, barycentric) = interpolate(corners, uv);
@@ -161,7 +161,7 @@ pub fn triangle_surface(corners: [Vec3; 3], normals: Option<[Vec3; 3]>, uv: Vec2
         let [front, back] = corner_offsets(position, corners, normals);
         shadow_offsets = [interpolate_vectors(front, barycentric), interpolate_vectors(back, barycentric)];
     }
-    // The stored normals define the outside, regardless of the winding of the corners.
+    // The stored normals define the outside, regardless of the order of the corners.
     let n_geo = if n_geo.dot(n_shade) < 0.0 { -n_geo } else { n_geo };
     SurfacePoint {
         position,
@@ -183,13 +183,14 @@ fn interpolate_vectors([a, b, c]: [Vec3; 3], barycentric: Vec3) -> Vec3 {
     barycentric.x * a + barycentric.y * b + barycentric.z * c
 }
 
-/// Returns, for each corner, the offset from a point of the triangle up to the corner's tangent
-/// plane, which is zero if the point is above that plane; then the same for the other side.
+/// Returns, for each corner, the offset from a point on the triangle up to the tangent plane at the
+/// corner. The offset is zero if the point is above that plane. The second array contains the
+/// offsets for the other side of the triangle.
 ///
 /// The barycentric mean of the offsets leads to the curved surface that the normals imply. A shadow
-/// ray that starts there does not hit the flat neighbours, which would darken whole triangles of a
-/// coarse mesh along the terminator. Source: Johannes Hanika, *Hacking the Shadow Terminator*, Ray
-/// Tracing Gems II (2021), chapter 4.
+/// ray that starts on the curved surface does not hit the flat neighbouring triangles. Such hits
+/// would darken whole triangles of a coarse mesh along the terminator. Source: Johannes Hanika,
+/// *Hacking the Shadow Terminator*, Ray Tracing Gems II (2021), chapter 4.
 #[inline(always)]
 fn corner_offsets(point: Vec3, corners: [Vec3; 3], normals: [Vec3; 3]) -> [[Vec3; 3]; 2] {
     let mut shadow_offsets = [[Vec3::ZERO; 3]; 2];

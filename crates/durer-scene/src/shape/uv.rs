@@ -1,21 +1,25 @@
-//! Texture coordinates, computed lazily: most surfaces have no texture.
+//! Texture coordinates that are computed only on demand, since most surfaces have no texture.
 
 use super::angle_fraction;
 use crate::math::{Vec2, Vec3, fp};
 
-/// Texture coordinates of a surface point, or the data to compute them from when they are needed.
+/// Texture coordinates of a surface point, or the data from which they are computed when they are
+/// needed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Uv {
     /// The shape has no texture coordinates.
     #[default]
     None,
-    /// Already computed.
+    /// Coordinates that have already been computed.
     Value(Vec2),
-    /// Angle of a point in a plane, measured from -x, and the coordinate along the axis.
+    /// Point whose angle around the axis, measured from -x, gives the u coordinate, and the v
+    /// coordinate.
     Angle(Vec2, f32),
-    /// Longitude from -z over +x, and latitude from the south pole upwards, of a unit vector.
+    /// Unit vector that gives the longitude, measured from -z towards +x, and the latitude,
+    /// measured upwards from the south pole.
     Sphere(Vec3),
-    /// Coordinates along two axes of a plane, from its unit normal and the point.
+    /// Unit normal of a plane and a point on it, which give the coordinates along two axes of the
+    /// plane.
     Plane(Vec3, Vec3),
 }
 

@@ -1,5 +1,5 @@
-//! Box of equal cells, some of them filled, as used by the course of 2003 to display how its grid
-//! rasterizes a sphere.
+//! A box of equal cells, some of which are filled. The course of 2003 used such boxes to show how
+//! its grid rasterizes a sphere.
 
 use super::{MeshData, Sphere};
 use crate::describe::{Constraint, described};
@@ -20,11 +20,11 @@ described! {
 }
 
 impl VoxelGrid {
-    /// Checks combinations of fields.
+    /// Checks that the fields are valid in combination.
     ///
     /// # Errors
     ///
-    /// `min` is not less than `max` in some coordinate.
+    /// Fails if `min` is not less than `max` in some coordinate.
     pub fn validate(&self) -> Result<(), String> {
         match self.min.cmplt(self.max).all() {
             true => Ok(()),
@@ -32,8 +32,8 @@ impl VoxelGrid {
         }
     }
 
-    /// Outer faces of the cells that the spheres fill, two triangles each, counter-clockwise seen
-    /// from outside.
+    /// Returns the outer faces of the cells that the spheres fill, as two triangles each,
+    /// counter-clockwise as seen from outside.
     pub fn mesh(&self, balls: &[Sphere]) -> MeshData {
         let cells = self.num_cells.to_array().map(|n| n as u32);
         let (min, size) = (self.min.as_dvec3(), self.max.as_dvec3() - self.min.as_dvec3());
@@ -52,7 +52,8 @@ impl VoxelGrid {
                         if beside[axis] < cells[axis] && filled(beside) {
                             continue;
                         }
-                        // The corners of the face; for a far face, the next axis comes first.
+                        // These are the corners of the face. For a far face, the next axis comes
+                        // first.
                         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
                         let first = data.positions.len() as u32;
                         for (a, b) in [(0, 0), (1, 0), (1, 1), (0, 1)] {
@@ -82,7 +83,8 @@ mod tests {
         let balls =
             [Sphere { center: Vec3::ZERO, radius: 1.4 }, Sphere { center: Vec3::new(0.3, 0.0, 2.0), radius: 0.9 }];
         let data = grid.mesh(&balls);
-        // By the divergence theorem; inverted faces would have negative volumes.
+        // The volume is computed by the divergence theorem, so inverted faces would give negative
+        // volumes.
         let volume: f32 = data
             .triangles
             .iter()
@@ -96,7 +98,7 @@ mod tests {
             cells += u32::from(balls.iter().any(|b| middle.distance(b.center) <= b.radius));
         }
         assert!(cells > 30 && (volume - 0.25 * cells as f32).abs() < 1e-4, "{cells} {volume}");
-        // Every edge is used once in each direction.
+        // Every edge must be used once in each direction.
         let key = |i: u32| data.positions[i as usize].to_array().map(f32::to_bits);
         let mut edges = std::collections::HashMap::new();
         for t in &data.triangles {

@@ -1,24 +1,25 @@
 //! Directional albedo of anisotropic surfaces.
 //!
-//! The albedo of an anisotropic surface depends on the azimuth of the view, most strongly near the
-//! smoother axis. Therefore, the table is not indexed by the azimuth and two roughnesses, but by
-//! the slopes of the facets relative to the view: their spread along the view direction, their
-//! spread across it, and the correlation of the two. In these coordinates the albedo is smooth for
-//! every anisotropy.
+//! The albedo of an anisotropic surface depends on the azimuth of the view, and most strongly near
+//! the smoother axis. Therefore, the table is not indexed by the azimuth and two roughnesses, but
+//! by the slopes of the facets relative to the view direction. The indices are the spread of the
+//! slopes along the view direction, their spread across it, and the correlation of the two. In
+//! these coordinates, the albedo is smooth for every anisotropy.
 
 use super::{direction, table_position_in};
 use crate::bsdf::microfacet::{Ggx, SMOOTH};
 use crate::math::{Vec2, Vec3, fp};
 use rayon::prelude::*;
 
-/// Number of table entries along the cosine, the spread along the view, the spread across it, and
-/// the correlation.
+/// Number of table entries for the cosine, the spread along the view direction, the spread across
+/// it, and the correlation.
 const SIZES: [usize; 4] = [16, 16, 10, 5];
 
-/// Number of integration points around the normal and towards it. The error is at most 0.1 %.
+/// Number of integration points around the normal, and in the direction towards it. The error is at
+/// most 0.1 %.
 const EXACT: [usize; 2] = [32, 24];
 
-/// Number of integration points, as in [`EXACT`], for a single shading point.
+/// Number of integration points for a single shading point, in the same order as in [`EXACT`].
 const QUICK: [usize; 2] = [16, 16];
 
 /// Four-dimensional table of a function of the GGX distribution and the view direction, such as the
@@ -27,8 +28,8 @@ const QUICK: [usize; 2] = [16, 16];
 pub(super) struct Table(Vec<f32>);
 
 impl Table {
-    /// Tabulates the mean of `value` over the visible facets. `value` samples a facet from two
-    /// numbers.
+    /// Tabulates the mean of `value` over the visible facets. `value` uses two numbers to sample a
+    /// facet.
     pub fn new(value: impl Fn(Ggx, Vec3, Vec2) -> f32 + Sync) -> Self {
         let entry = |mut i: usize| {
             let at = SIZES.map(|size| {
@@ -42,7 +43,7 @@ impl Table {
         Table((0..SIZES.iter().product()).into_par_iter().map(entry).collect())
     }
 
-    /// Returns the value for a surface and a view direction, interpolated cubically.
+    /// Returns the value for a surface and a view direction by cubic interpolation.
     pub fn at(&self, ggx: Ggx, wo: Vec3) -> f32 {
         let axes = axes(ggx.clamped(), wo);
         let parts: [(usize, [f32; 4]); 4] = std::array::from_fn(|axis| cubic(axes[axis], SIZES[axis]));
@@ -61,13 +62,13 @@ impl Table {
     }
 }
 
-/// Mean of `value` over the visible facets, for a single shading point.
+/// Returns the mean of `value` over the visible facets, for a single shading point.
 pub(super) fn quick(value: impl Fn(Vec2) -> f32) -> f32 {
     integral(QUICK, value)
 }
 
-/// Mean over the unit square of a function that is periodic in x. Points are denser near y = 1,
-/// where the facets lie along the view direction.
+/// Returns the mean over the unit square of a function that is periodic in x. The points are denser
+/// near y = 1, where the facets lie along the view direction.
 fn integral([around, towards]: [usize; 2], value: impl Fn(Vec2) -> f32) -> f32 {
     let mut sum = 0.0;
     for j in 0..towards {
@@ -78,7 +79,7 @@ fn integral([around, towards]: [usize; 2], value: impl Fn(Vec2) -> f32) -> f32 {
     sum / (around * towards) as f32
 }
 
-/// Coordinates in the table, each in [0, 1].
+/// Returns the coordinates in the table, each of which is in [0, 1].
 fn axes(ggx: Ggx, wo: Vec3) -> [f32; 4] {
     let across = Vec2::new(wo.x, wo.y).try_normalize().unwrap_or(Vec2::X);
     let (x2, y2) = (ggx.alpha.x * ggx.alpha.x, ggx.alpha.y * ggx.alpha.y);
@@ -94,7 +95,7 @@ fn from_axes([cosine, along, beside, correlation]: [f32; 4]) -> (Ggx, Vec3) {
     let [along, beside] = [along * along, beside * beside].map(|alpha| alpha.max(SMOOTH));
     let both = correlation * along * beside;
     let (a2, b2) = (along * along, beside * beside);
-    // Eigenvalues and axis of the covariance matrix of the slopes.
+    // Compute the eigenvalues and the axis of the covariance matrix of the slopes.
     let apart = ((a2 - b2) * (a2 - b2) + 4.0 * both * both).sqrt();
     let x2 = 0.5 * (a2 + b2 + apart);
     let y2 = a2 * b2 * (1.0 - correlation * correlation) / x2;
@@ -103,11 +104,12 @@ fn from_axes([cosine, along, beside, correlation]: [f32; 4]) -> (Ggx, Vec3) {
     (Ggx { alpha: Vec2::new(x2.sqrt(), y2.sqrt()) }.clamped(), Vec3::new(flat.x * cos, flat.x * sin, flat.z))
 }
 
-/// Index of the first of four entries around `x` in [0, 1], and the weight of each.
+/// Returns the index of the first of the four entries around `x`, which is in [0, 1], and the
+/// weight of each entry.
 fn cubic(x: f32, size: usize) -> (usize, [f32; 4]) {
     let (i, f) = table_position_in(x, size);
     let first = i.saturating_sub(1).min(size - 4);
-    // Position relative to the first of the four entries.
+    // Compute the position relative to the first of the four entries.
     let t = f + (i - first) as f32;
     let [a, b, c] = [t - 1.0, t - 2.0, t - 3.0];
     (first, [-a * b * c / 6.0, t * b * c / 2.0, -t * a * c / 2.0, t * a * b / 6.0])
@@ -134,7 +136,7 @@ mod tests {
     fn anisotropic_table_agrees_with_isotropic_table() {
         for (cosine, roughness) in [(0.9, 0.3), (0.5, 0.6), (0.2, 0.9), (0.7, 1.0)] {
             let ggx = Ggx::new(roughness, 0.0);
-            // A slight anisotropy selects the anisotropic table.
+            // A slight anisotropy is enough to select the anisotropic table.
             let uneven = Ggx { alpha: Vec2::new(ggx.alpha.x, ggx.alpha.x * (1.0 - 1e-6)) };
             let (own, even) = (albedo::ggx_for(uneven, direction(cosine), roughness), albedo::ggx(cosine, roughness));
             assert!((own - even).abs() < 3e-3, "{cosine} {roughness}: {own} {even}");

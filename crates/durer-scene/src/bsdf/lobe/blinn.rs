@@ -6,23 +6,23 @@ use crate::math::{Vec2, Vec3, fp, reflect};
 use crate::spectrum::Spectrum;
 use std::f32::consts::FRAC_1_PI;
 
-/// Blinn or Phong highlight of value color · base^exponent / pi, where the base is N·H (Blinn) or
-/// R·L (Phong).
+/// Blinn or Phong highlight with the value color · base^exponent / pi, where the base is N·H
+/// (Blinn) or R·L (Phong).
 ///
-/// The course's formula has no cosine factor and would reflect more light than arrives. This lobe
-/// adds the factor.
+/// The formula in the course has no cosine factor, so it would reflect more light than arrives.
+/// This lobe adds the factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blinn {
-    /// Strength of the highlight, by lane.
+    /// Strength of the highlight in each lane.
     pub color: Spectrum,
-    /// Exponent; a higher value gives a smaller and sharper highlight.
+    /// Exponent of the highlight. A higher value gives a smaller and sharper highlight.
     pub exponent: f32,
     /// True if the base is R·L (Phong), false if it is N·H (Blinn).
     pub phong: bool,
 }
 
 impl Blinn {
-    /// Upper bound of the albedo of a highlight of strength 1, for all directions.
+    /// Returns an upper bound of the albedo of a highlight of strength 1, for all directions.
     pub fn bound(exponent: f32) -> f32 {
         (8.0 / (exponent + 1.0)).min(1.0)
     }
@@ -36,7 +36,7 @@ impl Scatter for Blinn {
 
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         let half = (wo + wi).normalize_or_zero();
-        // `base` is the base of the power; `spread` is the Jacobian from the sampled vector to
+        // `base` is the base of the power, and `spread` is the Jacobian from the sampled vector to
         // `wi`.
         let (base, spread) = match self.phong {
             true => (reflect(-wo, Vec3::Z).dot(wi), 1.0),

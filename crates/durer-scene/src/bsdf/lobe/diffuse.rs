@@ -1,7 +1,8 @@
-//! Diffuse surfaces: the energy-preserving Oren-Nayar model.
+//! Diffuse surfaces, described by the energy-preserving Oren-Nayar model.
 //!
 //! Source: Portsmouth, Kutz and Hill, *EON: A practical energy-preserving rough diffuse BRDF*, JCGT
-//! 14(1), 2025: Fujii's version of the Oren-Nayar model, with a term for multiple scattering.
+//! 14(1), 2025. The model is Fujii's version of the Oren-Nayar model, with an additional term for
+//! multiple scattering.
 
 use super::{LobeKind, LobeSample, NO_SCATTERING, Scatter};
 use crate::bsdf::albedo::DielectricAlbedo;
@@ -10,18 +11,20 @@ use crate::math::{Vec2, Vec3, fp};
 use crate::spectrum::Spectrum;
 use std::f32::consts::{FRAC_1_PI, PI};
 
-/// Diffuse reflection lobe, optionally below a dielectric boundary. It is reciprocal, apart from
-/// `boundary`.
+/// Diffuse reflection lobe, optionally below a dielectric boundary. Without the effect of
+/// `boundary`, the lobe is reciprocal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Diffuse<'a> {
-    /// Albedo, by lane.
+    /// Albedo in each lane.
     pub color: Spectrum,
     /// Roughness, from 0 (Lambert) to 1.
     pub roughness: f32,
-    /// Boundary that light crosses on its way in. The weight of the lobe accounts for the way out.
+    /// Boundary that light crosses on its way in. The weight of the lobe accounts for the light
+    /// that is lost on the way out.
     pub boundary: Option<Boundary<'a>>,
-    /// Local shading normal of the lobe. It is z unless the frame's normal was bent to keep mirrors
-    /// from reflecting below the surface. Diffuse lobes need no bent normal.
+    /// Local shading normal of the lobe. This normal is z unless the normal of the frame was bent,
+    /// which keeps mirrors from reflecting below the surface. Diffuse lobes do not need a bent
+    /// normal.
     pub normal: Vec3,
 }
 
@@ -32,17 +35,17 @@ pub struct Boundary<'a> {
     pub dielectric: &'a DielectricAlbedo,
     /// Roughness of the boundary.
     pub roughness: f32,
-    /// Factor that scales its reflection, from 0 to 1.
+    /// Factor from 0 to 1 that scales the reflection of the boundary.
     pub reflection: f32,
 }
 
 impl Boundary<'_> {
-    /// Transmittance for light from one direction above, divided by the cosine-weighted mean
-    /// transmittance over the hemisphere.
+    /// Returns the transmittance for light from one direction above, divided by the cosine-weighted
+    /// mean of the transmittance over the hemisphere.
     ///
-    /// With the weight 1 - E(wo) of the diffuse base, this scales the bare base by (1 - E(wo)) (1 -
-    /// E(wi)) / (1 - E mean). The result is reciprocal, and conserves energy together with the
-    /// boundary's own E(wo).
+    /// Together with the weight 1 - E(wo) of the diffuse base, this factor scales the bare base by
+    /// (1 - E(wo)) (1 - E(wi)) / (1 - E mean). The result is reciprocal. Together with the
+    /// boundary's own E(wo), the result conserves energy.
     ///
     /// Source: Kelemen and Szirmay-Kalos, *A Microfacet Based Coupled Specular-Matte BRDF Model
     /// with Importance Sampling*, Eurographics 2001.
@@ -58,12 +61,12 @@ const C1: f32 = 0.5 - 2.0 / (3.0 * PI);
 const C2: f32 = 2.0 / 3.0 - 28.0 / (15.0 * PI);
 
 impl<'a> Diffuse<'a> {
-    /// Creates a Lambertian lobe of a colour, without a boundary.
+    /// Creates a Lambertian lobe with the given colour and without a boundary.
     pub fn lambert(color: Spectrum) -> Self {
         Diffuse { color, roughness: 0.0, boundary: None, normal: Vec3::Z }
     }
 
-    /// Directional albedo of single scattering for a white surface.
+    /// Returns the directional albedo of single scattering for a white surface.
     fn single(&self, cosine: f32) -> f32 {
         let mu = cosine.clamp(1e-6, 1.0);
         let sine = (1.0 - mu * mu).max(0.0).sqrt();
@@ -72,21 +75,22 @@ impl<'a> Diffuse<'a> {
         (1.0 + self.roughness * FRAC_1_PI * g) / (1.0 + C1 * self.roughness)
     }
 
-    /// Value without the cosine factor. `between` is the cosine between the directions; `out` and
-    /// `into` are their cosines to the normal.
+    /// Returns the value of the lobe without the cosine factor. `between` is the cosine of the
+    /// angle between the two directions, and `out` and `into` are the cosines of their angles to
+    /// the normal.
     fn value(&self, between: f32, out: f32, into: f32) -> Spectrum {
         let Some(boundary) = &self.boundary else { return self.bare(between, out, into) };
         let entering = boundary.entering(into);
         if self.roughness == 0.0 {
             return self.color * (FRAC_1_PI * entering);
         }
-        // For a rough base, apply the boundary only to the isotropic part of the value. Applied to
-        // the remainder, it would lose or create energy.
+        // For a rough base, apply the boundary only to the isotropic part of the value. If the
+        // boundary were applied to the remainder, energy would be lost or created.
         let even = FRAC_1_PI * (1.0 - self.roughness) / (1.0 + C1 * self.roughness);
         self.bare(between, out, into) + self.color * (even * (entering - 1.0))
     }
 
-    /// Version of [`Diffuse::value`] without the boundary.
+    /// Version of [`Diffuse::value`] that ignores the boundary.
     fn bare(&self, between: f32, out: f32, into: f32) -> Spectrum {
         if self.roughness == 0.0 {
             return self.color * FRAC_1_PI;
@@ -130,10 +134,11 @@ impl Scatter for Diffuse<'_> {
     }
 }
 
-/// Diffuse transmission lobe: light leaves on the other side with equal radiance in all directions.
+/// Diffuse transmission lobe, in which light leaves on the other side with equal radiance in all
+/// directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiffuseTransmission {
-    /// Transmitted share of light, by lane.
+    /// Share of light that is transmitted, in each lane.
     pub color: Spectrum,
 }
 

@@ -1,4 +1,4 @@
-//! Fuzz: fibres that stand up from a surface, as on velvet.
+//! Fuzz, which consists of fibres that stand up from a surface, as on velvet.
 //!
 //! Source: Estevez and Kulla, *Production Friendly Microfacet Sheen BRDF*, 2017 (the distribution);
 //! Neubelt and Pettineo, *Crafting a Next-Gen Material Pipeline for The Order: 1886*, 2013 (the
@@ -11,8 +11,8 @@ use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 use std::f32::consts::PI;
 
-/// Lobe for a layer of white fibres that stand up from a surface. Its directional albedo is
-/// [`crate::bsdf::albedo::fuzz`].
+/// Lobe for a layer of white fibres that stand up from a surface. The directional albedo of the
+/// lobe is [`crate::bsdf::albedo::fuzz`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fuzz {
     /// Roughness, from 0 (a thin bright rim) to 1.

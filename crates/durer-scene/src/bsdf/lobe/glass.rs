@@ -4,24 +4,24 @@ use super::{LobeKind, LobeSample, NO_SCATTERING, Scatter};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
-/// Perfect mirror lobe. The lobe's weight is its reflectance.
+/// Perfect mirror lobe. The weight of the lobe is its reflectance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mirror;
 
-/// Lobe for refraction by a smooth boundary. The lobe's weight is its transmittance.
+/// Lobe for refraction by a smooth boundary. The weight of the lobe is its transmittance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refraction {
     /// Index of refraction behind the boundary, relative to the index in front of it.
     pub eta: f32,
 }
 
-/// Lobe for transmission that keeps the direction, as if there were no surface.
+/// Lobe for transmission that keeps the direction of the light, as if there were no surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StraightTransmission;
 
-/// Returns the refracted direction of `w` at a boundary with normal `h`; `None` for total internal
-/// reflection. Both `w` and `h` point to the same side. `eta` is the index behind the boundary,
-/// relative to the index in front of it.
+/// Returns the refracted direction of `w` at a boundary with normal `h`, or `None` for total
+/// internal reflection. Both `w` and `h` point to the same side of the boundary. `eta` is the index
+/// behind the boundary, relative to the index in front of it.
 pub fn refracted(w: Vec3, h: Vec3, eta: f32) -> Option<Vec3> {
     let cosine = w.dot(h);
     let sine2 = (1.0 - cosine * cosine).max(0.0) / (eta * eta);
@@ -56,8 +56,8 @@ single_direction!(
     |_lobe| LobeKind { is_straight: true, ..LobeKind::MIRROR.transmitting() },
     |_lobe, wo| Some(LobeSample { wi: -wo, value: Spectrum::ONE })
 );
-// Radiance scales with the square of the index: L / n^2 is invariant. Source: Veach's thesis,
-// section 5.2.
+// Radiance L scales with the square of the index n, since L / n^2 is invariant. Source: Veach's
+// thesis, section 5.2.
 single_direction!(Refraction, |lobe| LobeKind::MIRROR.refracting(lobe.eta), |lobe, wo| refracted(
     wo,
     Vec3::Z,

@@ -1,15 +1,17 @@
-//! Hair and fur: fibres seen from outside.
+//! Hair and fur, modelled as fibres seen from outside.
 //!
-//! Light is reflected by the fibre (R), passes through it (TT), or passes through after one or more
-//! internal reflections (TRT and higher). The roughness of the cuticle scales spreads it along the
-//! fibre; the uneven cross-section spreads it around the fibre. The local x axis lies along the
-//! fibre. The tilt of the normal gives the offset across the fibre at which light hits it.
+//! Light is reflected by the fibre (R), passes through it (TT), or passes through it after one or
+//! more internal reflections (TRT and higher). The roughness of the cuticle scales spreads the
+//! light along the fibre, and the uneven cross-section spreads it around the fibre. The local x
+//! axis lies along the fibre. The tilt of the normal determines the offset across the fibre at
+//! which light hits it.
 //!
 //! Sources: Marschner, Jensen, Cammarano, Worley and Hanrahan, *Light Scattering from Human Hair
 //! Fibers*, SIGGRAPH 2003 (the paths of light); d'Eon, Francois, Hill, Letteri and Aubry, *An
-//! Energy-Conserving Hair Reflectance Model*, EGSR 2011 (the spread along the fibre, the melanins);
-//! Chiang, Bitterli, Tappan and Burley, *A Practical and Controllable Hair and Fur Model for
-//! Production Path Tracing*, Eurographics 2016 (the spread around it, roughness and colour).
+//! Energy-Conserving Hair Reflectance Model*, EGSR 2011 (the spread along the fibre and the
+//! melanins); Chiang, Bitterli, Tappan and Burley, *A Practical and Controllable Hair and Fur Model
+//! for Production Path Tracing*, Eurographics 2016 (the spread around the fibre, the roughness and
+//! the colour).
 
 use super::{LobeKind, LobeSample, Scatter};
 use crate::bsdf::fresnel;
@@ -18,22 +20,23 @@ use crate::math::{Color, Vec2, Vec3, fp};
 use crate::spectrum::{Lanes, Spectrum};
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
-/// Number of light paths: R, TT, TRT, and all paths with more internal reflections.
+/// Number of light paths, which are R, TT, TRT, and all paths with more internal reflections.
 const PATHS: usize = 4;
 
-/// Index of the last path (all further internal reflections), which spreads light evenly around the
-/// fibre.
+/// Index of the last path, which covers all further internal reflections. The last path spreads
+/// light evenly around the fibre.
 const LAST_PATH: usize = PATHS - 1;
 
-/// Hair fibre of one material, with its pigment and roughness; shared by all points of the fibre.
+/// Hair fibre of one material, with its pigment and roughness, which is shared by all points of the
+/// fibre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fibre {
     pigment: Pigment,
-    /// Index of refraction inside, relative to the index outside.
+    /// Index of refraction inside the fibre, relative to the index outside.
     eta: f32,
     /// Sine and cosine of the angles by which the cuticle scales tilt the first three paths.
     tilts: [Vec2; LAST_PATH],
-    /// Longitudinal variance of each path.
+    /// Variance of each path along the fibre.
     variances: [f32; PATHS],
     /// Azimuthal distribution of each path except the last.
     spread: Logistic,
@@ -42,18 +45,18 @@ pub struct Fibre {
 /// Pigment of a hair fibre, given by its absorption or by the colour of the hair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Pigment {
-    /// Absorption coefficient per radius.
+    /// Absorption coefficient per radius of the fibre.
     Absorption(Color),
-    /// Colour of many fibres together, and the divisor that turns the colour's logarithm into the
-    /// square root of the absorption.
+    /// Colour of many fibres together, and a divisor. The logarithm of the colour, divided by the
+    /// divisor, is minus the square root of the absorption.
     Color(Color, f32),
 }
 
 impl Fibre {
-    /// Creates the fibre of a hair material.
+    /// Creates a fibre from a hair material.
     pub fn new(m: &HairMaterial) -> Self {
-        // The scales tilt R back by twice their angle, TT forward by their angle, and TRT forward
-        // by four times their angle.
+        // The scales tilt R back by twice their own angle, TT forward by that angle, and TRT
+        // forward by four times that angle.
         let tilt = |by: f64| {
             let (sin, cos) = fp::sin_cos_degrees(by * f64::from(m.scale_tilt));
             Vec2::new(sin as f32, cos as f32)
@@ -79,11 +82,11 @@ impl Fibre {
         }
     }
 
-    /// Approximate colour of many fibres together.
+    /// Returns the approximate colour of many fibres together.
     pub fn color(&self) -> Color {
         match self.pigment {
             Pigment::Color(color, _) => color,
-            // Assumes an azimuthal roughness of 0.
+            // The formula assumes an azimuthal roughness of 0.
             Pigment::Absorption(absorption) => absorption.map(|sigma| fp::exp(-5.969 * sigma.sqrt())),
         }
     }
@@ -100,7 +103,8 @@ impl Fibre {
         Hair { fibre: self, absorption }
     }
 
-    /// Longitudinal sine and cosine of the view direction, after the scale tilt for a path.
+    /// Returns the longitudinal sine and cosine of the view direction, after the tilt that the
+    /// scales cause for a path.
     fn tilted(&self, path: usize, out: &FibreDirection) -> Vec2 {
         let Some(tilt) = self.tilts.get(path) else { return out.along };
         let sine = out.along.x * tilt.y + out.along.y * tilt.x;
@@ -112,13 +116,13 @@ impl Fibre {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hair<'a> {
     fibre: &'a Fibre,
-    /// Absorption coefficient, per radius.
+    /// Absorption coefficient per radius of the fibre.
     absorption: Spectrum,
 }
 
-/// Direction in the coordinates of a hair fibre: longitudinal and azimuthal angle.
+/// Direction in the coordinates of a hair fibre, which are a longitudinal and an azimuthal angle.
 struct FibreDirection {
-    /// Sine and cosine of the angle to the plane perpendicular to the fibre.
+    /// Sine and cosine of the angle between the direction and the plane perpendicular to the fibre.
     along: Vec2,
     /// Angle around the fibre, from the y axis to the z axis.
     around: f32,
@@ -131,18 +135,18 @@ impl FibreDirection {
     }
 }
 
-/// Shares of light among the paths through a hair fibre, for one view direction.
+/// Distribution of light among the paths through a hair fibre, for one view direction.
 struct PathLobes {
     shares: [Spectrum; PATHS],
     /// Sampling weight of each path, and their sum.
     sampling_weights: [f32; PATHS],
     total: f32,
-    /// Azimuthal angles to the normal, outside and inside the fibre.
+    /// Azimuthal angles between the light and the normal, outside and inside the fibre.
     angles: [f32; 2],
 }
 
 impl PathLobes {
-    /// Angle by which a path deflects light around the fibre.
+    /// Returns the angle by which a path deflects light around the fibre.
     fn turn(&self, path: usize) -> f32 {
         let path = path as f32;
         2.0 * path * self.angles[1] - 2.0 * self.angles[0] + path * PI
@@ -154,8 +158,8 @@ impl Hair<'_> {
         let eta = self.fibre.eta;
         let (sine, cosine) = (out.along.x, out.along.y.max(1e-6));
         let outside = out.around - FRAC_PI_2;
-        // Effective index of a cross-section of the fibre. The sine outside is -cos of the angle
-        // from y.
+        // Compute the effective index of a cross-section of the fibre. The sine outside is minus
+        // the cosine of the angle from y.
         let across = (eta * eta - sine * sine).max(1e-12).sqrt() / cosine;
         let sine_inside = (-wo.y / cosine / across).clamp(-1.0, 1.0);
         let cosine_inside = (1.0 - sine_inside * sine_inside).sqrt();
@@ -175,7 +179,7 @@ impl Hair<'_> {
         }
     }
 
-    /// Pdf of a path: per sine along the fibre times per radian around it.
+    /// Returns the pdf of a path, per unit of the sine along the fibre and per radian around it.
     fn density(&self, path: usize, paths: &PathLobes, out: &FibreDirection, incident: &FibreDirection) -> f32 {
         let along = longitudinal(self.fibre.variances[path], self.fibre.tilted(path, out), incident.along);
         if path == LAST_PATH {
@@ -212,7 +216,7 @@ impl Scatter for Hair<'_> {
             rest -= paths.sampling_weights[path];
             path += 1;
         }
-        // Reuse the remainder of `choice`, which is uniform again.
+        // Reuse the remainder of `choice`, which is again uniformly distributed.
         let again = (rest / paths.sampling_weights[path]).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
         let (turned, variance) = (self.fibre.tilted(path, &out), self.fibre.variances[path]);
         // Sample the angle to the mirror direction on a sphere.
@@ -230,17 +234,17 @@ impl Scatter for Hair<'_> {
     }
 }
 
-/// Longitudinal scattering: a distribution on the sphere around the mirror direction, averaged
-/// around the fibre. Both directions are given by sine and cosine.
+/// Returns the longitudinal scattering, which is a distribution on the sphere around the mirror
+/// direction that is averaged around the fibre. Both directions are given by their sine and cosine.
 fn longitudinal(variance: f32, out: Vec2, incident: Vec2) -> f32 {
     let [out, incident] = [out.as_dvec2(), incident.as_dvec2()];
-    // 1 minus the cosine of the angle to the mirror cone.
+    // This is 1 minus the cosine of the angle to the mirror cone.
     let below = (1.0 - (incident.y * out.y - incident.x * out.x)) as f32;
     let height = variance * (1.0 - fp::exp(-2.0 / variance));
     bessel((incident.y * out.y) as f32 / variance) * fp::exp(-below / variance) / height
 }
 
-/// Modified Bessel function of the first kind and order 0, divided by e^x, for x from 0.
+/// Returns the modified Bessel function of the first kind and order 0, divided by e^x, for x >= 0.
 ///
 /// Source: Abramowitz and Stegun, *Handbook of Mathematical Functions*, 9.8.1 and 9.8.2.
 fn bessel(x: f32) -> f32 {
@@ -261,12 +265,12 @@ fn bessel(x: f32) -> f32 {
     if t < 1.0 { sum(&NEAR, t * t) * fp::exp(-x) } else { sum(&FAR, 1.0 / t) / x.sqrt() }
 }
 
-/// Logistic distribution truncated to [-pi, pi], for the azimuthal scattering of hair. It is close
-/// to a normal distribution, and cheap to sample.
+/// Logistic distribution truncated to [-pi, pi], for the azimuthal scattering of hair. The logistic
+/// distribution is close to a normal distribution, but cheap to sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Logistic {
     scale: f32,
-    /// Probability below -pi, and between -pi and pi.
+    /// Probability of a value below -pi, and probability of a value between -pi and pi.
     below: f32,
     inside: f32,
 }
@@ -299,7 +303,7 @@ mod tests {
         Fibre::new(&HairMaterial { absorption, longitudinal_roughness, azimuthal_roughness, ..Default::default() })
     }
 
-    /// Integral over all directions, by uniform samples.
+    /// Returns the integral over all directions, estimated from uniform samples.
     fn over_all(random: &mut Random, value: impl Fn(Vec3) -> f32) -> f64 {
         const MANY: u32 = 200_000;
         let one = |_| f64::from(value(warp::sphere(Vec2::new(random.unit(), random.unit()))));
@@ -348,8 +352,8 @@ mod tests {
 
     #[test]
     fn smooth_fibre_reflects_into_a_cone() {
-        // Marschner's cone: light leaves at the longitudinal angle at which it arrives, less the
-        // scale tilt.
+        // Light leaves along Marschner's cone. The longitudinal angle of this light is that at
+        // which it arrives, minus the tilt of the scales.
         let m = HairMaterial { longitudinal_roughness: 0.05, scale_tilt: 3.0, ..Default::default() };
         let fibre = Fibre::new(&HairMaterial { absorption: Some(Color::splat(1e3)), ..m });
         let hair = fibre.lobe(&Lanes::Rgb);
@@ -361,7 +365,7 @@ mod tests {
             let wi = hair.sample(wo, unit(), Vec2::new(unit(), unit())).unwrap().wi;
             mean += f64::from(fp::asin(wi.x).to_degrees()) / 2_000.0;
         }
-        // View angle of 30 degrees, turned back by twice the tilt.
+        // The view angle of 30 degrees is turned back by twice the tilt.
         assert!((mean + 24.0).abs() < 0.5, "{mean}");
     }
 }

@@ -1,4 +1,5 @@
-//! Lobes, the parts of a BSDF. Each lobe has its own file; [`Lobe`] lists them all.
+//! Lobes, which are the parts of a BSDF. Each lobe has its own file, and [`Lobe`] lists all of
+//! them.
 
 pub mod blinn;
 pub mod diffuse;
@@ -11,12 +12,12 @@ pub mod rough_glass;
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
-/// Direction sampled from a single lobe, returned by [`Scatter::sample`].
+/// Direction sampled from a single lobe, as returned by [`Scatter::sample`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LobeSample {
     /// Local direction to the incident light.
     pub wi: Vec3,
-    /// Throughput factor of a delta lobe. Ignored for other lobes.
+    /// Throughput factor of a delta lobe. The factor is ignored for other lobes.
     pub value: Spectrum,
 }
 
@@ -24,19 +25,20 @@ pub struct LobeSample {
 const NO_SCATTERING: (Spectrum, f32) = (Spectrum::ZERO, 0.0);
 
 /// Interface for evaluating and sampling a BSDF lobe. Directions are local and point away from the
-/// surface. `wo` is above it (`wo.z` > 0).
+/// surface. `wo` is above the surface (`wo.z` > 0).
 pub trait Scatter {
-    /// Value times |cos| of `wi`, and the pdf per solid angle with which [`Scatter::sample`]
-    /// chooses `wi`. Both are 0 for a delta lobe.
+    /// Returns the value times |cos| of `wi`, and the pdf per solid angle with which
+    /// [`Scatter::sample`] chooses `wi`. Both results are 0 for a delta lobe.
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32);
 
-    /// Samples a direction. `choice` and `u` are uniform in [0, 1]. `None` if the sample fails.
+    /// Samples a direction. `choice` and `u` are uniform in [0, 1]. Returns `None` if the sample
+    /// fails.
     fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<LobeSample>;
 
     /// Returns the properties that decide how a path tracer samples lights for the lobe.
     fn kind(&self) -> LobeKind;
 
-    /// True if the lobe scatters into single directions only.
+    /// True if the lobe scatters only into single directions.
     #[inline]
     fn is_delta(&self) -> bool {
         self.kind().spread == Spread::Delta
@@ -46,28 +48,28 @@ pub trait Scatter {
 /// Angular spread of a BSDF lobe, which decides how lights are sampled for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spread {
-    /// Single directions: a perfect mirror, clear glass.
+    /// Single directions, as for a perfect mirror or clear glass.
     Delta,
-    /// A narrow cone for the most part, which light samples rarely hit.
+    /// Mostly a narrow cone of directions, which light samples rarely hit.
     Glossy,
-    /// Every direction, with equal or nearly equal value.
+    /// All directions, with equal or nearly equal values.
     Diffuse,
 }
 
-/// Properties of a BSDF lobe that decide how lights are sampled for it. Every lobe returns them
-/// from [`Scatter::kind`].
+/// Properties of a BSDF lobe that decide how lights are sampled for it. Every lobe returns these
+/// properties from [`Scatter::kind`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LobeKind {
     /// Angular spread.
     pub spread: Spread,
-    /// True if it scatters light that arrives from behind the surface.
+    /// True if the lobe scatters light that arrives from behind the surface.
     pub transmits: bool,
-    /// True if light keeps its direction, as if there were no surface.
+    /// True if the light keeps its direction, as if there were no surface.
     pub is_straight: bool,
     /// True for a fibre, which scatters light from any side to any side.
     pub is_fibre: bool,
-    /// Index of refraction behind the surface, relative to the index in front of it; `None` without
-    /// refraction.
+    /// Index of refraction behind the surface, relative to the index in front of it, or `None`
+    /// without refraction.
     pub eta: Option<f32>,
 }
 
@@ -83,12 +85,13 @@ impl LobeKind {
         LobeKind { spread, transmits: false, is_straight: false, is_fibre: false, eta: None }
     }
 
-    /// Returns the kind of a lobe that also, or only, scatters light from behind the surface.
+    /// Returns the kind of a lobe that scatters light from behind the surface, possibly in addition
+    /// to light from the front.
     pub const fn transmitting(self) -> LobeKind {
         LobeKind { transmits: true, ..self }
     }
 
-    /// Returns the kind of a transmitting lobe that refracts with the relative index `eta`.
+    /// Returns the kind of a transmitting lobe that refracts light with the relative index `eta`.
     pub const fn refracting(self, eta: f32) -> LobeKind {
         LobeKind { transmits: true, eta: Some(eta), ..self }
     }
@@ -119,7 +122,7 @@ macro_rules! lobes {
         }
 
         impl Lobe<'_> {
-            /// Name of the lobe's type, for explanations.
+            /// Name of the type of the lobe, for explanations.
             pub fn name(&self) -> &'static str {
                 match self { $(Lobe::$name(_) => stringify!($name),)+ }
             }
@@ -128,13 +131,14 @@ macro_rules! lobes {
 }
 
 lobes! {
-    /// Diffuse reflection: energy-preserving Oren-Nayar, or Lambert at roughness 0.
+    /// Diffuse reflection by the energy-preserving Oren-Nayar model, which is Lambertian at
+    /// roughness 0.
     Diffuse(diffuse::Diffuse<'a>),
     /// Diffuse transmission.
     DiffuseTransmission(diffuse::DiffuseTransmission),
     /// Blinn or Phong highlight, as in the course.
     Blinn(blinn::Blinn),
-    /// Rough reflection: metal, a coat, the surface of plastic.
+    /// Rough reflection, as by metal, a coat or the surface of plastic.
     Rough(rough::RoughReflection),
     /// Rough glass.
     RoughGlass(rough_glass::RoughGlass),
@@ -142,10 +146,10 @@ lobes! {
     Mirror(glass::Mirror),
     /// Perfect refraction.
     Refraction(glass::Refraction),
-    /// Transmission that keeps the direction, as if there were no surface.
+    /// Transmission that keeps the direction of the light, as if there were no surface.
     Through(glass::StraightTransmission),
-    /// Fuzz of short fibres, as on velvet.
+    /// Fuzz made of short fibres, as on velvet.
     Fuzz(fuzz::Fuzz),
-    /// Single fibre of hair.
+    /// Single hair fibre.
     Hair(hair::Hair<'a>),
 }

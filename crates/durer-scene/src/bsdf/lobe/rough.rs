@@ -1,4 +1,4 @@
-//! Rough reflection: GGX facets with the reflectance of a metal, a dielectric, a thin sheet or a
+//! Rough reflection by GGX facets, with the reflectance of a metal, a dielectric, a thin sheet or a
 //! film.
 
 use super::{LobeKind, LobeSample, NO_SCATTERING, Scatter};
@@ -19,12 +19,12 @@ pub enum Facet {
     Sheet(Sheet),
     /// Transmission through a thin dielectric sheet.
     SheetTransmission(Sheet),
-    /// Base with a thin film.
+    /// Base that is covered by a thin film.
     Film(Film),
 }
 
 impl Facet {
-    /// Reflectance, or transmittance of a sheet, at a cosine.
+    /// Returns the reflectance at a cosine, or the transmittance for a sheet that transmits.
     pub fn at(&self, cosine: f32) -> Spectrum {
         match *self {
             Facet::Metal(f82) => f82.at(cosine),
@@ -36,20 +36,20 @@ impl Facet {
     }
 }
 
-/// Lobe for reflection by a rough surface, or transmission through a thin rough sheet.
+/// Lobe for reflection by a rough surface, or for transmission through a thin rough sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoughReflection {
     /// Distribution of the facet normals.
     pub ggx: Ggx,
     /// Reflectance model of the facets.
     pub facet: Facet,
-    /// True if light leaves on the other side, as the mirror image of the reflection: transmission
-    /// through a thin sheet of rough glass.
+    /// True if light leaves on the other side, as the mirror image of the reflection. The flag is
+    /// set for transmission through a thin sheet of rough glass.
     pub transmits: bool,
 }
 
 impl RoughReflection {
-    /// Mirrors a direction behind the surface to the front, if the lobe transmits.
+    /// Mirrors a direction behind the surface to the front if the lobe transmits.
     fn above(&self, wi: Vec3) -> Vec3 {
         if self.transmits { Vec3::new(wi.x, wi.y, -wi.z) } else { wi }
     }
@@ -67,7 +67,7 @@ impl Scatter for RoughReflection {
         let density = self.ggx.density(h) / (4.0 * wo.z);
         let (hidden_o, hidden_i) = (self.ggx.lambda(wo), self.ggx.lambda(wi));
         let value = density / (1.0 + hidden_o + hidden_i) * self.facet.at(wo.dot(h).clamp(0.0, 1.0));
-        // Pdf of the visible normals over 4 wo·h. The factor wo·h cancels.
+        // The pdf is that of the visible normals, divided by 4 wo·h. The factor wo·h cancels.
         (value, density / (1.0 + hidden_o))
     }
 

@@ -1,4 +1,4 @@
-//! Rough glass: each facet reflects and refracts according to Fresnel's equations.
+//! Rough glass, in which each facet reflects and refracts light according to Fresnel's equations.
 //!
 //! Source: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, EGSR 2007.
 
@@ -22,15 +22,15 @@ pub struct RoughGlass {
     pub transmitted: Spectrum,
 }
 
-/// Returns the normal of the facets that scatter `wo` to `wi`, and the Jacobian of the solid angle;
-/// `None` if no facet does.
+/// Returns the normal of the facets that scatter `wo` to `wi`, and the Jacobian of the solid angle.
+/// Returns `None` if no facet does so.
 fn facet(wo: Vec3, wi: Vec3, eta: f32) -> Option<(Vec3, f32)> {
     let passes = wi.z < 0.0;
     let eta = if passes { eta } else { 1.0 };
     let h = (wi * eta + wo).try_normalize()?;
     let h = if h.z < 0.0 { -h } else { h };
     let (to_o, to_i) = (wo.dot(h), wi.dot(h));
-    // Facets are visible from the front only.
+    // Facets are visible only from the front.
     if to_o <= 0.0 || (to_i < 0.0) != passes {
         return None;
     }
@@ -45,7 +45,7 @@ fn facet(wo: Vec3, wi: Vec3, eta: f32) -> Option<(Vec3, f32)> {
 }
 
 impl RoughGlass {
-    /// Reflectance or transmittance of a facet.
+    /// Returns the reflectance or transmittance of a facet.
     fn share(&self, passes: bool, cosine: f32) -> f32 {
         let reflected = fresnel::dielectric(cosine, self.eta);
         if passes { 1.0 - reflected } else { reflected }

@@ -1,18 +1,19 @@
-//! Roots of a polynomial between 0 and 1, from its Bernstein coefficients.
+//! Finds the roots of a polynomial between 0 and 1 from its Bernstein coefficients.
 //!
-//! In an interval, a polynomial has at most as many roots as its coefficients have sign changes,
-//! and exactly one if there is one sign change. Halving the interval by de Casteljau's algorithm
-//! separates the roots; false position then refines each.
+//! In an interval, a polynomial has at most as many roots as there are sign changes in its
+//! coefficients. If there is one sign change, the polynomial has exactly one root. Halving the
+//! interval by de Casteljau's algorithm separates the roots, and the method of false position then
+//! refines each of them.
 //!
 //! Source: Lane, Riesenfeld, *Bounds on a Polynomial*, BIT 21, 1981; Farin, *Curves and Surfaces
 //! for CAGD*, chapter 4.
 
 use glam::DVec3;
 
-/// Polynomial of degree 6, by its Bernstein coefficients.
+/// Polynomial of degree 6, given by its Bernstein coefficients.
 pub type Sextic = [f64; 7];
 
-/// Roots closer to each other than this are reported once.
+/// Roots that are closer to each other than this are reported only once.
 const NARROWEST: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// Dot product of two vector-valued cubics, in Bernstein form.
@@ -28,7 +29,7 @@ pub fn dot(a: &[DVec3; 4], b: &[DVec3; 4]) -> Sextic {
     product
 }
 
-/// Calls `emit` with each root, in ascending order. The zero polynomial has none.
+/// Calls `emit` with each root, in ascending order. No roots are reported for the zero polynomial.
 pub fn for_each_root(polynomial: Sextic, emit: &mut dyn FnMut(f64)) {
     if polynomial.iter().any(|c| *c != 0.0) {
         search(&polynomial, 0.0, 1.0, emit);
@@ -36,7 +37,8 @@ pub fn for_each_root(polynomial: Sextic, emit: &mut dyn FnMut(f64)) {
 }
 
 fn search(c: &Sextic, start: f64, width: f64, emit: &mut dyn FnMut(f64)) {
-    // Zero counts as positive, so a root on a border belongs to one side only.
+    // Zero counts as positive, so that a root on the border between two halves belongs to only one
+    // of them.
     let changes = c.windows(2).filter(|pair| (pair[0] < 0.0) != (pair[1] < 0.0)).count();
     let ends_differ = (c[0] < 0.0) != (c[6] < 0.0);
     match changes {
@@ -55,7 +57,7 @@ fn search(c: &Sextic, start: f64, width: f64, emit: &mut dyn FnMut(f64)) {
     }
 }
 
-/// Splits the coefficients at a point (de Casteljau).
+/// Splits the coefficients at a point by de Casteljau's algorithm.
 fn split(c: &Sextic, at: f64) -> (Sextic, Sextic) {
     let (mut left, mut right) = ([0.0; 7], *c);
     for (i, first) in left.iter_mut().enumerate() {
@@ -67,8 +69,8 @@ fn split(c: &Sextic, at: f64) -> (Sextic, Sextic) {
     (left, right)
 }
 
-/// Returns the only root, by false position with the Illinois rule: the value at an end that is
-/// kept twice is halved.
+/// Returns the only root, which is found by false position with the Illinois rule. By this rule,
+/// the value at an end is halved if that end is kept twice in a row.
 fn refine(c: &Sextic) -> f64 {
     let value = |at: f64| split(c, at).1[0];
     let ((mut a, mut at_a), (mut b, mut at_b)) = ((0.0, c[0]), (1.0, c[6]));
@@ -93,7 +95,8 @@ mod tests {
     use super::*;
     use crate::math::random::Random;
 
-    /// Polynomial with the given roots, in Bernstein form: a product of (s - root).
+    /// Returns the polynomial with the given roots in Bernstein form, as a product of the factors
+    /// (s - root).
     fn with_roots(roots: &[f64; 6]) -> Sextic {
         let mut c = vec![1.0];
         for root in roots {

@@ -1,4 +1,4 @@
-//! Wide-angle cameras, compared with closed-form directions and solid angles.
+//! Compares wide-angle cameras with closed forms of their directions and solid angles.
 
 use super::super::cave::CaveCamera;
 use super::super::cube_map::{CubeMapCamera, Layout};
@@ -12,17 +12,18 @@ use super::super::push_broom::PushBroomCamera;
 use super::*;
 use std::f64::consts::PI;
 
-/// Ray of a camera in Dürer's own dialect.
+/// Returns the ray of a camera in Dürer's own dialect.
 pub fn ray(camera: &impl Projection, sample: CameraSample) -> Option<Ray> {
     camera.ray(&CameraBasis::of(camera, OURS), &sample)
 }
 
-/// Direction that a point of the picture sees: by default x is right, y up and -z ahead.
+/// Returns the direction that is seen at a point of the picture. By default, x is to the right, y
+/// is upwards and -z is ahead.
 fn dir(camera: &impl Projection, x: f32, y: f32) -> Vec3 {
     ray(camera, CameraSample::at(Vec2::new(x, y))).unwrap().dir
 }
 
-/// Solid angle of a whole picture, by the midpoint rule with 480 x 480 cells.
+/// Returns the solid angle of a whole picture, computed by the midpoint rule with 480 x 480 cells.
 fn solid_angle(camera: &impl Projection) -> f64 {
     const CELLS: u32 = 480;
     let frame = CameraBasis::of(camera, OURS);
@@ -53,11 +54,12 @@ fn pictures_cover_the_solid_angles_of_their_fields_of_view() {
     }
     check(ParabolicCamera::default().into(), cap(210.0));
     let viewer = Vec3::new(0.2, -0.1, 0.3);
-    // The centre of a dome sees a hemisphere for any projector that illuminates the whole dome.
+    // From the centre of a dome, a hemisphere is seen for any projector that illuminates the whole
+    // dome.
     let dome = OmnimaxCamera { angle: 300.0, projector: viewer, ..OmnimaxCamera::default() };
     check(dome.into(), cap(180.0));
     check(EquirectangularCamera::default().into(), 4.0 * PI);
-    // A panorama four times as wide as high.
+    // This panorama is four times as wide as it is high.
     let (half, vertical_angle) = (PI / 4.0, (2.0 * libm::atan(PI / 4.0)).to_degrees() as f32);
     let panorama = CylindricalCamera { vertical_angle, ..CylindricalCamera::default() };
     check(panorama.into(), 4.0 * PI * half / (1.0 + half * half).sqrt());
@@ -83,7 +85,7 @@ fn directions_match_the_map_projections() {
     close(dir(&fisheye, 1.0, 0.0), Vec3::X);
     close(dir(&fisheye, 0.0, -0.5), Vec3::new(0.0, -1.0, -1.0).normalize());
     assert_eq!(ray(&fisheye, CameraSample::at(Vec2::new(0.8, 0.7))), None);
-    // All horizontal directions lie on the circle r = h; the direction up is at the centre.
+    // All horizontal directions lie on the circle r = h, and the upward direction is at the centre.
     let mirror = ParabolicCamera::default();
     let horizon = (libm::tan(PI / 4.0) / libm::tan(105f64.to_radians() / 2.0)) as f32;
     close(dir(&mirror, 0.0, 0.0), Vec3::Y);
@@ -93,13 +95,13 @@ fn directions_match_the_map_projections() {
     close(dir(&sphere, 0.5, 0.0), Vec3::X);
     close(dir(&sphere, -0.5, 0.25), Vec3::new(-1.0, 1.0, 0.0).normalize());
     close(dir(&sphere, 1.0, 0.0), Vec3::Z);
-    // The dome's pole is tilted forwards; the front of its rim is at the bottom.
+    // The pole of the dome is tilted forwards, and the front of its rim is at the bottom.
     let dome = OmnimaxCamera::default();
     let (sin, cos) = (0.5, libm::sqrt(0.75) as f32);
     close(dir(&dome, 0.0, 0.0), Vec3::new(0.0, cos, -sin));
     close(dir(&dome, 0.0, -1.0), Vec3::new(0.0, -sin, -cos));
     close(dir(&dome, 1.0, 0.0), Vec3::X);
-    // Columns of the cross: left, front, right, back; rows: down, middle, up.
+    // The columns of the cross are left, front, right and back. The rows are down, middle and up.
     let cross = CubeMapCamera::default();
     for (x, y, expected) in [
         (-0.25, 0.0, Vec3::NEG_Z),
@@ -121,15 +123,15 @@ fn directions_match_the_map_projections() {
 #[test]
 fn filter_across_a_seam_continues_the_face() {
     let cross = CubeMapCamera::default();
-    // A pixel of the up face at its right edge, where the picture continues with black or with
-    // another face.
+    // This is a pixel at the right edge of the up face, where the picture continues with black or
+    // with another face.
     let edge = Vec2::new(0.0, 0.5);
     let beyond = CameraSample { point: edge + Vec2::new(0.01, 0.0), ..CameraSample::at(edge - Vec2::new(0.01, 0.0)) };
     let on_face = ray(&cross, CameraSample { point: edge, ..beyond }).unwrap().dir;
     let further = ray(&cross, beyond).unwrap().dir;
     assert!(on_face.distance(further) < 0.04 && further.x > further.y, "{on_face} {further}");
-    // Past the left border, the sphere continues at the right border; past the pole, it continues
-    // downwards on the other side.
+    // Beyond the left border, the sphere continues at the right border. Beyond the pole, the sphere
+    // continues downwards on the other side.
     let sphere = EquirectangularCamera::default();
     let left = CameraSample { point: Vec2::new(-1.01, 0.1), ..CameraSample::at(Vec2::new(-0.99, 0.1)) };
     close(ray(&sphere, left).unwrap().dir, dir(&sphere, 0.99, 0.1));
@@ -139,7 +141,8 @@ fn filter_across_a_seam_continues_the_face() {
 
 #[test]
 fn walls_agree_along_their_common_edge() {
-    // Left, front and right walls, 2 wide and 1.5 high each; off-centre eyes that are turned.
+    // There are left, front and right walls, each of which is 2 wide and 1.5 high. The eyes are
+    // off-centre and turned.
     let walls = vec![
         [-1.0, 0.0, 1.0, -1.0, 0.0, -1.0, -1.0, 1.5, 1.0],
         [-1.0, 0.0, -1.0, 1.0, 0.0, -1.0, -1.0, 1.5, -1.0],
@@ -154,8 +157,8 @@ fn walls_agree_along_their_common_edge() {
         ..CaveCamera::default()
     };
     assert_eq!(camera.proportions(), Some(Vec2::new(6.0, 3.0)));
-    // 600 x 300 pixels: the border between the last column of one wall and the first of the next,
-    // sampled for both.
+    // The picture has 600 x 300 pixels. The border between the last column of one wall and the
+    // first column of the next is sampled for both walls.
     let raster = Raster::new(600, 300, camera.proportions(), OURS);
     for (column, eye_row) in [(200.0, 0.0), (200.0, 150.0), (400.0, 0.0), (400.0, 150.0)] {
         for row in [0.5, 70.5, 149.5] {
@@ -171,11 +174,12 @@ fn walls_agree_along_their_common_edge() {
             close(before.dir, (edge - before.origin).normalize());
         }
     }
-    // The upper picture is the left eye's.
+    // The upper picture is that of the left eye.
     let origin = |y: f32| ray(&camera, CameraSample::at(Vec2::new(0.0, y))).unwrap().origin;
     let (left, right) = (origin(0.25), origin(-0.25));
     assert!((left.distance(right) - 0.2).abs() < 1e-6 && (right - left).dot(Vec3::new(1.0, 0.0, 0.5)) > 0.0);
-    // Rejects an eye in the plane of a wall, and walls without extent or without a right angle.
+    // Check that an eye in the plane of a wall is rejected, and so are walls without extent or
+    // without a right angle.
     let refused = |camera: CaveCamera| assert!(camera.validate().is_err(), "{camera:?}");
     refused(CaveCamera { center: Vec3::new(5.0, 0.0, -1.0), eyes: Eyes::Middle, ..camera.clone() });
     refused(CaveCamera { walls: vec![[0.0; 9]], ..camera.clone() });
@@ -211,10 +215,10 @@ fn closed_path_is_smooth_and_sees_all_sides() {
     let frame = CameraBasis::of(&camera, OURS);
     let at = |x: f32| CameraSample::at(Vec2::new(x, 0.0));
     close(ray(&camera, at(1.0)).unwrap().origin, ray(&camera, at(-1.0)).unwrap().origin);
-    // The footprint depends on the path's derivative.
+    // The footprint depends on the derivative of the path.
     let slope = |x: f32| camera.footprint(&frame, &at(x), 3.0);
     assert!((slope(1.0) - slope(-1.0)).abs() < 1e-4 * slope(1.0), "{} {}", slope(1.0), slope(-1.0));
-    // An off-centre point is seen from the front and from the back.
+    // An off-centre point is seen both from the front and from the back.
     let mut actual = Vec::new();
     camera.project(&frame, Vec3::new(0.5, 0.1, 0.0), Vec2::ZERO, &mut |point| actual.push(point));
     assert_eq!(actual.len(), 2, "{actual:?}");

@@ -1,4 +1,4 @@
-//! Lenses, pinholes, stereo pairs and distorted photographs.
+//! Tests lenses, pinholes, stereo pairs and distorted photographs.
 
 use super::super::aperture;
 use super::super::pinhole::PinholeCamera;
@@ -15,8 +15,8 @@ fn aperture_samples_are_uniform() {
     let mut random = Random(1);
     for blades in [0, 3, 4, 6, 9] {
         const COUNT: usize = 200_000;
-        // Mean square radius of a disc of radius 1, or of a regular polygon in it: (2 + cos 2π/n) /
-        // 6. The mean is 0.
+        // Compute the mean square radius of a disc of radius 1, or of a regular polygon inscribed
+        // in it, which is (2 + cos 2π/n) / 6. The mean of the points is 0.
         let expected = match blades {
             0 => 0.5,
             n => (2.0 + libm::cos(std::f64::consts::TAU / f64::from(n))) / 6.0,
@@ -29,7 +29,7 @@ fn aperture_samples_are_uniform() {
             squares += point.length_squared();
         }
         let n = COUNT as f64;
-        // Five standard errors; no coordinate and no square exceeds 1.
+        // Allow five standard errors, since no coordinate and no square exceeds 1.
         let error = 5.0 / n.sqrt();
         assert!((sum / n).length() < error && (squares / n - expected).abs() < error, "{blades}: {sum} {squares}");
         assert_eq!(aperture::sample(Vec2::splat(0.5), blades, 20.0), DVec2::ZERO);
@@ -61,7 +61,7 @@ fn rays_of_a_picture_point_meet_only_in_the_focus_plane() {
         assert!(off.length() <= 0.25 + 1e-5 && off.distance(-(ray.origin - Vec3::Y)) < 1e-5);
         assert!(ray.origin.distance(Vec3::Y) <= 0.25);
     }
-    // Without aperture and shift it equals the perspective camera.
+    // Without aperture and shift, the camera is equivalent to the perspective camera.
     let (plain, lens) = (PerspectiveCamera::default(), ThinLensCamera::default());
     let sample = CameraSample { lens: Vec2::new(0.1, 0.9), ..CameraSample::at(point) };
     close(ray(&plain, sample).unwrap().dir, ray(&lens, sample).unwrap().dir);
@@ -77,8 +77,8 @@ fn pinhole_blurs_near_points_more_than_far_ones() {
         camera.project(&frame, Vec3::NEG_Z * 1e6, lens, &mut |point| far = far.max(point.length()));
         camera.project(&frame, Vec3::NEG_Z * 0.5, lens, &mut |point| near = near.max(point.length()));
     }
-    // The film is 1 wide and the picture 2: a hole of radius 0.1 is 0.2 there, and twice that at
-    // the film's distance.
+    // The film is 1 wide and the picture is 2 wide. A hole of radius 0.1 therefore has a radius of
+    // 0.2 in the picture, and twice that at the film's distance.
     assert!((far - 0.2).abs() < 1e-3 && (near - 0.4).abs() < 2e-3, "{far} {near}");
 }
 
@@ -92,24 +92,25 @@ fn stereo_views_agree_at_the_convergence_distance() {
         camera.project(&frame, point, Vec2::ZERO, &mut |p| projected.push(p));
         assert_eq!(projected.len(), 2, "{projected:?}");
         assert!(projected[0].x < 0.0 && projected[1].x > 0.0, "the left eye's picture is on the left");
-        // Difference between the point's positions in the two pictures.
+        // Return the difference between the positions of the point in the two pictures.
         (projected[1] - projected[0] - Vec2::X) * 2.0
     };
     for point in [Vec3::new(1.0, 0.7, -5.0), Vec3::new(-1.5, 0.2, -5.0)] {
         assert!(pair(&camera, point).length() < 1e-6);
-        // Toed-in cameras agree only at the centre: heights differ elsewhere.
+        // The views of toed-in cameras agree only at the centre, and the heights differ elsewhere.
         let turned = StereoCamera { method: StereoMethod::ToeIn, ..camera.clone() };
         assert!(pair(&turned, Vec3::NEG_Z * 5.0).length() < 1e-6);
         assert!(pair(&turned, point).y.abs() > 1e-4);
     }
-    // For the right eye, nearer objects move to the left and farther ones to the right; without
-    // convergence all move to the left.
+    // For the right eye, nearer objects move to the left and farther ones to the right. Without
+    // convergence, all objects move to the left.
     assert!(pair(&camera, Vec3::NEG_Z * 2.5).x < -0.05 && pair(&camera, Vec3::NEG_Z * 50.0).x > 0.05);
     let parallel = StereoCamera { method: StereoMethod::Parallel, ..camera };
     assert!(pair(&parallel, Vec3::NEG_Z * 50.0).x < -0.005);
 }
 
-/// Matrix of a camera at (1, 2, 3) that looks along -z, for pictures of 200 x 100.
+/// Returns a camera at (1, 2, 3) that looks along -z, with a matrix for pictures of 200 x 100
+/// pixels.
 fn photograph() -> ProjectiveCamera {
     let (f, cx, cy) = (150.0, 99.5, 49.5);
     let rows = [[f, 0.0, -cx], [0.0, -f, -cy], [0.0, 0.0, -1.0]];
@@ -139,7 +140,7 @@ fn distortion_matches_the_formula_and_ends_at_the_fold() {
     let project = |camera: &ProjectiveCamera, x: f32, y: f32| {
         let mut projected = None;
         camera.project(&frame, Vec3::new(1.0 + x, 2.0 - y, 2.0), Vec2::ZERO, &mut |point| projected = Some(point));
-        // Pixel coordinates, y downwards.
+        // Convert to pixel coordinates, with y downwards.
         projected.map(|point| Vec2::new(100.0 + 100.0 * point.x - 0.5, 50.0 - 100.0 * point.y - 0.5))
     };
     let camera = ProjectiveCamera { k1: -0.2, k2: 0.05, p1: 0.01, p2: -0.02, k3: 0.1, ..photograph() };
@@ -152,8 +153,8 @@ fn distortion_matches_the_formula_and_ends_at_the_fold() {
     );
     let projected = project(&camera, x, y).unwrap();
     assert!(projected.distance(150.0 * expected + Vec2::new(99.5, 49.5)) < 1e-3, "{projected} {expected}");
-    // r - r³ grows only up to r = 1/sqrt 3, where it is 0.385: beyond that neither `project` nor
-    // `ray` finds a point.
+    // r - r³ grows only up to r = 1/sqrt 3, where it is 0.385. Beyond this value, neither `project`
+    // nor `ray` finds a point.
     let folded = ProjectiveCamera { k1: -1.0, ..photograph() };
     assert!(project(&folded, 0.55, 0.0).is_some() && project(&folded, 0.6, 0.0).is_none());
     let at = |pixels: f32| ray(&folded, CameraSample::at(Vec2::new(pixels / 100.0, 0.0)));

@@ -1,4 +1,4 @@
-//! Tests that models are fully visible, in every view and at every aspect ratio.
+//! Tests that models are fully visible in every view and at every aspect ratio.
 
 use super::super::Assets;
 use super::*;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 const VIEWS: [PresetView; 5] =
     [PresetView::ThreeQuarter, PresetView::Front, PresetView::Side, PresetView::Top, PresetView::Iso];
 
-/// A scene of one mesh with these vertices, under a transform.
+/// Returns a scene that consists of one transformed mesh with the given vertices.
 fn scene(corners: Vec<Vec3>) -> Scene {
     let triangles = (0..corners.len() as u32).map(|i| [i; 3]).collect();
     let data = MeshData { positions: corners, triangles, ..MeshData::default() };
@@ -43,7 +43,7 @@ fn every_view_sees_the_whole_and_fills_the_picture() {
             let scene = staged(scene(Vec::clone(&corners)), &scene_defaults);
             let camera = scene.camera.as_ref().unwrap();
             let frame = CameraBasis::of(camera, CameraRules::default());
-            // Border of the picture, whose larger side runs from -1 to 1.
+            // The border of the picture, whose larger side runs from -1 to 1.
             let border = Vec2::new(aspect.min(1.0), (1.0 / aspect).min(1.0));
             let (mut most, mut low, mut high) = (0f32, Vec2::INFINITY, Vec2::NEG_INFINITY);
             points(&scene, &mut |p| {
@@ -52,7 +52,7 @@ fn every_view_sees_the_whole_and_fills_the_picture() {
                 let point = projected.unwrap_or_else(|| panic!("{view:?} {aspect}: {p} is not seen"));
                 most = most.max(point.abs().max_element());
                 (low, high) = (low.min(point), high.max(point));
-                // The eye is outside.
+                // The eye must be outside the model.
                 let ray = camera.ray(&frame, &CameraSample::at(point * border)).unwrap();
                 assert!((p.as_vec3() - ray.origin).dot(ray.dir) > 0.0, "{view:?}");
             });
@@ -102,7 +102,7 @@ fn points_flat_and_empty_models_have_cameras() {
 fn staging_adds_only_missing_parts() {
     let plain = staged(scene(vec![Vec3::ZERO, Vec3::ONE]), &SceneDefaults::default());
     assert_eq!((plain.lights.as_ref().unwrap().len(), plain.materials.len()), (2, 2));
-    // The ground touches the lowest point, which is moved to y = -2.
+    // The ground touches the lowest point, which the transform moves to y = -2.
     let Some(ObjectKind::Primitive(crate::shape::Primitive::Plane(ground))) =
         plain.root.as_ref().map(|root| &root.objects[1].node)
     else {
@@ -116,8 +116,8 @@ fn staging_adds_only_missing_parts() {
     let same = staged(complete.clone(), &SceneDefaults::default());
     assert_eq!((&same.camera, &same.lights), (&complete.camera, &complete.lights));
     assert_eq!(same.root.unwrap().objects.len(), 1);
-    // The background of a scene with its own light is black; without any light it is not, so that
-    // something is visible.
+    // The background of a scene with its own light is black. In a scene without any light, the
+    // background is not black, so that something is visible.
     assert_eq!(same.background.color, Vec3::ZERO);
     let none = SceneDefaults { lighting: Some(DefaultLighting::None), ..SceneDefaults::default() };
     assert_eq!(staged(scene(vec![Vec3::ZERO, Vec3::ONE]), &none).background, Background::default());

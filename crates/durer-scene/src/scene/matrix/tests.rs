@@ -1,4 +1,4 @@
-//! Tests of matrices against known images of points.
+//! Tests that matrices map points to known images.
 
 use super::*;
 
@@ -6,7 +6,7 @@ const LEFT: MatrixRules = MatrixRules { matrix_on_left: true, drop_shear: false,
 
 fn image(ops: &[MatrixOp], p: [f64; 3]) -> [f64; 3] {
     let image = MatrixOp::product(ops, MatrixRules::default()).transform_point3(p.into());
-    // Makes zeros of both signs equal.
+    // Adding 0 turns negative zero into positive zero.
     image.to_array().map(|x| x + 0.0)
 }
 
@@ -23,7 +23,7 @@ fn rotations_are_right_handed_and_exact_by_quarters() {
     let turned = image(&[MatrixOp::Rotate(Vec3::Z * 7.0, degrees as f32)], [1.0, 0.0, 5.0]);
     // The angle is rounded to single precision.
     assert!((turned[0] - cos).abs() < 1e-7 && (turned[1] - sin).abs() < 1e-7 && turned[2] == 5.0);
-    // A third of a turn about the diagonal maps x to y to z.
+    // A third of a turn about the diagonal maps x to y, y to z, and z to x.
     assert!(close(image(&[MatrixOp::Rotate(Vec3::ONE, 120.0)], [1.0, 2.0, 3.0]), [3.0, 1.0, 2.0]));
 }
 
@@ -53,7 +53,7 @@ fn matrix_is_given_by_rows_and_multiplied_on_the_left_if_the_rules_say_so() {
     let point = glam::DVec3::ONE;
     assert_eq!(MatrixOp::product(&ops, MatrixRules::default()).transform_point3(point).to_array(), [80.0, 70.0, 80.0]);
     assert_eq!(MatrixOp::product(&ops, LEFT).transform_point3(point).to_array(), [35.0, 16.0, 17.0]);
-    // The quirk only affects `Matrix`.
+    // The quirk affects only `Matrix`.
     let ops = [MatrixOp::Scale(Vec3::splat(10.0)), MatrixOp::Translate(Vec3::X)];
     assert_eq!(MatrixOp::product(&ops, LEFT), MatrixOp::product(&ops, MatrixRules::default()));
 }

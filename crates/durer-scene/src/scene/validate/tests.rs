@@ -1,4 +1,4 @@
-//! Tests of scenes built in code with invalid values, and of the reported messages.
+//! Tests the messages that are reported for scenes that are built in code and have invalid values.
 
 use super::*;
 use crate::camera::PerspectiveCamera;
@@ -69,7 +69,7 @@ fn fields_are_checked_in_combination_if_each_is_valid() {
     assert_eq!(messages(&with_shape(upside_down)), ["`min` of a `Box` must be less than its `max` in x, y and z"]);
     let camera = |camera: CaveCamera| messages(&Scene { camera: Some(camera.into()), ..Scene::default() });
     assert_eq!(camera(CaveCamera::default()), [""; 0]);
-    // Walls are only checked if all numbers are finite.
+    // Walls are checked only if all numbers are finite.
     let walls = vec![[f32::NAN; 9]];
     assert_eq!(camera(CaveCamera { walls, ..CaveCamera::default() }), ["CaveCamera: walls must be finite"]);
     let light = PointLight { candela: Some(1.0), lumens: Some(1.0), ..PointLight::default() };

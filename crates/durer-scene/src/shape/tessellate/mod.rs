@@ -1,4 +1,4 @@
-//! Triangle meshes of shapes. The functions in this file approximate primitives, for
+//! Creates triangle meshes of shapes. The functions in this file approximate primitives, for
 //! [`Shape::to_mesh`](super::Shape::to_mesh). The submodules tessellate surfaces that are not
 //! primitives.
 
@@ -10,36 +10,36 @@ pub mod tube;
 use super::MeshData;
 use crate::math::{Vec2, Vec3, fp};
 
-/// Number of segments around a sphere; half as many from pole to pole.
+/// Number of segments around a sphere, which has half as many from pole to pole.
 const STEPS: u32 = 96;
 
-/// A single flat triangle.
+/// Creates a single flat triangle.
 pub(super) fn triangle(corners: [Vec3; 3]) -> MeshData {
     MeshData { positions: corners.to_vec(), triangles: vec![[0, 1, 2]], flat: true, ..MeshData::default() }
 }
 
-/// A flat parallelogram.
+/// Creates a flat parallelogram.
 pub(super) fn parallelogram(corner: Vec3, edges: [Vec3; 2]) -> MeshData {
     let mut data = MeshData { flat: true, ..MeshData::default() };
     push_parallelogram(&mut data, corner, edges);
     data
 }
 
-/// A flat ring around `axis`; a disc if `inner` is 0.
+/// Creates a flat ring around `axis`, which is a disc if `inner` is 0.
 pub(super) fn ring(center: Vec3, axis: Vec3, [inner, outer]: [f32; 2]) -> MeshData {
     let mut data = MeshData::default();
     push_band(&mut data, axis, [(center, inner), (center, outer)]);
     data
 }
 
-/// Adds a parallelogram whose edges go around it counter-clockwise.
+/// Adds a parallelogram, with its edges in counter-clockwise order.
 pub(super) fn push_parallelogram(data: &mut MeshData, corner: Vec3, [e, f]: [Vec3; 2]) {
     let p = data.positions.len() as u32;
     data.positions.extend([corner, corner + e, corner + e + f, corner + f]);
     data.triangles.extend([[p, p + 1, p + 2], [p, p + 2, p + 3]]);
 }
 
-/// An axis-aligned box.
+/// Creates an axis-aligned box.
 pub(super) fn cuboid(min: Vec3, max: Vec3) -> MeshData {
     let mut data = MeshData { flat: true, ..MeshData::default() };
     let size = max - min;
@@ -51,7 +51,7 @@ pub(super) fn cuboid(min: Vec3, max: Vec3) -> MeshData {
     data
 }
 
-/// A solid of revolution between two circles, with caps.
+/// Creates a solid of revolution between two circles, including its caps.
 pub(super) fn frustum([base, top]: [(Vec3, f32); 2]) -> MeshData {
     let mut data = MeshData::default();
     let axis = (top.0 - base.0).normalize_or(Vec3::Y);
@@ -61,8 +61,8 @@ pub(super) fn frustum([base, top]: [(Vec3, f32); 2]) -> MeshData {
     data
 }
 
-/// Adds the surface between two circles about an axis. If their centres are equal, it is flat and
-/// faces along the axis; otherwise, it faces outwards.
+/// Adds the surface between two circles around an axis. If the circles have the same centre, the
+/// surface is flat and faces along the axis. Otherwise, the surface faces outwards.
 pub(super) fn push_band(data: &mut MeshData, axis: Vec3, circles: [(Vec3, f32); 2]) {
     let axis = axis.normalize_or(Vec3::Y);
     let (x, y) = axis.any_orthonormal_pair();
@@ -72,7 +72,7 @@ pub(super) fn push_band(data: &mut MeshData, axis: Vec3, circles: [(Vec3, f32); 
     for i in 0..=STEPS {
         let (sin, cos) = fp::sin_cos_degrees(360.0 * f64::from(i) / f64::from(STEPS));
         let outwards = cos as f32 * x + sin as f32 * y;
-        // Perpendicular to the line from one circle to the other.
+        // This vector is perpendicular to the line from one circle to the other.
         let normal = match along == 0.0 {
             true => axis,
             false => (along * outwards + (inner - outer) * axis).normalize_or(outwards),
@@ -97,7 +97,8 @@ pub(super) fn push_band(data: &mut MeshData, axis: Vec3, circles: [(Vec3, f32); 
     data.triangle_normals = data.triangles.clone();
 }
 
-/// A sphere with exact normals and texture coordinates: u is 1/2 towards -z, v increases upwards.
+/// Creates a sphere with exact normals and texture coordinates. u is 1/2 towards -z, and v
+/// increases upwards.
 pub(super) fn ball(center: Vec3, radius: f32) -> MeshData {
     let mut data = MeshData::default();
     let rows = STEPS / 2;
@@ -115,7 +116,7 @@ pub(super) fn ball(center: Vec3, radius: f32) -> MeshData {
     let at = |j: u32, i: u32| j * (STEPS + 1) + i;
     for (j, i) in (0..rows).flat_map(|j| (0..STEPS).map(move |i| (j, i))) {
         let [a, b, c, d] = [at(j, i), at(j, i + 1), at(j + 1, i + 1), at(j + 1, i)];
-        // At the poles one of the two triangles is degenerate.
+        // At the poles, one of the two triangles is degenerate.
         if j > 0 {
             data.triangles.push([a, c, b]);
         }
@@ -127,7 +128,7 @@ pub(super) fn ball(center: Vec3, radius: f32) -> MeshData {
     data
 }
 
-/// An ellipsoid with axes parallel to the coordinate axes.
+/// Creates an ellipsoid whose axes are parallel to the coordinate axes.
 pub(super) fn ellipsoid(center: Vec3, radii: Vec3) -> MeshData {
     let mut data = ball(Vec3::ZERO, 1.0);
     data.positions.iter_mut().for_each(|p| *p = center + radii * *p);
@@ -135,7 +136,8 @@ pub(super) fn ellipsoid(center: Vec3, radii: Vec3) -> MeshData {
     data
 }
 
-/// A torus around `axis`: a circle of radius `minor` swept along a circle of radius `major`.
+/// Creates a torus around `axis`, which is a circle of radius `minor` swept along a circle of
+/// radius `major`.
 pub(super) fn torus(center: Vec3, axis: Vec3, [major, minor]: [f32; 2]) -> MeshData {
     let mut data = MeshData::default();
     let axis = axis.normalize_or(Vec3::Y);
@@ -169,7 +171,7 @@ mod tests {
     use crate::shape::{Cone, Cuboid, Cylinder, Disc, Ellipsoid, Primitive, Shape, Sphere, Torus};
     use std::f32::consts::PI;
 
-    /// Volume enclosed by triangles that face outwards.
+    /// Returns the volume enclosed by triangles that face outwards.
     fn volume(shape: impl Into<Primitive>) -> f32 {
         let data = shape.into().to_mesh().unwrap();
         data.triangles
@@ -193,7 +195,8 @@ mod tests {
             (volume(Ellipsoid { center, radii: Vec3::new(1.0, 2.0, 3.0) }), 4.0 / 3.0 * PI * 6.0),
             (volume(Torus { center, axis: top, major_radius: 3.0, minor_radius: 1.0 }), 2.0 * PI * PI * 3.0),
         ] {
-            // Within the error of 96 segments around, and of 48 around the torus.
+            // The tolerance is the error of a mesh with 96 segments around the axis, or 48 around
+            // the tube of the torus.
             assert!((found / expected - 1.0).abs() < 5e-3, "{found} {expected}");
         }
         let disc = Disc { center, normal: Vec3::NEG_Z, radius: 2.0, inner_radius: 1.0 };
@@ -214,7 +217,7 @@ mod tests {
 
     #[test]
     fn tessellated_surfaces_match_closed_forms() {
-        // A sphere between two heights: the points are on it, and the area is 2 pi r h.
+        // The points of a sphere between two heights lie on the sphere, and the area is 2 pi r h.
         let area = |data: &MeshData| -> f32 {
             let corners = data.triangles.iter().map(|t| t.map(|i| data.positions[i as usize]));
             corners.map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length()).sum()
@@ -225,8 +228,8 @@ mod tests {
         // The radius of a paraboloid grows with the square root of the height.
         let bowl = revolution::paraboloid(1.0, [0.0, 4.0], 360.0);
         assert!(bowl.positions.iter().all(|p| (p.truncate().length_squared() - 0.25 * p.z).abs() < 1e-5));
-        // A tube around a straight segment has the lateral area of a cylinder, between those of the
-        // inscribed and the circumscribed polygon.
+        // A tube around a straight segment has the lateral area of a cylinder, which lies between
+        // the areas of the inscribed and the circumscribed prism.
         let line = tube::straight([[0.0, 0.0, 0.0, 0.5], [0.0, 0.0, 3.0, 0.5]].map(Into::into));
         let mut data = MeshData::default();
         tube::add_tube(&mut data, &tube::sample_curve(&[line], 1), false);
@@ -235,7 +238,7 @@ mod tests {
         let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::X + Vec3::Y];
         let flat = net::Patches { positions: corners.to_vec(), faces: vec![[0, 1, 2, 3]], ..Default::default() };
         assert_eq!(net::bilinear(&flat).triangles.len(), 2);
-        // A NURBS quarter of a cylinder with the weights of a circle is round.
+        // A NURBS surface for a quarter of a cylinder is round if it has the weights of a circle.
         let half = std::f64::consts::FRAC_1_SQRT_2;
         let row = |z: f64| [[1.0, 0.0, z, 1.0], [half, half, half * z, half], [0.0, 1.0, z, 1.0]];
         let points: Vec<glam::DVec4> = row(0.0).into_iter().chain(row(1.0)).map(Into::into).collect();

@@ -1,4 +1,4 @@
-//! Surfaces over rectangular grids of points: height fields, bilinear patches and NURBS.
+//! Creates surfaces over rectangular grids of points: height fields, bilinear patches and NURBS.
 //!
 //! Source: Piegl and Tiller, *The NURBS Book*, 2nd edition, 1997.
 
@@ -12,7 +12,7 @@ const STEPS: u32 = 48;
 /// Number of segments along each side of a patch that is not flat.
 const PATCH: u32 = 8;
 
-/// Adds the triangles between the points of a grid.
+/// Adds triangles between the neighbouring points of a grid.
 fn grid(data: &mut MeshData, [columns, rows]: [u32; 2]) {
     for (j, i) in (1..rows).flat_map(|j| (1..columns).map(move |i| (j - 1, i - 1))) {
         let p = |di: u32, dj: u32| (j + dj) * columns + i + di;
@@ -21,8 +21,8 @@ fn grid(data: &mut MeshData, [columns, rows]: [u32; 2]) {
     data.triangle_uvs.clone_from(&data.triangles);
 }
 
-/// Tessellates a height field over the unit square, given row by row. It has `columns` times `rows`
-/// heights, both at least 2.
+/// Tessellates a height field over the unit square, whose heights are given row by row. There are
+/// `columns` times `rows` heights, and both numbers must be at least 2.
 pub fn heights([columns, rows]: [u32; 2], heights: impl IntoIterator<Item = f32>) -> MeshData {
     let mut data = MeshData::default();
     for (k, height) in (0_u32..).zip(heights) {
@@ -34,7 +34,7 @@ pub fn heights([columns, rows]: [u32; 2], heights: impl IntoIterator<Item = f32>
     data
 }
 
-/// Bilinear patches to tessellate, given by their corners.
+/// Bilinear patches to tessellate, which are given by their corners.
 #[derive(Clone, Debug, Default)]
 pub struct Patches {
     /// Positions.
@@ -43,11 +43,12 @@ pub struct Patches {
     pub normals: Vec<Vec3>,
     /// Texture coordinates, one for each position; may be empty.
     pub uvs: Vec<Vec2>,
-    /// The corners (0, 0), (1, 0), (0, 1) and (1, 1) of each patch.
+    /// Corners of each patch, in the order (0, 0), (1, 0), (0, 1) and (1, 1).
     pub faces: Vec<[u32; 4]>,
 }
 
-/// Tessellates bilinear patches: two triangles for a flat patch, a grid for a curved one.
+/// Tessellates bilinear patches. A flat patch becomes two triangles, and a curved one becomes a
+/// grid.
 pub fn bilinear(patches: &Patches) -> MeshData {
     let Patches { positions, normals, uvs, faces } = patches;
     let mut data = MeshData::default();
@@ -84,12 +85,13 @@ pub fn bilinear(patches: &Patches) -> MeshData {
     data
 }
 
-/// Knots of one side of a NURBS surface, and the parameter interval to tessellate.
+/// Knots along one side of a NURBS surface, and the parameter interval to tessellate.
 #[derive(Clone, Copy, Debug)]
 pub struct NurbsSide<'a> {
-    /// Ascending knots; their number is that of the control points plus the order.
+    /// Knots in ascending order. The number of knots is the number of control points plus the
+    /// order.
     pub knots: &'a [f64],
-    /// The order, at least 2: the degree plus 1.
+    /// Order of the surface on this side, which is the degree plus 1 and at least 2.
     pub order: usize,
     /// Start of the interval.
     pub from: f64,
@@ -97,8 +99,8 @@ pub struct NurbsSide<'a> {
     pub to: f64,
 }
 
-/// Tessellates a NURBS surface of control points with positive weights, row by row, `columns` in a
-/// row.
+/// Tessellates a NURBS surface whose control points have positive weights. The control points are
+/// given row by row, with `columns` points in each row.
 pub fn nurbs(points: &[DVec4], columns: u32, sides: &[NurbsSide; 2]) -> MeshData {
     let side = STEPS + 1;
     let mut data = MeshData::default();
@@ -114,8 +116,8 @@ pub fn nurbs(points: &[DVec4], columns: u32, sides: &[NurbsSide; 2]) -> MeshData
     data
 }
 
-/// Returns the index of the first control point with influence at a parameter, the weights of it
-/// and the following ones, and their derivatives.
+/// Returns the index of the first control point that has influence at a parameter, the weights of
+/// this point and the following ones, and the derivatives of these weights.
 fn weights(knots: &NurbsSide, t: f64) -> (usize, Vec<f64>, Vec<f64>) {
     let (all, degree) = (knots.knots, knots.order - 1);
     let last = all.len() - knots.order - 1;
@@ -140,7 +142,7 @@ fn weights(knots: &NurbsSide, t: f64) -> (usize, Vec<f64>, Vec<f64>) {
     (span - degree, values, slopes)
 }
 
-/// Returns a point of the surface and the cross product of its tangents.
+/// Returns a point on the surface and the cross product of its tangents.
 fn place(points: &[DVec4], columns: u32, sides: &[NurbsSide; 2], at: [f64; 2]) -> (DVec3, DVec3) {
     let t = |side: usize| sides[side].from + at[side] * (sides[side].to - sides[side].from);
     let (first_u, us, us_slope) = weights(&sides[0], t(0));

@@ -1,25 +1,26 @@
-//! Triangle meshes, with smooth normals, of surfaces of revolution about z, or of sectors of them
-//! by an angle in degrees.
+//! Creates triangle meshes, with smooth normals, of surfaces of revolution about the z axis. An
+//! angle in degrees selects a sector of the surface.
 //!
-//! u increases with the angle, v along the profile. The outside is du x dv, with the orientation of
-//! *Physically Based Rendering*, 3rd edition, chapter 3.
+//! u increases with the angle, and v increases along the profile. The outside is the side of du x
+//! dv, oriented as in *Physically Based Rendering*, 3rd edition, chapter 3.
 
 use crate::math::{Vec2, Vec3, fp};
 use crate::shape::MeshData;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Number of segments of a full turn, and along a curved profile.
+/// Number of segments in a full turn, and along a curved profile.
 const SIDES: f64 = 128.0;
 const ROWS: u32 = 64;
 
-/// Number of sides of a cylinder or a sector of it.
+/// Number of sides of a cylinder or of a sector of it.
 const COLUMNS: u32 = 128;
 
-/// Point of the profile of a surface of revolution, and the tangent there.
+/// Point on the profile of a surface of revolution, and the tangent of the profile there.
 type ProfilePoint = (DVec3, DVec3);
 
-/// Tessellates the surface of a profile that rotates about z by an angle in degrees.
+/// Tessellates the surface that a profile sweeps when it rotates about the z axis by an angle in
+/// degrees.
 fn revolve(degrees: f64, rows: u32, line: impl Fn(f64) -> ProfilePoint) -> MeshData {
     let mut data = MeshData::default();
     let columns = (SIDES * degrees / 360.0).ceil().max(4.0) as u32;
@@ -30,7 +31,7 @@ fn revolve(degrees: f64, rows: u32, line: impl Fn(f64) -> ProfilePoint) -> MeshD
         for j in 0..=rows {
             let v = f64::from(j) / f64::from(rows);
             let (place, onwards) = line(v);
-            // On the axis use the limit direction, since the point itself does not move.
+            // On the axis, use the limit of the direction, since the point itself does not move.
             let around = DVec3::new(-place.y, place.x, 0.0).try_normalize().unwrap_or(DVec3::Y);
             data.positions.push(turn(place).as_vec3());
             data.normals.push(turn(around.cross(onwards)).normalize_or(DVec3::Z).as_vec3());
@@ -41,7 +42,7 @@ fn revolve(degrees: f64, rows: u32, line: impl Fn(f64) -> ProfilePoint) -> MeshD
         let p = |di: u32, dj: u32| (i + di) * (rows + 1) + j + dj;
         let corners = |triangle: &[u32; 3]| triangle.map(|k| data.positions[k as usize]);
         for triangle in [[p(0, 0), p(1, 0), p(1, 1)], [p(0, 0), p(1, 1), p(0, 1)]] {
-            // At a pole one of the two triangles is degenerate.
+            // At a pole, one of the two triangles is degenerate.
             let [a, b, c] = corners(&triangle);
             if a != b && b != c && c != a {
                 data.triangles.push(triangle);
@@ -52,9 +53,9 @@ fn revolve(degrees: f64, rows: u32, line: impl Fn(f64) -> ProfilePoint) -> MeshD
     data
 }
 
-/// A sphere between two heights, which must lie within it.
+/// Creates the part of a sphere between two heights, both of which must be within the sphere.
 pub fn sphere(radius: f64, [low, high]: [f32; 2], degrees: f64) -> MeshData {
-    // Angles from the equator.
+    // The angles are measured from the equator.
     let angle = |z: f32| {
         let sine = (f64::from(z) / radius).clamp(-1.0, 1.0);
         if sine.abs() == 1.0 { FRAC_PI_2 * sine } else { fp::atan_f64(sine / (1.0 - sine * sine).sqrt()) }
@@ -63,20 +64,20 @@ pub fn sphere(radius: f64, [low, high]: [f32; 2], degrees: f64) -> MeshData {
     let rows = (f64::from(ROWS) * (to - from) / PI).ceil().max(2.0) as u32;
     let line = |v: f64| {
         let (sin, cos) = fp::sin_cos_degrees((from + v * (to - from)).to_degrees());
-        // A pole is exactly on the axis.
+        // A pole lies exactly on the axis.
         let cos = if cos.abs() < 1e-12 { 0.0 } else { cos };
         (radius * DVec3::new(cos, 0.0, sin), DVec3::new(-sin, 0.0, cos))
     };
     revolve(degrees, rows, line)
 }
 
-/// A ring at a height, facing z; v increases inwards.
+/// Creates a ring at the given height that faces along z. v increases inwards.
 pub fn ring([inner, outer]: [f64; 2], height: f64, degrees: f64) -> MeshData {
     let line = |v: f64| (DVec3::new(outer + v * (inner - outer), 0.0, height), DVec3::NEG_X);
     revolve(degrees, 1, line)
 }
 
-/// A cone with its apex at a height, without its base at z = 0.
+/// Creates a cone with its apex at the given height, without its base at z = 0.
 pub fn cone(radius: f64, height: f64, degrees: f64) -> MeshData {
     let line = |v: f64| {
         (DVec3::new((1.0 - v) * radius, 0.0, v * height), DVec3::new(-radius, 0.0, height).normalize_or(DVec3::Z))
@@ -84,9 +85,10 @@ pub fn cone(radius: f64, height: f64, degrees: f64) -> MeshData {
     revolve(degrees, 1, line)
 }
 
-/// A paraboloid between two heights of at least 0, with a radius at the upper one.
+/// Creates a paraboloid between two heights, which must be at least 0. The radius is given at the
+/// upper height.
 pub fn paraboloid(radius: f64, [low, high]: [f64; 2], degrees: f64) -> MeshData {
-    // Use even steps of the radius instead of z, since the curvature is highest near the apex.
+    // Use equal steps of the radius instead of z, since the curvature is highest near the apex.
     let across = |z: f64| radius * (z / high).sqrt();
     let (from, to) = (across(low), across(high));
     let point = |r: f64| {
@@ -100,13 +102,13 @@ pub fn paraboloid(radius: f64, [low, high]: [f64; 2], degrees: f64) -> MeshData 
     data
 }
 
-/// The hyperboloid generated by the line between two points.
+/// Creates the hyperboloid that is swept by the line between two points.
 pub fn hyperboloid([from, to]: [DVec3; 2], degrees: f64) -> MeshData {
     let line = |v: f64| (from.lerp(to, v), (to - from).normalize_or(DVec3::Z));
     revolve(degrees, ROWS, line)
 }
 
-/// An open cylinder between two heights, as flat strips with smooth normals.
+/// Creates an open cylinder between two heights, made of flat strips with smooth normals.
 pub fn cylinder(radius: f32, [low, high]: [f32; 2], degrees: f32) -> MeshData {
     let mut data = MeshData::default();
     for i in 0..=COLUMNS {

@@ -1,8 +1,8 @@
-//! Loop's subdivision surfaces.
+//! Loop subdivision surfaces.
 //!
 //! Sources: Loop, *Smooth Subdivision Surfaces Based on Triangles*, 1987; Hoppe et al., *Piecewise
-//! Smooth Surface Reconstruction*, SIGGRAPH 1994 (borders, limits); Warren, for the weight of
-//! vertices.
+//! Smooth Surface Reconstruction*, SIGGRAPH 1994 (borders and limit positions); Warren, for the
+//! weights of the vertices.
 
 use crate::math::fp;
 use crate::shape::MeshData;
@@ -15,16 +15,16 @@ struct LoopMesh {
     faces: Vec<[u32; 3]>,
 }
 
-/// Neighbours of a point of the mesh, in order around it; `closed` is false for a point on a
-/// border.
+/// Neighbours of a point of the mesh, in order around the point. `closed` is false if the point is
+/// on a border.
 struct Ring {
     around: Vec<u32>,
     closed: bool,
 }
 
-/// Subdivides the triangles of a control mesh `levels` times, or until the next level would exceed
-/// `most` triangles, and moves the points to their limit positions. Returns the mesh and the number
-/// of levels.
+/// Subdivides the triangles of a control mesh `levels` times, or stops earlier if the next level
+/// would have more than `most` triangles. Afterwards, the points are moved to their limit
+/// positions. Returns the mesh and the number of levels that were applied.
 pub fn loop_surface(control: &MeshData, levels: u32, most: usize) -> (MeshData, u32) {
     let points = control.positions.iter().map(|p| p.as_dvec3()).collect();
     // A triangle with a repeated corner has no area, and its edges cannot be traversed.
@@ -38,13 +38,13 @@ pub fn loop_surface(control: &MeshData, levels: u32, most: usize) -> (MeshData, 
     (net.limit_surface(), done)
 }
 
-/// Weight of each of `count` neighbours of an inner point.
+/// Returns the weight of each neighbour of an inner point that has `count` neighbours.
 fn beta(count: usize) -> f64 {
     if count == 3 { 3.0 / 16.0 } else { 3.0 / (8.0 * count as f64) }
 }
 
 impl LoopMesh {
-    /// Returns the ring of each point; `None` where more than two sheets meet.
+    /// Returns the ring around each point, or `None` for points where more than two sheets meet.
     fn rings(&self) -> Vec<Option<Ring>> {
         let mut sides: Vec<Vec<[u32; 2]>> = vec![Vec::new(); self.points.len()];
         for &[a, b, c] in &self.faces {
@@ -55,7 +55,7 @@ impl LoopMesh {
         sides.iter().map(|sides| ring(sides)).collect()
     }
 
-    /// Returns the mesh of the next level, with four triangles for each triangle.
+    /// Returns the mesh of the next level, in which each triangle is split into four.
     fn subdivide(&self) -> LoopMesh {
         let rings = self.rings();
         let even = |i: usize| {
@@ -94,13 +94,14 @@ impl LoopMesh {
         LoopMesh { points, faces: self.faces.iter().flat_map(quarters).collect() }
     }
 
-    /// Blends a point with its neighbours, each with a weight.
+    /// Returns the weighted sum of a point and its neighbours, in which all neighbours have the
+    /// same weight.
     fn blend(&self, point: DVec3, around: &[u32], weight: f64) -> DVec3 {
         let sum: DVec3 = around.iter().map(|&k| self.points[k as usize]).sum();
         point * (1.0 - weight * around.len() as f64) + weight * sum
     }
 
-    /// Moves the points to their limit positions and computes normals.
+    /// Moves the points to their limit positions and computes the normals there.
     fn limit_surface(mut self) -> MeshData {
         let rings = self.rings();
         let moved = |i: usize| {
@@ -137,7 +138,7 @@ impl LoopMesh {
         }
     }
 
-    /// Cross product of two limit tangents.
+    /// Returns the cross product of the two limit tangents at a point.
     fn normal(&self, point: DVec3, ring: &Ring) -> DVec3 {
         let around: Vec<DVec3> = ring.around.iter().map(|&k| self.points[k as usize]).collect();
         let count = around.len();
@@ -164,8 +165,8 @@ impl LoopMesh {
     }
 }
 
-/// Orders the edges opposite a point, each from one neighbour to the next, into a ring, which
-/// starts at the border if there is one.
+/// Sorts the edges opposite a point, each of which leads from one neighbour to the next, into a
+/// ring. If there is a border, the ring starts there.
 fn ring(sides: &[[u32; 2]]) -> Option<Ring> {
     let next: BTreeMap<u32, u32> = sides.iter().map(|&[from, to]| (from, to)).collect();
     if next.len() != sides.len() || sides.is_empty() {

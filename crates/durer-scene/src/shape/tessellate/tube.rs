@@ -1,24 +1,27 @@
-//! Curves with a width, as tubes and ribbons.
+//! Creates tubes and ribbons from curves that have a width.
 
 use crate::math::{Vec2, fp};
 use crate::shape::MeshData;
 use glam::{DVec3, DVec4};
 use std::f64::consts::PI;
 
-/// Sides of a tube, and of one among many. The mean width is that of a round tube.
+/// Number of sides of a tube, for a few tubes and for many tubes. The mean width of a tube with
+/// this many sides is that of a round tube.
 const SIDES: [u32; 2] = [12, 6];
 
-/// Segments of a hemisphere from its rim to its pole.
+/// Number of segments of a hemisphere from its rim to its pole.
 const CAP: u32 = 4;
 
-/// Minimum and maximum steps of a segment, and maximum steps of all segments together.
+/// Minimum and maximum number of steps in a segment, and maximum number of steps in all segments
+/// together.
 const STEPS: [f64; 2] = [2.0, 64.0];
 const MAX_STEPS: usize = 1 << 15;
 
-/// Cubic Bézier segment of a curve: four control points, with the curve's width in w.
+/// Cubic Bézier segment of a curve, given by four control points. The w component is the width of
+/// the curve.
 pub type Piece = [DVec4; 4];
 
-/// Sample of a curve, with the data for sweeping a cross-section through it.
+/// Point sampled on a curve, with the data for sweeping a cross-section along the curve.
 pub struct CurvePoint {
     /// The point.
     pub point: DVec3,
@@ -26,11 +29,11 @@ pub struct CurvePoint {
     pub along: DVec3,
     /// Width of the curve at the point.
     pub width: f64,
-    /// Sine of the angle from the cross section to the surface normals.
+    /// Sine of the angle between the cross-section and the surface normals.
     pub lean: f64,
     /// Position along the curve, from 0 at its start to 1 at its end.
     pub u: f64,
-    /// Index of the segment.
+    /// Index of the segment that contains the point.
     pub segment: usize,
     /// Position within the segment, from 0 to 1.
     pub t: f64,
@@ -51,8 +54,8 @@ pub fn straight([a, b]: [DVec4; 2]) -> Piece {
     [a, a.lerp(b, 1.0 / 3.0), a.lerp(b, 2.0 / 3.0), b]
 }
 
-/// Samples a curve such that the chords deviate by at most a fiftieth of the width. The steps are
-/// coarser if `all_pieces`, the number of segments of all curves together, is very large.
+/// Samples a curve so that the chords deviate from it by at most a fiftieth of its width. The steps
+/// are coarser if `all_pieces`, the number of segments in all curves together, is very large.
 pub fn sample_curve(pieces: &[Piece], all_pieces: usize) -> Vec<CurvePoint> {
     let mut all: Vec<CurvePoint> = Vec::new();
     let width = pieces.iter().flatten().map(|p| p.w).fold(0.0, f64::max);
@@ -76,7 +79,7 @@ pub fn sample_curve(pieces: &[Piece], all_pieces: usize) -> Vec<CurvePoint> {
     all
 }
 
-/// Adds a hemisphere at each end.
+/// Adds a hemisphere at each end of the curve.
 pub fn with_round_caps(mut places: Vec<CurvePoint>) -> Vec<CurvePoint> {
     let cap = |end: &CurvePoint, side: f64, step: u32| {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(90 * step) / f64::from(CAP));
@@ -91,14 +94,14 @@ pub fn with_round_caps(mut places: Vec<CurvePoint>) -> Vec<CurvePoint> {
     places
 }
 
-/// Adds a tube through sample points, with fewer sides if there are `many` tubes. u increases along
-/// it, v around it.
+/// Adds a tube through sample points, which has fewer sides if there are `many` tubes. u increases
+/// along the tube, and v increases around it.
 pub fn add_tube(data: &mut MeshData, places: &[CurvePoint], many: bool) {
     let Some(first) = places.first() else { return };
     let sides = SIDES[usize::from(many)];
-    // Radius halfway between the inscribed and the circumscribed polygon.
+    // The radius is halfway between the radii of the inscribed and the circumscribed polygon.
     let corner = (PI / f64::from(sides)) / fp::sin_cos_f64(PI / f64::from(sides)).0;
-    // Fractions of a turn with their sines and cosines.
+    // Each entry of `circle` is a fraction of a turn, with its sine and cosine.
     let circle: Vec<(f64, (f64, f64))> = (0..=sides)
         .map(|k| f64::from(k) / f64::from(sides))
         .map(|share| (share, fp::sin_cos_degrees(360.0 * share)))
@@ -106,7 +109,7 @@ pub fn add_tube(data: &mut MeshData, places: &[CurvePoint], many: bool) {
     let mut across = first.along.any_orthonormal_vector();
     let begin = data.positions.len() as u32;
     for place in places {
-        // Transport the frame along the curve without twist.
+        // Transport the frame along the curve without twisting it.
         across = (across - place.along * across.dot(place.along))
             .try_normalize()
             .unwrap_or(place.along.any_orthonormal_vector());
@@ -122,7 +125,7 @@ pub fn add_tube(data: &mut MeshData, places: &[CurvePoint], many: bool) {
     add_strip(data, begin, places.len(), sides + 1);
 }
 
-/// Adds triangles between rows of `count` points each.
+/// Adds triangles between neighbouring rows, each of which has `count` points.
 fn add_strip(data: &mut MeshData, begin: u32, rows: usize, count: u32) {
     let first = data.triangles.len();
     for (i, j) in (1..rows as u32).flat_map(|i| (0..count - 1).map(move |j| (i - 1, j))) {
@@ -134,8 +137,9 @@ fn add_strip(data: &mut MeshData, begin: u32, rows: usize, count: u32) {
     triangle_normals.extend(&triangles[first..]);
 }
 
-/// Tessellates a ribbon through sample points that turns from normal to normal. There is one normal
-/// more than segments. u increases along it, v across it.
+/// Tessellates a ribbon through sample points. The ribbon turns from each normal to the next. There
+/// is one more normal than there are segments. u increases along the ribbon, and v increases across
+/// it.
 pub fn ribbon(places: &[CurvePoint], normals: &[DVec3]) -> MeshData {
     let mut data = MeshData::default();
     for place in places {
@@ -152,7 +156,7 @@ pub fn ribbon(places: &[CurvePoint], normals: &[DVec3]) -> MeshData {
     data
 }
 
-/// Spherical linear interpolation of unit vectors.
+/// Interpolates unit vectors by spherical linear interpolation.
 fn slerp([from, to]: [DVec3; 2], share: f64) -> DVec3 {
     let cosine = from.dot(to).clamp(-1.0, 1.0);
     let across = to - cosine * from;
@@ -165,7 +169,7 @@ fn slerp([from, to]: [DVec3; 2], share: f64) -> DVec3 {
     from * cos + across * sin
 }
 
-/// Degree elevation of a quadratic Bézier segment to a cubic one.
+/// Raises the degree of a quadratic Bézier segment, which gives a cubic one.
 pub fn elevate_degree([a, b, c]: [DVec3; 3]) -> [DVec3; 4] {
     [a, a.lerp(b, 2.0 / 3.0), c.lerp(b, 2.0 / 3.0), c]
 }

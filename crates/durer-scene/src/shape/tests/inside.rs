@@ -1,10 +1,10 @@
-//! Tests of all crossings of closed shapes against their insides, sampled along lines in double
-//! precision.
+//! Compares all crossings of closed shapes with the result of `inside` at points sampled along
+//! lines, in double precision.
 
 use super::*;
 use crate::math::random::Random;
 
-/// A line near a shape: in a random direction, along an axis, or in a coordinate plane.
+/// Returns a line near a shape, in a random direction, along an axis, or in a coordinate plane.
 fn line(shape: &Primitive, random: &mut Random, size: f32) -> Line {
     let middle = shape.bounds().map_or(Vec3::ZERO, |b| b.center());
     let dir = match random.below(4) {
@@ -13,7 +13,7 @@ fn line(shape: &Primitive, random: &mut Random, size: f32) -> Line {
         _ => random.direction(),
     };
     let dir = dir * random.between(0.01, 100.0);
-    // Through the middle, off to the side, and from far away.
+    // The lines pass through the middle or off to the side, and some start far away.
     let through = middle + size * [0.0, 0.8, 1.2][random.below(3)] * random.point();
     let away = [0.0, 3.0, 1000.0][random.below(3)] * size;
     Line { origin: (through - away / dir.length() * dir).as_dvec3(), dir: dir.as_dvec3() }
@@ -37,8 +37,8 @@ fn crossings_are_exactly_entries_and_exits() {
             let inside = |t: f64| shape.inside(line.at(t)).unwrap();
             let unit = f64::from(size) / line.dir.length();
             let middle = line.nearest(shape.bounds().map_or(DVec3::ZERO, |b| b.center().as_dvec3()));
-            // Each crossing changes the side: the points slightly before and behind it differ,
-            // unless another crossing is near.
+            // The line changes sides at each crossing, so the points slightly before and behind it
+            // differ, unless another crossing is near.
             let little = 1e-8 * unit;
             for (i, &(t, uv)) in all.iter().enumerate() {
                 let near = |other: Option<&(f64, Vec2)>| other.is_some_and(|o| (o.0 - t).abs() < 1e-3 * unit);
@@ -50,14 +50,14 @@ fn crossings_are_exactly_entries_and_exits() {
                 assert_ne!(inside(t - little), inside(t + little), "{shape:?} {line:?} {t} of {all:?}");
                 let on = distance(shape, line.at(t)).abs();
                 assert!(on < 1e-9 * f64::from(size), "{on} {shape:?} {line:?} {t}");
-                // The crossing has the right face.
+                // The crossing must be on the right face.
                 let surface = shape.surface(line.at(t), &ShapeHit { t: t as f32, uv });
                 let off = (surface.position.as_dvec3() - line.at(t)).length();
                 assert!(off < 1e-6 * f64::from(size), "{shape:?} {line:?} {t} {surface:?}");
                 found[kind] += 1;
             }
-            // Nothing changes between crossings: the parity of their number determines every
-            // sampled point.
+            // Nothing changes between crossings, so the parity of the number of crossings
+            // determines whether a sampled point is inside.
             let start = shape.starts_inside(&line);
             let mut passed = 0;
             for step in 0..=STEPS {
@@ -88,7 +88,7 @@ fn inside_is_behind_the_surface() {
             if near_edge(&shape, p, 1e-3) || too_far(&shape, p, 1.0) || shape.inside(p).is_none() {
                 continue;
             }
-            // Far or sharp surfaces are less accurate than this.
+            // Surfaces that are far away or sharp are less accurate than this.
             if surface.error.max_element() > 1e-6 || surface.curvature > 100.0 {
                 continue;
             }
@@ -114,7 +114,7 @@ fn torus_distinguishes_a_line_along_its_tube_from_a_tangent() {
     near(count([-5.0, 0.0, 0.0], [1.0, 0.0, 0.0]), &[2.5, 3.5, 6.5, 7.5]);
     near(count([2.0, 5.0, 0.0], [0.0, -1.0, 0.0]), &[4.5, 5.5]);
     near(count([0.0, 5.0, 0.0], [0.0, -1.0, 0.0]), &[]);
-    // Just outside the inner circle, and just above and below the top.
+    // These lines pass just outside the inner circle, and just above and below the top.
     near(count([0.0, 0.5 + 1e-9, -5.0], [0.0, 0.0, 1.0]), &[]);
     assert_eq!(count([0.0, 0.5 - 1e-9, -5.0], [0.0, 0.0, 1.0]).len(), 4);
     assert_eq!(count([1.5 - 1e-9, 0.0, -5.0], [0.0, 0.0, 1.0]).len(), 4);

@@ -1,4 +1,4 @@
-//! Tests of computed mesh normals, and of interpolation over a triangle.
+//! Tests the computed normals of meshes, and interpolation over a triangle.
 
 use super::*;
 use crate::dialect::MeshNormals;
@@ -19,7 +19,7 @@ fn cube() -> MeshData {
     MeshData { positions, triangles, ..MeshData::default() }
 }
 
-/// A sphere made of rings: every vertex is on the unit sphere.
+/// Returns a sphere made of rings, with every vertex on the unit sphere.
 fn ball(rings: u32) -> MeshData {
     let mut data = MeshData::default();
     let around = 2 * rings;
@@ -53,7 +53,7 @@ fn flat_meshes_have_one_normal_per_triangle() {
     }
 }
 
-/// Three faces around the origin: a large one facing up, two small ones facing -x and -z.
+/// Returns three faces around the origin. A large one faces up, and two small ones face -x and -z.
 fn corner_of_three() -> MeshData {
     MeshData {
         positions: vec![Vec3::ZERO, Vec3::X * 4.0, Vec3::Z * 4.0, Vec3::NEG_Y],
@@ -64,7 +64,7 @@ fn corner_of_three() -> MeshData {
 
 #[test]
 fn faces_around_a_vertex_are_weighted_by_area_or_equally() {
-    // Areas 8, 2, 2 and unit normals +y, -x, -z.
+    // The faces have the areas 8, 2 and 2, and the unit normals +y, -x and -z.
     let by_area = Mesh::new(corner_of_three(), MeshNormals::SmoothByArea, true);
     let by_face = Mesh::new(corner_of_three(), MeshNormals::SmoothByFace, true);
     let close = |a: Vec3, b: Vec3| assert!((a - b).length() < 1e-6, "{a} {b}");
@@ -72,7 +72,7 @@ fn faces_around_a_vertex_are_weighted_by_area_or_equally() {
         close(normal_at(&by_area, part, CORNERS[0]), Vec3::new(-2.0, 8.0, -2.0).normalize());
         close(normal_at(&by_face, part, CORNERS[0]), Vec3::new(-1.0, 1.0, -1.0).normalize());
     }
-    // The far corner on x only belongs to the faces +y and -z.
+    // The far corner on the x axis belongs only to the faces with the normals +y and -z.
     close(normal_at(&by_area, 2, CORNERS[1]), Vec3::new(0.0, 8.0, -2.0).normalize());
 }
 
@@ -102,16 +102,16 @@ fn crease_angle_keeps_a_cube_flat_and_a_sphere_smooth() {
         for uv in CORNERS {
             let surface = mesh.surface(part, &ShapeHit { t: 1.0, uv });
             let off = (surface.n_shade - surface.position).length();
-            // At the poles each triangle has its own vertex. Elsewhere four or more faces are
-            // averaged, whose planes are tilted by up to half a ring, 5.6 degrees, and not quite
-            // evenly distributed.
+            // At the poles, each triangle has its own vertex. Elsewhere, four or more faces are
+            // averaged. The planes of these faces are tilted by up to half a ring, or 5.6 degrees,
+            // and the faces are not quite evenly distributed.
             let pole = surface.position.y.abs() > 0.999;
             assert!(pole || off < 0.02, "{surface:?} {off}");
         }
     }
 }
 
-/// Triangles that share no vertex, and one that touches another at a corner.
+/// Tests triangles that share no vertex, and a triangle that touches another at one corner.
 #[test]
 fn triangles_without_shared_vertices_have_no_vertex_normals() {
     let apart = |count: u32| {
@@ -149,7 +149,7 @@ fn tiny_meshes_are_as_smooth_as_others() {
     }
 }
 
-/// Triangles that were separated are still smooth where they were joined.
+/// Triangles that were separated are still smooth along the edges where they were joined.
 #[test]
 fn loosened_triangles_share_their_vertices() {
     let mut apart = ball(8);
@@ -188,7 +188,8 @@ fn normals_and_coordinates_of_files_are_interpolated() {
     assert_eq!(point.uv.get(), Some(Vec2::new(0.5, 1.5)));
     assert!((point.n_shade - Vec3::new(0.25, 2.5, 0.5).normalize()).length() < 1e-6);
     assert_eq!(surface(&data, MeshNormals::Flat, false).n_shade, Vec3::Z);
-    // A triangle without all its normals gets computed ones, and has no texture coordinates.
+    // A triangle that lacks some of its normals gets computed ones, and it has no texture
+    // coordinates.
     data.triangle_normals[0][1] = NO_INDEX;
     data.triangle_uvs[0][1] = NO_INDEX;
     let point = surface(&data, MeshNormals::SmoothByArea, true);

@@ -1,11 +1,11 @@
-//! Tests of tangents against another implementation of Mikkelsen's algorithm.
+//! Compares tangents with those of another implementation of Mikkelsen's algorithm.
 
 use crate::math::random::Random;
 use crate::math::{Vec2, Vec3};
 use crate::shape::MeshData;
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 
-/// A mesh in the interface of the other implementation, and the tangents that it computes.
+/// Adapter that passes a mesh to the other implementation and stores the tangents that it computes.
 struct ReferenceMesh<'a>(&'a MeshData, Vec<[f32; 4]>);
 
 impl Geometry for ReferenceMesh<'_> {
@@ -29,7 +29,8 @@ impl Geometry for ReferenceMesh<'_> {
     }
 }
 
-/// A bumpy sheet of squares, each cut in two. `uv` returns the texture coordinates of a grid point.
+/// Returns a bumpy sheet of squares, each of which is cut into two triangles. `uv` returns the
+/// texture coordinates of a grid point.
 fn sheet(size: usize, random: &mut Random, uv: impl Fn(usize, usize) -> Vec2) -> MeshData {
     let mut data = MeshData::default();
     for (y, x) in (0..=size).flat_map(|y| (0..=size).map(move |x| (y, x))) {
@@ -51,7 +52,8 @@ fn index(mut data: MeshData) -> MeshData {
     data
 }
 
-/// Compares every corner; returns the number of vertices added by splitting.
+/// Compares the tangents at every corner, and returns the number of vertices that were added by
+/// splitting.
 fn agree(mut data: MeshData) -> usize {
     let mut other = ReferenceMesh(&data, vec![[0.0; 4]; 3 * data.triangles.len()]);
     generate_tangents(&mut other).unwrap();
@@ -79,9 +81,11 @@ fn tangents_match_mikktspace() {
         (0..400).map(|_| 0.3 * Vec2::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0))).collect();
     let even = |x: usize, y: usize| Vec2::new(x as f32, y as f32) + bent[(17 * y + x) % 400];
     assert_eq!(agree(sheet(12, &mut random, even)), 0);
-    // Mirrored at a line, vertices on the line have two tangents.
+    // If the texture coordinates are mirrored at a line, the vertices on that line have two
+    // tangents.
     assert_eq!(agree(sheet(12, &mut random, |x, y| Vec2::new(x.abs_diff(6) as f32, y as f32))), 13);
-    // Rotated by a right angle from one square to the next, such that u grows in all directions.
+    // The texture coordinates are rotated by a right angle from each square to the next, so that u
+    // increases in all directions.
     let folded = |x: usize, y: usize| even(x, y) * Vec2::new([1.0, -1.0][x % 2], [1.0, 1.0, -1.0][y % 3]);
     agree(sheet(12, &mut random, folded));
 }
@@ -90,7 +94,7 @@ fn tangents_match_mikktspace() {
 fn equal_vertices_share_a_tangent() {
     let mut random = Random(42);
     let together = sheet(5, &mut random, |x, y| Vec2::new(x as f32 + 0.2 * y as f32, y as f32));
-    // The same sheet with separate corners for each triangle.
+    // Use the same sheet, but with separate corners for each triangle.
     let mut apart = MeshData::default();
     for &i in together.triangles.iter().flatten() {
         apart.positions.push(together.positions[i as usize]);
@@ -122,7 +126,7 @@ fn hostile_meshes_do_not_overflow_the_stack() {
     let mut fan = index(fan);
     assert!(fan.make_tangents().is_empty());
     assert!((Vec3::from_slice(&fan.tangents[0]) - Vec3::X).length() < 1e-3 && fan.tangents[0][3] == 1.0);
-    // One position, many texture coordinates.
+    // All vertices have one position but different texture coordinates.
     let mut heap = MeshData { positions: vec![Vec3::ONE; 3 * COUNT as usize], ..MeshData::default() };
     heap.normals = vec![Vec3::Y; heap.positions.len()];
     heap.uvs = (0..heap.positions.len()).map(|i| Vec2::new(i as f32, (i * i % 97) as f32)).collect();
@@ -130,7 +134,7 @@ fn hostile_meshes_do_not_overflow_the_stack() {
     let mut heap = index(heap);
     heap.make_tangents();
     assert!(heap.tangents.iter().all(|tangent| *tangent == [0.0; 4]));
-    // For arbitrary values, all tangents are finite.
+    // All tangents must be finite, even for arbitrary values.
     let mut random = Random(43);
     let values = [0.0, -0.0, 1.0, -1.0, f32::NAN, f32::INFINITY, 3e38, 1e-38, 0.5];
     for _ in 0..2_000 {

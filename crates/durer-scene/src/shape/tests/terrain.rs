@@ -1,4 +1,4 @@
-//! Tests that a terrain equals its mesh as lists.
+//! Tests that a terrain is equal to its mesh in the form of lists.
 
 use super::*;
 use crate::dialect::MeshNormals;
