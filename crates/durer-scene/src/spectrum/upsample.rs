@@ -105,7 +105,7 @@ impl Table {
         let (low, high) = (strength(k) as f32, strength(k + 1) as f32);
         let (x, y) = (share(1), share(2));
         let (i, j) = ((x as usize).min(SIDE - 2), (y as usize).min(SIDE - 2));
-        // Interpolate linearly in the ratio itself.
+        // Interpolate linearly in the ratio itself, not in its square root.
         let part = |x: f32, i: usize| {
             let i = i as f32;
             ((x * x - i * i) / (2.0 * i + 1.0)).clamp(0.0, 1.0)
