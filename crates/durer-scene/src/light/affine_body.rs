@@ -13,9 +13,9 @@ use std::f32::consts::{PI, TAU};
 /// Closed body of fixed size, whose image under an affine map is an area light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ClosedBody {
-    /// Cube from -1 to 1.
-    Cube,
     /// Cube that extends from -1 to 1 on each axis.
+    Cube,
+    /// Ball of radius 1.
     Ball,
     /// Frustum between a disc of radius 1 at z = 0 and a disc at z = 1 with this radius, which is
     /// at most 1.
