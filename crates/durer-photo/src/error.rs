@@ -6,7 +6,7 @@ use std::fmt;
 /// column to which it refers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Error {
-    /// Description of the problem, as a sentence without a full stop.
+    /// Description of the problem as a sentence without a final full stop.
     pub message: String,
     /// File as named by the user; empty if the error does not refer to a file.
     pub file: String,

@@ -214,7 +214,7 @@ pub struct Point {
     pub position: Vector3<f64>,
     /// Red, green, and blue values from 0 to 255.
     pub color: [u8; 3],
-    /// Observations, in the order of the photographs.
+    /// Observations of the point, in the order of the photographs.
     pub track: Vec<Observation>,
 }
 
@@ -223,7 +223,7 @@ pub struct Point {
 pub struct Reconstruction {
     /// Lenses of the cameras. Several photographs can share a lens.
     pub lenses: Vec<Lens>,
-    /// Photographs, including those with an unknown pose.
+    /// Photographs of the scene, including those with an unknown pose.
     pub views: Vec<View>,
     /// Points of the scene.
     pub points: Vec<Point>,
@@ -234,7 +234,7 @@ pub struct Reconstruction {
 pub struct ReprojectionError {
     /// Number of observations by photographs with a known pose.
     pub observations: usize,
-    /// Half the sum of the squared residuals, in square pixels.
+    /// Cost in square pixels, which is half the sum of the squared residuals.
     pub cost: f64,
     /// Root mean square length of the residuals, in pixels.
     pub rms: f64,

@@ -24,9 +24,9 @@ pub struct Photo {
 pub struct Exif {
     /// Make and model of the camera.
     pub camera: String,
-    /// Focal length in pixels, and a description of its source.
+    /// Focal length in pixels, together with a description of its source.
     pub focal: Option<(f64, String)>,
-    /// Message about an implausible focal length, if any.
+    /// Message about the focal length if it is implausible.
     pub warning: Option<String>,
 }
 

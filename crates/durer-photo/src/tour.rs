@@ -29,8 +29,8 @@ pub struct TourView {
     pub points: Vec<usize>,
 }
 
-/// Returns the photographs with a known pose. Each is projected onto the plane that fits its points
-/// or, if that plane is too oblique, onto a plane perpendicular to the view direction.
+/// Returns the photographs with a known pose. Each photograph is projected onto the plane that fits
+/// its points or, if that plane is too oblique, onto a plane perpendicular to the view direction.
 pub fn tour_views(reconstruction: &Reconstruction) -> Vec<TourView> {
     let mut points_of_view = vec![Vec::new(); reconstruction.views.len()];
     for (i, point) in reconstruction.points.iter().enumerate() {

@@ -137,7 +137,7 @@ fn missing_depth_is_reported() {
         }
     }
     assert!(why(&turned).contains("the camera only rotated"), "{}", why(&turned));
-    // All matches are false.
+    // In this scene, all matches are false.
     let chance = matches(&scene(4, 300, 0.2, 3), FOCAL, 1.0);
     let error = solve(&chance, &Options::default(), &|_| {}).err().unwrap();
     assert!(error.message.contains("enough points that agree"), "{error}");

@@ -316,7 +316,7 @@ fn binary_gltf_is_read_and_foreign_cameras_have_1000_rows() {
     let head = [&b"glTF"[..], &2_u32.to_le_bytes(), &(12 + chunks.len() as u32).to_le_bytes()].concat();
     put(place.path(), "c.glb", &[head, chunks].concat());
     let all = read(&place.path().join("c.glb")).unwrap();
-    // Both cameras share a lens with a vertical field of view of 90 degrees.
+    // The two cameras share a lens with a vertical field of view of 90 degrees.
     assert_eq!((all.lenses.len(), all.views.len(), all.lenses[0].size), (1, 2, [1500, 1000]));
     assert!((all.lenses[0].focal - 500.0).abs() < 1e-9 && all.views[0].name == "Camera");
     let centers: Vec<_> = all.views.iter().map(|view| view.pose.unwrap().center()).collect();

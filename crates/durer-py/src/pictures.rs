@@ -21,8 +21,8 @@ fn image(array: &PyReadonlyArray3<f32>) -> PyResult<Image> {
     Image::from_pixels(shape[1] as u32, shape[0] as u32, pixels).map_err(wrong)
 }
 
-/// Image to compare, and a flag that is true if its values are display values instead of linear
-/// light.
+/// Image to compare, together with a flag that is true if its values are display values instead of
+/// linear light.
 type ScaledPicture<'py> = (PyReadonlyArray3<'py, f32>, bool);
 
 /// Compares an image with a reference image. Returns the result as JSON, and the FLIP error of each
@@ -43,8 +43,8 @@ pub fn compare<'py>(
     Ok((report::comparison(&found, &[]).to_string(), found.flip_map.into_pyarray(py)))
 }
 
-/// Image to encode, with its name, its values, its coverage if it is not 1 everywhere, and a flag
-/// that is true if the values are linear light.
+/// Image to encode: its name, its values, its coverage unless it is 1 everywhere, and a flag that
+/// is true if the values are linear light.
 type NamedPicture<'py> = (String, PyReadonlyArray3<'py, f32>, Option<Vec<f32>>, bool);
 
 /// Encodes an image file. The extension of `name` selects the format.

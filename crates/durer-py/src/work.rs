@@ -15,7 +15,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Interval between checks for signals and progress reports.
+/// Time between two checks for signals, and between two progress reports.
 pub const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Entry of the cache of thread pools, with the process id, the requested number of threads, and

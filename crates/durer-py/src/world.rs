@@ -295,7 +295,7 @@ impl Part {
         PyBytes::new(py, &bytes)
     }
 
-    /// Returns the hash of the film.
+    /// Returns the hash of the film's contents.
     fn hash(&self, py: Python) -> String {
         install(py, None, || self.0.hash().to_string())
     }

@@ -1,4 +1,5 @@
-//! Interface for decoding the mesh, photometric, spectrum and density files that a scene refers to.
+//! Interface for decoding the mesh files, photometric files, spectra and density grids that a scene
+//! refers to.
 
 use crate::dialect::QuirkSet;
 use crate::light::PhotometricProfile;

@@ -46,7 +46,7 @@ pub enum Value {
     Int(u32),
     /// Three numbers that represent a point, a direction or a colour.
     Vec3(Vec3),
-    /// Path of a file, as written.
+    /// Path of a file as written in the scene.
     Path(FileName),
     /// A word.
     Word(String),
@@ -426,7 +426,7 @@ pub use {described, described_list, described_words};
 /// Scene object of one of several described types, such as any shape or any light. The
 /// [`described_list!`] macro implements this trait.
 pub trait DescribedKind: Sized {
-    /// Returns one object of each type, with default values.
+    /// Returns one object of each type with default field values.
     fn kinds() -> Vec<Self>;
     /// Keywords of the object.
     fn keywords(&self) -> &'static [(&'static str, DialectSet)];

@@ -2,7 +2,7 @@
 //!
 //! A [`Dialect`] is the version of the scene language that the course used in a certain year. Its
 //! [`DialectRules`] define the meaning of its keywords. Its [`Quirk`]s are the known bugs of the
-//! official program of that year. They are active only if the user selects the dialect.
+//! official program of that year. The quirks are active only if the user selects the dialect.
 
 mod quirk;
 
@@ -23,7 +23,7 @@ pub enum Dialect {
     F12a4 = 4,
     /// Fall 2012, assignment 5.
     F12a5 = 8,
-    /// 2016 to 2019.
+    /// Courses from 2016 to 2019.
     F16 = 16,
     /// Courses from 2020 to 2023, with nodes and components.
     F23 = 32,
@@ -45,13 +45,13 @@ pub mod set {
     pub const F12A4: DialectSet = Dialect::F12a4 as u8;
     /// Fall 2012, assignment 5.
     pub const F12A5: DialectSet = Dialect::F12a5 as u8;
-    /// 2016 to 2019.
+    /// Courses from 2016 to 2019.
     pub const F16: DialectSet = Dialect::F16 as u8;
-    /// 2020 to 2023.
+    /// Courses from 2020 to 2023.
     pub const F23: DialectSet = Dialect::F23 as u8;
     /// Dürer's own.
     pub const DURER: DialectSet = Dialect::Durer as u8;
-    /// 2003 and 2004.
+    /// Dialects of 2003 and 2004.
     pub const OLD: DialectSet = F03 | F04;
     /// Dialects of 2012 and later that do not use nodes.
     pub const NEW: DialectSet = F12A4 | F12A5 | F16;
@@ -218,7 +218,7 @@ pub struct DialectRules {
     pub falloff: Falloff,
     /// Rays traced for reflection and refraction.
     pub secondary: SecondaryRays,
-    /// Minimum `t` of secondary rays; `None` if rays start at an error-bounded offset instead.
+    /// Minimum `t` of secondary rays. With `None`, rays start at an error-bounded offset instead.
     pub epsilon: Option<f32>,
     /// Floating-point arithmetic used for camera rays and intersections.
     pub arithmetic: Arithmetic,

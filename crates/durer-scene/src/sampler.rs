@@ -29,7 +29,7 @@ pub enum Sampler {
     /// the least noise.
     #[default]
     Sobol,
-    /// Independent, uniform random positions.
+    /// Independent, uniformly distributed random positions.
     Random,
     /// Centres of the cells of a regular grid.
     Uniform,
@@ -63,8 +63,8 @@ impl Sampler {
         }
     }
 
-    /// Position of a sample on the camera's lens, in [0,1)^2. It is independent of the position in
-    /// the pixel.
+    /// Position of a sample on the camera's lens, in [0,1)^2. The position on the lens is
+    /// independent of the position in the pixel.
     pub fn lens_position(self, seed: u64, x: u32, y: u32, sample: u32) -> Vec2 {
         match self {
             Sampler::Sobol => sample_2d(seed, x, y, sample, LENS_DIMENSION),
@@ -177,7 +177,8 @@ impl<const N: usize> PlainKernel for Pairs<N> {
 /// First of the dimensions reserved for media. The number of scattering events is unlimited.
 const MEDIUM_DIMENSIONS: u32 = 1 << 17;
 
-/// Random numbers in [0,1), as many as needed, for a path segment in a medium.
+/// Stream of random numbers in [0,1) for a path segment in a medium. It provides as many numbers as
+/// needed.
 #[derive(Clone, Copy, Debug)]
 pub struct Stream {
     id: SampleId,
@@ -263,7 +264,7 @@ impl Sequence {
         points
     }
 
-    /// Returns the point of a sample.
+    /// Returns the point of the sequence that belongs to a sample.
     pub fn point(&self, sample: u32) -> Vec2 {
         let index = nested_uniform_scramble(sample, self.shuffle);
         Vec2::new(
@@ -284,7 +285,7 @@ fn independent(hash: u64) -> Vec2 {
     Vec2::new(unit(bits as u32), unit((bits >> 32) as u32))
 }
 
-/// Hashes a seed, a pixel, a sample index and a dimension to 64 evenly mixed bits.
+/// Computes a well-mixed 64-bit hash of a seed, a pixel, a sample index and a dimension.
 pub fn hash(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> u64 {
     sample_hash(key(seed, x, y), sample, dimension)
 }
@@ -299,7 +300,7 @@ fn sample_hash(key: u64, sample: u32, dimension: u32) -> u64 {
     mix(key ^ (u64::from(sample) | u64::from(dimension) << 32))
 }
 
-/// One step of SplitMix64: a permutation of the 64-bit integers.
+/// Performs one step of SplitMix64, which is a permutation of the 64-bit integers.
 #[inline(always)]
 fn mix(state: u64) -> u64 {
     let mut z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);

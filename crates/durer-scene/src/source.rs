@@ -108,10 +108,10 @@ pub enum SourceError {
         name: String,
         /// Size in bytes.
         size: u64,
-        /// Remaining budget in bytes.
+        /// Number of bytes that remain in the budget.
         left: u64,
     },
-    /// An input/output error.
+    /// Input/output error of the operating system.
     #[error("cannot read `{name}`: {error}")]
     Io {
         /// Requested name.
@@ -206,7 +206,7 @@ pub trait AssetSource: std::fmt::Debug + Sync {
     /// Returns the record of the files that were read so far.
     fn record(&self) -> &ReadRecord;
 
-    /// Number of bytes that may still be read. Decompressed bytes count too.
+    /// Number of bytes that may still be read. Decompressed bytes count towards the budget too.
     fn budget(&self) -> u64 {
         u64::MAX
     }

@@ -1,4 +1,4 @@
-//! Projection of a point to a pixel, and its derivatives.
+//! Projects points to pixels, and computes the derivatives of the projection.
 //!
 //! With P = R X + t, p = P.xy / P.z, s = |p|², g = 1 + k1 s + k2 s² and g' = k1 + 2 k2 s:
 //!

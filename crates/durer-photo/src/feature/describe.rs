@@ -1,4 +1,4 @@
-//! Orientations and descriptors (Lowe, sections 5 and 6).
+//! Computes the orientations and descriptors of features (Lowe, sections 5 and 6).
 
 use super::detect::{Extremum, Octave};
 use super::{DESCRIPTOR_LENGTH, Feature, GrayImage};

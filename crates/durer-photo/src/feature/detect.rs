@@ -1,4 +1,4 @@
-//! Extrema of the difference of Gaussians (Lowe, sections 3 and 4).
+//! Finds the extrema of the difference of Gaussians (Lowe, sections 3 and 4).
 
 use super::GrayImage;
 use nalgebra::{Matrix3, Vector3};
@@ -43,7 +43,7 @@ fn power(levels: f32) -> f32 {
     libm::exp2f(levels / SCALES_PER_OCTAVE as f32)
 }
 
-/// Builds the scale-space pyramid, down to the smallest useful size.
+/// Builds the scale-space pyramid down to the smallest useful image size.
 pub fn octaves(gray: &GrayImage, doubled: bool) -> Vec<Octave> {
     let (start, own) = if doubled { (gray.doubled(), 2.0 * CAMERA_BLUR) } else { (gray.clone(), CAMERA_BLUR) };
     let mut first = start.blurred((BASE_BLUR * BASE_BLUR - own * own).sqrt());

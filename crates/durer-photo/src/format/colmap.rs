@@ -76,7 +76,8 @@ pub fn insert_unique<Id: Ord + Copy + Display, T>(into: &mut BTreeMap<Id, T>, id
 }
 
 impl ColmapTables {
-    /// Converts the tables to a reconstruction. Ids become consecutive indices in the same order.
+    /// Converts the tables to a reconstruction. Ids are replaced by consecutive indices in the same
+    /// order.
     pub fn into_reconstruction(self, file: &str) -> Result<Reconstruction, Error> {
         let fail = |why: String| Error::in_file(file, why);
         let lens_of: BTreeMap<u32, usize> = self.cameras.keys().enumerate().map(|(i, id)| (*id, i)).collect();

@@ -29,7 +29,7 @@ pub fn decompress(file: &str, bytes: Arc<[u8]>) -> Result<Arc<[u8]>, Error> {
     Ok(plain.into())
 }
 
-/// Removes `.gz` or `.bz2` from a path.
+/// Removes the extension `.gz` or `.bz2` from a path.
 pub fn without_compression_extension(path: &Path) -> PathBuf {
     match path.extension().and_then(|end| end.to_str()) {
         Some("gz" | "bz2") => path.with_extension(""),

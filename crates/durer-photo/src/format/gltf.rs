@@ -212,7 +212,7 @@ fn world_transforms(file: &File) -> Result<Vec<(usize, Matrix4<f64>)>, String> {
         all.extend(file.nodes[parent].children.iter().map(|child| (*child, world * local(&file.nodes[*child]))));
         next += 1;
     }
-    // Nodes that are their own ancestors are never reached.
+    // Nodes that are their own ancestors are never reached from a root node.
     if all.len() == count { Ok(all) } else { Err("some nodes are their own ancestors".into()) }
 }
 

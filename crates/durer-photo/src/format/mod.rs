@@ -37,9 +37,9 @@ pub struct Convention {
     pub direction: &'static str,
     /// Camera frame.
     pub frame: &'static str,
-    /// Representation of rotations.
+    /// Representation of rotations in the format.
     pub rotation: &'static str,
-    /// Formula or meaning of the translation.
+    /// Formula for the translation, or its meaning.
     pub translation: &'static str,
     /// Units and origin of pixels.
     pub pixels: &'static str,

@@ -16,7 +16,8 @@ pub struct DltSolution {
     /// Projection matrix P, up to scale.
     pub matrix: Matrix3x4<f64>,
     /// Singular values of the equations in Hartley's normalised coordinates, in decreasing order.
-    /// The last one is the residual. If the second to last is zero, the matrix is not unique.
+    /// The last singular value is the residual. If the second to last singular value is zero, the
+    /// matrix is not unique.
     pub singular_values: Vec<f64>,
 }
 

@@ -71,7 +71,7 @@ impl Algebra {
         product
     }
 
-    /// Returns the sum of three products.
+    /// Returns the sum of three products of polynomials.
     fn dot(&self, pairs: [(&Cubic, &Cubic); 3]) -> Cubic {
         pairs.iter().fold([0.0; 20], |sum, (a, b)| plus(&sum, &self.multiply(a, b), 1.0))
     }

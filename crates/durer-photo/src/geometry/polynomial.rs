@@ -1,4 +1,4 @@
-//! Real roots of polynomials.
+//! Computes the real roots of polynomials.
 
 /// Evaluates a polynomial. The coefficients start with the constant term.
 fn value(coefficients: &[f64], x: f64) -> f64 {

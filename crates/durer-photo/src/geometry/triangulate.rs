@@ -1,4 +1,4 @@
-//! Triangulation of points from rays.
+//! Triangulates points from rays.
 //!
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! chapter 12.

@@ -156,7 +156,8 @@ pub fn describe(photo: &Photo, options: &Options) -> ImageFeatures {
     }
 }
 
-/// Matches all pairs of photographs. `progress` receives the finished fraction, from 0 to 1.
+/// Matches all pairs of photographs. The function `progress` receives the finished fraction of the
+/// work, from 0 to 1.
 ///
 /// # Errors
 ///
@@ -272,7 +273,7 @@ impl Matches {
         Ok(matches)
     }
 
-    /// Writes the matches as JSON, one item per line.
+    /// Writes the matches as JSON, with one item per line.
     pub fn to_json(&self) -> String {
         let rows = |values: Vec<String>| values.join(",\n");
         let row = |value: Result<String, serde_json::Error>| value.unwrap_or_default();

@@ -79,15 +79,15 @@ struct Solver<'o> {
 
 /// Result of [`solve`], which contains the reconstruction and notes for the user.
 pub struct Solution {
-    /// Cameras and points.
+    /// Reconstructed cameras and points.
     pub reconstruction: Reconstruction,
     /// Notes for the user. They list photographs that were left out, with the reason, and focal
     /// lengths that differ much from EXIF.
     pub notes: Vec<String>,
 }
 
-/// Reconstructs cameras and points from matches. `progress` receives the number of registered
-/// photographs.
+/// Reconstructs cameras and points from matches. The function `progress` receives the number of
+/// registered photographs.
 ///
 /// If the initial focal length is wrong, few photographs fit, or the focal length changes
 /// considerably. This happens, for example, if the photographs were scaled down without updating

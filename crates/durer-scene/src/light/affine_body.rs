@@ -35,7 +35,7 @@ pub struct AffineBody {
 /// Number of points used to compute a mean over a surface.
 const POINTS: u16 = 64;
 
-/// Point `i` of a grid over the unit square.
+/// Position of point `i` in a regular grid on the unit square.
 fn spread(i: u16) -> Vec2 {
     Vec2::new(f32::from(i % 8) + 0.5, f32::from(i / 8) + 0.5) / 8.0
 }
@@ -288,7 +288,7 @@ impl AffineBody {
     }
 
     /// Returns the normal and the sampling pdf per area in world space for a point near the
-    /// surface. They match those of [`AffineBody::sample_body`].
+    /// surface. Both match the values of [`AffineBody::sample_body`].
     fn density(&self, p: Vec3, from: Vec3) -> (Vec3, f32) {
         match self.body {
             ClosedBody::Cube => {

@@ -1,4 +1,4 @@
-//! Light sources. Each kind has its own file; [`Light`] lists them all.
+//! Light sources. Each kind has its own file, and [`Light`] lists all of them.
 
 mod affine_body;
 pub mod area;
@@ -101,7 +101,7 @@ const TWO_UNITS: &str = "`candela` and `lumens` both set the strength of this li
 pub struct LightLiSample {
     /// Unit vector to the light, in world space.
     pub to_light: Vec3,
-    /// Distance to the light; infinite for directional lights.
+    /// Distance to the light, which is infinite for directional lights.
     pub distance: f32,
     /// Arriving light, given as the radiance of a white diffuse surface that faces the light.
     pub color: Color,
@@ -116,7 +116,7 @@ pub trait Illuminate {
     /// Colour as written in the scene.
     fn color(&self) -> Color;
 
-    /// Mutable access to the colour.
+    /// Returns a mutable reference to the colour.
     fn color_mut(&mut self) -> &mut Color;
 
     /// File or name of the measured spectrum.

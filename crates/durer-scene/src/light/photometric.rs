@@ -116,9 +116,9 @@ impl Illuminate for PhotometricLight {
 pub struct PhotometricProfile {
     /// Coordinate system of the angles.
     pub kind: ProfileKind,
-    /// Vertical angles in degrees, ascending.
+    /// Vertical angles in degrees, in ascending order.
     pub vertical: Vec<f32>,
-    /// Horizontal angles in degrees, ascending.
+    /// Horizontal angles in degrees, in ascending order.
     pub horizontal: Vec<f32>,
     /// Intensities in candela, with the vertical angle varying fastest.
     pub candela: Vec<f32>,

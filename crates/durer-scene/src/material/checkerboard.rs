@@ -1,4 +1,4 @@
-//! Checkerboard: unit cubes of two alternating materials.
+//! Checkerboard pattern of unit cubes with two alternating materials.
 
 use super::Pattern;
 use crate::describe::{Constraint, described};

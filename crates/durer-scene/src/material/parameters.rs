@@ -1,4 +1,4 @@
-//! Parameters of a layered material at one point, and the textures that change them.
+//! Parameters of a layered material at one surface point, and the textures that change them.
 
 use super::principled::{PrincipledMaterial, Switch, Walls};
 use crate::describe::FileName;

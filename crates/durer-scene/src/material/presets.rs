@@ -27,7 +27,8 @@ pub fn preset(name: &str) -> Option<PrincipledMaterial> {
     Some(material)
 }
 
-/// Preset of a principled material: its name, and the fields that differ from their defaults.
+/// Preset of a principled material, given by its name and the fields that differ from their
+/// defaults.
 type Preset = (&'static str, &'static [(&'static str, &'static [f32])]);
 
 /// All presets, listed by name.

@@ -72,7 +72,7 @@ fn refine(c: &[f64], a: (f64, f64), b: (f64, f64)) -> f64 {
             high = t;
         }
         let newton = t - v / slope;
-        // Bisect if Newton's step leaves the bracket or is NaN.
+        // Use bisection if Newton's step leaves the bracket or is NaN.
         let held = newton > low.min(high) && newton < low.max(high);
         let next = if held { newton } else { 0.5 * (low + high) };
         if (next - t).abs() <= 1e-16 * t.abs() || next == t {

@@ -23,7 +23,7 @@ pub struct Medium {
     pub albedo: Color,
     /// Phase function.
     pub phase: HenyeyGreenstein,
-    /// Region and density; `None` for an infinite homogeneous medium.
+    /// Region and density of the medium; `None` for an infinite homogeneous medium.
     pub region: Option<MediumRegion>,
 }
 
@@ -62,9 +62,9 @@ pub struct Segment {
     pub origin: DVec3,
     /// Unit direction.
     pub dir: Vec3,
-    /// Distance from the origin to the start.
+    /// Distance from the origin to the start of the segment.
     pub from: f32,
-    /// Distance from the origin to the end, which may be infinite.
+    /// Distance from the origin to the end of the segment, which can be infinite.
     pub to: f32,
 }
 
@@ -204,7 +204,7 @@ fn normalized(weights: Spectrum) -> Spectrum {
     if sum > 0.0 { weights / sum } else { Spectrum::splat(0.25) }
 }
 
-/// Transmittance over a distance, by Beer's law.
+/// Transmittance over a distance, computed by Beer's law.
 fn beer_transmittance(extinction: Spectrum, distance: f32) -> Spectrum {
     (-extinction * distance.min(f32::MAX)).map(fp::exp)
 }

@@ -94,7 +94,7 @@ fn phase_function_integrates_to_one_and_agrees_with_samples() {
         for _ in 0..samples {
             let after = phase.sample(before, Vec2::new(random.between(0.0, 1.0), random.between(0.0, 1.0)));
             assert!((after.length() - 1.0).abs() < 1e-5);
-            // Cumulative distribution function of the cosine.
+            // Compute the cumulative distribution function of the cosine.
             let c = before.dot(after).clamp(-1.0, 1.0);
             let root = (1.0 + g * g - 2.0 * g * c).sqrt();
             let below =

@@ -6,8 +6,8 @@
 use super::black_body::{C2, planck_ratio};
 use super::curve::Curve;
 
-/// Temperature of illuminant A, about 2855.5 K. CIE 015 gives it as 2848 K with a second radiation
-/// constant of 1.435e7 nm K.
+/// Temperature of illuminant A, about 2855.5 K. CIE 015 gives this temperature as 2848 K, based on
+/// a second radiation constant of 1.435e7 nm K.
 const A_KELVIN: f32 = 2_848.0 * (C2 / 1.435e7);
 
 /// Names of illuminants, for use in messages. A name such as `2700K` denotes a black body.

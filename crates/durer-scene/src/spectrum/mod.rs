@@ -70,11 +70,11 @@ impl FieldType for ColorMode {
     }
 }
 
-/// Meaning of the four lanes of a [`Spectrum`] along a path: RGB, or four wavelengths.
+/// Meaning of the four lanes of a [`Spectrum`] along a path: either RGB or four wavelengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Lanes {
-    /// Red, green, blue, green.
+    /// Red, green, blue, and green again.
     #[default]
     Rgb,
     /// Light at four wavelengths.
@@ -84,7 +84,7 @@ pub enum Lanes {
 /// Four wavelengths of a path, with the tabulated spectra at these wavelengths.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Wavelengths {
-    /// Wavelengths in nanometres. The first is the hero wavelength.
+    /// Wavelengths in nanometres. The first of them is the hero wavelength.
     pub nm: Spectrum,
     /// Spectrum of D65, which is the light with the colour 1 1 1.
     #[serde(skip)]

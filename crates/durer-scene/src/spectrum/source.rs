@@ -96,7 +96,7 @@ impl SpectrumSource {
     }
 }
 
-/// First wavelength and step in nanometres.
+/// First wavelength in nanometres, and the step between wavelengths.
 const FIRST: f32 = 380.0;
 const STEP: f32 = 10.0;
 

@@ -3,7 +3,7 @@
 use crate::math::{Color, Vec3};
 use glam::{DMat3, DVec3};
 
-/// Matrix from XYZ to linear sRGB, column-major. Source: IEC 61966-2-1.
+/// Column-major matrix that converts XYZ to linear sRGB. Source: IEC 61966-2-1.
 pub const SRGB_FROM_XYZ: DMat3 = DMat3::from_cols_array(&[
     3.240_454_2,
     -0.969_266,
@@ -28,7 +28,7 @@ impl Default for RgbSpace {
     }
 }
 
-/// Names of the colour spaces, with the chromaticities of red, green, blue and white.
+/// Names of the colour spaces, with the chromaticities of their red, green, blue and white.
 const SPACES: [(&str, [[f64; 2]; 4]); 4] = [
     ("srgb", [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]]),
     ("dci-p3", [[0.68, 0.32], [0.265, 0.69], [0.15, 0.06], [0.3127, 0.329]]),

@@ -95,7 +95,8 @@ fn illuminants_have_their_published_chromaticities() {
         assert!((a - x).abs() < 3e-4 && (b - y).abs() < 3e-4, "{name}: {a} {b}, not {x} {y}");
         assert!((curve.color().dot(Color::new(0.2126, 0.7152, 0.0722)) - 1.0).abs() < 1e-3, "{name}");
     }
-    // D65 computed by the daylight formula agrees with the table that defines white.
+    // The spectrum of D65 computed by the daylight formula agrees with the table that defines
+    // white.
     let d65 = illuminants::illuminant("D65").unwrap();
     assert!((d65.color() - Color::ONE).abs().max_element() < 2e-3, "{}", d65.color());
     // A black body of 2856 K with the current radiation constant matches the definition of
@@ -144,7 +145,7 @@ fn spectra_from_files_convert_to_colours() {
     assert!((white.x - white.y).abs() < 0.002 * white.y && (white.z - white.y).abs() < 0.002 * white.y, "{white}");
     let even = SpectrumSource::Curve(vec![[300.0, 0.4], [900.0, 0.4]]);
     assert!((even.albedo() - Vec3::splat(0.4)).length() < 1e-5);
-    // Lights have luminance 1.
+    // Lights must have luminance 1.
     let luminance = Vec3::new(0.2126729, 0.7151522, 0.072175);
     for light in [SpectrumSource::Blackbody(2856.0), SpectrumSource::Blackbody(6504.0), even.clone()] {
         assert!((light.light().dot(luminance) - 1.0).abs() < 1e-3, "{:?}", light.light());

@@ -13,14 +13,14 @@ use crate::math::{Vec3, fp};
 pub struct Moment {
     /// Year, month and day.
     pub date: [i32; 3],
-    /// Hours since midnight.
+    /// Number of hours since midnight.
     pub hours: f64,
-    /// Offset of the clock from UTC, in hours; positive if ahead.
+    /// Offset of the clock from UTC in hours, positive if the clock is ahead of UTC.
     pub zone: f64,
 }
 
 impl Moment {
-    /// True if the date exists.
+    /// True if the date exists in the calendar.
     pub fn exists(&self) -> bool {
         let [year, month, day] = self.date;
         (1..=12).contains(&month) && (1..=days_of(year, month)).contains(&day)

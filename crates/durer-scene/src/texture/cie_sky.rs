@@ -38,9 +38,9 @@ pub struct CieSky {
     coefficients: Option<[f32; 5]>,
     /// Unit vector to the sun. The direct light of the sun is not included.
     sun: Vec3,
-    /// Factor from relative luminance to cd/m^2.
+    /// Factor that converts relative luminance to cd/m^2.
     scale: f32,
-    /// Luminance below the horizon, in cd/m^2.
+    /// Luminance of the directions below the horizon, in cd/m^2.
     ground: f32,
 }
 

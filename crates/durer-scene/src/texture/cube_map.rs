@@ -1,4 +1,4 @@
-//! Cube maps: six images around the scene.
+//! Cube maps, which consist of six images around the scene.
 
 use super::Texture;
 use crate::math::{Color, Vec2, Vec3};

@@ -59,7 +59,7 @@ const MIN_WEIGHT: f32 = 0.05;
 /// Number of table entries per start index.
 const STEP: usize = 4;
 
-/// Number of entries that the search compares at once.
+/// Number of entries that the search compares at a time.
 const SEARCH_WIDTH: usize = 8;
 
 /// Returns the index of the first entry that exceeds each step of the fraction from 0 to 1.
@@ -221,15 +221,15 @@ impl Environment {
         (self.light(&place), self.density(&place))
     }
 
-    /// Samples a direction from two numbers in [0, 1). Returns it with its radiance and its pdf per
-    /// solid angle.
+    /// Samples a direction from two numbers in [0, 1). Returns the direction together with its
+    /// radiance and its pdf per solid angle.
     pub fn sample(&self, u: Vec2) -> Option<(Vec3, Color, f32)> {
         let (dir, place, pdf) = self.direction(u)?;
         Some((dir, self.light(&place), pdf))
     }
 
-    /// Samples a direction from two numbers in [0, 1). Returns it with its position in the map and
-    /// its pdf per solid angle.
+    /// Samples a direction from two numbers in [0, 1). Returns the direction together with its
+    /// position in the map and its pdf per solid angle.
     pub fn direction(&self, u: Vec2) -> Option<(Vec3, TexelPosition, f32)> {
         let steps = self.width.div_ceil(STEP);
         let (y, v) = find_entry(&self.row_sums, |sum| *sum, self.row_sums[self.height - 1], &self.row_hints, u.y);

@@ -53,7 +53,7 @@ pub struct Mapping {
     /// Alpha cutoff. Opacity is 1 if alpha is at or above it, and 0 below. With `None`, opacity
     /// equals alpha.
     pub cutoff: Option<f32>,
-    /// Factor that scales the slopes in a normal map; 1 keeps the stored slopes.
+    /// Factor that scales the slopes in a normal map. A factor of 1 keeps the stored slopes.
     pub strength: f32,
     /// Channel that is read as a number; `None` for red, or for alpha in opacity textures that have
     /// alpha.
@@ -87,7 +87,7 @@ impl Mapping {
         Vec2::new(x, y)
     }
 
-    /// Maps a channel value to the range.
+    /// Maps a channel value from [0, 1] to the range of parameter values.
     pub fn map_to_range(&self, x: f32) -> f32 {
         let [low, high] = self.range;
         if [low, high] == [0.0, 1.0] { x } else { low + x * (high - low) }

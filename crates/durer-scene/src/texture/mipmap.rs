@@ -1,4 +1,4 @@
-//! Mipmaps: smaller versions of a texture, for samples that cover many texels.
+//! Mipmaps, which are smaller versions of a texture for samples that cover many texels.
 //!
 //! Source: Williams, *Pyramidal Parametrics*, SIGGRAPH 1983.
 

@@ -81,7 +81,7 @@ impl Texture {
         self.width as usize * self.height as usize
     }
 
-    /// Colour of the texel at an index.
+    /// Returns the colour of the texel at an index.
     fn color(&self, at: usize) -> [f32; 3] {
         match &self.texels {
             Texels::Eight(texels, values) => texels[at].map(|c| values[usize::from(c)]),
@@ -89,7 +89,7 @@ impl Texture {
         }
     }
 
-    /// Opacity of the texel at an index.
+    /// Returns the opacity of the texel at an index.
     fn opacity(&self, at: usize) -> f32 {
         match &self.alpha {
             None => 1.0,

@@ -19,7 +19,7 @@ pub const SUN_RADIUS: f32 = 0.2665;
 pub struct Sky {
     /// Unit vector to the sun.
     sun: Vec3,
-    /// Turbidity, from 2 (clear) to 10 (hazy).
+    /// Turbidity of the air, from 2 (clear) to 10 (hazy).
     turbidity: f32,
     /// Luminance and chromaticity (x, y) at the zenith.
     zenith: Vec3,
@@ -110,7 +110,7 @@ impl Sky {
     /// green and blue.
     pub fn sun(&self) -> Color {
         let degrees = angle(self.sun.y).to_degrees();
-        // Relative air mass, after Kasten and Young, 1989.
+        // Compute the relative air mass after Kasten and Young, 1989.
         let mass = 1.0 / (self.sun.y + 0.50572 * fp::pow(96.07995 - degrees, -1.6364));
         let beta = 0.04608 * self.turbidity - 0.04586;
         let through = |wavelength: f32| {
@@ -192,8 +192,8 @@ mod tests {
     #[test]
     fn daylight_illuminance_agrees_with_the_paper() {
         // The paper's formulas, integrated over the sky by an independent program, give 31.53 klx
-        // on the ground. That is twice the IES value for a clear sky at this altitude of the sun
-        // (0.8 + 15.5 sqrt(sin h)). A high sun gives 60 to 110 klx.
+        // on the ground. This is twice the IES value for a clear sky at this altitude h of the sun,
+        // which is 0.8 + 15.5 sqrt(sin h). When the sun is high, the formulas give 60 to 110 klx.
         let sky = sky(60.0, 3.0);
         let n = 200;
         let mut horizontal = 0.0;

@@ -6,7 +6,7 @@ use crate::math::{Color, Vec2};
 /// Texel that contributes to a texture lookup, with its weight. It is used for explanations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tap {
-    /// Column and row, from the upper left corner.
+    /// Column and row of the texel, counted from the upper left corner.
     pub texel: (u32, u32),
     /// Weight of the texel in the lookup.
     pub weight: f32,
