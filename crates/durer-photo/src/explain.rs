@@ -1,11 +1,12 @@
-//! Explains why a camera or a point is where it is: the projection equations with their numbers.
+//! Explains the position of a camera or a point by writing out the projection equations with their
+//! numbers.
 
 use crate::adjust::{Options, covariance};
 use crate::{Error, Reconstruction};
 use std::fmt::Write;
 
-/// Returns an explanation of a point: for each photograph that observes it, the ray and the
-/// residual.
+/// Returns an explanation of a point that lists the ray and the residual in each photograph that
+/// observes it.
 pub fn point(reconstruction: &Reconstruction, number: usize) -> Result<String, Error> {
     let count = reconstruction.points.len();
     let point = reconstruction.points.get(number).ok_or_else(|| {
@@ -43,7 +44,7 @@ pub fn point(reconstruction: &Reconstruction, number: usize) -> Result<String, E
     Ok(text)
 }
 
-/// Returns the index of the photograph with a name or number.
+/// Returns the index of the photograph with this name or number.
 pub fn find_view(reconstruction: &Reconstruction, name: &str) -> Result<usize, Error> {
     let number = reconstruction.views.iter().position(|view| view.name == name).or_else(|| name.parse().ok());
     number.filter(|number| *number < reconstruction.views.len()).ok_or_else(|| {
@@ -52,8 +53,8 @@ pub fn find_view(reconstruction: &Reconstruction, name: &str) -> Result<usize, E
     })
 }
 
-/// Returns an explanation of a camera: the projection equations of its first points, their
-/// residuals, and how well the camera is determined.
+/// Returns an explanation of a camera. It contains the projection equations of the first points,
+/// their residuals, and how well the camera is determined.
 pub fn camera(reconstruction: &Reconstruction, view: usize) -> Result<String, Error> {
     let name = &reconstruction.views[view].name;
     let pose = reconstruction.views[view].pose.ok_or_else(|| Error::new(format!("the pose of {name} is unknown")))?;

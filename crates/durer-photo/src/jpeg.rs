@@ -1,6 +1,6 @@
-//! Detects truncated JPEG files, because decoders fill missing parts with grey.
+//! Detects truncated JPEG files, since decoders fill missing parts with grey.
 
-/// Returns true if the file contains the end marker of the image itself, not only that of a
+/// Returns true if the file contains the end marker of the image itself, rather than only that of a
 /// thumbnail in its header.
 ///
 /// Source: ITU-T T.81, *Digital Compression and Coding of Continuous-Tone Still Images*, annex B.
@@ -16,7 +16,8 @@ pub fn is_complete(bytes: &[u8]) -> bool {
             _ if !is_marker(pair) => 1,
             START => 2,
             END => return true,
-            // Other markers begin a segment, whose length includes its own two bytes.
+            // Other markers begin a segment whose length includes the two bytes of the length
+            // field.
             _ => match bytes.get(at + 2..at + 4) {
                 Some(length) => 2 + usize::from(u16::from_be_bytes([length[0], length[1]])),
                 None => return false,

@@ -1,25 +1,25 @@
-//! User input about the world in a photograph: points, parallel lines, and control points.
+//! User input about the world that a photograph shows: points, parallel lines, and control points.
 
 use crate::Observation;
 use nalgebra::{Vector2, Vector3};
 
-/// World point and the pixel at which a photograph shows it.
+/// World point, and the pixel at which it appears in a photograph.
 pub type PointPixelPair = (Vector3<f64>, Vector2<f64>);
 
-/// Control point: a known position in the world and its observations.
+/// Control point with a known position in the world, and its observations.
 pub type ControlPoint = (Vector3<f64>, Vec<Observation>);
 
 /// Signed world axis, such as x or -y, towards which a set of vanishing lines leads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Axis {
-    /// 0, 1, 2 for x, y, z.
+    /// Index of the axis: 0, 1, 2 for x, y, z.
     pub index: usize,
-    /// True for the negative direction.
+    /// True if the axis has a negative sign.
     pub negative: bool,
 }
 
 impl Axis {
-    /// Parses a name: `x`, `-x`, and so on, or fSpy's `xPositive` and `xNegative`.
+    /// Parses the name of an axis: `x`, `-x`, and so on, or fSpy's `xPositive` and `xNegative`.
     pub fn parse(name: &str) -> Option<Self> {
         let (bare, negative) = match name {
             name if name.ends_with("Negative") => (name.trim_end_matches("Negative"), true),
@@ -35,18 +35,18 @@ impl Axis {
     }
 }
 
-/// Input for computing a camera from vanishing points: two sets of lines in a photograph, each
-/// parallel to a world axis.
+/// Input for computing a camera from vanishing points. It contains two sets of lines in a
+/// photograph, each parallel to one world axis.
 #[derive(Debug, Clone)]
 pub struct VanishingLines {
-    /// Width and height in pixels.
+    /// Width and height of the photograph in pixels.
     pub size: [u32; 2],
     /// Principal point in pixels.
     pub center: Vector2<f64>,
-    /// Pixel of the world origin.
+    /// Pixel at which the world origin appears.
     pub origin: Vector2<f64>,
     /// World axis that leads towards each vanishing point.
     pub axes: [Axis; 2],
-    /// Lines of each axis. A line is given by two points in pixels.
+    /// Lines that lead along each axis. A line is given by two points in pixels.
     pub lines: [Vec<[Vector2<f64>; 2]>; 2],
 }

@@ -1,4 +1,4 @@
-//! Photogrammetry: cameras and points from photographs.
+//! Photogrammetry, which computes cameras and points from photographs.
 //!
 //! From photographs of a scene, [`matching`] finds the scene points that several of them show,
 //! [`solve`] computes the positions of the cameras and the points, and [`adjust`] refines both

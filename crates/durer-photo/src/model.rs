@@ -1,4 +1,4 @@
-//! Types of a reconstruction: lenses, poses, photographs, and points.
+//! Types that make up a reconstruction: lenses, poses, photographs, and points.
 
 use nalgebra::{Matrix3, Rotation3, Vector2, Vector3};
 
@@ -10,11 +10,11 @@ pub struct Lens {
     pub size: [u32; 2],
     /// Focal length in pixels.
     pub focal: f64,
-    /// Ratio of the vertical to the horizontal focal length: 1 for square pixels.
+    /// Ratio of the vertical to the horizontal focal length, which is 1 for square pixels.
     pub aspect: f64,
     /// Principal point in pixels from the upper left corner.
     pub principal_point: [f64; 2],
-    /// Radial distortion: coefficients of |p|² and |p|⁴.
+    /// Coefficients of |p|² and |p|⁴ in the radial distortion.
     pub distortion: [f64; 2],
 }
 
@@ -24,7 +24,7 @@ impl Lens {
         Lens { size, focal, aspect: 1.0, principal_point: size.map(|side| f64::from(side) / 2.0), distortion: [0.0; 2] }
     }
 
-    /// Returns the length of the longer side in pixels; twice the focal length if the size is
+    /// Returns the length of the longer side in pixels, or twice the focal length if the size is
     /// unknown.
     pub fn longer_side(&self) -> f64 {
         match self.size[0].max(self.size[1]) {
@@ -33,8 +33,8 @@ impl Lens {
         }
     }
 
-    /// Projects a point in the camera frame to a pixel. The formula also holds behind the camera;
-    /// see [`Pose::depth`].
+    /// Projects a point in the camera frame to a pixel. The formula also applies to points behind
+    /// the camera; see [`Pose::depth`].
     pub fn project(&self, p: &Vector3<f64>) -> Vector2<f64> {
         let (x, y) = (p.x / p.z, p.y / p.z);
         let factor = self.focal * self.distortion_factor(x * x + y * y);
@@ -46,8 +46,8 @@ impl Lens {
         1.0 + s * (self.distortion[0] + s * self.distortion[1])
     }
 
-    /// Computes the point (x, y, 1) that projects to a pixel, by Newton's method; `None` if the
-    /// distortion is not invertible there.
+    /// Computes the point (x, y, 1) that projects to a pixel, by Newton's method. Returns `None` if
+    /// the distortion is not invertible there.
     pub fn unproject(&self, pixel: &Vector2<f64>) -> Option<Vector3<f64>> {
         let x = (pixel.x - self.principal_point[0]) / self.focal;
         let y = (pixel.y - self.principal_point[1]) / (self.focal * self.aspect);
@@ -55,7 +55,7 @@ impl Lens {
         let mut radius = wanted;
         for _ in 0..30 {
             let s = radius * radius;
-            // Derivative of r (1 + k1 r² + k2 r⁴) with respect to r.
+            // Compute the derivative of r (1 + k1 r² + k2 r⁴) with respect to r.
             let slope = 1.0 + s * (3.0 * self.distortion[0] + 5.0 * s * self.distortion[1]);
             if slope <= 1e-6 {
                 return None;
@@ -72,10 +72,10 @@ impl Lens {
     }
 }
 
-/// Position and orientation of a camera: P = R X + t.
+/// Position and orientation of a camera, which define the mapping P = R X + t.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
-    /// Rotation R. Its rows are the camera's right, down, and forward directions in the world.
+    /// Rotation R. Its rows are the camera's right, down, and forward directions in world space.
     pub rotation: Matrix3<f64>,
     /// Translation t.
     pub translation: Vector3<f64>,
@@ -87,13 +87,13 @@ impl Pose {
         Pose { rotation: Matrix3::identity(), translation: Vector3::zeros() }
     }
 
-    /// Creates the pose of a camera from its position and rotation.
+    /// Creates the pose of a camera from its position and its rotation.
     pub fn at(center: &Vector3<f64>, rotation: Matrix3<f64>) -> Self {
         Pose { rotation, translation: -rotation * center }
     }
 
-    /// Creates the pose of a camera at `center` that looks at `target`. `up` points upwards in its
-    /// image.
+    /// Creates the pose of a camera at `center` that looks at `target`. The direction `up` points
+    /// upwards in its image.
     pub fn look_at(center: &Vector3<f64>, target: &Vector3<f64>, up: &Vector3<f64>) -> Self {
         let forward = (target - center).normalize();
         let right = forward.cross(up).normalize();
@@ -106,13 +106,13 @@ impl Pose {
         self.rotation * point + self.translation
     }
 
-    /// Returns the position of the camera, -Rᵀ t.
+    /// Returns the position of the camera, which is -Rᵀ t.
     pub fn center(&self) -> Vector3<f64> {
         -self.rotation.transpose() * self.translation
     }
 
-    /// Returns the depth of a point: its distance along the view direction, negative behind the
-    /// camera.
+    /// Returns the depth of a point, which is its distance along the view direction. It is negative
+    /// behind the camera.
     pub fn depth(&self, point: &Vector3<f64>) -> f64 {
         self.apply(point).z
     }
@@ -123,11 +123,13 @@ impl Pose {
     }
 }
 
-/// Returns the rotation about a vector by its length in radians (Rodrigues' formula).
+/// Returns the rotation about a vector by an angle equal to the vector's length in radians
+/// (Rodrigues' formula).
 pub fn rotation_of(axis_angle: &Vector3<f64>) -> Matrix3<f64> {
     let angle = axis_angle.norm();
     let cross = axis_angle.cross_matrix();
-    // sin(a) / a and (1 - cos(a)) / a², by series near zero to avoid a division by zero.
+    // Compute sin(a) / a and (1 - cos(a)) / a². Near zero, use a series to avoid a division by
+    // zero.
     let (a, b) = if angle < 1e-4 {
         let s = angle * angle;
         (1.0 - s / 6.0, 0.5 - s / 24.0)
@@ -138,8 +140,8 @@ pub fn rotation_of(axis_angle: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() + a * cross + b * cross * cross
 }
 
-/// Returns the axis of a rotation times its angle in radians, at most π: the inverse of
-/// [`rotation_of`].
+/// Returns the axis of a rotation times its angle in radians, which is at most π. This is the
+/// inverse of [`rotation_of`].
 pub fn axis_angle_of(rotation: &Matrix3<f64>) -> Vector3<f64> {
     let [w, x, y, z] = quaternion_of(rotation);
     let axis = Vector3::new(x, y, z);
@@ -147,8 +149,8 @@ pub fn axis_angle_of(rotation: &Matrix3<f64>) -> Vector3<f64> {
     if length < 1e-300 { Vector3::zeros() } else { axis * (2.0 * libm::atan2(length, w) / length) }
 }
 
-/// Returns the unit quaternion (w, x, y, z) of a rotation, with w >= 0. It is computed from its
-/// largest component, as proposed by Shepperd.
+/// Returns the unit quaternion (w, x, y, z) of a rotation, with w >= 0. It is computed starting
+/// from its largest component, as proposed by Shepperd.
 pub fn quaternion_of(r: &Matrix3<f64>) -> [f64; 4] {
     let (a, b, c) = (r[(0, 0)], r[(1, 1)], r[(2, 2)]);
     let squares = [1.0 + a + b + c, 1.0 + a - b - c, 1.0 - a + b - c, 1.0 - a - b + c];
@@ -174,7 +176,8 @@ pub fn rotation_of_quaternion([w, x, y, z]: [f64; 4]) -> Matrix3<f64> {
     *Rotation3::from(nalgebra::UnitQuaternion::from_quaternion(q)).matrix()
 }
 
-/// Returns the rotation nearest to a matrix in the Frobenius norm, by singular value decomposition.
+/// Returns the rotation that is nearest to a matrix in the Frobenius norm, computed by singular
+/// value decomposition.
 pub fn nearest_rotation(matrix: &Matrix3<f64>) -> Matrix3<f64> {
     let svd = matrix.svd(true, true);
     let (Some(u), Some(v)) = (svd.u, svd.v_t) else { return Matrix3::identity() };
@@ -182,10 +185,10 @@ pub fn nearest_rotation(matrix: &Matrix3<f64>) -> Matrix3<f64> {
     u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v
 }
 
-/// Photograph of a [`Reconstruction`]: its name, lens, and pose.
+/// Photograph in a [`Reconstruction`], with its name, lens, and pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct View {
-    /// File name of the photograph, or a number if a format has no names.
+    /// File name of the photograph, or a number if the format has no names.
     pub name: String,
     /// Index of the lens. Several photographs can share a lens.
     pub lens: usize,
@@ -193,7 +196,7 @@ pub struct View {
     pub pose: Option<Pose>,
 }
 
-/// Observation of a scene point: the photograph, the feature, and its pixel.
+/// Observation of a scene point, with the photograph, the feature, and its pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
     /// Index of the photograph.
@@ -204,23 +207,23 @@ pub struct Observation {
     pub pixel: Vector2<f64>,
 }
 
-/// Scene point of a [`Reconstruction`]: its position, colour, and observations.
+/// Scene point in a [`Reconstruction`], with its position, colour, and observations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
     /// Position in the world.
     pub position: Vector3<f64>,
-    /// Red, green, and blue, from 0 to 255.
+    /// Red, green, and blue values from 0 to 255.
     pub color: [u8; 3],
-    /// Observations, in the order of the photographs.
+    /// Observations of the point, in the order of the photographs.
     pub track: Vec<Observation>,
 }
 
 /// Cameras and points reconstructed from photographs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Reconstruction {
-    /// Lenses. Several photographs can share one.
+    /// Lenses of the cameras. Several photographs can share a lens.
     pub lenses: Vec<Lens>,
-    /// Photographs, including those with an unknown pose.
+    /// Photographs of the scene, including those with an unknown pose.
     pub views: Vec<View>,
     /// Points of the scene.
     pub points: Vec<Point>,
@@ -231,7 +234,7 @@ pub struct Reconstruction {
 pub struct ReprojectionError {
     /// Number of observations by photographs with a known pose.
     pub observations: usize,
-    /// Half the sum of the squared residuals, in square pixels.
+    /// Cost in square pixels, which is half the sum of the squared residuals.
     pub cost: f64,
     /// Root mean square length of the residuals, in pixels.
     pub rms: f64,
@@ -240,7 +243,7 @@ pub struct ReprojectionError {
 }
 
 impl Reconstruction {
-    /// Returns the projection of a point minus its observed pixel; `None` if the pose of the
+    /// Returns the projection of a point minus its observed pixel, or `None` if the pose of the
     /// photograph is unknown.
     pub fn residual(&self, position: &Vector3<f64>, observation: &Observation) -> Option<Vector2<f64>> {
         let view = &self.views[observation.view];
@@ -255,7 +258,7 @@ impl Reconstruction {
             .flat_map(|point| point.track.iter().filter_map(|observation| self.residual(&point.position, observation)))
     }
 
-    /// Computes the reprojection error.
+    /// Computes the reprojection error of the reconstruction.
     pub fn reprojection_error(&self) -> ReprojectionError {
         let mut fit = ReprojectionError::default();
         for square in self.residuals().map(|residual| residual.norm_squared()) {
@@ -267,9 +270,9 @@ impl Reconstruction {
         fit
     }
 
-    /// Estimates the standard deviation of a residual's components in pixels from the median
-    /// residual, which is robust to outliers. The median length of normally distributed errors is
-    /// √(2 ln 2) times their standard deviation.
+    /// Estimates the standard deviation in pixels of a residual's components. It is based on the
+    /// median residual, which is robust to outliers. The median length of normally distributed
+    /// errors is √(2 ln 2) times their standard deviation.
     pub fn noise(&self) -> f64 {
         let mut lengths: Vec<f64> = self.residuals().map(|residual| residual.norm()).collect();
         lengths.sort_by(f64::total_cmp);
@@ -281,7 +284,7 @@ impl Reconstruction {
         self.views.iter().filter(|view| view.pose.is_some()).count()
     }
 
-    /// Returns the mean number of observations per point.
+    /// Returns the mean number of observations of a point.
     pub fn track_length(&self) -> f64 {
         self.points.iter().map(|point| point.track.len()).sum::<usize>() as f64 / self.points.len().max(1) as f64
     }
@@ -294,7 +297,7 @@ impl Reconstruction {
         };
         let rays: Vec<Vector3<f64>> = point.track.iter().filter_map(toward).collect();
         let pairs = rays.iter().enumerate().flat_map(|(i, a)| rays[i + 1..].iter().map(move |b| (a, b)));
-        // The chord gives small angles precisely, unlike the cosine.
+        // Compute the angle from the chord, which is precise for small angles, unlike the cosine.
         pairs.map(|(a, b)| 2.0 * libm::asin(((a - b).norm() / 2.0).min(1.0))).fold(0.0, f64::max)
     }
 }

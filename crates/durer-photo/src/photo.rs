@@ -1,4 +1,4 @@
-//! Photographs read from files: pixels and EXIF metadata.
+//! Photographs read from files, with their pixels and EXIF metadata.
 
 use crate::Error;
 use crate::feature::GrayImage;
@@ -6,10 +6,10 @@ use crate::jpeg::is_complete;
 use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Limits, RgbImage};
 use std::io::Cursor;
 
-/// Maximum length in pixels of the longer side of a photograph that is read.
+/// Maximum length in pixels of the longer side of a photograph. Larger photographs are not read.
 const MAX_SIDE: u32 = 20_000;
 
-/// Photograph read from a JPEG or PNG file: its pixels and EXIF metadata.
+/// Photograph read from a JPEG or PNG file, with its pixels and EXIF metadata.
 pub struct Photo {
     /// File name.
     pub name: String,
@@ -19,14 +19,14 @@ pub struct Photo {
     pub exif: Exif,
 }
 
-/// EXIF metadata of a photograph, as far as it concerns the camera and the focal length.
+/// EXIF metadata of a photograph that concern the camera and the focal length.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Exif {
     /// Make and model of the camera.
     pub camera: String,
-    /// Focal length in pixels, and a description of its source.
+    /// Focal length in pixels, together with a description of its source.
     pub focal: Option<(f64, String)>,
-    /// Message about an implausible focal length, if any.
+    /// Message about the focal length if it is implausible.
     pub warning: Option<String>,
 }
 
@@ -47,7 +47,7 @@ fn unreadable(file: &str, error: &ImageError) -> Error {
     Error::in_file(file, format!("cannot be read as a picture: {}", error.to_string().trim_end()))
 }
 
-/// Reads the width and height of a photograph in pixels from its header.
+/// Reads the width and height in pixels from the header of a photograph.
 pub fn size(file: &str, bytes: &[u8]) -> Result<[u32; 2], Error> {
     let size = reader(file, bytes)?.into_dimensions();
     let (width, height) = size.map_err(|error| unreadable(file, &error))?;
@@ -75,8 +75,8 @@ impl Photo {
         [self.pixels.width(), self.pixels.height()]
     }
 
-    /// Returns a greyscale image with values from 0 to 1, reduced to a longer side of at most
-    /// `side` pixels, and the number of original pixels per reduced pixel along x and y.
+    /// Returns a greyscale image with values from 0 to 1, whose longer side is reduced to at most
+    /// `side` pixels. Also returns the number of original pixels per reduced pixel along x and y.
     pub fn gray(&self, side: u32) -> (GrayImage, [f64; 2]) {
         let [width, height] = self.size();
         let scale = f64::from(side) / f64::from(width.max(height));
@@ -128,7 +128,7 @@ fn exif(bytes: &[u8], size: [u32; 2]) -> Exif {
     let diagonal = |a: f64, b: f64| (a * a + b * b).sqrt();
     let longer = width.max(height);
     let from_film = || {
-        // The 35 mm equivalent refers to the diagonal of 36 x 24 mm (CIPA DC-X005).
+        // The 35 mm equivalent refers to the diagonal of a frame of 36 x 24 mm (CIPA DC-X005).
         let film = number(Tag::FocalLengthIn35mmFilm)?;
         let focal = film * diagonal(width, height) / diagonal(36.0, 24.0);
         Some((focal, format!("{film} mm on 35 mm film")))

@@ -1,7 +1,7 @@
 //! Pseudorandom numbers with the same sequence on every platform.
 
-/// Pseudorandom number generator for RANSAC and tests: SplitMix64 (Steele, Lea, Flood, *Fast
-/// Splittable Pseudorandom Number Generators*, OOPSLA 2014).
+/// Pseudorandom number generator for RANSAC and tests. It uses SplitMix64 (Steele, Lea, Flood,
+/// *Fast Splittable Pseudorandom Number Generators*, OOPSLA 2014).
 #[derive(Debug, Clone)]
 pub struct Random(u64);
 

@@ -8,8 +8,8 @@ use crate::solve::{estimate_pose, refine_pose};
 use crate::{Error, Lens, Pose};
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 
-/// Input of [`camera`] besides the points: known properties of the lens, and the threshold for
-/// outliers.
+/// Input of [`camera`] in addition to the points, with known properties of the lens and the
+/// threshold for outliers.
 #[derive(Debug, Clone)]
 pub struct LensPriors {
     /// Width and height in pixels.
@@ -22,35 +22,36 @@ pub struct LensPriors {
     pub threshold: f64,
 }
 
-/// Camera of a single photograph estimated from known world points, with its inliers and accuracy.
+/// Camera of a single photograph, estimated from known world points, with its inliers and accuracy.
 #[derive(Debug, Clone)]
 pub struct Resection {
     /// Estimated lens.
     pub lens: Lens,
     /// Estimated pose.
     pub pose: Pose,
-    /// Indices of the points that agree with the camera.
+    /// Indices of the points that are consistent with the camera.
     pub inliers: Vec<usize>,
     /// Root mean square residual of the inliers, in pixels.
     pub rms: f64,
-    /// Ratio of the smallest to the largest singular value of the Jacobian, with columns scaled to
-    /// the same length.
+    /// Ratio of the smallest to the largest singular value of the Jacobian, whose columns are
+    /// scaled to the same length.
     pub conditioning: f64,
 }
 
-/// Minimum spread of the points along the third principal axis, relative to the first. Flatter
-/// points count as lying in a plane.
+/// Minimum spread of the points along the third principal axis, relative to the first axis. Points
+/// with a smaller spread are treated as lying in a plane.
 const MIN_THICKNESS: f64 = 1e-3;
-/// Minimum of [`Resection::conditioning`] for a camera to count as determined.
+/// Minimum value of [`Resection::conditioning`] at which a camera counts as determined.
 const MIN_CONDITIONING: f64 = 1e-6;
 
 /// Estimates the camera from world points and their pixels. The principal point is assumed to be
-/// the image centre, and pixels to be square.
+/// the image centre, and pixels are assumed to be square.
 ///
 /// # Errors
 ///
-/// If the points do not determine a camera: too few points, points on a line, points in a plane
-/// without a known focal length, or points that do not agree on any camera.
+/// Returns an error if the points do not determine a camera. This happens if there are too few
+/// points, if they lie on a line or, without a known focal length, in a plane, or if they are not
+/// consistent with any camera.
 pub fn camera(pairs: &[PointPixelPair], known: &LensPriors) -> Result<Resection, Error> {
     let points: Vec<Vector3<f64>> = pairs.iter().map(|pair| pair.0).collect();
     let least = if known.focal.is_some() { 4 } else { 6 };
@@ -89,7 +90,7 @@ pub fn camera(pairs: &[PointPixelPair], known: &LensPriors) -> Result<Resection,
     let mut best: Option<Resection> = None;
     for focal in candidates {
         let lens = Lens::new(known.size, focal);
-        // A wrong initial focal length enlarges all residuals.
+        // A wrong initial focal length increases all residuals.
         let initial_threshold = if known.focal.is_some() { known.threshold } else { known.threshold.max(0.02 * side) };
         let Some(resection) = from_lens(pairs, lens, known, initial_threshold) else { continue };
         let better = |best: &Resection| (resection.inliers.len(), -resection.rms) > (best.inliers.len(), -best.rms);
@@ -97,7 +98,8 @@ pub fn camera(pairs: &[PointPixelPair], known: &LensPriors) -> Result<Resection,
             best = Some(resection);
         }
     }
-    // A few points always agree with some camera by chance, so two thirds must agree.
+    // By chance, a few points always agree with some camera, so two thirds of the points must
+    // agree.
     let enough = |best: &Resection| best.inliers.len() >= least.max((2 * pairs.len()).div_ceil(3));
     let best = best.filter(enough).ok_or_else(|| {
         let limit = known.threshold;
@@ -114,10 +116,11 @@ pub fn camera(pairs: &[PointPixelPair], known: &LensPriors) -> Result<Resection,
     Ok(best)
 }
 
-/// Estimates the camera from an initial focal length.
+/// Estimates the camera, starting from an initial focal length.
 fn from_lens(pairs: &[PointPixelPair], lens: Lens, known: &LensPriors, initial_threshold: f64) -> Option<Resection> {
     let (pose, inliers) = estimate_pose(pairs, &lens, initial_threshold, 0).or_else(|| {
-        // RANSAC needs more points than its sample, so exactly four points are handled separately.
+        // RANSAC needs more points than its sample contains, so exactly four points are handled
+        // separately.
         let all: Vec<usize> = (0..pairs.len()).collect();
         let directions: Option<Vec<_>> = pairs[..3].iter().map(|pair| lens.unproject(&pair.1)).collect();
         let [a, b, c] = directions?.try_into().ok()?;
@@ -158,7 +161,7 @@ fn residual(lens: &Lens, pose: &Pose, (point, pixel): &PointPixelPair) -> f64 {
     if p.z > 0.0 { (lens.project(&p) - pixel).norm() } else { f64::INFINITY }
 }
 
-/// Computes [`Resection::conditioning`].
+/// Computes the value of [`Resection::conditioning`].
 fn conditioning(lens: &Lens, pose: &Pose, pairs: &[PointPixelPair], inliers: &[usize], focal: bool) -> f64 {
     let columns = if focal { 7 } else { 6 };
     let mut rows = DMatrix::zeros(2 * inliers.len().max(4), columns);
@@ -174,7 +177,7 @@ fn conditioning(lens: &Lens, pose: &Pose, pairs: &[PointPixelPair], inliers: &[u
     values[columns - 1] / values[0]
 }
 
-/// Returns the vanishing point of lines: the homogeneous point closest to all of them.
+/// Returns the vanishing point of lines, which is the homogeneous point closest to all of them.
 fn vanishing_point(lines: &[[Vector2<f64>; 2]], size: f64) -> Option<Vector3<f64>> {
     let homogeneous = |p: &Vector2<f64>| Vector3::new(p.x / size, p.y / size, 1.0);
     let line = |ends: &[Vector2<f64>; 2]| homogeneous(&ends[0]).cross(&homogeneous(&ends[1])).try_normalize(1e-12);
@@ -186,9 +189,10 @@ fn vanishing_point(lines: &[[Vector2<f64>; 2]], size: f64) -> Option<Vector3<f64
     (values[1] > 1e-9 * values[0]).then(|| Vector3::new(v[0] * size, v[1] * size, v[2]))
 }
 
-/// Computes the camera from two vanishing points v and w: f² = -(v - c)·(w - c), where c is the
-/// principal point. The directions of the axes are (v - c, f) and (w - c, f). A photograph does not
-/// determine the scale, so `distance` sets the distance from the camera to the origin.
+/// Computes the camera from two vanishing points v and w. The focal length is given by f² = -(v -
+/// c)·(w - c), where c is the principal point. The directions of the axes are (v - c, f) and (w -
+/// c, f). A photograph does not determine the scale, so `distance` sets the distance from the
+/// camera to the origin.
 ///
 /// Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 /// section 8.6; Guillou and others, *Using Vanishing Points for Camera Calibration and Coarse 3D
@@ -196,7 +200,7 @@ fn vanishing_point(lines: &[[Vector2<f64>; 2]], size: f64) -> Option<Vector3<f64
 ///
 /// # Errors
 ///
-/// If the lines do not determine a camera.
+/// Returns an error if the lines do not determine a camera.
 pub fn from_vanishing_lines(known: &VanishingLines, distance: f64) -> Result<(Lens, Pose), Error> {
     let size = f64::from(known.size[0].max(known.size[1]));
     let [one, two] = known.axes;

@@ -5,7 +5,8 @@ use crate::geometry::camera::principal_deviations;
 use nalgebra::{Matrix3, Vector2, Vector3};
 use serde::Serialize;
 
-/// Photograph on the tour page: its camera, and the rectangle in space onto which it is projected.
+/// Photograph on the tour page, with its camera and the rectangle in space onto which it is
+/// projected.
 #[derive(Debug, Clone, Serialize)]
 pub struct TourView {
     /// Index of the photograph in the reconstruction.
@@ -18,17 +19,18 @@ pub struct TourView {
     pub focal: f64,
     /// Position of the camera.
     pub center: [f64; 3],
-    /// Rotation matrix by rows: the camera's right, down, and forward directions in the world.
+    /// Rotation matrix stored by rows, which are the camera's right, down, and forward directions
+    /// in world space.
     pub rotation: [[f64; 3]; 3],
-    /// Corners of the photograph in the world: upper left, upper right, lower right, and lower
+    /// Corners of the photograph in world space: upper left, upper right, lower right, and lower
     /// left.
     pub corners: [[f64; 3]; 4],
     /// Indices of the points that the photograph observes.
     pub points: Vec<usize>,
 }
 
-/// Returns the photographs with a known pose. Each is projected onto the plane that fits its points
-/// or, if that plane is too oblique, onto a plane perpendicular to the view direction.
+/// Returns the photographs with a known pose. Each photograph is projected onto the plane that fits
+/// its points or, if that plane is too oblique, onto a plane perpendicular to the view direction.
 pub fn tour_views(reconstruction: &Reconstruction) -> Vec<TourView> {
     let mut points_of_view = vec![Vec::new(); reconstruction.views.len()];
     for (i, point) in reconstruction.points.iter().enumerate() {
@@ -55,7 +57,7 @@ pub fn tour_views(reconstruction: &Reconstruction) -> Vec<TourView> {
         let rays = [ray(0.0, 0.0), ray(width, 0.0), ray(width, height), ray(0.0, height)];
         let on = |(origin, normal): (Vector3<f64>, Vector3<f64>)| {
             let far = rays.map(|ray| (origin - center).dot(&normal) / ray.dot(&normal));
-            // Rays have depth 1, so the distances along them are depths.
+            // The rays have depth 1, so distances along them are depths.
             far.iter()
                 .all(|t| (0.3 * depth..3.0 * depth).contains(t))
                 .then(|| [0, 1, 2, 3].map(|i| center + far[i] * rays[i]))
@@ -76,8 +78,8 @@ pub fn tour_views(reconstruction: &Reconstruction) -> Vec<TourView> {
     list
 }
 
-/// Returns the plane that fits points best, as a point and a normal; `None` if the points are not
-/// nearly in a plane.
+/// Returns the plane that fits points best, as a point and a normal. Returns `None` if the points
+/// are not nearly in a plane.
 fn plane(points: &[Vector3<f64>]) -> Option<(Vector3<f64>, Vector3<f64>)> {
     let [_, second, third] = principal_deviations(points);
     if points.len() < 8 || third > 0.7 * second {

@@ -1,5 +1,5 @@
-//! Closed-loop tests with synthetic cameras and points: they are reconstructed despite outliers,
-//! and errors match the computed covariance.
+//! Closed-loop tests with synthetic cameras and points. The tests check that these are
+//! reconstructed despite outliers, and that errors match the computed covariance.
 
 use durer_photo::adjust::{Options as Adjust, adjust, covariance};
 use durer_photo::geometry::align::{Similarity, align_cameras as aligned};
@@ -22,8 +22,8 @@ fn cameras(count: u32) -> Vec<Pose> {
     (0..count).map(camera).collect()
 }
 
-/// Returns cameras and points whose observations have normally distributed errors of `noise`
-/// pixels.
+/// Returns cameras and points whose observations have normally distributed errors with a standard
+/// deviation of `noise` pixels.
 fn scene(views: u32, points: usize, noise: f64, seed: u64) -> Reconstruction {
     let random = &mut Random::new(seed);
     let lens = Lens { distortion: [-0.08, 0.03], ..Lens::new(SIZE, FOCAL) };
@@ -34,7 +34,7 @@ fn scene(views: u32, points: usize, noise: f64, seed: u64) -> Reconstruction {
         for (view, pose) in poses.iter().enumerate() {
             let error = noise * Vector2::new(random.normal(), random.normal());
             let pixel = lens.project(&pose.apply(&position)) + error;
-            // Two fifths of the observations are missing, as if occluded.
+            // Two fifths of the observations are missing, as if they were occluded.
             if random.unit() < 0.6 {
                 track.push(Observation { view, feature: 0, pixel });
             }
@@ -46,7 +46,7 @@ fn scene(views: u32, points: usize, noise: f64, seed: u64) -> Reconstruction {
     Reconstruction { lenses: vec![lens], views: poses.iter().enumerate().map(view).collect(), points }
 }
 
-/// Returns the matches of a scene, where a fraction `outliers` of the observations is false.
+/// Returns the matches of a scene, in which the fraction `outliers` of the observations is false.
 fn matches(all: &Reconstruction, focal: f64, outliers: f64) -> Matches {
     let random = &mut Random::new(99);
     let track = |point: &Point| {
@@ -83,8 +83,8 @@ fn matches(all: &Reconstruction, focal: f64, outliers: f64) -> Matches {
     Matches { format: FORMAT.into(), pictures: all.views.iter().map(picture).collect(), links, tracks }
 }
 
-/// Returns the maximum distance between corresponding cameras, and the maximum angle in degrees,
-/// after alignment by a similarity.
+/// Aligns the cameras by a similarity. Returns the maximum distance between corresponding cameras,
+/// and the maximum angle between them in degrees.
 fn differences(found: &Reconstruction, truth: &Reconstruction) -> (f64, f64) {
     let poses = |all: &Reconstruction| all.views.iter().map(|view| view.pose.unwrap()).collect::<Vec<_>>();
     let (found, truth) = (poses(found), poses(truth));
@@ -137,20 +137,21 @@ fn missing_depth_is_reported() {
         }
     }
     assert!(why(&turned).contains("the camera only rotated"), "{}", why(&turned));
-    // All matches are false.
+    // In this scene, all matches are false.
     let chance = matches(&scene(4, 300, 0.2, 3), FOCAL, 1.0);
     let error = solve(&chance, &Options::default(), &|_| {}).err().unwrap();
     assert!(error.message.contains("enough points that agree"), "{error}");
 }
 
-/// Transforms the reconstruction so that the first camera and one component of another camera's
-/// translation equal the true ones.
+/// Transforms the reconstruction so that the first camera, and one component of another camera's
+/// translation, equal the true values.
 fn in_frame(found: &mut Reconstruction, truth: &Reconstruction, far: usize, component: usize) {
     let pose = |all: &Reconstruction, i: usize| all.views[i].pose.unwrap();
     let rotation = pose(truth, 0).rotation.transpose() * pose(found, 0).rotation;
     let (from, to) = (pose(found, 0).center(), pose(truth, 0).center());
     Similarity { scale: 1.0, rotation, translation: to - rotation * from }.apply_to(found);
-    // Scaling by s about the first camera changes the other's translation from a + b to a + s b.
+    // Scaling by s about the first camera changes the translation of the other camera from a + b to
+    // a + s b.
     let there = pose(found, far);
     let a = -(there.rotation * to)[component];
     let scale = (pose(truth, far).translation[component] - a) / (there.translation[component] - a);
@@ -184,7 +185,7 @@ fn errors_match_their_covariance() {
         sum += error.dot(&Cholesky::new(part).unwrap().solve(&error));
         count += n;
     }
-    // χ² with n degrees of freedom has mean n and variance 2 n.
+    // χ² with n degrees of freedom has the mean n and the variance 2 n.
     let off = (sum - count as f64) / (2.0 * count as f64).sqrt();
     println!("χ² {sum} of {count}: {off} standard deviations");
     assert!(off.abs() < 4.0, "{sum} of {count}");

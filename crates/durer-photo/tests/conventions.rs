@@ -1,5 +1,5 @@
-//! Tests of the table of conventions: one camera that observes one point, written by hand in each
-//! format.
+//! Tests for the table of conventions. They use one camera that observes one point, written by hand
+//! in each format.
 
 use durer_photo::format::{CONVENTIONS, Output, read, read_control};
 use durer_photo::matching::FORMAT;
@@ -9,17 +9,18 @@ use std::path::Path;
 use tempfile::TempDir;
 
 // The image has 640 x 480 pixels, f = 500, and k1 = 0.1. The camera is rotated by 90 degrees about
-// z, and t = (0.5, 1, 5). The point X = (1, 2, 3) is at P = (-1.5, 2, 8) in its frame, so p =
-// (-0.1875, 0.25) and r = 1 + 0.1 |p|² = 1.009765625. The pixel is 94.66552734375 pixels left of
-// the centre and 126.220703125 below it.
+// z, and t = (0.5, 1, 5). In the camera frame, the point X = (1, 2, 3) is at P = (-1.5, 2, 8), so p
+// = (-0.1875, 0.25) and r = 1 + 0.1 |p|² = 1.009765625. The pixel is 94.66552734375 pixels to the
+// left of the centre and 126.220703125 pixels below it.
 const PIXEL: [f64; 2] = [320.0 - 94.66552734375, 240.0 + 126.220703125];
 const CENTER: [f64; 3] = [-1.0, 0.5, -5.0];
 const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// Test case of a file format: its name in the table, the path to read, and the files to create.
+/// Test case for a file format, with its name in the table, the path to read, and the files to
+/// create.
 type Case = (&'static str, &'static str, Vec<(&'static str, Vec<u8>)>);
 
-/// Returns the files of every format that can be read.
+/// Returns test files in every format that can be read.
 fn files() -> Vec<Case> {
     let bundler = "# Bundle file v0.3\n1 1\n500 0.1 0\n0 -1 0\n-1 0 0\n0 0 -1\n0.5 -1 -5\n1 2 3\n10 20 30\n1 0 0 -94.66552734375 -126.220703125\n";
     // The rotation is by 180 degrees about (1, -1, 0).
@@ -33,8 +34,8 @@ fn files() -> Vec<Case> {
         "viewTransform": {"rows": [[0, -1, 0, 0.5], [-1, 0, 0, -1], [0, 0, -1, -5], [0, 0, 0, 1]]}}"#;
     let ply = "ply\nformat ascii 1.0\ncomment cameras at the end: 1\nelement vertex 2\nproperty double x\nproperty double y\nproperty double z\n\
         property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n1 2 3 10 20 30\n-1 0.5 -5 255 0 0\n";
-    // A camera in a node that is translated, rotated by a half turn about x, and scaled by 2; and
-    // 1, 2, 3 as floats, 10, 20, 30 as bytes.
+    // The node of the camera is translated, rotated by a half turn about x, and scaled by 2. The
+    // data are 1, 2, 3 as floats and 10, 20, 30 as bytes.
     let data = "AACAPwAAAEAAAEBAChQe/w==";
     let gltf = format!(
         r#"{{"asset": {{"version": "2.0"}}, "nodes": [
@@ -51,7 +52,7 @@ fn files() -> Vec<Case> {
     let doubles = |values: &[f64]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>();
     let longs = |values: &[u64]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>();
     let ints = |values: &[u32]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>();
-    // Camera model 2 is SIMPLE_RADIAL.
+    // In COLMAP, camera model 2 is SIMPLE_RADIAL.
     let cameras_bin = [longs(&[1]), ints(&[1, 2]), longs(&[640, 480]), doubles(&[500.0, 320.0, 240.0, 0.1])].concat();
     let pose = doubles(&[HALF, 0.0, 0.0, HALF, 0.5, 1.0, 5.0]);
     let name = b"a.jpg\0".to_vec();
@@ -91,7 +92,7 @@ fn files() -> Vec<Case> {
     ]
 }
 
-/// Checks that the camera and the point equal those computed by hand.
+/// Checks that the camera and the point equal the values computed by hand.
 #[track_caller]
 fn is_as_meant(all: &Reconstruction, name: &str) {
     assert_eq!(all.views.len(), usize::from(name != "PLY"), "{name}");
@@ -116,7 +117,7 @@ fn view_is_as_meant(all: &Reconstruction, view: &View, name: &str) {
     let radial = if name == "fSpy" { 0.0 } else { 0.1 };
     assert!((lens.focal - 500.0).abs() < 1e-9, "{name}: {}", lens.focal);
     assert_eq!((lens.aspect, lens.principal_point, lens.distortion), (1.0, [320.0, 240.0], [radial, 0.0]), "{name}");
-    // In every format, the camera sees the point at the pixel computed by hand.
+    // In every format, the camera sees the point at the pixel that was computed by hand.
     let pixel = lens.project(&pose.apply(&Vector3::new(1.0, 2.0, 3.0)));
     assert!(name == "fSpy" || (pixel - Vector2::from(PIXEL)).norm() < 1e-9, "{name}: {pixel}");
 }
@@ -145,7 +146,7 @@ fn every_format_follows_the_table() {
         files.iter().for_each(|(file, bytes)| put(place.path(), file, bytes));
         let all = reread(&place.path().join(path));
         is_as_meant(&all, name);
-        // Written files are read back as the same.
+        // Files are read back exactly as they were written.
         let row = CONVENTIONS.iter().find(|row| row.name == name).unwrap();
         if row.direction.contains("out") {
             let again = place.path().join("again").join(path);
@@ -192,7 +193,7 @@ fn written_files_follow_the_table() {
     assert_eq!(ply[body..], [row([1.0, 2.0, 3.0], [10, 20, 30]), row(CENTER, [255, 0, 0])].concat());
 }
 
-/// A cloud of two points as PLY, in each encoding.
+/// Returns a cloud of two points as a PLY file in each encoding.
 fn clouds() -> Vec<(&'static str, Vec<u8>)> {
     let head = |format: &str, shade: &str| {
         format!(
@@ -231,7 +232,7 @@ fn clouds_are_read_in_every_encoding() {
         let all = read(&place.path().join("cloud.ply")).unwrap();
         let rows: Vec<_> = all.points.iter().map(|point| (<[f64; 3]>::from(point.position), point.color)).collect();
         assert_eq!(rows, [([0.5, -1.0, 0.25], [0, 255, 128]), ([3.0, 4.0, 1e9], [1, 2, 3])], "{format}");
-        // Files truncated within the points are rejected.
+        // Files that are truncated within the points are rejected.
         for cut in 0..bytes.len() - 11 {
             put(place.path(), "cloud.ply", &bytes[..cut]);
             assert!(
@@ -315,13 +316,13 @@ fn binary_gltf_is_read_and_foreign_cameras_have_1000_rows() {
     let head = [&b"glTF"[..], &2_u32.to_le_bytes(), &(12 + chunks.len() as u32).to_le_bytes()].concat();
     put(place.path(), "c.glb", &[head, chunks].concat());
     let all = read(&place.path().join("c.glb")).unwrap();
-    // Both cameras share a lens with a vertical field of view of 90 degrees.
+    // The two cameras share a lens with a vertical field of view of 90 degrees.
     assert_eq!((all.lenses.len(), all.views.len(), all.lenses[0].size), (1, 2, [1500, 1000]));
     assert!((all.lenses[0].focal - 500.0).abs() < 1e-9 && all.views[0].name == "Camera");
     let centers: Vec<_> = all.views.iter().map(|view| view.pose.unwrap().center()).collect();
     assert_eq!(centers, [Vector3::new(1.0, 2.0, 3.0), Vector3::zeros()]);
-    // The camera looks along -z, so a point in front of it and to the upper right appears to the
-    // upper right of the centre.
+    // The camera looks along -z. A point in front of it and to the upper right therefore appears to
+    // the upper right of the centre.
     let pixel = all.lenses[0].project(&all.views[1].pose.unwrap().apply(&Vector3::new(1.0, 0.5, -2.0)));
     assert!((pixel - Vector2::new(1000.0, 375.0)).norm() < 1e-9, "{pixel}");
     let positions: Vec<[f64; 3]> = all.points.iter().map(|point| point.position.into()).collect();

@@ -1,9 +1,10 @@
-//! Tests of feature detection: keypoints are found at the right positions, and rotate and scale
-//! with the image.
+//! Tests for feature detection. They check that keypoints are found at the right positions, and
+//! that they rotate and scale with the image.
 
 use durer_photo::feature::{GrayImage, features};
 
-/// Returns an image of a Gaussian blob, centred at a position in pixels from the upper left corner.
+/// Returns an image of a Gaussian blob. The position of its centre is given in pixels from the
+/// upper left corner.
 fn blob(side: usize, x: f32, y: f32, sigma: f32) -> GrayImage {
     let value = |i: usize| {
         let (dx, dy) = ((i % side) as f32 + 0.5 - x, (i / side) as f32 + 0.5 - y);
@@ -14,7 +15,7 @@ fn blob(side: usize, x: f32, y: f32, sigma: f32) -> GrayImage {
 
 #[test]
 fn blobs_are_found_at_their_positions() {
-    // Images of up to 1000 pixels are doubled first, larger ones are not. The blobs cover all
+    // Images of up to 1000 pixels are doubled first, but larger images are not. The blobs cover all
     // octaves.
     for (side, x, y, sigma) in [
         (100, 50.3, 47.8, 2.0),

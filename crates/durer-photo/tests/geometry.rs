@@ -1,4 +1,5 @@
-//! Tests of the geometric solvers: they recover the true model, and report degenerate data.
+//! Tests for the geometric solvers. They check that the solvers recover the true model and report
+//! degenerate data.
 
 use durer_photo::geometry::align::{Similarity, align_cameras, align_points};
 use durer_photo::geometry::camera::{decompose, solve_dlt};
@@ -57,7 +58,7 @@ fn two_views_are_found_from_five_seven_and_eight_points() {
         assert!((found.rotation - second.rotation).norm() < 1e-9);
         assert!((found.translation - second.translation.normalize()).norm() < 1e-9);
     }
-    // The polynomial of degree ten loses precision if five points are close to a degenerate
+    // The polynomial of degree ten loses precision if the five points are close to a degenerate
     // configuration.
     assert!(missed <= 3, "{missed}");
 }
@@ -73,7 +74,7 @@ fn p3p_solutions_include_the_true_pose() {
         assert!(poses.iter().any(|pose| near(pose) < 1e-5), "{:?}", poses.iter().map(near).collect::<Vec<_>>());
         assert!(poses.len() <= 4);
     }
-    // For points on a line, the pose is not unique.
+    // The pose is not unique if the points are on a line.
     let line = [0.0, 1.0, 2.0].map(|x| Vector3::new(x, x, 5.0));
     assert!(p3p(&line, &line).is_empty());
 }
@@ -107,7 +108,7 @@ fn similarity_is_recovered() {
     assert!((found.scale - 2.5).abs() < 1e-12 && (found.rotation - rotation).norm() < 1e-12);
     let line: Vec<_> = (0..5).map(|i| Vector3::new(f64::from(i), 0.0, 0.0)).collect();
     assert_eq!(align_points(&line, &line), None);
-    // For cameras on a line, only their rotations determine the rotation about that line.
+    // If the cameras are on a line, only their rotations determine the rotation about that line.
     let mut turned = |center: &Vector3<f64>| Pose::at(center, rotation_of(&vector(random, 2.0)));
     let there: Vec<Pose> = line.iter().map(&mut turned).collect();
     let mut all = Reconstruction::default();
@@ -131,7 +132,7 @@ fn rotations_survive_conversion_to_axis_and_angle() {
     assert!((axis_angle_of(&rotation_of(&half)).norm() - std::f64::consts::PI).abs() < 1e-12);
 }
 
-/// Returns a random camera, and points with the pixels at which it sees them.
+/// Returns a random camera, and random points with the pixels at which the camera sees them.
 fn photographed(count: usize, flat: bool) -> (Lens, Pose, Vec<PointPixelPair>) {
     let random = &mut Random::new(6);
     let lens = Lens { distortion: [-0.1, 0.02], ..Lens::new([800, 600], 750.0) };
@@ -162,7 +163,7 @@ fn one_photograph_of_known_points_gives_its_camera() {
     let (lens, truth, pairs) = photographed(12, true);
     let found = camera(&pairs, &known(Some(lens.focal))).unwrap();
     assert!((found.pose.center() - truth.center()).norm() < 1e-4);
-    // For a lens without distortion, the direct linear transform alone is exact.
+    // Without lens distortion, the direct linear transform alone is exact.
     let plain = Lens::new([800, 600], 750.0);
     let points: Vec<_> = photographed(8, false).2.into_iter().map(|pair| pair.0).collect();
     let pixels: Vec<_> = points.iter().map(|p| plain.project(&truth.apply(p))).collect();

@@ -1,5 +1,5 @@
-//! Tests with files written by other programs: the reprojection errors match the figures that the
-//! programs or their papers published.
+//! Tests with files written by other programs. They check that the reprojection errors match the
+//! figures published by the programs or their papers.
 
 use durer_photo::adjust::{Loss, Options, adjust, covariance};
 use durer_photo::format::{Output, read, read_project};
@@ -13,7 +13,7 @@ use durer_photo::{matching, photo};
 use nalgebra::{Cholesky, DMatrix, DVector, Vector3};
 use std::path::{Path, PathBuf};
 
-/// Returns the folder of shared photographs, if it exists.
+/// Returns the folder with the shared photographs, if it exists.
 fn samples() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
     let folder = std::env::var_os("DURER_CORPUS").map_or_else(beside, PathBuf::from).join("samples/photos");
@@ -78,7 +78,7 @@ fn adjustment_reaches_the_published_costs() {
         let report = adjust(&mut all, &Options::default());
         assert!(report.converged && all.reprojection_error().cost <= before, "{name}");
     }
-    // This solution has many outliers, to which OpenSfM gives less weight.
+    // This solution has many outliers, which OpenSfM weights less strongly.
     let mut berlin = read(&folder.join("opensfm-berlin/reconstruction_example.json")).unwrap();
     let before = berlin.reprojection_error().cost;
     adjust(&mut berlin, &Options { loss: Loss::Huber(3.0), ..Options::default() });
@@ -117,7 +117,7 @@ fn every_format_reads_back_what_it_writes() {
     }
 }
 
-/// glTF has no tracks, and stores positions in single precision; PLY has no cameras.
+/// glTF has no tracks, and stores positions in single precision, whereas PLY has no cameras.
 #[test]
 fn gltf_keeps_cameras_and_ply_keeps_points() {
     let Some(folder) = samples() else { return };
@@ -140,13 +140,13 @@ fn gltf_keeps_cameras_and_ply_keeps_points() {
             assert_eq!(ours.position, theirs.position.map(|value| f64::from(value as f32)));
         }
     }
-    // With the lens and pose of the glTF file, the projections stay the same.
+    // The projections stay the same with the lens and pose of the glTF file.
     let mut seen = berlin.clone();
     (seen.lenses, seen.views) = (gltf.lenses, gltf.views);
     assert_near(seen.reprojection_error().cost, berlin.reprojection_error().cost, 1e-6);
 }
 
-/// Reconstructs the photographs of a folder.
+/// Reconstructs the scene from the photographs in a folder.
 fn solved(folder: &Path, names: &[String]) -> Reconstruction {
     let options = matching::Options { features: 1500, ..Default::default() };
     let described = names.iter().map(|name| {
@@ -192,20 +192,20 @@ fn photographs_become_cameras() {
 
 /// Shows that the camera positions stored by Bundler are off by more than 1 % of their extent.
 /// Bundler gave each photograph its own focal length, from 638 to 729 pixels, although EXIF states
-/// a single one, and its least squares included some outliers.
+/// a single focal length. In addition, its least-squares fit included some outliers.
 fn stored_places_are_off(solved: &Reconstruction, bundler: &Reconstruction) {
-    // Bundler's observations fit our cameras better than Bundler's, although it used its own
-    // cameras to select them.
+    // Bundler's observations fit our cameras better than Bundler's cameras, although Bundler used
+    // its own cameras to select the observations.
     let (ours, theirs) = (median_residual(solved, bundler), median_residual(bundler, bundler));
     println!("median residual of what Bundler saw: {ours} with our cameras, {theirs} with its own");
     assert!(ours < 0.85 * theirs, "{ours} {theirs}");
-    // Bundler's observations, with a single lens, reproduce our cameras.
+    // With a single lens, Bundler's observations reproduce our cameras.
     let mut one = bundler.clone();
     one.lenses = vec![durer_photo::Lens { distortion: [0.0; 2], ..bundler.lenses[0] }];
     one.views.iter_mut().for_each(|view| view.lens = 0);
     adjust(&mut one, &Options { loss: Loss::Cauchy(1.0), ..Options::default() });
     assert!(max_center_distance(solved, &one) < 0.005, "{}", max_center_distance(solved, &one));
-    // Bundler's lenses and least squares also reproduce our cameras, if the few observations that
+    // Bundler's lenses and least squares also reproduce our cameras if the few observations that
     // are off by more than two pixels are dropped.
     let mut clean = bundler.clone();
     let mut dropped = 0;
@@ -221,8 +221,8 @@ fn stored_places_are_off(solved: &Reconstruction, bundler: &Reconstruction) {
     assert!(dropped < 25 && from_ours < 0.01 && from_stored > 0.015, "{dropped} {from_ours} {from_stored}");
 }
 
-/// Returns the median residual of observations, with each point triangulated from the rays of
-/// `cameras`.
+/// Returns the median residual of the observations, where each point is triangulated from the rays
+/// of `cameras`.
 fn median_residual(cameras: &Reconstruction, seen: &Reconstruction) -> f64 {
     let mut all = Vec::new();
     for point in &seen.points {
@@ -239,8 +239,8 @@ fn median_residual(cameras: &Reconstruction, seen: &Reconstruction) -> f64 {
     all[all.len() / 2]
 }
 
-/// Checks how uncertain the camera positions are if Bundler's observations have normal errors as
-/// large as their residuals, by drawing positions from the covariance.
+/// Draws positions from the covariance to check how uncertain the camera positions are. Bundler's
+/// observations are assumed to have normally distributed errors as large as their residuals.
 #[test]
 fn bundler_observations_do_not_determine_positions_to_1_percent() {
     let Some(folder) = samples() else { return };
@@ -274,7 +274,7 @@ fn wrong_exif_focal_length_is_corrected() {
     let Some(folder) = samples() else { return };
     let bundler = read(&folder.join("gtsam/Balbianello.out")).unwrap();
     let names: Vec<String> = (1..6).map(|i| format!("BalbianelloMedium-{i}.jpg")).collect();
-    // The photographs were scaled down, but EXIF still gives 3767 pixels.
+    // The photographs were scaled down, but EXIF still gives a focal length of 3767 pixels.
     let solved = solved(&folder.join("gtsam"), &names);
     assert_eq!(solved.registered_count(), 5);
     assert!(
@@ -294,7 +294,7 @@ fn three_photographs_of_a_phone_become_cameras() {
     let solved = solved(&folder.join("images"), &names);
     assert_eq!(solved.registered_count(), 3);
     let (ours, theirs) = (solved.reprojection_error(), opensfm.reprojection_error());
-    // Features are detected in photographs reduced by a factor of 3264 / 1600.
+    // Features are detected in photographs that are reduced by a factor of 3264 / 1600.
     println!("{ours:?} {}", max_center_distance(&solved, &opensfm));
     assert!(ours.rms <= 0.6 * 3264.0 / 1600.0 && ours.rms < 0.5 * theirs.rms, "{ours:?}");
     assert!(max_center_distance(&solved, &opensfm) < 0.01, "{}", max_center_distance(&solved, &opensfm));
@@ -306,7 +306,7 @@ fn fspy_cameras_see_their_vanishing_points() {
     let all = read(&folder.join("fspy/json_export.json")).unwrap();
     let (lens, pose) = (all.lenses[0], all.views[0].pose.unwrap());
     // According to the file, the vanishing points are (1.605, 0.001) for -x, (-0.652, 0.003) for z,
-    // and (-0.375, -436) for y, with the longer side from -1 to 1.
+    // and (-0.375, -436) for y, where the longer side ranges from -1 to 1.
     for (axis, x, y) in [
         (-nalgebra::Vector3::x(), 1.6051650133994935_f64, 0.001021010320067342_f64),
         (nalgebra::Vector3::z(), -0.652074716204382, 0.0029610261811691915),
@@ -314,8 +314,8 @@ fn fspy_cameras_see_their_vanishing_points() {
     ] {
         let pixel = lens.project(&(pose.rotation * axis));
         let (u, v) = ((pixel.x - lens.principal_point[0]) / 719.5, (lens.principal_point[1] - pixel.y) / 719.5);
-        // The y axis is almost perpendicular to the view, so its vanishing point is far away and
-        // less accurate.
+        // The y axis is almost perpendicular to the view direction, so its vanishing point is far
+        // away and less accurate.
         assert!((u - x).abs() < 1e-3 * (1.0 + y.abs()) && (v - y).abs() < 1e-3 * (1.0 + y.abs()), "{u} {v}");
     }
     let mut found = 0;

@@ -1,5 +1,5 @@
-//! The native half of `import durer`. It takes checked arrays and returns arrays and JSON text. The
-//! public interface is in `python/durer`.
+//! Native part of `import durer`. It takes arrays that have been checked, and returns arrays and
+//! JSON text. The public interface is in `python/durer`.
 
 mod pictures;
 mod rays;
@@ -11,8 +11,8 @@ mod world;
 
 use pyo3::prelude::*;
 
-/// Native module of `durer`, for internal use. Its functions expect arguments that `durer` has
-/// checked, and may change without notice.
+/// Native module of `durer`, for internal use only. Its functions expect arguments that `durer` has
+/// checked, and can change without notice.
 #[pymodule]
 fn _durer(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;

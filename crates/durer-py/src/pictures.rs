@@ -1,4 +1,4 @@
-//! Image files and comparisons, with images as numpy arrays.
+//! Image files and image comparison, with images as numpy arrays.
 
 use crate::work::install;
 use durer::image::compare::{self as comparing, Options, Picture, Scale};
@@ -21,10 +21,11 @@ fn image(array: &PyReadonlyArray3<f32>) -> PyResult<Image> {
     Image::from_pixels(shape[1] as u32, shape[0] as u32, pixels).map_err(wrong)
 }
 
-/// Image to compare, and true if its values are display values instead of linear light.
+/// Image to compare, together with a flag that is true if its values are display values instead of
+/// linear light.
 type ScaledPicture<'py> = (PyReadonlyArray3<'py, f32>, bool);
 
-/// Compares an image with a reference. Returns the result as JSON, and the FLIP error of each
+/// Compares an image with a reference image. Returns the result as JSON, and the FLIP error of each
 /// pixel.
 #[pyfunction]
 pub fn compare<'py>(
@@ -42,8 +43,8 @@ pub fn compare<'py>(
     Ok((report::comparison(&found, &[]).to_string(), found.flip_map.into_pyarray(py)))
 }
 
-/// Image to encode: its name, its values, its coverage if it is not 1 everywhere, and true if the
-/// values are linear light.
+/// Image to encode: its name, its values, its coverage unless it is 1 everywhere, and a flag that
+/// is true if the values are linear light.
 type NamedPicture<'py> = (String, PyReadonlyArray3<'py, f32>, Option<Vec<f32>>, bool);
 
 /// Encodes an image file. The extension of `name` selects the format.
@@ -71,7 +72,8 @@ pub fn encode<'py>(
     Ok(PyBytes::new(py, &bytes))
 }
 
-/// Decodes an image file. Returns the values, width, height, and true for display values.
+/// Decodes an image file. Returns the values, the width, the height, and true if the values are
+/// display values.
 #[pyfunction]
 pub fn decode<'py>(py: Python<'py>, bytes: &[u8], name: &str) -> PyResult<(Bound<'py, PyArray1<f32>>, u32, u32, bool)> {
     let picture = install(py, None, || Picture::read(bytes, name))

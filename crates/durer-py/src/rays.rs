@@ -1,4 +1,4 @@
-//! Rays in numpy arrays.
+//! Rays that are stored in numpy arrays.
 
 use durer::math::{Ray, Ray64, Vec3};
 use glam::DVec3;
@@ -6,7 +6,7 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Number of rays per job, chosen so that their copies fit in the cache.
+/// Number of rays per job, chosen so that the copied rays fit in the cache.
 pub const JOB: usize = 2048;
 
 /// Numpy array of points or directions, in single or double precision.
@@ -16,12 +16,13 @@ pub enum PointArray<'py> {
     Double(PyReadonlyArray2<'py, f64>),
 }
 
-/// Rays as passed from Python: their number, origins, directions, `t_min` and `t_max`. Each array
-/// has one row per ray, or one row for all.
+/// Rays as passed from Python, with their number, origins, directions, `t_min` and `t_max`. Each
+/// array has either one row per ray or a single row for all rays.
 pub type RayArrays<'py> =
     (usize, PointArray<'py>, PyReadonlyArray2<'py, f32>, PyReadonlyArray1<'py, f32>, PyReadonlyArray1<'py, f32>);
 
-/// Points borrowed from a contiguous array, in either precision: one per element, or one for all.
+/// Points borrowed from a contiguous array in either precision, with one point per element or a
+/// single point for all.
 #[derive(Clone, Copy)]
 pub enum Points<'a> {
     Single(&'a [f32]),
@@ -29,7 +30,7 @@ pub enum Points<'a> {
 }
 
 impl<'a> Points<'a> {
-    /// Borrows the points of an array.
+    /// Borrows the points that are stored in an array.
     pub fn new(array: &'a PointArray<'_>) -> PyResult<Self> {
         let wrong = || PyValueError::new_err("points are rows of three numbers, one after the other");
         match array {
@@ -41,7 +42,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// Returns the number of rows.
+    /// Returns the number of rows in the array.
     pub fn count(&self) -> usize {
         match self {
             Points::Single(rows) => rows.len() / 3,
@@ -49,7 +50,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// Returns point `i`, or the only point if there is one for all.
+    /// Returns point `i`, or the single point if it applies to all elements.
     pub fn at(&self, i: usize) -> DVec3 {
         let at = if self.count() == 1 { 0 } else { 3 * i };
         match self {
@@ -58,7 +59,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// Returns point `i` relative to `center`, rounded once.
+    /// Returns point `i` relative to `center`, rounded once to single precision.
     pub fn relative_to(&self, center: DVec3, i: usize) -> Vec3 {
         (self.at(i) - center).as_vec3()
     }
@@ -81,7 +82,7 @@ pub fn points<'a>(array: &'a PyReadonlyArray2<'_, f32>) -> PyResult<&'a [f32]> {
 }
 
 impl<'a> Rays<'a> {
-    /// Borrows rays from arrays, after checking the lengths of the arrays.
+    /// Borrows rays from arrays, after checking that the lengths of the arrays match.
     pub fn new((count, origins, directions, t_min, t_max): &'a RayArrays) -> PyResult<Self> {
         let wrong = || PyValueError::new_err("rays are numbers, one after the other, one for all or one for each");
         let count = *count;
@@ -92,8 +93,8 @@ impl<'a> Rays<'a> {
         all.then_some(Rays { count, origins, directions, t_min, t_max }).ok_or_else(wrong)
     }
 
-    /// Returns the rays of the job that begins with ray `first`. Origins are relative to `center`
-    /// and rounded once.
+    /// Returns the rays of the job that begins with ray `first`. Origins are relative to `center`,
+    /// and are rounded once.
     pub fn job(&self, first: usize, center: DVec3) -> Vec<Ray> {
         match self.origins {
             Points::Single(rows) if center == DVec3::ZERO => {
@@ -116,7 +117,7 @@ impl<'a> Rays<'a> {
         self.map_job(first, |i, dir, t_min, t_max| Ray64::new(self.origins.at(i), dir, t_min, t_max))
     }
 
-    /// Calls `ray` for each ray of a job, and collects the results.
+    /// Calls the function `ray` for each ray of a job, and collects the results.
     #[inline(always)]
     fn map_job<R>(&self, first: usize, ray: impl Fn(usize, Vec3, f32, f32) -> R) -> Vec<R> {
         let step = |list: &[f32], each: usize| if list.len() == each { 0 } else { each };

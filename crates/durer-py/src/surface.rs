@@ -1,4 +1,4 @@
-//! Surface attributes at hits: points, normals, and origins of secondary rays.
+//! Surface attributes at hit points: positions, normals, and origins of secondary rays.
 
 use crate::rays::{JOB, points};
 use crate::tree::{Target, Tree, zeros};
@@ -9,10 +9,10 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Hits as passed from Python: objects (for scenes only), triangles, and u and v.
+/// Hits as passed from Python, with objects (for scenes only), triangles, and u and v.
 pub type HitInput<'py> = (Option<PyReadonlyArray1<'py, i32>>, PyReadonlyArray1<'py, i32>, PyReadonlyArray2<'py, f32>);
 
-/// Hits on a tree, borrowed from numpy arrays, whose points, normals and secondary origins are
+/// Hits on a tree, borrowed from numpy arrays. Their points, normals and secondary origins are
 /// computed.
 struct Hits<'a> {
     tree: &'a Tree,
@@ -21,7 +21,7 @@ struct Hits<'a> {
     uv: &'a [[f32; 2]],
 }
 
-/// Triangle of a hit in object space, with the transform of its object to world space.
+/// Triangle of a hit in object space, with the transform from object space to world space.
 struct Face<'a> {
     corners: [DVec3; 3],
     to_world: Option<&'a Affine>,
@@ -54,7 +54,7 @@ impl<'a> Hits<'a> {
 }
 
 impl Face<'_> {
-    /// Returns the point at barycentric coordinates, in object space.
+    /// Returns the point at the given barycentric coordinates, in object space.
     fn point(&self, [u, v]: [f32; 2]) -> DVec3 {
         let ([a, b, c], u, v) = (self.corners, f64::from(u), f64::from(v));
         (1.0 - u - v) * a + u * b + v * c
@@ -65,7 +65,7 @@ impl Face<'_> {
         self.to_world.map_or(point + self.center, |map| map.forward().transform_point3(point))
     }
 
-    /// Returns the unit normal in object space; zero if the triangle has no area.
+    /// Returns the unit normal in object space, or zero if the triangle has no area.
     fn normal(&self) -> DVec3 {
         let [a, b, c] = self.corners;
         (b - a).cross(c - a).normalize_or_zero()
@@ -111,8 +111,9 @@ impl Face<'_> {
     }
 }
 
-/// Moves a point inside a triangle away from its edges until it is `margin` from each, or in the
-/// middle where the triangle is too narrow. The point moves by at most a few margins.
+/// Moves a point inside a triangle away from the edges until its distance from each of them is
+/// `margin`. Where the triangle is too narrow, the point moves to the middle. The point moves by at
+/// most a few margins.
 fn inset(corners: [DVec3; 3], normal: DVec3, point: DVec3, margin: f64) -> DVec3 {
     let [a, b, c] = corners;
     let inward = [(b, c), (c, a), (a, b)].map(|(from, to)| (from, normal.cross(to - from).normalize_or_zero()));
@@ -133,12 +134,12 @@ fn inset(corners: [DVec3; 3], normal: DVec3, point: DVec3, margin: f64) -> DVec3
     if moved.length() <= 4.0 * margin {
         return point + moved;
     }
-    // Between two sides that are closer than two margins, move to the middle.
+    // Between two sides that are less than two margins apart, move to the middle.
     let middle = (next - near) / (1.0 - cosine);
     if middle.is_finite() { point + middle.min(margin) * way } else { point }
 }
 
-/// Computes a vector for each hit, on all threads.
+/// Computes a vector for each hit, using all threads.
 fn rows<T: numpy::Element + Copy + Default + Send + Sync>(
     py: Python,
     hits: &Hits,
@@ -157,8 +158,8 @@ fn rows<T: numpy::Element + Copy + Default + Send + Sync>(
     Ok(values)
 }
 
-/// Returns the hit points, in double precision if `double` is true, otherwise in single precision;
-/// NaN for misses.
+/// Returns the hit points, in double precision if `double` is true and otherwise in single
+/// precision. The result is NaN for misses.
 #[pyfunction]
 pub fn hit_points<'py>(
     py: Python<'py>,
@@ -178,8 +179,8 @@ pub fn hit_points<'py>(
     })
 }
 
-/// Returns the unit normals of the triangles that were hit, pointing outwards also for mirrored
-/// instances; zero for misses.
+/// Returns the unit normals of the triangles that were hit. They point outwards, even for mirrored
+/// instances, and are zero for misses.
 #[pyfunction]
 pub fn hit_normals<'py>(
     py: Python<'py>,
@@ -195,7 +196,7 @@ pub fn hit_normals<'py>(
     Ok(rows(py, &hits, threads, 0.0, normal)?.into_pyarray(py))
 }
 
-/// Returns the origins of secondary rays at hits, one per direction.
+/// Returns the origins of secondary rays that start at hits, one for each direction.
 #[pyfunction]
 pub fn secondary_origins<'py>(
     py: Python<'py>,

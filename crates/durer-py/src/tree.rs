@@ -1,4 +1,4 @@
-//! Ray and point queries on meshes and on scenes of instances.
+//! Ray and point queries on meshes, and on scenes that consist of instances.
 
 use crate::rays::{PointArray, JOB, Points, RayArrays, Rays, points};
 use crate::work::{Pace, each, install};
@@ -11,27 +11,27 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// BVH behind `durer.Mesh` or `durer.Scene`: a tree of triangles, or a tree of instances of such
-/// trees.
+/// BVH behind `durer.Mesh` or `durer.Scene`. It is either a tree of triangles or a tree of
+/// instances of such trees.
 #[pyclass(frozen, module = "durer._durer")]
 pub struct Tree {
     pub target: Target,
-    /// Origin in world space of a mesh's coordinates. Distant meshes have coordinates relative to
-    /// their centre, because single precision is more accurate there.
+    /// World-space position of the origin of a mesh's coordinates. The coordinates of distant
+    /// meshes are relative to their centre, because single precision is more accurate there.
     pub center: DVec3,
 }
 
-/// The BVH of a [`Tree`], by kind.
+/// BVH of a [`Tree`], either of triangles or of instances.
 pub enum Target {
     Mesh(Arc<TriangleBvh>),
     Instances(InstanceBvh),
 }
 
-/// Arrays of all hits for Python: t, triangle, object, u and v.
+/// Arrays that hold all hits for Python: t, triangle, object, u and v.
 type HitArrays<'py> =
     (Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f32>>);
 
-/// Arrays of first hits for Python: t, triangle, object (for scenes only), u and v.
+/// Arrays that hold the first hits for Python: t, triangle, object (for scenes only), u and v.
 type ClosestArrays<'py> = (
     Bound<'py, PyArray1<f32>>,
     Bound<'py, PyArray1<i32>>,
@@ -39,7 +39,7 @@ type ClosestArrays<'py> = (
     Bound<'py, PyArray1<f32>>,
 );
 
-/// One hit: t, triangle, object, u and v; see [`MISS`] for rays that hit nothing.
+/// Single hit, with t, triangle, object, u and v. Rays that hit nothing use [`MISS`].
 #[derive(Clone, Copy)]
 struct Row(f32, i32, i32, [f32; 2]);
 
@@ -116,8 +116,8 @@ impl Tree {
     }
 }
 
-/// Returns the axis-aligned ray from a point that leaves the bounding box soonest. If the point is
-/// outside or NaN, the ray hits nothing.
+/// Returns an axis-aligned ray from a point, in the direction in which it leaves the bounding box
+/// soonest. If the point is outside the box or NaN, the ray hits nothing.
 fn outward(tree: &TriangleBvh, point: Vec3) -> Ray {
     let bounds = tree.bounds();
     let inside = point.cmpge(bounds.min).all() && point.cmple(bounds.max).all();
@@ -133,8 +133,8 @@ fn outward(tree: &TriangleBvh, point: Vec3) -> Ray {
     Ray::new(point, if inside { best.1 } else { Vec3::ZERO })
 }
 
-/// Returns `count` zeros. Long arrays are written by all threads, because a single thread would
-/// take a tenth of the tracing time.
+/// Returns an array of `count` zeros. Long arrays are written by all threads, because a single
+/// thread would take a tenth of the tracing time.
 pub fn zeros<T: Clone + Default + Send>(py: Python, threads: Option<usize>, count: usize) -> Vec<T> {
     match count <= 2 * JOB {
         true => vec![T::default(); count],
@@ -146,7 +146,7 @@ pub fn zeros<T: Clone + Default + Send>(py: Python, threads: Option<usize>, coun
 
 #[pymethods]
 impl Tree {
-    /// Builds a tree of triangles from vertices relative to `center`.
+    /// Builds a tree of triangles. The vertices are relative to `center`.
     #[staticmethod]
     fn from_mesh(
         py: Python,
@@ -170,7 +170,7 @@ impl Tree {
         Ok(Tree { target: Target::Mesh(Arc::new(tree)), center: DVec3::from_array(center) })
     }
 
-    /// Refits the tree to moved vertices of the same triangles.
+    /// Refits the tree to the moved vertices of the same triangles.
     fn refitted(
         &self,
         py: Python,
@@ -189,7 +189,8 @@ impl Tree {
         Ok(Tree { target: Target::Mesh(Arc::new(tree)), center: DVec3::from_array(center) })
     }
 
-    /// Builds a tree of instances. `matrices` contains three rows of four numbers per instance.
+    /// Builds a tree of instances. `matrices` contains three rows of four numbers for each
+    /// instance.
     #[staticmethod]
     fn from_instances(trees: Vec<PyRef<Tree>>, matrices: PyReadonlyArray2<f64>) -> PyResult<Self> {
         let rows = matrices.as_slice()?.as_chunks::<12>().0;
@@ -235,7 +236,7 @@ impl Tree {
         Ok((t.into_pyarray(py), triangle.into_pyarray(py), object, uv.into_pyarray(py)))
     }
 
-    /// Returns true for each ray that hits anything.
+    /// Returns an array that is true for each ray that hits anything.
     fn occluded<'py>(
         &self,
         py: Python<'py>,
@@ -269,7 +270,7 @@ impl Tree {
         Ok(counts.into_pyarray(py))
     }
 
-    /// Returns the number of hits of each ray, and all hits, ray by ray.
+    /// Returns the number of hits of each ray, and all hits in the order of the rays.
     fn all_hits<'py>(
         &self,
         py: Python<'py>,
@@ -297,7 +298,8 @@ impl Tree {
         Ok((counts.into_pyarray(py), hits))
     }
 
-    /// Returns true for each point that is inside, by the parity of crossings.
+    /// Returns an array that is true for each point inside the mesh, based on the parity of the
+    /// crossings.
     fn contains<'py>(
         &self,
         py: Python<'py>,
@@ -315,8 +317,8 @@ impl Tree {
         Ok(answers.into_pyarray(py))
     }
 
-    /// Returns, for each query point, the nearest point on a mesh: distance, triangle, point, u and
-    /// v.
+    /// Returns the nearest point on a mesh for each query point. The arrays contain the distance,
+    /// triangle, point, u and v.
     #[allow(clippy::type_complexity)]
     fn nearest<'py>(
         &self,
@@ -352,7 +354,7 @@ impl Tree {
         Ok((distance.into_pyarray(py), triangle.into_pyarray(py), near.into_pyarray(py), uv.into_pyarray(py)))
     }
 
-    /// Returns the lower and upper corner of the bounding box, relative to `center`.
+    /// Returns the lower and upper corners of the bounding box, relative to `center`.
     fn bounds(&self) -> ([f32; 3], [f32; 3]) {
         let bounds = match &self.target {
             Target::Mesh(tree) => tree.bounds(),

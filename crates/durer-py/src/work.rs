@@ -1,8 +1,8 @@
 //! Runs work on threads with the interpreter's lock released, while the calling thread handles
 //! Ctrl-C and reports progress.
 //!
-//! Parallel work runs in a [`pool`] of this process, never in rayon's global pool: after a fork,
-//! the global pool waits for threads that no longer exist.
+//! Parallel work runs in a [`pool`] of this process, never in rayon's global pool. After a fork,
+//! the global pool would wait for threads that no longer exist.
 
 use durer::threads;
 use pyo3::prelude::*;
@@ -15,18 +15,19 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Interval between checks for signals and progress reports.
+/// Time between two checks for signals, and between two progress reports.
 pub const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
-/// Entry of the cache of thread pools: the process id, the requested number of threads, and the
-/// pool.
+/// Entry of the cache of thread pools, with the process id, the requested number of threads, and
+/// the pool.
 type KnownPool = (u32, Option<usize>, Option<Arc<ThreadPool>>);
 
-/// Cached thread pools. Each belongs to one process, because its threads do not exist after a fork.
+/// Cached thread pools. Each pool belongs to one process, because its threads do not exist after a
+/// fork.
 static POOLS: Mutex<Vec<KnownPool>> = Mutex::new(Vec::new());
 
-/// Returns the shared pool of this process with the requested number of threads; `None` if threads
-/// are not available.
+/// Returns the shared pool of this process with the requested number of threads, or `None` if
+/// threads are not available.
 pub fn pool(asked: Option<usize>) -> Option<Arc<ThreadPool>> {
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let process = std::process::id();
@@ -54,12 +55,12 @@ pub fn poll(watch: Option<&Py<PyAny>>, done: u64, all: u64) -> PyResult<()> {
     })
 }
 
-/// Passed to each job of [`each`] so that it can check whether to stop. A single item can take
-/// milliseconds, so jobs check after every item or every few items.
+/// Object passed to each job of [`each`] so that the job can check whether to stop. A single item
+/// can take milliseconds, so jobs check after every item or every few items.
 pub struct Pace<'a> {
     stop: &'a AtomicBool,
-    /// If the job runs on the calling thread, which must check signals itself: the time and the
-    /// result of the last check.
+    /// Time and result of the last check. Only set if the job runs on the calling thread, which
+    /// must check for signals itself.
     own: Option<RefCell<(Instant, PyResult<()>)>>,
 }
 
@@ -70,7 +71,7 @@ impl Pace<'_> {
             let mut own = own.borrow_mut();
             if own.0.elapsed() > POLL_INTERVAL && own.1.is_ok() {
                 *own = (Instant::now(), poll(None, 0, 0));
-                // The check itself can take time.
+                // Reset the time after the check, which can itself take time.
                 own.0 = Instant::now();
                 self.stop.store(own.1.is_err(), Relaxed);
             }
@@ -78,8 +79,8 @@ impl Pace<'_> {
         !self.stop.load(Relaxed)
     }
 
-    /// Divides items into ranges and calls `work` for each, until the job should stop. Ranges
-    /// become smaller if items take long.
+    /// Divides items into ranges and calls `work` for each range, until the job should stop. Ranges
+    /// become smaller if items take a long time.
     pub fn ranges(&self, count: usize, mut work: impl FnMut(Range<usize>)) {
         const MOST: usize = 128;
         let (mut from, mut step) = (0, 8);
@@ -92,7 +93,7 @@ impl Pace<'_> {
     }
 }
 
-/// Runs all jobs on the threads of a pool. Stops after Ctrl-C or an exception in `watch`.
+/// Runs all jobs on the threads of a pool. Stops after Ctrl-C, or after an exception in `watch`.
 pub fn each<J: Send>(
     py: Python,
     asked: Option<usize>,
@@ -106,7 +107,7 @@ pub fn each<J: Send>(
         jobs.into_iter().take_while(|_| pace.should_continue()).for_each(|job| work(job, &pace));
         pace.own.map_or(Ok(()), |own| own.into_inner().1)
     };
-    // A single job is not worth a thread pool.
+    // A single job does not justify a thread pool.
     if jobs.len() <= 1 {
         py.detach(|| run_here(std::mem::take(&mut jobs)))?;
         return py.check_signals();

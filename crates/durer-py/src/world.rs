@@ -1,4 +1,4 @@
-//! Scenes and partial renders, behind `durer.World` and `durer.Part`.
+//! Scenes and partial renders, which back `durer.World` and `durer.Part`.
 
 use crate::rays::{self, JOB, Rays};
 use crate::work::{POLL_INTERVAL, each, install, poll, pool};
@@ -29,7 +29,7 @@ fn failed(error: impl ToString) -> PyErr {
     RenderError::new_err(error.to_string())
 }
 
-/// Scene that was read and compiled, with the diagnostics of reading it.
+/// Scene that was read and compiled, with the diagnostics from reading it.
 #[pyclass(frozen, module = "durer._durer")]
 pub struct World {
     loaded: LoadedScene,
@@ -38,20 +38,20 @@ pub struct World {
     read: Diagnostics,
 }
 
-/// Number of integers per hit: object, triangle and material.
+/// Number of integers for each hit: object, triangle and material.
 const NUMBERS: usize = 3;
-/// Number of floats per hit: t, point, geometric normal and shading normal.
+/// Number of floats for each hit: t, point, geometric normal and shading normal.
 const VALUES: usize = 10;
-/// Number of doubles per hit: the point, and the offset at which a secondary ray starts.
+/// Number of doubles for each hit: the point, and the offset at which a secondary ray starts.
 const PLACES: usize = 4;
-/// Arrays of first hits for Python: integers, floats and doubles of each hit, as counted by
-/// [`NUMBERS`], [`VALUES`] and [`PLACES`].
+/// Arrays that hold the first hits for Python. [`NUMBERS`], [`VALUES`] and [`PLACES`] are the
+/// numbers of integers, floats and doubles for each hit.
 type NearestArrays<'py> = (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<f64>>);
 
-/// Slices of the output arrays for some consecutive rays: integers, floats and doubles.
+/// Slices of the output arrays for several consecutive rays, with integers, floats and doubles.
 type Row<'a> = ((&'a mut [i32], &'a mut [f32]), &'a mut [f64]);
 
-/// Formats diagnostics as lines: `file:line:column: error: message`.
+/// Formats diagnostics as lines of the form `file:line:column: error: message`.
 fn lines(files: &Files, read: &Diagnostics, wanted: impl Fn(Severity) -> bool) -> Vec<String> {
     let line = |d: &durer::diag::Diagnostic| {
         let place = d.span.and_then(|span| {
@@ -65,12 +65,12 @@ fn lines(files: &Files, read: &Diagnostics, wanted: impl Fn(Severity) -> bool) -
     read.iter().filter(|d| wanted(d.severity)).map(line).collect()
 }
 
-/// Converts an error into an OSError with its number, so that Python raises for example
+/// Converts an error to an OSError with an error number, so that Python raises, for example,
 /// `FileNotFoundError`.
 fn unreadable(error: &SourceError, path: &Path) -> PyErr {
     let number = match error {
         SourceError::Io { error, .. } => error.raw_os_error(),
-        // ENOENT is 2 on every system.
+        // On every system, ENOENT is 2.
         SourceError::Missing { .. } => Some(2),
         _ => None,
     };
@@ -84,7 +84,7 @@ fn unreadable(error: &SourceError, path: &Path) -> PyErr {
     }
 }
 
-/// Options as pairs of name and text.
+/// Options as pairs of a name and a text.
 type Pairs = Vec<(String, String)>;
 
 fn options(pairs: &Pairs) -> PyResult<RenderOptions> {
@@ -95,7 +95,7 @@ fn options(pairs: &Pairs) -> PyResult<RenderOptions> {
 
 #[pymethods]
 impl World {
-    /// Reads a scene from a file, or from a text as if it were a file, with embedded files.
+    /// Reads a scene from a file, or from a text with embedded files as if it were a file.
     #[new]
     fn new(
         py: Python,
@@ -112,7 +112,7 @@ impl World {
                 Some(text) => load_text(&path, text.into(), &options, &mut files, &mut read),
                 None => load(&path, &options, &mut files, &mut read).map_err(|e| unreadable(&e, &path))?,
             };
-            // Load in the current thread pool.
+            // Load the scene in the current thread pool.
             options.threads = None;
             let world = loaded.as_ref().and_then(|loaded| loaded.compile(&options, &mut files, &mut read));
             match (loaded, world) {
@@ -126,7 +126,7 @@ impl World {
         })
     }
 
-    /// Returns warnings and notes.
+    /// Returns the warnings and notes from reading the scene.
     fn warnings(&self) -> Vec<String> {
         lines(&self.files, &self.read, |severity| severity != Severity::Error)
     }
@@ -136,7 +136,7 @@ impl World {
         self.loaded.dialect.name()
     }
 
-    /// Returns the hash of the scene and all its files.
+    /// Returns the hash of the scene and of all its files.
     fn digest(&self) -> String {
         self.world.digest().to_string()
     }
@@ -151,7 +151,7 @@ impl World {
         durer::format::json::write(&self.loaded.scene, self.loaded.dialect)
     }
 
-    /// Creates an empty part of the render with these options.
+    /// Creates an empty part of the render with the given options.
     fn part(&self, py: Python, pairs: Pairs) -> PyResult<Part> {
         let options = options(&pairs)?;
         let job = options.resolve(&self.loaded).map_err(PyValueError::new_err)?;
@@ -160,7 +160,7 @@ impl World {
         Ok(Part(Arc::new(part)))
     }
 
-    /// Continues a part. Returns true if it is finished.
+    /// Continues to render a part. Returns true if the part is finished.
     fn render(&self, py: Python, part: &Part, pairs: Pairs, watch: Option<Py<PyAny>>) -> PyResult<bool> {
         let (control, part) = (options(&pairs)?.control(), part.0.clone());
         let (stop, interrupted) = py.detach(|| {
@@ -195,8 +195,8 @@ impl World {
         }
     }
 
-    /// Returns the first hit of each ray: object, triangle and material; t, point, geometric normal
-    /// and shading normal.
+    /// Returns the first hit of each ray. The arrays contain object, triangle and material, and t,
+    /// point, geometric normal and shading normal.
     fn closest<'py>(
         &self,
         py: Python<'py>,
@@ -233,7 +233,7 @@ impl World {
         Ok((ids.into_pyarray(py), values.into_pyarray(py), places.into_pyarray(py)))
     }
 
-    /// Returns true for each ray that hits anything.
+    /// Returns an array that is true for each ray that hits anything.
     fn occluded<'py>(
         &self,
         py: Python<'py>,
@@ -253,7 +253,7 @@ impl World {
         Ok(answers.into_pyarray(py))
     }
 
-    /// Explains a pixel's colour as JSON.
+    /// Explains the colour of a pixel, and returns the explanation as JSON.
     fn explain(&self, py: Python, pairs: Pairs, pixel: (u32, u32)) -> PyResult<String> {
         let job = options(&pairs)?.resolve(&self.loaded).map_err(PyValueError::new_err)?;
         let explain = || render::explain::explain(&self.world, &job, pixel.0, pixel.1);
@@ -272,11 +272,11 @@ impl World {
     }
 }
 
-/// Partial render: a shard, an unfinished render or a finished image.
+/// Partial render, which can be a shard, an unfinished render or a finished image.
 #[pyclass(frozen, module = "durer._durer")]
 pub struct Part(Arc<render::PartialRender>);
 
-/// Rendered image for Python: its name, width, height, values, and coverage if it is not 1
+/// Rendered image for Python, with its name, width, height, values, and its coverage if it is not 1
 /// everywhere.
 type Picture<'py> = (String, u32, u32, Bound<'py, PyArray1<f32>>, Option<Bound<'py, PyArray1<f32>>>);
 
@@ -295,7 +295,7 @@ impl Part {
         PyBytes::new(py, &bytes)
     }
 
-    /// Returns the hash of the film.
+    /// Returns the hash of the film's contents.
     fn hash(&self, py: Python) -> String {
         install(py, None, || self.0.hash().to_string())
     }
@@ -305,7 +305,7 @@ impl Part {
         self.0.identity().to_string()
     }
 
-    /// Returns the index and the number of shards, for example `3/16`.
+    /// Returns the index of the shard and the number of shards, for example `3/16`.
     fn shard(&self) -> String {
         self.0.shard().to_string()
     }
@@ -315,7 +315,7 @@ impl Part {
         serde_json::to_string(self.0.job()).map_err(failed)
     }
 
-    /// Returns the total work, and the work done.
+    /// Returns the total amount of work and the amount that is done.
     fn work(&self) -> (u64, u64) {
         self.0.work()
     }
@@ -331,8 +331,8 @@ impl Part {
         (statistics.samples, statistics.rays, statistics.rejected)
     }
 
-    /// Returns the images, with values as in floating-point files, or display values if `shown` is
-    /// true.
+    /// Returns the images with the same values as in floating-point files, or with display values
+    /// if `shown` is true.
     fn pictures<'py>(&self, py: Python<'py>, shown: bool) -> PyResult<Vec<Picture<'py>>> {
         let rendered = install(py, None, || self.0.pictures()).map_err(failed)?;
         let layers = if shown { rendered.pictures } else { rendered.layers };
@@ -351,7 +351,7 @@ impl Part {
     }
 }
 
-/// Merges parts, given as a name for messages and the bytes of the file.
+/// Merges parts. Each is given by a name for messages and by the bytes of its file.
 #[pyfunction]
 pub fn merge(py: Python, parts: Vec<(String, Vec<u8>)>) -> PyResult<Part> {
     let whole = install(py, None, || {

@@ -1,4 +1,5 @@
-//! Interface for decoding the mesh, photometric, spectrum and density files that a scene refers to.
+//! Interface for decoding the mesh files, photometric files, spectra and density grids that a scene
+//! refers to.
 
 use crate::dialect::QuirkSet;
 use crate::light::PhotometricProfile;
@@ -9,10 +10,11 @@ use durer_diag::Diagnostics;
 
 /// Decoder for a scene's asset files other than images, implemented by `durer-formats`.
 ///
-/// `file` is the index of the file in source spans. If a file is invalid, a method pushes a
-/// diagnostic and returns `None`.
+/// `file` is the index by which source spans refer to the file. If a file is invalid, a method
+/// pushes a diagnostic and returns `None`.
 pub trait AssetDecoder: Sync {
-    /// Decodes a mesh. The format is found by the extension of `name`, or else by the bytes.
+    /// Decodes a mesh. The format is determined from the extension of `name`, or otherwise from the
+    /// content.
     fn mesh(
         &self,
         bytes: &[u8],
@@ -25,8 +27,8 @@ pub trait AssetDecoder: Sync {
     /// Decodes a photometric file (IES, EULUMDAT).
     fn profile(&self, bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<PhotometricProfile>;
 
-    /// Decodes a measured spectrum into ascending rows of wavelength (nm) and value. `column`
-    /// selects one of several spectra by name; `None` selects the first.
+    /// Decodes a measured spectrum into rows of wavelength (nm) and value, in ascending order of
+    /// wavelength. `column` selects one of several spectra by name; `None` selects the first.
     fn spectrum(
         &self,
         bytes: &[u8],

@@ -1,28 +1,28 @@
-//! Descriptions of scene objects: keyword and fields, stated once.
+//! Descriptions of scene objects: their keywords and fields, each declared in one place.
 //!
-//! Every shape, camera, material and light states its keyword and its fields in one `described!`
-//! block. The readers, the writers, the manual and the generator of random test scenes all use that
-//! description.
+//! Every shape, camera, material and light declares its keyword and its fields in one `described!`
+//! block. The scene readers and writers, the manual, and the generator of random test scenes all
+//! use this description.
 
 use crate::dialect::{Dialect, DialectSet};
 use crate::math::Vec3;
 use durer_diag::Span;
 use serde::{Deserialize, Serialize};
 
-/// Type of a field in scene files: a number, a vector, a path, a word or rows.
+/// Type of a field in scene files: a number, a vector, a path, a word or rows of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FieldKind {
     /// A number.
     Float,
     /// A non-negative integer.
     Int,
-    /// Three numbers: a point, a direction or a colour.
+    /// Three numbers that represent a point, a direction or a colour.
     Vec3,
     /// Path of a file.
     Path,
-    /// One of these words.
+    /// One of the listed words.
     Word(&'static [&'static str]),
-    /// Rows of `n` numbers, in braces.
+    /// Rows of `n` numbers each, enclosed in braces.
     Rows(usize),
 }
 
@@ -44,9 +44,9 @@ pub enum Value {
     Float(f32),
     /// An integer.
     Int(u32),
-    /// Three numbers.
+    /// Three numbers that represent a point, a direction or a colour.
     Vec3(Vec3),
-    /// Path of a file, as written.
+    /// Path of a file as written in the scene.
     Path(FileName),
     /// A word.
     Word(String),
@@ -55,7 +55,8 @@ pub enum Value {
 }
 
 impl Value {
-    /// True if all numbers are finite. Paths and words have none.
+    /// True if every number in the value is finite. Always true for paths and words, which contain
+    /// no numbers.
     pub fn is_finite(&self) -> bool {
         match self {
             Value::Float(x) => x.is_finite(),
@@ -66,32 +67,32 @@ impl Value {
     }
 }
 
-/// Constraint on the value of a field, in addition to being finite.
+/// Constraint on the value of a field, in addition to the requirement that it is finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Constraint {
     /// No constraint.
     Any,
-    /// Greater than 0.
+    /// Number greater than 0.
     Positive,
-    /// Greater than or equal to 0.
+    /// Number greater than or equal to 0.
     NonNegative,
-    /// Vector other than 0 0 0.
+    /// Any vector other than 0 0 0.
     NonZero,
-    /// Between two numbers, both excluded.
+    /// Number strictly between two bounds.
     Between(f32, f32),
-    /// Between two numbers, both included.
+    /// Number between two bounds, including the bounds.
     Within(f32, f32),
-    /// Greater than 0 and at most this.
+    /// Number greater than 0 and at most the given maximum.
     UpTo(f32),
     /// Number from 0 to 1.
     UnitInterval,
-    /// Integer that is at most this.
+    /// Integer that is at most the given maximum.
     AtMost(u32),
-    /// Integer from 1 to this.
+    /// Integer from 1 to the given maximum.
     OneTo(u32),
     /// Minimum and maximum number of rows.
     Rows(usize, usize),
-    /// Vector of integers from 1 to this.
+    /// Vector of integers from 1 to the given maximum.
     Counts(u32),
 }
 
@@ -100,8 +101,8 @@ impl Constraint {
     ///
     /// # Errors
     ///
-    /// The predicate of a sentence whose subject is the field's name, such as "must be more than
-    /// 0".
+    /// Returns the end of an error message that begins with the name of the field, such as "must be
+    /// more than 0".
     pub fn validate(self, value: &Value) -> Result<(), String> {
         if !value.is_finite() {
             return Err("must be finite".into());
@@ -142,7 +143,7 @@ impl Constraint {
 /// Description of one field of a scene object: its name, type, constraint and keywords.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
-    /// Name in code and JSON.
+    /// Name of the field in Rust code and in JSON.
     pub name: &'static str,
     /// Type of the value.
     pub kind: FieldKind,
@@ -150,9 +151,9 @@ pub struct Field {
     pub required: bool,
     /// Constraint on the value.
     pub constraint: Constraint,
-    /// Keyword in each dialect.
+    /// Keyword of the field in each dialect.
     pub keywords: &'static [(&'static str, DialectSet)],
-    /// Meaning and unit.
+    /// Meaning and unit of the field.
     pub doc: &'static str,
 }
 
@@ -162,14 +163,15 @@ impl Field {
         self.keywords.iter().find(|(_, set)| dialect.is_in(*set)).map(|(word, _)| *word)
     }
 
-    /// Returns the value that official programs use if the written one violates the constraint; see
-    /// [`Quirk::AnyValues`]. `keyword` is the object's keyword. `None` if the programs render
-    /// nothing meaningful with it.
+    /// Returns the value that official programs use instead of a value that violates the
+    /// constraint; see [`Quirk::AnyValues`]. `keyword` is the keyword of the object. Returns `None`
+    /// if the programs render nothing meaningful with such a value.
     ///
     /// [`Quirk::AnyValues`]: crate::dialect::Quirk::AnyValues
     pub fn quirk_value(&self, keyword: &str, value: &Value) -> Option<Value> {
         match (keyword, self.name, value) {
-            // The program squares the radius; no usable radius is smaller than this.
+            // The program squares the radius, so its sign does not matter. No smaller radius is
+            // usable.
             ("Sphere", "radius", Value::Float(r)) => Some(Value::Float(r.abs().max(f32::MIN_POSITIVE))),
             ("PhongMaterial" | "Material", "shininess", Value::Float(x)) => Some(Value::Float(*x)),
             ("PerspectiveCamera", "angle", Value::Float(180.0)) => Some(Value::Float(180.0)),
@@ -180,19 +182,20 @@ impl Field {
     }
 }
 
-/// Type of scene object that describes its keywords and fields. [`described!`] implements it.
+/// Type of scene object that describes its keywords and fields. The [`described!`] macro implements
+/// this trait.
 pub trait Describe: Default {
-    /// Keywords of the object; the writer uses the first.
+    /// Keywords of the object. The scene writer uses the first one.
     const KEYWORDS: &'static [(&'static str, DialectSet)];
     /// Documentation of the object.
     const DOC: &'static str;
-    /// Fields, in the order in which they are written.
+    /// Fields of the object, in the order in which the scene writer writes them.
     const FIELDS: &'static [Field];
 
-    /// Returns the value of a field by index; `None` if it is not set.
+    /// Returns the value of the field with this index, or `None` if it is not set.
     fn get(&self, field: usize) -> Option<Value>;
 
-    /// Sets a field by index. Ignores a value of another kind.
+    /// Sets the field with this index. A value of the wrong kind is ignored.
     fn set(&mut self, field: usize, value: Value);
 }
 
@@ -200,9 +203,9 @@ pub trait Describe: Default {
 pub trait FieldType: Sized {
     /// Type of the field in scene files.
     const KIND: FieldKind;
-    /// Returns the value; `None` if it is not set.
+    /// Returns the value, or `None` if it is not set.
     fn value(&self) -> Option<Value>;
-    /// Converts from a value of this kind.
+    /// Converts a value of this kind to the Rust type.
     fn from_value(value: Value) -> Option<Self>;
 }
 
@@ -241,7 +244,8 @@ impl<const N: usize> FieldType for Vec<[f32; N]> {
     }
 }
 
-/// Declares an `enum` for a field whose value is one of several words. The first is the default.
+/// Declares an `enum` for a field whose value is one of several words. The first word is the
+/// default.
 #[macro_export]
 macro_rules! described_words {
     ($(#[doc = $doc:literal])+ $name:ident { $first:ident = $first_word:literal $(, $variant:ident = $word:literal)* }) => {
@@ -276,10 +280,10 @@ impl<T: FieldType> FieldType for Option<T> {
     }
 }
 
-/// Declares a struct together with its description.
+/// Declares a struct for a scene object together with its description.
 ///
 /// Each field is declared with its doc comment, name, type, default, `required` or `optional`,
-/// constraint, and keywords by dialect.
+/// constraint, and keywords in each dialect.
 #[macro_export]
 macro_rules! described {
     (
@@ -328,7 +332,7 @@ macro_rules! described {
             }
         }
     };
-    // A field without a doc comment: report it, and continue with the rest.
+    // Report a field that has no doc comment, and continue with the remaining fields.
     (
         $(#[doc = $doc:literal])+
         $name:ident [$($keyword:literal in $kset:expr),+] {
@@ -352,31 +356,32 @@ macro_rules! described {
             "` has no doc comment; describe its meaning, unit and range",
         ));
     };
-    // The struct without a doc comment.
+    // Report a struct that has no doc comment.
     ($name:ident [$($keyword:tt)+] $fields:tt) => {
         compile_error!(concat!("described!: `", stringify!($name), "` has no doc comment; describe the object"));
     };
 }
 
-/// Words in [`described!`] that state if a scene must set a field.
+/// Words in [`described!`] that state whether a scene must set a field.
 #[allow(non_upper_case_globals)]
 #[doc(hidden)]
 pub mod presence {
-    /// Every scene must set the field.
+    /// Marks a field that every scene must set.
     pub const required: bool = true;
-    /// The field has a default.
+    /// Marks a field that has a default.
     pub const optional: bool = false;
 }
 
-/// Declares an `enum` with one variant for each of a list of described types. It delegates to the
-/// type of its variant.
+/// Declares an `enum` with one variant for each of the listed types, which must be described types.
+/// The enum forwards its methods to the type of its variant.
 ///
-/// The path after the colon is the trait that all types implement. The name after `=>` is a macro
-/// that takes the names of the variants and implements the trait for the enum.
+/// The path after the colon is the trait that all the types implement. The name after `=>` is a
+/// macro that receives the names of the variants and implements the trait for the enum.
 #[macro_export]
 macro_rules! described_list {
     ($(#[doc = $doc:literal])+ $name:ident : $trait:path => $delegate:ident { $($variant:ident($type:ty),)+ }) => {
-        // This check is first, so that the first error names the trait and points at the type.
+        // This check comes first, so that the first compiler error names the trait and points at
+        // the type.
         const _: fn() = || {
             fn is_described<T: $crate::describe::Describe>() {}
             fn is_one<T: $trait>() {}
@@ -418,10 +423,10 @@ macro_rules! described_list {
 
 pub use {described, described_list, described_words};
 
-/// Scene object that has one of several described types, such as any shape or any light.
-/// [`described_list!`] implements it.
+/// Scene object of one of several described types, such as any shape or any light. The
+/// [`described_list!`] macro implements this trait.
 pub trait DescribedKind: Sized {
-    /// Returns one object of each type, with default values.
+    /// Returns one object of each type with default field values.
     fn kinds() -> Vec<Self>;
     /// Keywords of the object.
     fn keywords(&self) -> &'static [(&'static str, DialectSet)];
@@ -429,12 +434,12 @@ pub trait DescribedKind: Sized {
     fn doc(&self) -> &'static str;
     /// Fields of the object.
     fn fields(&self) -> &'static [Field];
-    /// Returns the value of a field by index.
+    /// Returns the value of the field with this index.
     fn get(&self, field: usize) -> Option<Value>;
-    /// Sets a field by index.
+    /// Sets the field with this index.
     fn set(&mut self, field: usize, value: Value);
 
-    /// True if only Dürer's own dialect has the object.
+    /// True if the object exists only in Dürer's own dialect.
     fn is_durer_only(&self) -> bool {
         self.keywords().iter().all(|(_, set)| *set == Dialect::Durer as DialectSet)
     }
@@ -444,19 +449,19 @@ pub trait DescribedKind: Sized {
         self.keyword(Dialect::Durer)
     }
 
-    /// Returns an object with default values for a keyword of any dialect.
+    /// Returns the object that has this keyword in any dialect, with default values.
     fn from_keyword(word: &str) -> Option<Self> {
         Self::kinds().into_iter().find(|kind| kind.keywords().iter().any(|(keyword, _)| *keyword == word))
     }
 
-    /// Keyword in a dialect, or the first keyword if the dialect has none.
+    /// Keyword of the object in a dialect, or its first keyword if it has none in that dialect.
     fn keyword(&self, dialect: Dialect) -> &'static str {
         let words = self.keywords();
         words.iter().find(|(_, set)| dialect.is_in(*set)).unwrap_or(&words[0]).0
     }
 }
 
-/// Every described type is also a list of one type, so the reader needs only one code path.
+/// Every described type also counts as a list of one type, so the reader needs only one code path.
 impl<T: Describe> DescribedKind for T {
     fn kinds() -> Vec<Self> {
         vec![T::default()]

@@ -1,8 +1,8 @@
-//! Dialects of the scene language, as one table of differences.
+//! Dialects of the scene language, defined by one table of their differences.
 //!
-//! A [`Dialect`] is the scene language of a year. Its [`DialectRules`] define the meaning of its
-//! words. Its [`Quirk`]s are the known bugs of that year's official program, and are active only if
-//! the user selects the dialect.
+//! A [`Dialect`] is the version of the scene language that the course used in a certain year. Its
+//! [`DialectRules`] define the meaning of its keywords. Its [`Quirk`]s are the known bugs of the
+//! official program of that year. The quirks are active only if the user selects the dialect.
 
 mod quirk;
 
@@ -10,31 +10,31 @@ use quirk::quirk_set;
 pub use quirk::{Quirk, QuirkSet};
 use serde::{Deserialize, Serialize};
 
-/// Dialect of the scene language: that of one year of the course, or Dürer's own. The discriminants
-/// are bits of a [`DialectSet`].
+/// Dialect of the scene language, either from one year of the course or Dürer's own. Each
+/// discriminant is one bit of a [`DialectSet`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Dialect {
-    /// 2003: materials inside groups, `Translate { 0 2 0 }`.
+    /// Course of 2003, with materials inside groups and transforms such as `Translate { 0 2 0 }`.
     F03 = 1,
     /// Fall 2004, assignments 1 to 8.
     F04 = 2,
-    /// Fall 2012, assignment 4; also TIEA311.
+    /// Fall 2012, assignment 4, and the course TIEA311.
     F12a4 = 4,
     /// Fall 2012, assignment 5.
     F12a5 = 8,
-    /// 2016 to 2019.
+    /// Courses from 2016 to 2019.
     F16 = 16,
-    /// 2020 to 2023: nodes and components.
+    /// Courses from 2020 to 2023, with nodes and components.
     F23 = 32,
-    /// Dürer's own: every keyword of the other years, with sensible rules.
+    /// Dürer's own dialect, with every keyword of the other years and sensible rules.
     Durer = 64,
 }
 
 /// Set of [`Dialect`]s, with one bit for each.
 pub type DialectSet = u8;
 
-/// Sets of dialects, for tables.
+/// Sets of dialects that are used in tables.
 pub mod set {
     use super::{Dialect, DialectSet};
     /// 2003.
@@ -45,15 +45,15 @@ pub mod set {
     pub const F12A4: DialectSet = Dialect::F12a4 as u8;
     /// Fall 2012, assignment 5.
     pub const F12A5: DialectSet = Dialect::F12a5 as u8;
-    /// 2016 to 2019.
+    /// Courses from 2016 to 2019.
     pub const F16: DialectSet = Dialect::F16 as u8;
-    /// 2020 to 2023.
+    /// Courses from 2020 to 2023.
     pub const F23: DialectSet = Dialect::F23 as u8;
     /// Dürer's own.
     pub const DURER: DialectSet = Dialect::Durer as u8;
-    /// 2003 and 2004.
+    /// Dialects of 2003 and 2004.
     pub const OLD: DialectSet = F03 | F04;
-    /// 2012 and later, before nodes.
+    /// Dialects of 2012 and later that do not use nodes.
     pub const NEW: DialectSet = F12A4 | F12A5 | F16;
     /// Dialects with the grammar of 2004.
     pub const CLASSIC: DialectSet = OLD | NEW | DURER;
@@ -62,16 +62,16 @@ pub mod set {
 }
 
 impl Dialect {
-    /// Every dialect, oldest first, Dürer's own last.
+    /// All dialects from oldest to newest, followed by Dürer's own.
     pub const ALL: [Dialect; 7] =
         [Dialect::F03, Dialect::F04, Dialect::F12a4, Dialect::F12a5, Dialect::F16, Dialect::F23, Dialect::Durer];
 
-    /// Returns the name on the command line.
+    /// Returns the name of the dialect on the command line.
     pub fn name(self) -> &'static str {
         self.rules().name
     }
 
-    /// Returns the dialect with a name.
+    /// Returns the dialect with this name.
     pub fn from_name(name: &str) -> Option<Dialect> {
         Dialect::ALL.into_iter().find(|d| d.name() == name)
     }
@@ -92,34 +92,34 @@ impl Dialect {
 pub enum MeshNormals {
     /// One normal per triangle.
     Flat,
-    /// Mean over the faces around a vertex, weighted by area.
+    /// Mean of the normals of the faces around a vertex, weighted by area.
     SmoothByArea,
-    /// Mean over the faces around a vertex, with equal weights.
+    /// Mean of the normals of the faces around a vertex, with equal weights.
     SmoothByFace,
     /// `SmoothByFace`, except that a degenerate face makes the normals of its vertices NaN.
     SpoiledByFace,
-    /// `SmoothByArea` for meshes with more vertices than this, otherwise `Flat`.
+    /// `SmoothByArea` for meshes with more vertices than this number, otherwise `Flat`.
     SmoothAbove(usize),
-    /// Mean, weighted by angle, over the faces around a vertex that meet at less than this many
-    /// degrees.
+    /// Mean of the normals of the faces around a vertex that meet at less than this angle in
+    /// degrees, weighted by angle.
     Crease(f32),
 }
 
-/// Formula by which a dialect computes specular highlights of lights.
+/// Formula that a dialect uses to compute the specular highlights of lights.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Highlight {
     /// max(0, N·H)^exponent, only where N·L > 0.
     Blinn,
-    /// max(0, R·L)^shininess, R the mirrored view ray.
+    /// max(0, R·L)^shininess, where R is the mirrored view ray.
     Phong,
     /// No highlight.
     None,
-    /// `exponent` means Blinn, `shininess` means Phong where N·L > 0.
+    /// Blinn formula for `exponent`, and Phong formula where N·L > 0 for `shininess`.
     ByKeyword,
 }
 
-/// Formula by which a dialect attenuates a light with distance d, from `attenuation a0 a1 a2` or
-/// `falloff f`.
+/// Formula that a dialect uses to attenuate a light at distance d, based on `attenuation a0 a1 a2`
+/// or `falloff f`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Falloff {
     /// No attenuation.
@@ -127,7 +127,7 @@ pub enum Falloff {
     /// 1 / (a0 + a1 d + a2 d^2), or 1 / (1 + f d^2).
     #[serde(rename = "OnePlus")]
     Polynomial,
-    /// 1 / (f d^2), with this default for f; `None` means no attenuation by default.
+    /// 1 / (f d^2), where this value is the default for f. `None` means no attenuation by default.
     #[serde(rename = "Bare")]
     InverseSquare(Option<f32>),
 }
@@ -135,36 +135,36 @@ pub enum Falloff {
 /// Reflected and refracted rays that a dialect traces from a surface, and their weights.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum SecondaryRays {
-    /// Direct lighting only.
+    /// Direct lighting only, without secondary rays.
     None,
-    /// Reflected and refracted rays, weighted by `reflectiveColor` and `transparentColor`; both are
-    /// added.
+    /// Reflected and refracted rays, which are weighted by `reflectiveColor` and `transparentColor`
+    /// and added together.
     Colors,
     /// Reflected ray, weighted by `specularColor`.
     Specular,
-    /// Both rays, weighted by `specularColor`, and by the Fresnel reflectance if `refractionIndex`
-    /// is set.
+    /// Reflected and refracted rays, weighted by `specularColor`, and also by the Fresnel
+    /// reflectance if `refractionIndex` is set.
     SpecularFresnel,
-    /// Selected by the keywords that are present: `reflectiveColor`, `transparentColor`,
-    /// `refractionIndex`.
+    /// Rays selected by the keywords that the material sets: `reflectiveColor`, `transparentColor`
+    /// or `refractionIndex`.
     ByKeyword,
 }
 
-/// Mapping from surface normals to colours in the normal pictures of a dialect.
+/// Mapping from surface normals to colours that a dialect uses in normal pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum NormalsPicture {
-    /// |n|, background black.
+    /// Absolute value |n|, with a black background.
     Abs,
-    /// (n + 1) / 2, background mid-grey.
+    /// (n + 1) / 2, with a mid-grey background.
     Half,
 }
 
-/// Mapping from depths to grey values in the depth pictures of a dialect.
+/// Mapping from depths to grey values that a dialect uses in depth pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum DepthPicture {
-    /// (max - t) / (max - min): near is white, background black.
+    /// (max - t) / (max - min), so that near surfaces are white, with a black background.
     NearWhite,
-    /// (t - min) / (max - min): near is black, background black.
+    /// (t - min) / (max - min), so that near surfaces are black, with a black background.
     NearBlack,
 }
 
@@ -175,29 +175,30 @@ pub enum PathBase {
     Current,
     /// The directory of the scene file.
     SceneFile,
-    /// Folder below the current directory.
+    /// Subfolder of the current directory.
     Assets(&'static str),
 }
 
-/// Floating-point arithmetic of camera rays and intersections, which decides their rounding.
+/// Floating-point arithmetic used for camera rays and intersections, which determines how they are
+/// rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Arithmetic {
     /// Dürer's own arithmetic.
     Own,
-    /// Single precision, operation by operation as in the programs of Fall 2012.
+    /// Single precision, with the same sequence of operations as in the programs of Fall 2012.
     Of2012,
     /// Single precision as in the program of 2016.
     Of2016,
-    /// Single precision as in the program of 2020, with the library glm.
+    /// Single precision as in the program of 2020, which uses the glm library.
     Of2020,
 }
 
 /// Rules of a dialect: its defaults, the meaning of its keywords, and its quirks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DialectRules {
-    /// Name on the command line.
+    /// Name of the dialect on the command line.
     pub name: &'static str,
-    /// Title, one line.
+    /// One-line title of the dialect.
     pub title: &'static str,
     /// Default picture size, in pixels.
     pub size: (u32, u32),
@@ -205,59 +206,59 @@ pub struct DialectRules {
     pub bounces: u32,
     /// True if lights cast shadows by default.
     pub shadows: bool,
-    /// True if a surface seen from behind is shaded with its normal flipped by default.
+    /// True if, by default, a surface seen from behind is shaded with its normal flipped.
     pub shade_back: bool,
-    /// Method for the normals of meshes without normals.
+    /// Method for computing the normals of meshes that have none.
     pub mesh_normals: MeshNormals,
-    /// True if normals in mesh files (`vn`) are used.
+    /// True if the normals stored in mesh files (`vn`) are used.
     pub file_normals: bool,
-    /// Formula of specular highlights.
+    /// Formula for specular highlights.
     pub highlight: Highlight,
-    /// Formula of the attenuation of point lights.
+    /// Formula for the attenuation of point lights.
     pub falloff: Falloff,
-    /// Rays for reflection and refraction.
+    /// Rays traced for reflection and refraction.
     pub secondary: SecondaryRays,
-    /// Minimum `t` of secondary rays; `None` if rays start at an error-bounded offset instead.
+    /// Minimum `t` of secondary rays. With `None`, rays start at an error-bounded offset instead.
     pub epsilon: Option<f32>,
-    /// Arithmetic of camera rays and intersections.
+    /// Floating-point arithmetic used for camera rays and intersections.
     pub arithmetic: Arithmetic,
-    /// Colours of normal pictures.
+    /// Mapping from normals to colours in normal pictures.
     pub normals_picture: NormalsPicture,
-    /// Grey values of depth pictures.
+    /// Mapping from depths to grey values in depth pictures.
     pub depth_picture: DepthPicture,
     /// True if textures and sky pictures are decoded with the sRGB curve; false if they are linear.
     pub srgb_textures: bool,
     /// First folder in which to look for files.
     pub paths: PathBase,
-    /// True if the ambient light is multiplied by a texture or noise, instead of only by
-    /// `diffuseColor`.
+    /// True if the ambient light is multiplied by a material's texture or noise, instead of only by
+    /// its `diffuseColor`.
     pub ambient_textured: bool,
-    /// True if a scene without lights has ambient light 1 1 1, regardless of the value in the
+    /// True if the ambient light of a scene without lights is 1 1 1, regardless of the value in the
     /// scene.
     #[serde(rename = "ambient_alone")]
     pub ambient_without_lights: bool,
     /// True if coloured, transparent objects cast coloured shadows.
     pub transparent_shadows: bool,
-    /// Quirks of the official program.
+    /// Quirks of the official program that the dialect reproduces.
     #[serde(rename = "compat")]
     pub quirks: QuirkSet,
 }
 
 impl DialectRules {
-    /// True if a quirk is on.
+    /// True if a quirk is active.
     pub fn has(&self, compat: Quirk) -> bool {
         self.quirks & compat.bit() != 0
     }
 
-    /// True if the picture must equal that of an official program: the rules have an epsilon, and
-    /// hit points are computed from the ray, including its rounding.
+    /// True if the picture must equal that of an official program. Such rules have an epsilon, and
+    /// hit points are computed from the ray, including its rounding errors.
     pub fn is_bit_compatible(&self) -> bool {
         self.epsilon.is_some()
     }
 
-    /// Returns these rules without the old program's bugs, and with Dürer's defaults.
+    /// Returns these rules with Dürer's defaults and without the bugs of the old program.
     ///
-    /// Used for files if the user did not select a dialect.
+    /// These rules are used for files if the user did not select a dialect.
     pub fn without_quirks(&self) -> DialectRules {
         let ours = Dialect::Durer.rules();
         DialectRules {
@@ -471,7 +472,7 @@ const DURER: DialectRules = DialectRules {
     quirks: 0,
 };
 
-/// Rules of all dialects, in the order of the discriminants.
+/// Rules of all dialects, ordered by their discriminants.
 static TABLE: [DialectRules; 7] = [F03, F04, F12A4, F12A5, F16, F23, DURER];
 
 #[cfg(test)]

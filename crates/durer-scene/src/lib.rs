@@ -1,8 +1,8 @@
-//! Scene description: shapes, cameras, lights, materials, BSDFs, spectra and textures, as plain
-//! data with their own mathematics.
+//! Scene description as plain data: shapes, cameras, lights, materials, BSDFs, spectra and
+//! textures, together with their mathematics.
 //!
-//! [`scene::Scene`] holds them all. Nothing here traces rays through a scene or opens files:
-//! `durer-formats` reads scenes, `durer-render` compiles and renders them.
+//! A [`scene::Scene`] holds all of them. This crate neither traces rays through a scene nor opens
+//! files. Scenes are read by `durer-formats`, and compiled and rendered by `durer-render`.
 
 pub mod asset;
 pub mod bsdf;

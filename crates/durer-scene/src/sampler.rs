@@ -1,13 +1,15 @@
-//! Sample numbers, each a pure function of (seed, pixel, sample index, dimension).
+//! Random numbers for samples. Each is a pure function of the seed, the pixel, the sample index and
+//! the dimension.
 //!
-//! Generators have no state, so the order of work cannot change a number.
+//! The generators have no state, so the order of work cannot change a number.
 //!
 //! Sources: the mixing function is the finaliser of SplitMix64 (Steele, Lea, Flood, *Fast
 //! Splittable Pseudorandom Number Generators*, OOPSLA 2014; constants: Stafford's variant 13). The
-//! sequence is Sobol's in two dimensions with hash-based nested uniform scrambling (Laine, Karras,
-//! *Stratified Sampling for Stochastic Transparency*, EGSR 2011), padded and shuffled as in Burley,
-//! *Practical Hash-based Owen Scrambling*, JCGT 9(4), 2020. The scrambling hash is the one of
-//! Vegdahl, *Building a Better LK Hash*, 2021, which is less biased than the published constants.
+//! sequence is the two-dimensional Sobol sequence with hash-based nested uniform scrambling (Laine,
+//! Karras, *Stratified Sampling for Stochastic Transparency*, EGSR 2011). It is padded and shuffled
+//! as in Burley, *Practical Hash-based Owen Scrambling*, JCGT 9(4), 2020. The scrambling hash is
+//! taken from Vegdahl, *Building a Better LK Hash*, 2021, and is less biased than the published
+//! constants.
 
 use crate::math::Vec2;
 use durer_bvh::internal::{PlainKernel, run_plain};
@@ -23,14 +25,15 @@ mod tests;
 /// Method that distributes samples within a pixel, selected by `--sampler`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Sampler {
-    /// Owen-scrambled Sobol (0,2)-sequence, scrambled differently in each pixel: the least noise.
+    /// Owen-scrambled Sobol (0,2)-sequence, scrambled differently in each pixel. This sampler gives
+    /// the least noise.
     #[default]
     Sobol,
-    /// Independent, uniform random positions.
+    /// Independent, uniformly distributed random positions.
     Random,
-    /// The centres of a regular grid of cells.
+    /// Centres of the cells of a regular grid.
     Uniform,
-    /// One uniform position in each cell of a regular grid.
+    /// One uniformly distributed position in each cell of a regular grid.
     Jittered,
 }
 
@@ -38,7 +41,7 @@ pub enum Sampler {
 const BELOW_ONE: f32 = 1.0 - f32::EPSILON * 0.5;
 
 impl Sampler {
-    /// Samplers with their names on the command line.
+    /// Samplers and their names on the command line.
     pub const NAMES: [(&'static str, Sampler); 4] = [
         ("sobol", Sampler::Sobol),
         ("random", Sampler::Random),
@@ -46,13 +49,13 @@ impl Sampler {
         ("jittered", Sampler::Jittered),
     ];
 
-    /// Returns the sampler with a name.
+    /// Returns the sampler with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::NAMES.iter().find(|(n, _)| *n == name).map(|&(_, sampler)| sampler)
     }
 
-    /// Number of samples that a pixel gets if `samples` are requested: at least one, and for grid
-    /// samplers the next square (65535^2 at most).
+    /// Number of samples that a pixel gets if `samples` are requested. It is at least one. For grid
+    /// samplers, it is the next square number, at most 65535^2.
     pub fn round_up(self, samples: u32) -> u32 {
         match self {
             Sampler::Sobol | Sampler::Random => samples.max(1),
@@ -60,8 +63,8 @@ impl Sampler {
         }
     }
 
-    /// Position of a sample on the camera's lens, in [0,1)^2. It is independent of the position in
-    /// the pixel.
+    /// Position of a sample on the camera's lens, in [0,1)^2. The position on the lens is
+    /// independent of the position in the pixel.
     pub fn lens_position(self, seed: u64, x: u32, y: u32, sample: u32) -> Vec2 {
         match self {
             Sampler::Sobol => sample_2d(seed, x, y, sample, LENS_DIMENSION),
@@ -71,8 +74,8 @@ impl Sampler {
 
     /// Position of a sample in its pixel, in [0,1)^2 from the pixel's top left corner.
     ///
-    /// `sample` counts from 0 to `round_up(samples) - 1`. On a grid it runs along rows, the top row
-    /// first.
+    /// `sample` counts from 0 to `round_up(samples) - 1`. On a grid, samples are numbered along the
+    /// rows, starting with the top row.
     pub fn pixel_position(self, seed: u64, x: u32, y: u32, sample: u32, samples: u32) -> Vec2 {
         let in_cell = match self {
             Sampler::Sobol => return sample_2d(seed, x, y, sample, PIXEL_DIMENSION),
@@ -82,21 +85,21 @@ impl Sampler {
         };
         let side = grid_side(samples);
         let cell = Vec2::new((sample % side) as f32, (sample / side % side) as f32);
-        // A position close to the far edge of the last cell may round to 1.
+        // A position close to the far edge of the last cell can round to 1.
         ((cell + in_cell) / side as f32).min(Vec2::splat(BELOW_ONE))
     }
 }
 
-/// Dimension of positions in the pixel.
+/// Dimension used for positions within the pixel.
 pub const PIXEL_DIMENSION: u32 = 0;
 
-/// Dimension of positions on the camera's lens. Integrators use the dimensions from 2.
+/// Dimension used for positions on the camera's lens. Integrators use dimensions 2 and above.
 pub const LENS_DIMENSION: u32 = 1;
 
 /// Identifier of a sample of a pixel, from which all its random numbers are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SampleId {
-    /// Hash of seed and pixel.
+    /// Hash of the seed and the pixel.
     key: u64,
     /// Index of the sample in its pixel.
     pub sample: u32,
@@ -104,10 +107,11 @@ pub struct SampleId {
     first: u32,
 }
 
-/// First of the dimensions for layers that a ray passes through. The number of layers is unlimited.
+/// First of the dimensions reserved for layers that a ray passes through. The number of layers is
+/// unlimited.
 const LAYER_DIMENSIONS: u32 = 1 << 16;
 
-/// Dimension for the choice of wavelengths.
+/// Dimension used to choose the wavelengths.
 const WAVELENGTH_DIMENSION: u32 = 1 << 15;
 
 impl SampleId {
@@ -121,34 +125,35 @@ impl SampleId {
         SampleId { sample, ..self }
     }
 
-    /// Returns the points of one dimension of the pixel. They equal those of [`sample_2d`].
+    /// Returns the sequence of points for one dimension of the pixel. The points equal those of
+    /// [`sample_2d`].
     pub fn sequence(&self, dimension: u32) -> Sequence {
         Sequence::of(self.key, dimension)
     }
 
-    /// Returns the sample with other dimensions. `first` is relative to the first dimension that
-    /// integrators use.
+    /// Returns the sample with a different first dimension. `first` is relative to the first
+    /// dimension that integrators use.
     pub fn with_first_dimension(self, first: u32) -> Self {
         SampleId { first: LENS_DIMENSION + 1 + first, ..self }
     }
 
-    /// Returns two numbers in [0,1). Together with those of the pixel's other samples, they are
-    /// stratified in the unit square.
+    /// Returns two numbers in [0,1). The pairs of all samples of the pixel are stratified in the
+    /// unit square.
     pub fn pair(&self, dimension: u32) -> Vec2 {
         Sequence::of(self.key, self.first + dimension).point(self.sample)
     }
 
-    /// Returns the pairs of the first `N` dimensions, equal to those of [`SampleId::pair`].
+    /// Returns the pairs for the first `N` dimensions. They equal those of [`SampleId::pair`].
     pub fn pairs<const N: usize>(&self) -> [Vec2; N] {
         run_plain(Pairs::<N>(*self))
     }
 
-    /// Returns a number in [0,1) for the choice of wavelengths.
+    /// Returns a number in [0,1) that is used to choose the wavelengths.
     pub fn wavelength(&self) -> f32 {
         Sequence::of(self.key, WAVELENGTH_DIMENSION).point(self.sample).x
     }
 
-    /// Returns a number in [0,1) for a layer, after `depth` bounces.
+    /// Returns a number in [0,1) for a layer that a path meets after `depth` bounces.
     pub fn layer(&self, depth: u32, layer: u32) -> f32 {
         independent(sample_hash(self.key, self.sample, LAYER_DIMENSIONS + (depth << 8) + layer)).x
     }
@@ -169,10 +174,11 @@ impl<const N: usize> PlainKernel for Pairs<N> {
     }
 }
 
-/// First of the dimensions for media. The number of scattering events is unlimited.
+/// First of the dimensions reserved for media. The number of scattering events is unlimited.
 const MEDIUM_DIMENSIONS: u32 = 1 << 17;
 
-/// Random numbers in [0,1), as many as needed, for a path segment in a medium.
+/// Stream of random numbers in [0,1) for a path segment in a medium. It provides as many numbers as
+/// needed.
 #[derive(Clone, Copy, Debug)]
 pub struct Stream {
     id: SampleId,
@@ -181,16 +187,16 @@ pub struct Stream {
 }
 
 impl SampleId {
-    /// Returns the numbers for a path segment after `depth` bounces. `side` distinguishes segments
-    /// from the same point.
+    /// Returns the random numbers for a path segment after `depth` bounces. `side` distinguishes
+    /// segments that start at the same point.
     pub fn stream(&self, depth: u32, side: u32) -> Stream {
         Stream { id: *self, dimension: MEDIUM_DIMENSIONS + 2 * depth + side, count: 0 }
     }
 }
 
 impl Stream {
-    /// Returns the next number. The first two are stratified over the samples of a pixel; the
-    /// others are independent.
+    /// Returns the next number. The first two numbers are stratified over the samples of a pixel,
+    /// and all others are independent.
     pub fn number(&mut self) -> f32 {
         let SampleId { key, sample, .. } = self.id;
         self.count += 1;
@@ -216,14 +222,15 @@ fn grid_side(samples: u32) -> u32 {
 
 /// Point in [0,1)^2 of a stratified sequence that is indexed by `sample`.
 ///
-/// The first 2^k samples of a dimension, and each aligned block of 2^k, have one point in every
-/// elementary interval of area 2^-k. Points of different pixels or different dimensions are
+/// The first 2^k samples of a dimension, and each aligned block of 2^k samples, have one point in
+/// every elementary interval of area 2^-k. Points of different pixels or different dimensions are
 /// independent.
 pub fn sample_2d(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> Vec2 {
     Sequence::of(key(seed, x, y), dimension).point(sample)
 }
 
-/// Stratified points for one dimension of a pixel. Stores the hashes that the points share.
+/// Sequence of stratified points for one dimension of a pixel. It stores the hashes that all the
+/// points share.
 #[derive(Clone, Copy, Debug)]
 pub struct Sequence {
     shuffle: u32,
@@ -233,12 +240,14 @@ pub struct Sequence {
 impl Sequence {
     #[inline(always)]
     fn of(key: u64, dimension: u32) -> Self {
-        // One hash is the key of the shuffle, another the keys of both scrambles.
+        // One hash is the key for shuffling, and another contains the keys for scrambling both
+        // coordinates.
         Sequence { shuffle: sample_hash(key, 0, dimension) as u32, scramble: sample_hash(key, 1, dimension) }
     }
 
-    /// Returns the points of several samples, each in a separate sequence, equal to those of
-    /// [`Sequence::point`]: first all x, then all y. The loops are written for auto-vectorization.
+    /// Returns one point from each of several sequences: all x coordinates, followed by all y
+    /// coordinates. The points equal those of [`Sequence::point`]. The loops are written for
+    /// auto-vectorization.
     #[inline(always)]
     pub fn points<const N: usize>(sequences: &[Sequence; N], samples: &[u32; N]) -> [[f32; N]; 2] {
         let (mut shuffle, mut scramble) = ([0; N], [[0; N]; 2]);
@@ -255,7 +264,7 @@ impl Sequence {
         points
     }
 
-    /// Returns the point of a sample.
+    /// Returns the point of the sequence that belongs to a sample.
     pub fn point(&self, sample: u32) -> Vec2 {
         let index = nested_uniform_scramble(sample, self.shuffle);
         Vec2::new(
@@ -265,7 +274,7 @@ impl Sequence {
     }
 }
 
-/// Uniform point in [0,1)^2, independent of every other.
+/// Uniformly distributed point in [0,1)^2 that is independent of all other points.
 pub fn random_2d(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> Vec2 {
     independent(hash(seed, x, y, sample, dimension))
 }
@@ -276,12 +285,12 @@ fn independent(hash: u64) -> Vec2 {
     Vec2::new(unit(bits as u32), unit((bits >> 32) as u32))
 }
 
-/// Hashes a seed, a pixel, a sample index and a dimension to 64 evenly mixed bits.
+/// Computes a well-mixed 64-bit hash of a seed, a pixel, a sample index and a dimension.
 pub fn hash(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> u64 {
     sample_hash(key(seed, x, y), sample, dimension)
 }
 
-/// Common part of all hashes of a pixel.
+/// Hash of the seed and the pixel, on which all hashes of the pixel are based.
 fn key(seed: u64, x: u32, y: u32) -> u64 {
     mix(mix(seed) ^ (u64::from(x) | u64::from(y) << 32))
 }
@@ -291,7 +300,7 @@ fn sample_hash(key: u64, sample: u32, dimension: u32) -> u64 {
     mix(key ^ (u64::from(sample) | u64::from(dimension) << 32))
 }
 
-/// One step of SplitMix64: a permutation of the 64-bit integers.
+/// Performs one step of SplitMix64, which is a permutation of the 64-bit integers.
 #[inline(always)]
 fn mix(state: u64) -> u64 {
     let mut z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -306,7 +315,7 @@ fn unit(bits: u32) -> f32 {
     (bits >> 8) as f32 * (f32::EPSILON * 0.5)
 }
 
-/// Owen scrambling: flips each bit depending on the bits above it and the key.
+/// Applies Owen scrambling, which flips each bit depending on the key and the bits above it.
 #[inline(always)]
 fn nested_uniform_scramble(bits: u32, key: u32) -> u32 {
     let mut v = bits.reverse_bits();
@@ -318,10 +327,11 @@ fn nested_uniform_scramble(bits: u32, key: u32) -> u32 {
     v.reverse_bits()
 }
 
-/// Second coordinate of Sobol's sequence, in units of 2^-32; the first is the bit-reversed index.
+/// Second coordinate of the Sobol sequence, in units of 2^-32. The first coordinate is the
+/// bit-reversed index.
 ///
-/// The generator matrix is Pascal's triangle modulo 2, a Kronecker power, so five steps suffice
-/// instead of 32.
+/// The generator matrix is Pascal's triangle modulo 2. It is a Kronecker power, so five steps
+/// suffice instead of 32.
 #[inline(always)]
 fn sobol_second(index: u32) -> u32 {
     let mut v = index;

@@ -1,8 +1,8 @@
-//! Sources of a scene's files: bytes by name, independent of their storage.
+//! Sources that provide the files of a scene by name, independent of where they are stored.
 //!
-//! [`AssetSource`] is the trait. [`MemorySource`] holds files in memory, and
-//! `durer_formats::folder::FolderSource` reads folders of the file system. Every source has a
-//! [`ReadRecord`] of the files that were read.
+//! [`AssetSource`] is the trait of all sources. [`MemorySource`] holds files in memory, and
+//! `durer_formats::folder::FolderSource` reads files from folders of the file system. Every source
+//! has a [`ReadRecord`] of the files that were read.
 
 use durer_diag::did_you_mean;
 use serde::{Deserialize, Serialize};
@@ -15,22 +15,22 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 pub struct Digest(pub [u8; 32]);
 
 impl Digest {
-    /// Computes the hash of bytes.
+    /// Computes the hash of some bytes.
     pub fn of(bytes: &[u8]) -> Self {
-        // For less data, threads cost more time than they save.
+        // For less than 1 MiB of data, threads cost more time than they save.
         match bytes.len() < 1 << 20 {
             true => Digest(blake3::hash(bytes).into()),
             false => Digest(blake3::Hasher::new().update_rayon(bytes).finalize().into()),
         }
     }
 
-    /// Creates an incremental hasher of numbers.
+    /// Creates an incremental hasher for numbers.
     pub fn hasher() -> Hasher {
         Hasher { hasher: blake3::Hasher::new(), buffer: Vec::with_capacity(Hasher::BLOCK) }
     }
 }
 
-/// Incremental hasher of numbers, as little-endian bytes, which returns a [`Digest`].
+/// Incremental hasher that hashes numbers as little-endian bytes and returns a [`Digest`].
 #[derive(Debug)]
 pub struct Hasher {
     hasher: blake3::Hasher,
@@ -41,7 +41,7 @@ impl Hasher {
     /// Buffer size in bytes.
     const BLOCK: usize = 1 << 16;
 
-    /// Adds 32 bits.
+    /// Adds a 32-bit number to the hash.
     pub fn add_u32(&mut self, word: u32) {
         self.buffer.extend(word.to_le_bytes());
         if self.buffer.len() >= Hasher::BLOCK {
@@ -50,13 +50,13 @@ impl Hasher {
         }
     }
 
-    /// Adds a count as 64 bits.
+    /// Adds a count to the hash as a 64-bit number.
     pub fn add_u64(&mut self, count: u64) {
         self.add_u32(count as u32);
         self.add_u32((count >> 32) as u32);
     }
 
-    /// Returns the hash.
+    /// Returns the hash of all added numbers.
     pub fn finish(mut self) -> Digest {
         self.hasher.update(&self.buffer);
         Digest(self.hasher.finalize().into())
@@ -79,12 +79,12 @@ impl std::fmt::Debug for Digest {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SourceError {
-    /// The file was not found in any of the searched places.
+    /// The file was not found at any of the searched paths.
     #[error("the file `{name}` does not exist")] // prose: keep
     Missing {
         /// Requested name.
         name: String,
-        /// Paths that were tried.
+        /// Paths at which the file was searched for.
         tried: Vec<PathBuf>,
         /// An existing file with a similar name.
         similar: Option<String>,
@@ -101,28 +101,28 @@ pub enum SourceError {
         /// Requested name.
         name: String,
     },
-    /// The file exceeds the remaining budget.
+    /// The file is larger than the remaining budget.
     #[error("`{name}` is too large: {size} bytes, but only {left} bytes of the budget are left")]
     TooLarge {
         /// Requested name.
         name: String,
         /// Size in bytes.
         size: u64,
-        /// Remaining budget in bytes.
+        /// Number of bytes that remain in the budget.
         left: u64,
     },
-    /// An input/output error.
+    /// Input/output error of the operating system.
     #[error("cannot read `{name}`: {error}")]
     Io {
         /// Requested name.
         name: String,
-        /// Error of the operating system.
+        /// Error reported by the operating system.
         error: std::io::Error,
     },
 }
 
 impl SourceError {
-    /// Help text: a similar name, or the option to use.
+    /// Help text that suggests a similar name or the option to use.
     pub fn help(&self) -> Option<String> {
         match self {
             SourceError::Missing { similar: Some(near), .. } => Some(format!("did you mean `{near}`?")),
@@ -135,21 +135,22 @@ impl SourceError {
     }
 }
 
-/// Version of a file, which changes when the file is saved again or replaced.
+/// Version of a file, which changes whenever the file is saved again or replaced.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Stamp {
     /// Path of the file.
     pub path: PathBuf,
-    /// Time of the last change, in nanoseconds since 1970.
+    /// Time of the last modification, in nanoseconds since 1970.
     pub modified: i128,
     /// Size in bytes.
     pub size: u64,
-    /// Inode number; 0 if the file system has none. A file that replaces another has a different
-    /// number.
+    /// Inode number, or 0 if the file system has none. It changes when another file replaces the
+    /// file.
     pub number: u64,
 }
 
-/// Record of the files that a source has read: their hashes, by their names in the scene.
+/// Record of the files that a source has read. It maps their names in the scene to hashes of their
+/// contents.
 #[derive(Debug, Default)]
 pub struct ReadRecord(Mutex<BTreeMap<String, Digest>>);
 
@@ -164,22 +165,22 @@ impl ReadRecord {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Adds bytes that were read under a name.
+    /// Adds the bytes that were read for a file name.
     pub fn add(&self, name: &str, bytes: &[u8]) {
         self.add_digest(name, Digest::of(bytes));
     }
 
-    /// Adds the hash of bytes that were read under a name.
+    /// Adds the hash of the bytes that were read for a file name.
     pub fn add_digest(&self, name: &str, digest: Digest) {
         self.hashes().insert(name.into(), digest);
     }
 
-    /// Returns the hash of the bytes that were read under a name.
+    /// Returns the hash of the bytes that were read for a file name.
     pub fn digest_of(&self, name: &str) -> Option<Digest> {
         self.hashes().get(name).copied()
     }
 
-    /// Computes the hash of all names and hashes in the record, and of `more`.
+    /// Computes a hash of `more` and of all names and hashes in the record.
     pub fn digest(&self, more: &[u8]) -> Digest {
         let mut hasher = blake3::Hasher::new();
         hasher.update(&Digest::of(more).0);
@@ -196,7 +197,7 @@ pub trait AssetSource: std::fmt::Debug + Sync {
     ///
     /// # Errors
     ///
-    /// [`SourceError`]: the file does not exist, is not allowed, or cannot be read.
+    /// Returns a [`SourceError`] if the file does not exist, is not allowed, or cannot be read.
     fn read(&self, name: &str) -> Result<Arc<[u8]>, SourceError>;
 
     /// True if a file with this name exists and may be read.
@@ -205,7 +206,7 @@ pub trait AssetSource: std::fmt::Debug + Sync {
     /// Returns the record of the files that were read so far.
     fn record(&self) -> &ReadRecord;
 
-    /// Number of bytes that may still be read. Decompressed bytes count too.
+    /// Number of bytes that may still be read. Decompressed bytes count towards the budget too.
     fn budget(&self) -> u64 {
         u64::MAX
     }
@@ -213,8 +214,8 @@ pub trait AssetSource: std::fmt::Debug + Sync {
     /// Subtracts bytes from the budget.
     fn spend(&self, _bytes: u64) {}
 
-    /// Reads a file that the user named instead of the scene, so it may be anywhere. Adds it to the
-    /// record under its path.
+    /// Reads a file that is named by the user rather than by the scene, and can therefore be in any
+    /// folder. Adds it to the record under its path.
     ///
     /// # Errors
     ///
@@ -223,12 +224,12 @@ pub trait AssetSource: std::fmt::Debug + Sync {
         self.read(&path.to_string_lossy())
     }
 
-    /// Returns the version of a file by its name in the scene; `None` if it is unknown.
+    /// Returns the version of a file by its name in the scene, or `None` if it is unknown.
     fn stamp(&self, _name: &str) -> Option<Stamp> {
         None
     }
 
-    /// Adds a file that was read earlier and has not changed since `stamp` to the record.
+    /// Adds to the record a file that was read earlier and has not changed since `stamp`.
     fn record_unchanged(&self, name: &str, _stamp: &Stamp, digest: Digest) {
         self.record().add_digest(name, digest);
     }
@@ -242,7 +243,7 @@ pub struct MemorySource {
 }
 
 impl MemorySource {
-    /// Adds a file, or replaces the file with this name.
+    /// Adds a file, and replaces any file with the same name.
     pub fn insert(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) {
         self.files.insert(name.into(), bytes.into());
     }

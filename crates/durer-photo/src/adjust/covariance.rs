@@ -3,8 +3,8 @@
 //! If each component of each observation has an error of σ pixels, the parameters near the solution
 //! have the covariance σ² (Jᵀ J)⁻¹. The covariance of the cameras is σ² times the inverse of the
 //! reduced matrix. Photographs do not determine the position, orientation, and scale of the
-//! reconstruction. They are fixed by keeping the pose of the first photograph, and the largest
-//! component of the translation from it to the most distant photograph.
+//! reconstruction. These are therefore fixed by holding two values constant: the pose of the first
+//! photograph, and the largest component of the translation from it to the most distant photograph.
 //!
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! sections 5.2 and A6.
@@ -19,19 +19,19 @@ pub struct Covariance {
     /// Standard deviation in pixels of one component of an observation, estimated from the
     /// residuals.
     pub sigma: f64,
-    /// For each known pose, its photograph number and the first of its six columns: a rotation ω
-    /// that replaces R by exp(\[ω\]×) R, followed by the translation.
+    /// Photograph number of each known pose, and the first of its six columns: a rotation ω that
+    /// replaces R by exp(\[ω\]×) R, followed by the translation.
     pub views: Vec<(usize, usize)>,
-    /// Covariance matrix of all cameras: six rows per pose, then three per lens (f, k1, k2). Zero
-    /// for fixed parameters.
+    /// Covariance matrix of all cameras, with six rows per pose, followed by three rows per lens
+    /// (f, k1, k2). Entries of fixed parameters are zero.
     pub matrix: DMatrix<f64>,
-    /// Indices of the free parameters' rows in `matrix`.
+    /// Row indices of the free parameters in `matrix`.
     pub free: Vec<usize>,
 }
 
 impl Covariance {
-    /// Returns the 6x6 covariance of a photograph's pose, rotation first; `None` if its pose is
-    /// unknown.
+    /// Returns the 6x6 covariance matrix of a photograph's pose, with the rotation first, or `None`
+    /// if the pose is unknown.
     pub fn pose(&self, view: usize) -> Option<Matrix6<f64>> {
         let (_, at) = *self.views.iter().find(|(number, _)| *number == view)?;
         Some(self.matrix.fixed_view::<6, 6>(at, at).into_owned())
@@ -49,12 +49,13 @@ impl Covariance {
     }
 }
 
-/// Computes the covariance of the cameras after bundle adjustment. `options` must be those of the
-/// adjustment.
+/// Computes the covariance of the cameras after bundle adjustment. `options` must be the options
+/// that the adjustment used.
 ///
 /// # Errors
 ///
-/// If the observations do not determine all cameras, or if fewer than two poses are known.
+/// Returns an error if the observations do not determine all cameras, or if fewer than two poses
+/// are known.
 pub fn covariance(reconstruction: &Reconstruction, options: &Options) -> Result<Covariance, Error> {
     let options = Options { loss: Loss::Squared, ..*options };
     // A point with a single observation does not constrain the cameras, and its own position is
@@ -68,7 +69,7 @@ pub fn covariance(reconstruction: &Reconstruction, options: &Options) -> Result<
     }
     let reduced = system.reduce(&state, 0.0);
     let first = state.poses[0].center();
-    // Translations of the other photographs, relative to the first one.
+    // Compute the translations of the other photographs relative to the first one.
     let from_first = |i: usize| state.poses[i].apply(&first);
     let far = (1..views.len()).fold(1, |far, i| if from_first(i).norm() > from_first(far).norm() { i } else { far });
     let scale = from_first(far).iamax();

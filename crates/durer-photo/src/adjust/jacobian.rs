@@ -1,4 +1,4 @@
-//! Projection of a point to a pixel, and its derivatives.
+//! Projects points to pixels, and computes the derivatives of the projection.
 //!
 //! With P = R X + t, p = P.xy / P.z, s = |p|², g = 1 + k1 s + k2 s² and g' = k1 + 2 k2 s:
 //!
@@ -16,8 +16,8 @@ use nalgebra::{Matrix2x3, SMatrix, Vector2, Vector3};
 /// k2.
 pub type CameraJacobian = SMatrix<f64, 2, 9>;
 
-/// Projects a point to a pixel. Also returns the derivatives with respect to the camera and the
-/// point.
+/// Projects a point to a pixel. Also returns the derivatives of the pixel with respect to the
+/// camera and the point.
 pub fn project(lens: &Lens, pose: &Pose, point: &Vector3<f64>) -> (Vector2<f64>, CameraJacobian, Matrix2x3<f64>) {
     let turned = pose.rotation * point;
     let p = turned + pose.translation;

@@ -1,9 +1,9 @@
-//! Bundle adjustment: moves cameras and points together until the projections match the
+//! Bundle adjustment, which moves cameras and points together until the projections match the
 //! observations.
 //!
-//! The method is Levenberg-Marquardt: the diagonal of the normal equations is multiplied by 1 + λ,
-//! a step is accepted if it decreases the cost, and λ is adapted to how well the decrease was
-//! predicted. The position, orientation, and scale of the reconstruction are not constrained;
+//! The method is Levenberg-Marquardt. The diagonal of the normal equations is multiplied by 1 + λ,
+//! and a step is accepted if it decreases the cost. λ is adapted to how well the decrease was
+//! predicted. The position, orientation, and scale of the reconstruction are not constrained, but
 //! damping keeps them from drifting.
 //!
 //! Sources: Nocedal, Wright, *Numerical Optimisation*, 2nd edition, 2006, chapter 10; for λ:
@@ -26,15 +26,15 @@ use system::{AdjustmentProblem, Parameters};
 pub struct Options {
     /// Loss function applied to each residual.
     pub loss: Loss,
-    /// True if focal lengths are free. Photographs with the same lens share one.
+    /// True if focal lengths are adjusted. Photographs with the same lens share one focal length.
     pub focal: bool,
-    /// True if k1 and k2 are free.
+    /// True if the distortion coefficients k1 and k2 are adjusted.
     pub radial: bool,
-    /// True if points are free.
+    /// True if the positions of points are adjusted.
     pub points: bool,
     /// Maximum number of steps.
     pub iterations: usize,
-    /// Relative decrease of the cost below which the adjustment ends.
+    /// Relative decrease of the cost below which the adjustment stops.
     pub tolerance: f64,
 }
 
@@ -47,13 +47,14 @@ impl Default for Options {
 /// Result of [`adjust`]: the cost after each step, and whether the adjustment converged.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
-    /// Cost at the start and after each attempted step: half the sum of the losses.
+    /// Cost before the first step and after each attempted step. The cost is half the sum of the
+    /// losses.
     pub costs: Vec<f64>,
     /// True if the adjustment converged, false if it reached the maximum number of steps.
     pub converged: bool,
 }
 
-/// Adjusts the photographs with a known pose, their lenses, and the points.
+/// Adjusts the photographs with a known pose, their lenses, and the scene points.
 pub fn adjust(reconstruction: &mut Reconstruction, options: &Options) -> Report {
     adjust_with_progress(reconstruction, options, &|_, _| {})
 }
@@ -75,14 +76,14 @@ pub fn adjust_with_progress(
                 let next_cost = system.cost(next);
                 let fall = cost - next_cost;
                 let ratio = fall / foreseen;
-                // The cost is NaN if a point passed through a camera; this test then fails.
+                // If a point passed through a camera, the cost is NaN and this test fails.
                 if ratio > 1e-3 && fall > 0.0 {
                     let bend = 2.0 * ratio - 1.0;
                     damping = (damping * (1.0 - bend * bend * bend).max(1.0 / 3.0)).max(1e-16);
                     growth = 2.0;
                     (true, fall)
                 } else {
-                    // The step is at the limit of double precision.
+                    // The step is so small that it reaches the limit of double precision.
                     report.converged = foreseen.abs() <= 1e-14 * cost;
                     (false, fall)
                 }
@@ -94,7 +95,7 @@ pub fn adjust_with_progress(
                 report.converged = fall <= options.tolerance * cost;
                 state = next;
                 cost -= fall;
-                // Only rounding errors are left.
+                // The remaining cost is caused only by rounding errors.
                 report.converged |= cost <= 1e-20 * report.costs[0];
             }
             _ => {
@@ -107,7 +108,7 @@ pub fn adjust_with_progress(
         report.costs.push(cost);
     }
     views.iter().zip(state.poses).for_each(|(view, pose)| {
-        // The product of many small rotations drifts away from a rotation.
+        // The product of many small rotations is no longer exactly a rotation.
         let rotation = crate::model::nearest_rotation(&pose.rotation);
         reconstruction.views[*view].pose = Some(crate::Pose { rotation, ..pose });
     });
@@ -126,7 +127,7 @@ pub(crate) fn camera_jacobian(
     jacobian::project(lens, pose, point).1
 }
 
-/// Computes a damped step, and the decrease of the cost that it predicts.
+/// Computes a damped step, and predicts the decrease of the cost.
 fn damped_step(system: &AdjustmentProblem, state: &Parameters, damping: f64) -> Option<(Parameters, f64)> {
     let mut reduced = system.reduce(state, damping);
     // A parameter that is fixed or has no influence gets the equation 1 · dx = 0.
@@ -139,7 +140,7 @@ fn damped_step(system: &AdjustmentProblem, state: &Parameters, damping: f64) -> 
     Some((Parameters { poses, lenses, points }, predicted))
 }
 
-/// Solves symmetric equations after scaling them to a unit diagonal.
+/// Solves a symmetric system of equations after scaling it to a unit diagonal.
 fn solve(mut matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     let scale = matrix.diagonal().map(|d| 1.0 / d.sqrt());
     if scale.iter().any(|s| !s.is_finite()) {

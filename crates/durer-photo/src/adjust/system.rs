@@ -1,4 +1,4 @@
-//! Normal equations, with the points eliminated by the Schur complement.
+//! Normal equations, from which the points are eliminated by the Schur complement.
 //!
 //! With camera parameters c and point parameters p, a step solves
 //!
@@ -7,9 +7,9 @@
 //! | Wᵀ V | |dp| = - |gp|
 //! ```
 //!
-//! V consists of 3x3 blocks, one for each point, so that (U - W V⁻¹ Wᵀ) dc = -gc + W V⁻¹ gp is
-//! small, and dc determines the step of each point. Source: Triggs, McLauchlan, Hartley,
-//! Fitzgibbon, *Bundle Adjustment: A Modern Synthesis*, 2000, section 6.
+//! V consists of 3x3 blocks, one for each point. The system (U - W V⁻¹ Wᵀ) dc = -gc + W V⁻¹ gp is
+//! therefore small, and its solution dc determines the step of each point. Source: Triggs,
+//! McLauchlan, Hartley, Fitzgibbon, *Bundle Adjustment: A Modern Synthesis*, 2000, section 6.
 
 use super::Options;
 use super::jacobian::{CameraJacobian, project};
@@ -25,8 +25,8 @@ pub struct Parameters {
     pub points: Vec<Vector3<f64>>,
 }
 
-/// Observed pixel in a photograph with a known pose, with the indices of its pose and lens in a
-/// [`Parameters`].
+/// Observed pixel in a photograph with a known pose, together with the indices of its pose and lens
+/// in [`Parameters`].
 struct SystemObservation {
     pixel: Vector2<f64>,
     pose: usize,
@@ -38,22 +38,22 @@ struct SystemObservation {
 pub struct AdjustmentProblem {
     options: Options,
     observations: Vec<SystemObservation>,
-    /// Index of each point's first observation in `observations`, followed by the number of
-    /// observations.
+    /// Index in `observations` of each point's first observation. The last entry is the total
+    /// number of observations.
     starts: Vec<usize>,
-    /// Consecutive points that are summed by one task, with similar numbers of observations. The
-    /// division depends only on the problem, so the order of summation does too.
+    /// Ranges of consecutive points that are each summed by one task and have similar numbers of
+    /// observations. The ranges depend only on the problem, so the order of summation does too.
     runs: Vec<std::ops::Range<usize>>,
     poses: usize,
-    /// Number of camera parameters: six per pose, then three per lens.
+    /// Number of camera parameters: six for each pose, followed by three for each lens.
     pub size: usize,
 }
 
 /// Normal equations of the cameras, after the points have been eliminated by the Schur complement.
 pub struct ReducedSystem {
-    /// U - W V⁻¹ Wᵀ, with undamped U.
+    /// Matrix U - W V⁻¹ Wᵀ, with undamped U.
     pub matrix: DMatrix<f64>,
-    /// -gc + W V⁻¹ gp.
+    /// Right-hand side -gc + W V⁻¹ gp.
     pub right: DVector<f64>,
     /// gc.
     pub gradient: DVector<f64>,
@@ -61,7 +61,7 @@ pub struct ReducedSystem {
     pub diagonal: DVector<f64>,
 }
 
-/// Weighted residual of an observation, and its derivatives with respect to the camera and the
+/// Weighted residual of one observation, and its derivatives with respect to the camera and the
 /// point.
 struct ResidualRow {
     residual: Vector2<f64>,
@@ -78,8 +78,8 @@ struct PointBlock {
 }
 
 impl AdjustmentProblem {
-    /// Creates the system of a reconstruction. Also returns the initial state and the numbers of
-    /// the photographs with a known pose.
+    /// Creates the problem for a reconstruction. Also returns the initial parameters and the
+    /// numbers of the photographs with a known pose.
     pub fn new(reconstruction: &Reconstruction, options: Options) -> (Self, Parameters, Vec<usize>) {
         let views: Vec<usize> =
             (0..reconstruction.views.len()).filter(|i| reconstruction.views[*i].pose.is_some()).collect();
@@ -96,7 +96,7 @@ impl AdjustmentProblem {
             starts.push(observations.len());
         }
         let size = 6 * views.len() + 3 * reconstruction.lenses.len();
-        // Enough runs to keep threads busy, with at most 256 MiB for their sums.
+        // Use enough ranges to keep the threads busy, but at most 256 MiB for their sums.
         let count = ((1 << 25) / (size * size).max(1)).clamp(1, 16);
         let bound = |i: usize| {
             starts.partition_point(|start| start * count < i * observations.len()).min(reconstruction.points.len())
@@ -110,8 +110,9 @@ impl AdjustmentProblem {
         (AdjustmentProblem { options, observations, starts, runs, poses: views.len(), size }, state, views)
     }
 
-    /// Returns the ranges of an observation's nine columns, first of the pose, then of the lens:
-    /// the start in its row, the length, and the start in the system.
+    /// Returns two ranges of an observation's nine columns, the first for the pose and the second
+    /// for the lens. Each range consists of its start in the row, its length, and its start in the
+    /// system.
     fn columns(&self, observation: &SystemObservation) -> [(usize, usize, usize); 2] {
         [(0, 6, 6 * observation.pose), (6, 3, 6 * self.poses + 3 * observation.lens)]
     }
@@ -120,7 +121,7 @@ impl AdjustmentProblem {
         &self.observations[self.starts[point]..self.starts[point + 1]]
     }
 
-    /// Returns half the sum of the losses.
+    /// Returns the cost, which is half the sum of the losses.
     pub fn cost(&self, state: &Parameters) -> f64 {
         let run = |run: &std::ops::Range<usize>| {
             let one = |i: usize| {
@@ -148,7 +149,7 @@ impl AdjustmentProblem {
         }
         let diagonal = v.diagonal().map(|d| damping * d);
         let damped = v + Matrix3::from_diagonal(&diagonal);
-        // A point without constraints keeps its position.
+        // A point that is not constrained keeps its position.
         let inverse = damped.try_inverse().filter(|m| m.iter().all(|c| c.is_finite())).unwrap_or_default();
         PointBlock { rows, inverse, gradient, damping: diagonal }
     }
@@ -157,7 +158,8 @@ impl AdjustmentProblem {
         let (lens, pose) = (&state.lenses[observation.lens], &state.poses[observation.pose]);
         let (pixel, mut by_camera, by_point) = project(lens, pose, &state.points[point]);
         let residual = pixel - observation.pixel;
-        // The loss becomes a weight: Triggs' correction without the term of the second derivative.
+        // Convert the loss to a weight. This is Triggs' correction without the term with the second
+        // derivative.
         let weight = self.options.loss.at(residual.norm_squared()).1.sqrt();
         for (column, free) in [(6, self.options.focal), (7, self.options.radial), (8, self.options.radial)] {
             if !free {
@@ -168,7 +170,7 @@ impl AdjustmentProblem {
         ResidualRow { residual: weight * residual, by_camera: weight * by_camera, by_point }
     }
 
-    /// Computes the reduced equations, with damped point blocks.
+    /// Computes the reduced equations, in which the blocks of the points are damped.
     pub fn reduce(&self, state: &Parameters, damping: f64) -> ReducedSystem {
         let n = self.size;
         let run = |run: &std::ops::Range<usize>| {
@@ -192,7 +194,7 @@ impl AdjustmentProblem {
                             diagonal[to + k] += squares[(from + k, from + k)];
                         }
                     }
-                    // The matrix is the sum of `half` and its transpose, so diagonal blocks are
+                    // The matrix is the sum of `half` and its transpose, so the diagonal blocks are
                     // halved.
                     self.add(
                         &mut half,
@@ -216,7 +218,7 @@ impl AdjustmentProblem {
         ReducedSystem { matrix: &half + half.transpose(), right, gradient, diagonal }
     }
 
-    /// Adds a block for the columns of two observations.
+    /// Adds a block to the columns of two observations.
     fn add(&self, to: &mut DMatrix<f64>, a: &SystemObservation, b: &SystemObservation, block: &SMatrix<f64, 9, 9>) {
         let [(_, _, pose), (_, _, lens)] = self.columns(a);
         let (size, all) = (self.size, to.as_mut_slice());
@@ -231,8 +233,8 @@ impl AdjustmentProblem {
         }
     }
 
-    /// Computes the steps of the points from the step of the cameras, and the decrease of the
-    /// points' part of the quadratic model.
+    /// Computes the steps of the points from the step of the cameras. Also computes the points'
+    /// contribution to the decrease of the quadratic model.
     pub fn back_substitute(&self, state: &Parameters, damping: f64, step: &DVector<f64>) -> (Vec<Vector3<f64>>, f64) {
         let run = |run: &std::ops::Range<usize>| {
             let mut fall = 0.0;
@@ -257,7 +259,7 @@ impl AdjustmentProblem {
         (parts.into_iter().flat_map(|part| part.0).collect(), fall)
     }
 
-    /// Returns the poses and lenses after a step.
+    /// Returns the poses and lenses that result from a step.
     pub fn apply_step(&self, state: &Parameters, step: &DVector<f64>) -> (Vec<Pose>, Vec<Lens>) {
         let (mut poses, mut lenses) = (state.poses.clone(), state.lenses.clone());
         let three = |at: usize| Vector3::new(step[at], step[at + 1], step[at + 2]);
@@ -274,7 +276,7 @@ impl AdjustmentProblem {
         (poses, lenses)
     }
 
-    /// Returns the number of residual components: two for each observation.
+    /// Returns the number of residual components, which is two for each observation.
     pub fn residual_count(&self) -> usize {
         2 * self.observations.len()
     }

@@ -1,4 +1,4 @@
-//! Orientations and descriptors (Lowe, sections 5 and 6).
+//! Computes the orientations and descriptors of features (Lowe, sections 5 and 6).
 
 use super::detect::{Extremum, Octave};
 use super::{DESCRIPTOR_LENGTH, Feature, GrayImage};
@@ -13,11 +13,11 @@ const ORIENTATION_BINS: usize = 8;
 /// Width of a cell, as a multiple of the feature's scale.
 const CELL_WIDTH: f32 = 3.0;
 
-/// Returns the features of an extremum, one for each of its orientations, with positions in pixels
-/// of the image.
+/// Returns one feature for each orientation of an extremum, with positions in image pixels.
 pub fn describe(octaves: &[Octave], point: &Extremum, doubled: bool) -> Vec<(Feature, [u8; DESCRIPTOR_LENGTH])> {
     let gray = &octaves[point.octave].blurs[point.level];
-    // Image pixels per octave pixel. Halving keeps the centre of the first pixel in place.
+    // Number of image pixels per pixel of the octave. Halving keeps the centre of the first pixel
+    // in place.
     let of_base = (1 << point.octave) as f32;
     let base = if doubled { 0.5 } else { 1.0 };
     let feature = |angle: f32| Feature {
@@ -36,7 +36,7 @@ fn gradient(gray: &GrayImage, x: usize, y: usize) -> (f32, f32) {
     ((dx * dx + dy * dy).sqrt(), libm::atan2f(dy, dx))
 }
 
-/// Calls `each` for every pixel within a radius of a point, except at the border.
+/// Calls `each` for every pixel within a radius of a point, except for pixels at the border.
 fn for_each_pixel_around(
     gray: &GrayImage,
     point: &Extremum,
@@ -54,8 +54,8 @@ fn for_each_pixel_around(
     }
 }
 
-/// Returns at most two orientations: the peaks of the gradient histogram that reach four fifths of
-/// the highest one.
+/// Returns at most two orientations. These are the peaks of the gradient histogram that reach at
+/// least four fifths of the highest peak.
 fn orientations(gray: &GrayImage, point: &Extremum) -> Vec<f32> {
     let sigma = 1.5 * point.scale;
     let mut bins = [0.0_f32; HISTOGRAM_BINS];
@@ -80,7 +80,7 @@ fn orientations(gray: &GrayImage, point: &Extremum) -> Vec<f32> {
         let (left, here, right) =
             (bins[(i + HISTOGRAM_BINS - 1) % HISTOGRAM_BINS], bins[i], bins[(i + 1) % HISTOGRAM_BINS]);
         if here > left && here > right && here >= 0.8 * largest {
-            // Position of the vertex of the parabola through three bins.
+            // Find the vertex of the parabola through three bins.
             let shift = 0.5 * (left - right) / (left - 2.0 * here + right);
             peaks.push((here, (i as f32 + 0.5 + shift) / HISTOGRAM_BINS as f32 * TAU - PI));
         }
@@ -90,8 +90,8 @@ fn orientations(gray: &GrayImage, point: &Extremum) -> Vec<f32> {
     peaks.into_iter().map(|peak| peak.1).collect()
 }
 
-/// Computes the SIFT descriptor: the gradient histograms of all cells. Each gradient is distributed
-/// over the neighbouring cells and bins by linear interpolation.
+/// Computes the SIFT descriptor, which consists of the gradient histograms of all cells. Each
+/// gradient is distributed over the neighbouring cells and bins by linear interpolation.
 fn descriptor(gray: &GrayImage, point: &Extremum, angle: f32) -> [u8; DESCRIPTOR_LENGTH] {
     let width = CELL_WIDTH * point.scale;
     let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
@@ -99,7 +99,7 @@ fn descriptor(gray: &GrayImage, point: &Extremum, angle: f32) -> [u8; DESCRIPTOR
     let mut bins = [0.0_f32; DESCRIPTOR_LENGTH];
     for_each_pixel_around(gray, point, width * (half + 0.5) * std::f32::consts::SQRT_2, |x, y, dx, dy| {
         let (u, v) = ((cos * dx + sin * dy) / width, (cos * dy - sin * dx) / width);
-        // Coordinates relative to the centre of the first cell.
+        // Compute coordinates relative to the centre of the first cell.
         let (column, row) = (u + half - 0.5, v + half - 0.5);
         if column <= -1.0 || row <= -1.0 || column >= CELLS as f32 || row >= CELLS as f32 {
             return;
@@ -122,7 +122,7 @@ fn descriptor(gray: &GrayImage, point: &Extremum, angle: f32) -> [u8; DESCRIPTOR
             }
         }
     });
-    // Clamp large gradients caused by lighting to a fifth of the descriptor's length.
+    // Clamp large gradients caused by lighting to a fifth of the length of the descriptor.
     let length = bins.iter().map(|b| b * b).sum::<f32>().sqrt().max(1e-12);
     bins.iter_mut().for_each(|b| *b = (*b / length).min(0.2));
     let sum = bins.iter().sum::<f32>().max(1e-12);

@@ -1,4 +1,4 @@
-//! Extrema of the difference of Gaussians (Lowe, sections 3 and 4).
+//! Finds the extrema of the difference of Gaussians (Lowe, sections 3 and 4).
 
 use super::GrayImage;
 use nalgebra::{Matrix3, Vector3};
@@ -6,45 +6,44 @@ use rayon::prelude::*;
 
 /// Number of scales per octave that are searched for extrema.
 pub const SCALES_PER_OCTAVE: usize = 3;
-/// Standard deviation of the blur of an octave's first image, in pixels.
+/// Standard deviation in pixels of the blur of an octave's first image.
 pub const BASE_BLUR: f32 = 1.6;
-/// Assumed standard deviation of the blur of a photograph, in pixels.
+/// Assumed standard deviation in pixels of the blur of a photograph.
 const CAMERA_BLUR: f32 = 0.5;
-/// Minimum difference of Gaussians of an extremum, for pixel values from 0 to 1.
+/// Minimum difference of Gaussians at an extremum, for pixel values from 0 to 1.
 const MIN_CONTRAST: f32 = 0.02 / SCALES_PER_OCTAVE as f32;
-/// Maximum ratio of the two curvatures of an extremum; extrema on edges have a larger one.
+/// Maximum ratio of the two curvatures at an extremum. Extrema on edges have a larger ratio.
 const MAX_EDGE_RATIO: f32 = 10.0;
-/// Width of the border that is not searched, in pixels.
+/// Width in pixels of the border that is not searched.
 const BORDER: usize = 5;
 
-/// Level of the scale-space pyramid: images of one size with increasing blur, and their
-/// differences.
+/// Level of the scale-space pyramid, which contains images of one size with increasing blur, and
+/// their differences.
 pub struct Octave {
     pub blurs: Vec<GrayImage>,
     differences: Vec<GrayImage>,
 }
 
-/// Extremum of the difference of Gaussians in scale space: a candidate for a SIFT feature.
+/// Extremum of the difference of Gaussians in scale space, which is a candidate for a SIFT feature.
 #[derive(Debug, Clone, Copy)]
 pub struct Extremum {
     pub octave: usize,
     pub level: usize,
     pub row: usize,
     pub column: usize,
-    /// Position in pixels of the octave, relative to pixel centres, and scale in pixels of the
-    /// octave.
+    /// Position relative to pixel centres, and scale, both in pixels of the octave.
     pub x: f32,
     pub y: f32,
     pub scale: f32,
     pub strength: f32,
 }
 
-/// Computes 2^(levels / LEVELS), for a fraction of an octave.
+/// Computes 2^(levels / LEVELS), where `levels` is a part of an octave.
 fn power(levels: f32) -> f32 {
     libm::exp2f(levels / SCALES_PER_OCTAVE as f32)
 }
 
-/// Builds the scale-space pyramid, down to the smallest useful size.
+/// Builds the scale-space pyramid down to the smallest useful image size.
 pub fn octaves(gray: &GrayImage, doubled: bool) -> Vec<Octave> {
     let (start, own) = if doubled { (gray.doubled(), 2.0 * CAMERA_BLUR) } else { (gray.clone(), CAMERA_BLUR) };
     let mut first = start.blurred((BASE_BLUR * BASE_BLUR - own * own).sqrt());
@@ -52,7 +51,7 @@ pub fn octaves(gray: &GrayImage, doubled: bool) -> Vec<Octave> {
     while first.width.min(first.height) > 4 * BORDER && all.len() < 8 {
         let mut blurs = vec![first];
         for level in 1..SCALES_PER_OCTAVE + 3 {
-            // Variances of successive blurs add up.
+            // The variances of successive blurs add up.
             let (before, after) = (BASE_BLUR * power(level as f32 - 1.0), BASE_BLUR * power(level as f32));
             blurs.push(blurs[level - 1].blurred((after * after - before * before).sqrt()));
         }
@@ -92,8 +91,8 @@ fn in_row(d: &[GrayImage], octave: usize, level: usize, row: usize) -> Vec<Extre
     (BORDER..width - BORDER).filter(extreme).filter_map(|column| refined(d, octave, level, row, column)).collect()
 }
 
-/// Refines an extremum by a quadratic fit to its neighbours; `None` if the fit moves away, or if
-/// the extremum is weak or on an edge.
+/// Refines an extremum by fitting a quadratic function to its neighbours. Returns `None` if the fit
+/// moves away, or if the extremum is weak or on an edge.
 fn refined(d: &[GrayImage], octave: usize, mut level: usize, mut row: usize, mut column: usize) -> Option<Extremum> {
     for _ in 0..5 {
         let at = |dx: isize, dy: isize, dl: isize| {

@@ -2,14 +2,14 @@
 
 use rayon::prelude::*;
 
-/// Greyscale image with one `f32` per pixel, in which features are detected.
+/// Greyscale image with one `f32` value per pixel, used to detect features.
 #[derive(Debug, Clone)]
 pub struct GrayImage {
     /// Width in pixels.
     pub width: usize,
     /// Height in pixels.
     pub height: usize,
-    /// Values, row by row from the top.
+    /// Pixel values, row by row from the top.
     pub values: Vec<f32>,
 }
 
@@ -19,8 +19,8 @@ impl GrayImage {
         self.values[y * self.width + x]
     }
 
-    /// Applies a Gaussian blur with standard deviation `sigma` in pixels. Edge pixels are repeated
-    /// beyond the border.
+    /// Applies a Gaussian blur with standard deviation `sigma` in pixels. The pixels at the edge
+    /// are repeated beyond the border.
     pub fn blurred(&self, sigma: f32) -> GrayImage {
         let radius = (4.0 * sigma).ceil() as usize;
         let weight = |i: usize| libm::expf(-((i * i) as f32) / (2.0 * sigma * sigma));
@@ -53,10 +53,10 @@ impl GrayImage {
         GrayImage { width, height, values }
     }
 
-    /// Doubles the size, with linear interpolation between pixel centres.
+    /// Doubles the size of the image, with linear interpolation between pixel centres.
     pub fn doubled(&self) -> GrayImage {
         let (width, height) = (2 * self.width, 2 * self.height);
-        // The centre of pixel i is at (i + 1/2) / 2 in the smaller image.
+        // The centre of pixel i is located at (i + 1/2) / 2 in the smaller image.
         let between = |i: usize, end: usize| {
             let near = i / 2;
             let far = if i.is_multiple_of(2) { near.saturating_sub(1) } else { (near + 1).min(end - 1) };
@@ -78,7 +78,7 @@ impl GrayImage {
         GrayImage { width, height, values }
     }
 
-    /// Returns the pixel-wise difference from an image of the same size.
+    /// Returns the pixel-wise difference between this image and another of the same size.
     pub fn difference(&self, other: &GrayImage) -> GrayImage {
         let values = self.values.iter().zip(&other.values).map(|(a, b)| a - b).collect();
         GrayImage { values, ..*self }

@@ -1,7 +1,7 @@
-//! Problem files of *Bundle Adjustment in the Large* (BAL), a benchmark for solvers.
+//! Problem files in the format of *Bundle Adjustment in the Large* (BAL), a benchmark for solvers.
 //!
 //! Source: Agarwal, Snavely, Seitz, Szeliski, *Bundle Adjustment in the Large*, ECCV 2010, and the
-//! web page of its data.
+//! web page with its data.
 
 use super::{TokenReader, flip_camera_axes, joined};
 use crate::model::{axis_angle_of, rotation_of};
@@ -9,8 +9,8 @@ use crate::{Error, Lens, Observation, Point, Pose, Reconstruction, View};
 use nalgebra::{Vector2, Vector3};
 use std::fmt::Write;
 
-/// Reads a BAL problem. The format contains neither image sizes nor colours: pixels are relative to
-/// the image centre, and points are grey.
+/// Reads a BAL problem. The format contains neither image sizes nor colours, so pixels are relative
+/// to the image centre, and points are grey.
 pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let mut words = TokenReader::new(file, bytes)?;
     let cameras = words.count("the number of cameras", 18)?;

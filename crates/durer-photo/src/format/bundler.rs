@@ -1,5 +1,5 @@
-//! Bundler's `.out` files, versions 0.3 and 0.4: the cameras and points of the Photo Tourism
-//! program.
+//! Bundler's `.out` files in versions 0.3 and 0.4, which contain the cameras and points of the
+//! Photo Tourism program.
 //!
 //! Source: Snavely, *Bundler v0.4 User's Manual*, 2010, "Output format and scene representation".
 
@@ -8,7 +8,7 @@ use crate::{Error, Lens, Observation, Point, Pose, Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
 use std::fmt::Write;
 
-/// Reads a Bundler file. The format contains no image sizes: pixels are relative to the image
+/// Reads a Bundler file. The format contains no image sizes, so pixels are relative to the image
 /// centre until [`Reconstruction::set_image`] sets the size.
 pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let mut words = TokenReader::new(file, bytes)?;
@@ -53,7 +53,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     Ok(reconstruction)
 }
 
-/// Writes a Bundler file, version 0.3.
+/// Writes a Bundler file in version 0.3.
 pub fn write(reconstruction: &Reconstruction) -> Result<Vec<u8>, Error> {
     let mut text = format!("# Bundle file v0.3\n{} {}\n", reconstruction.views.len(), reconstruction.points.len());
     for view in &reconstruction.views {

@@ -1,4 +1,4 @@
-//! COLMAP folders with `cameras`, `images`, and `points3D`: the part shared by the
+//! COLMAP folders with `cameras`, `images`, and `points3D`. This module is shared by the
 //! [text](super::colmap_text) and [binary](super::colmap_binary) formats.
 //!
 //! Source: Schönberger, *COLMAP* manual, "Output Format" and "Camera Models".
@@ -9,11 +9,12 @@ use nalgebra::{Vector2, Vector3};
 use std::collections::BTreeMap;
 use std::fmt::Display;
 
-/// Supported camera models: name, number in binary files, and number of parameters.
+/// Supported camera models, each with its name, its number in binary files, and its number of
+/// parameters.
 pub const MODELS: [(&str, i32, usize); 5] =
     [("SIMPLE_PINHOLE", 0, 3), ("PINHOLE", 1, 4), ("SIMPLE_RADIAL", 2, 4), ("RADIAL", 3, 5), ("OPENCV", 4, 8)];
 
-/// Creates a lens from the parameters of a model.
+/// Creates a lens from the parameters of a camera model.
 pub fn lens(model: usize, size: [u32; 2], p: &[f64]) -> Result<Lens, String> {
     let (focal, vertical, principal_point, distortion) = match model {
         0 => (p[0], p[0], [p[1], p[2]], [0.0; 2]),
@@ -40,25 +41,25 @@ pub fn parameters(lens: &Lens) -> (usize, Vec<f64>) {
     }
 }
 
-/// Row of COLMAP's `images` table: the pose, name, and features of one photograph.
+/// Row of COLMAP's `images` table, with the pose, name, and features of one photograph.
 pub struct ImageRow {
     pub quaternion: [f64; 4],
     pub translation: [f64; 3],
     pub camera: u32,
     pub name: String,
-    /// Positions of the features.
+    /// Positions of the features in pixels.
     pub features: Vec<[f64; 2]>,
 }
 
-/// Row of COLMAP's `points3D` table: a point and its observations.
+/// Row of COLMAP's `points3D` table, with a point and its observations.
 pub struct PointRow {
     pub position: [f64; 3],
     pub color: [u8; 3],
-    /// Pairs of image id and feature number.
+    /// Pairs of an image id and a feature number.
     pub track: Vec<(u32, usize)>,
 }
 
-/// Contents of a COLMAP folder: cameras, images, and points by their ids in the files.
+/// Contents of a COLMAP folder, with cameras, images, and points stored by their ids in the files.
 #[derive(Default)]
 pub struct ColmapTables {
     pub cameras: BTreeMap<u32, Lens>,
@@ -66,7 +67,7 @@ pub struct ColmapTables {
     pub points: BTreeMap<u64, PointRow>,
 }
 
-/// Inserts a row into a table. Returns an error if the id is already present.
+/// Inserts a row into a table, or returns an error if the id is already present.
 pub fn insert_unique<Id: Ord + Copy + Display, T>(into: &mut BTreeMap<Id, T>, id: Id, row: T) -> Result<(), String> {
     match into.insert(id, row) {
         None => Ok(()),
@@ -75,7 +76,8 @@ pub fn insert_unique<Id: Ord + Copy + Display, T>(into: &mut BTreeMap<Id, T>, id
 }
 
 impl ColmapTables {
-    /// Converts the tables to a reconstruction. Ids become consecutive indices in the same order.
+    /// Converts the tables to a reconstruction. Ids are replaced by consecutive indices in the same
+    /// order.
     pub fn into_reconstruction(self, file: &str) -> Result<Reconstruction, Error> {
         let fail = |why: String| Error::in_file(file, why);
         let lens_of: BTreeMap<u32, usize> = self.cameras.keys().enumerate().map(|(i, id)| (*id, i)).collect();
@@ -105,11 +107,11 @@ impl ColmapTables {
     }
 }
 
-/// Features of a photograph that observe a point: the pixel, and the id of the point.
+/// Features of one photograph that observe a point. Each has a pixel and the id of the point.
 pub type Features = Vec<(Vector2<f64>, usize)>;
 
-/// Returns the features of each photograph in the order in which they are written, and for each
-/// point, the feature numbers of its observations.
+/// Returns the features of each photograph in the order in which they are written. Also returns the
+/// feature numbers of the observations of each point.
 pub fn features(reconstruction: &Reconstruction) -> (Vec<Features>, Vec<Vec<usize>>) {
     let mut features = vec![Vec::new(); reconstruction.views.len()];
     let mut numbers = Vec::new();
@@ -123,7 +125,7 @@ pub fn features(reconstruction: &Reconstruction) -> (Vec<Features>, Vec<Vec<usiz
     (features, numbers)
 }
 
-/// Returns the mean length of a point's residuals in pixels.
+/// Returns the mean length in pixels of the residuals of a point.
 pub fn error(reconstruction: &Reconstruction, point: &Point) -> f64 {
     let lengths: Vec<f64> = point
         .track

@@ -1,10 +1,10 @@
-//! COLMAP's tables as little-endian binary files.
+//! Reads and writes COLMAP's tables as little-endian binary files.
 
 use super::colmap::{ColmapTables, ImageRow, MODELS, PointRow, error, features, insert_unique, lens, parameters};
 use crate::model::quaternion_of;
 use crate::{Error, Reconstruction};
 
-/// Reader of little-endian numbers from a binary file, which checks the length and reports byte
+/// Reader of little-endian numbers from a binary file. It checks the length, and reports byte
 /// offsets in errors.
 pub struct ByteReader<'b> {
     file: &'b str,
@@ -13,7 +13,7 @@ pub struct ByteReader<'b> {
 }
 
 impl<'b> ByteReader<'b> {
-    /// Creates a reader of a file's bytes. `file` is the name for messages.
+    /// Creates a reader for the bytes of a file. `file` is the name that error messages contain.
     pub fn new(file: &'b str, bytes: &'b [u8]) -> Self {
         ByteReader { file, bytes, at: 0 }
     }
@@ -48,13 +48,13 @@ impl<'b> ByteReader<'b> {
         Ok(u64::from_le_bytes(self.array()?))
     }
 
-    /// Reads a finite number.
+    /// Reads a finite 64-bit number.
     pub fn f64(&mut self) -> Result<f64, Error> {
         let number = f64::from_le_bytes(self.array()?);
         if number.is_finite() { Ok(number) } else { Err(self.error(format!("{number} is not finite"))) }
     }
 
-    /// Reads `N` finite numbers.
+    /// Reads `N` finite 64-bit numbers.
     pub fn numbers<const N: usize>(&mut self) -> Result<[f64; N], Error> {
         let mut numbers = [0.0; N];
         for number in &mut numbers {
@@ -63,7 +63,7 @@ impl<'b> ByteReader<'b> {
         Ok(numbers)
     }
 
-    /// Reads a number of entries, each of which takes at least `bytes` bytes.
+    /// Reads the number of entries in a list, where each entry takes at least `bytes` bytes.
     fn count(&mut self, bytes: usize) -> Result<usize, Error> {
         let count = self.u64()?;
         let fits = usize::try_from(count).ok().filter(|count| *count <= (self.bytes.len() - self.at) / bytes);
@@ -75,7 +75,8 @@ impl<'b> ByteReader<'b> {
     }
 }
 
-/// Reads the contents of cameras.bin, images.bin, and points3D.bin, each with its file name.
+/// Reads the contents of cameras.bin, images.bin, and points3D.bin. Each is given with its file
+/// name.
 pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Result<Reconstruction, Error> {
     let mut tables = ColmapTables::default();
     let mut bytes = ByteReader::new(cameras.0, cameras.1);
@@ -129,7 +130,7 @@ fn put(into: &mut Vec<u8>, numbers: impl IntoIterator<Item = f64>) {
     numbers.into_iter().for_each(|number| into.extend(number.to_le_bytes()));
 }
 
-/// Writes cameras.bin, images.bin, and points3D.bin. Leaves out photographs without a pose.
+/// Writes cameras.bin, images.bin, and points3D.bin. Photographs without a pose are omitted.
 pub fn write(reconstruction: &Reconstruction) -> [Vec<u8>; 3] {
     let (features, numbers) = features(reconstruction);
     let mut cameras = (reconstruction.lenses.len() as u64).to_le_bytes().to_vec();

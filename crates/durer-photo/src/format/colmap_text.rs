@@ -1,4 +1,4 @@
-//! COLMAP's tables as text files.
+//! Reads and writes COLMAP's tables as text files.
 
 use super::colmap::{ColmapTables, ImageRow, MODELS, PointRow, error, features, insert_unique, lens, parameters};
 use super::{TokenReader, joined};
@@ -6,7 +6,8 @@ use crate::model::quaternion_of;
 use crate::{Error, Reconstruction};
 use std::fmt::Write;
 
-/// Reads the contents of cameras.txt, images.txt, and points3D.txt, each with its file name.
+/// Reads the contents of cameras.txt, images.txt, and points3D.txt. Each is given with its file
+/// name.
 pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Result<Reconstruction, Error> {
     let mut tables = ColmapTables::default();
     let mut words = TokenReader::in_rows(cameras.0, cameras.1)?;
@@ -35,7 +36,7 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
         let camera = words.parse("a camera's id")?;
         words.is_at_end_of_line();
         let name = words.rest_of_line().to_string();
-        // The second line of an image may be empty. It begins after the end of the first.
+        // The second line of an image can be empty. It begins after the end of the first line.
         let mut list = Vec::new();
         words.skip_line_end();
         while !words.is_at_end_of_line() {
@@ -63,7 +64,7 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
     tables.into_reconstruction(folder)
 }
 
-/// Writes cameras.txt, images.txt, and points3D.txt. Leaves out photographs without a pose.
+/// Writes cameras.txt, images.txt, and points3D.txt. Photographs without a pose are omitted.
 pub fn write(reconstruction: &Reconstruction) -> [String; 3] {
     let (features, numbers) = features(reconstruction);
     let mut cameras = String::from("# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n");

@@ -1,15 +1,16 @@
-//! Files compressed by gzip or bzip2, such as those of *Bundle Adjustment in the Large*.
+//! Decompresses files compressed by gzip or bzip2, such as those of *Bundle Adjustment in the
+//! Large*.
 
 use crate::Error;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Maximum length of a decompressed file in bytes, because a small malicious file could otherwise
-/// fill the memory.
+/// Maximum length of a decompressed file in bytes. Without it, a small malicious file could fill
+/// the memory.
 const MAX_DECOMPRESSED_SIZE: u64 = 4 << 30;
 
-/// Decompresses a file if it begins with the signature of gzip or bzip2.
+/// Decompresses a file if it begins with a gzip or bzip2 signature.
 pub fn decompress(file: &str, bytes: Arc<[u8]>) -> Result<Arc<[u8]>, Error> {
     let (packed, mut reader): (_, Box<dyn Read + '_>) = match bytes.get(..3) {
         Some([0x1f, 0x8b, _]) => ("gzip", Box::new(flate2::read::MultiGzDecoder::new(&*bytes))),
@@ -28,7 +29,7 @@ pub fn decompress(file: &str, bytes: Arc<[u8]>) -> Result<Arc<[u8]>, Error> {
     Ok(plain.into())
 }
 
-/// Removes `.gz` or `.bz2` from a path.
+/// Removes the extension `.gz` or `.bz2` from a path.
 pub fn without_compression_extension(path: &Path) -> PathBuf {
     match path.extension().and_then(|end| end.to_str()) {
         Some("gz" | "bz2") => path.with_extension(""),

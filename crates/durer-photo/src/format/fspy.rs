@@ -1,10 +1,10 @@
-//! fSpy projects (`.fspy`) and exported cameras (`.json`): the camera of a single photograph from
-//! vanishing lines.
+//! fSpy projects (`.fspy`) and exported cameras (`.json`), which give the camera of a single
+//! photograph based on vanishing lines.
 //!
-//! A project consists of the word `fspy`, a version, the lengths of the JSON state and the
+//! A project consists of the word `fspy`, a version, the lengths of the JSON state and of the
 //! photograph, the state, and the photograph. Coordinates range from 0 to 1 across the photograph,
-//! with y down. An exported camera uses coordinates in the image plane instead: the longer side
-//! ranges from -1 to 1, with y up, and the camera looks down -z.
+//! with y down. An exported camera uses coordinates in the image plane instead. There, the longer
+//! side ranges from -1 to 1, with y up, and the camera looks along -z.
 //!
 //! Source: documentation of fSpy-Blender, *The fSpy project file format*.
 
@@ -16,7 +16,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 use serde::Deserialize;
 use serde_json::Value;
 
-/// 4x4 matrix in an exported camera's JSON, by rows.
+/// 4x4 matrix in the JSON of an exported camera, stored by rows.
 #[derive(Deserialize)]
 struct JsonMatrix {
     rows: [[f64; 4]; 4],
@@ -29,7 +29,7 @@ struct JsonPoint {
     y: f64,
 }
 
-/// JSON of a camera exported by fSpy.
+/// JSON data of a camera exported by fSpy.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct ExportedCamera {
@@ -40,7 +40,7 @@ struct ExportedCamera {
     image_height: u32,
 }
 
-/// Reads an exported camera.
+/// Reads a camera exported by fSpy.
 pub fn read_camera(file: &str, json: &[u8]) -> Result<Reconstruction, Error> {
     let camera: ExportedCamera = serde_json::from_slice(json)
         .map_err(|error| Error::at(file, (error.line(), error.column()), format!("fSpy's JSON: {error}")))?;
@@ -55,7 +55,7 @@ pub fn read_camera(file: &str, json: &[u8]) -> Result<Reconstruction, Error> {
     Ok(Reconstruction { lenses: vec![lens], views: vec![view], points: Vec::new() })
 }
 
-/// Reads a project: its vanishing lines and origin, and the bytes of the photograph.
+/// Reads a project. Returns its vanishing lines and origin, and the bytes of the photograph.
 pub fn read_project<'b>(file: &'b str, content: &'b [u8]) -> Result<(VanishingLines, &'b [u8]), Error> {
     let mut bytes = ByteReader::new(file, content);
     if bytes.take(4).ok() != Some(b"fspy") {

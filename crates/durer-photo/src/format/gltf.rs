@@ -1,10 +1,10 @@
-//! glTF 2.0: cameras as nodes and points as a point mesh in one file, read as JSON (`.gltf`) or
-//! binary (`.glb`).
+//! glTF 2.0 files with cameras as nodes and points as a point mesh, in JSON (`.gltf`) or binary
+//! (`.glb`) form.
 //!
-//! glTF cameras look down -z with y up, have no distortion, and their principal point is the
-//! centre. All other lens parameters and the size of the photographs are stored in `extras`, which
-//! other programs ignore. Without `extras`, photographs are assumed to have 1000 rows. World axes
-//! are the same in both.
+//! glTF cameras look along -z with y up. They have no distortion, and their principal point is the
+//! image centre. All other lens parameters and the size of the photographs are stored in `extras`,
+//! which other programs ignore. Without `extras`, photographs are assumed to have 1000 rows. The
+//! world axes of glTF are the same as those of this crate.
 //!
 //! Source: Khronos, *glTF 2.0 Specification*, sections 3.6, 3.10, 4.4 and 5.12.
 
@@ -17,10 +17,10 @@ use nalgebra::{Matrix3, Matrix4, Vector3};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// Assumed number of rows of a photograph whose size is unknown.
+/// Number of rows that is assumed for a photograph of unknown size.
 const DEFAULT_HEIGHT: f64 = 1000.0;
 
-/// JSON of a glTF file, as far as it is read.
+/// Those parts of a glTF file's JSON that are read.
 #[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 struct File {
@@ -46,7 +46,7 @@ struct Node {
     scale: Option<[f64; 3]>,
 }
 
-/// glTF camera; orthographic cameras have no `perspective` and are ignored.
+/// glTF camera. Orthographic cameras have no `perspective` and are ignored.
 #[derive(Deserialize)]
 struct Camera {
     name: Option<String>,
@@ -78,15 +78,15 @@ struct Mesh {
     primitives: Vec<Primitive>,
 }
 
-/// Part of a glTF mesh with one topology.
+/// Part of a glTF mesh, in which all elements have the same topology.
 #[derive(Deserialize)]
 struct Primitive {
     attributes: Attributes,
-    /// Topology: 0 for points; absent for triangles.
+    /// Topology of the primitive: 0 for points, absent for triangles.
     mode: Option<u32>,
 }
 
-/// Accessor indices of a primitive's positions and colours.
+/// Indices of the accessors for the positions and colours of a primitive.
 #[derive(Deserialize)]
 struct Attributes {
     #[serde(rename = "POSITION")]
@@ -95,7 +95,7 @@ struct Attributes {
     color: Option<usize>,
 }
 
-/// glTF accessor: the type and number of the elements in a buffer view.
+/// glTF accessor, which gives the type and number of the elements in a buffer view.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Accessor {
@@ -108,7 +108,7 @@ struct Accessor {
     shape: String,
 }
 
-/// glTF buffer view: a range of bytes in a buffer.
+/// glTF buffer view, which is a range of bytes in a buffer.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct BufferView {
@@ -119,13 +119,13 @@ struct BufferView {
     byte_stride: Option<usize>,
 }
 
-/// glTF buffer: a data URI, or the binary chunk of a `.glb` file if `uri` is absent.
+/// glTF buffer. It is a data URI, or the binary chunk of a `.glb` file if `uri` is absent.
 #[derive(Deserialize)]
 struct Buffer {
     uri: Option<String>,
 }
 
-/// Reads the cameras and points of a glTF file, and ignores everything else. The format contains no
+/// Reads the cameras and points of a glTF file and ignores everything else. The format contains no
 /// observations.
 pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let fail = |why: String| Error::in_file(name, why);
@@ -165,7 +165,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
             if colors.as_ref().is_some_and(|colors| colors.len() != positions.len()) {
                 return Err(fail(format!("node {i}: the numbers of colours and points differ")));
             }
-            // A mesh may be instanced many times.
+            // A mesh can be instanced many times.
             if reconstruction.points.len() + positions.len() > bytes.len() {
                 return Err(fail("there are more points than the file has bytes: meshes are used too often".into()));
             }
@@ -180,7 +180,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     Ok(reconstruction)
 }
 
-/// Splits a file into its JSON and, for a binary file, its data chunk.
+/// Splits a file into its JSON and, if the file is binary, its data chunk.
 fn chunks(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     if !bytes.starts_with(b"glTF") {
         return Some((bytes, &[]));
@@ -195,7 +195,7 @@ fn chunks(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     Some((json, binary))
 }
 
-/// Returns the indices and world transforms of all nodes, parents first.
+/// Returns the indices and world transforms of all nodes, with parents before their children.
 fn world_transforms(file: &File) -> Result<Vec<(usize, Matrix4<f64>)>, String> {
     let count = file.nodes.len();
     let mut is_child = vec![false; count];
@@ -212,7 +212,7 @@ fn world_transforms(file: &File) -> Result<Vec<(usize, Matrix4<f64>)>, String> {
         all.extend(file.nodes[parent].children.iter().map(|child| (*child, world * local(&file.nodes[*child]))));
         next += 1;
     }
-    // Nodes that are their own ancestors are never reached.
+    // Nodes that are their own ancestors are never reached from a root node.
     if all.len() == count { Ok(all) } else { Err("some nodes are their own ancestors".into()) }
 }
 
@@ -252,7 +252,7 @@ fn lens(perspective: &Perspective, extras: &Value) -> Result<Lens, String> {
     };
     let vertical = f64::from(beyond.height) / (2.0 * half);
     let aspect = ratio * f64::from(beyond.height) / f64::from(beyond.width);
-    // Remove rounding errors, so that square pixels have an aspect of exactly 1.
+    // Remove rounding errors, so that square pixels have an aspect ratio of exactly 1.
     let aspect = if (aspect - 1.0).abs() < 1e-12 { 1.0 } else { aspect };
     let size = [beyond.width, beyond.height];
     if size.contains(&0) {
@@ -261,8 +261,8 @@ fn lens(perspective: &Perspective, extras: &Value) -> Result<Lens, String> {
     Ok(Lens { size, focal: vertical / aspect, aspect, principal_point: beyond.center, distortion: beyond.radial })
 }
 
-/// Reads the first three components of a vertex attribute. Integers are normalised by their
-/// maximum.
+/// Reads the first three components of a vertex attribute. Integers are divided by their maximum
+/// value.
 fn column(
     file: &File,
     buffers: &mut [Option<Vec<u8>>],
@@ -321,7 +321,7 @@ fn column(
     }
 }
 
-/// Writes cameras and points as one self-contained glTF file.
+/// Writes cameras and points to one self-contained glTF file.
 pub fn write(reconstruction: &Reconstruction) -> Result<Vec<u8>, Error> {
     let (mut nodes, mut cameras) = (Vec::new(), Vec::new());
     for view in &reconstruction.views {
@@ -384,7 +384,7 @@ pub fn write(reconstruction: &Reconstruction) -> Result<Vec<u8>, Error> {
     serde_json::to_vec_pretty(&gltf).map_err(|error| Error::new(error.to_string()))
 }
 
-/// Returns the glTF quaternion (x, y, z, w) from the camera frame to the world.
+/// Returns the glTF quaternion (x, y, z, w) of the rotation from the camera frame to the world.
 fn rotation(pose: &Pose) -> [f64; 4] {
     let [w, x, y, z] = quaternion_of(&pose.rotation.transpose());
     [x, y, z, w]

@@ -26,24 +26,24 @@ pub use fspy::read_project;
 pub use scene::projective_camera;
 pub use user_input::{read_control, read_lines, read_points};
 
-/// Row of the table of file formats: the coordinate conventions of one format, as text for the
-/// manual.
+/// Row of the table of file formats, which describes the coordinate conventions of one format as
+/// text for the manual.
 pub struct Convention {
     /// Name of the format.
     pub name: &'static str,
-    /// Extensions by which its files are recognised.
+    /// File extensions by which the format is recognised.
     pub files: &'static str,
-    /// Supported directions: in, out, or both.
+    /// Supported directions, which can be in, out, or both.
     pub direction: &'static str,
     /// Camera frame.
     pub frame: &'static str,
-    /// Representation of rotations.
+    /// Representation of rotations in the format.
     pub rotation: &'static str,
-    /// Formula or meaning of the translation.
+    /// Formula for the translation, or its meaning.
     pub translation: &'static str,
     /// Units and origin of pixels.
     pub pixels: &'static str,
-    /// Parameters of a lens.
+    /// Parameters that describe a lens.
     pub lens: &'static str,
 }
 
@@ -113,7 +113,7 @@ fn flip_camera_axes(pose: &Pose) -> Pose {
     Pose { rotation: turn * pose.rotation, translation: turn * pose.translation }
 }
 
-/// Returns true if a matrix is a rotation, up to rounding.
+/// Returns true if a matrix is a rotation, apart from rounding errors.
 fn is_rotation(matrix: &Matrix3<f64>) -> bool {
     (matrix * matrix.transpose() - Matrix3::identity()).norm() < 1e-3 && matrix.determinant() > 0.0
 }
@@ -133,7 +133,7 @@ fn require_square_pixels(lens: &Lens, format: &str) -> Result<(), Error> {
 /// Callback that returns the bytes of the file at a path.
 pub type OpenFile<'a> = dyn FnMut(&Path) -> Result<Arc<[u8]>, Error> + 'a;
 
-/// Reads a file, and decompresses gzip and bzip2.
+/// Reads a file, and decompresses it if it is in gzip or bzip2 format.
 fn bytes(path: &Path, open: &mut OpenFile) -> Result<Arc<[u8]>, Error> {
     compressed::decompress(&path.to_string_lossy(), open(path)?)
 }
@@ -147,16 +147,16 @@ pub fn inputs(path: &Path) -> Vec<PathBuf> {
     tracks_of(path).into_iter().chain([path.to_path_buf()]).collect()
 }
 
-/// Returns the path of the tracks of an OpenSfM reconstruction: its name with `tracks` instead of
-/// `reconstruction`.
+/// Returns the path of the file with the tracks of an OpenSfM reconstruction. Its name contains
+/// `tracks` instead of `reconstruction`.
 fn tracks_of(path: &Path) -> Option<PathBuf> {
     let name = path.file_name()?.to_str()?;
     let other = path.with_file_name(name.replace("reconstruction", "tracks")).with_extension("csv");
     (path.extension()? == "json" && other.exists()).then_some(other)
 }
 
-/// Reads cameras and points. The extension determines the format, ignoring a final `.gz` or `.bz2`;
-/// a folder is in COLMAP's format.
+/// Reads cameras and points. The format is determined by the extension, ignoring a final `.gz` or
+/// `.bz2`. A folder must be in COLMAP's format.
 pub fn read(path: &Path) -> Result<Reconstruction, Error> {
     read_with(path, &mut |path| {
         let read = std::fs::read(path).map(Into::into);
@@ -164,7 +164,7 @@ pub fn read(path: &Path) -> Result<Reconstruction, Error> {
     })
 }
 
-/// Reads cameras and points like [`read`], but opens the files with `open`; see [`inputs`].
+/// Reads cameras and points as [`read`] does, but opens the files with `open`; see [`inputs`].
 pub fn read_with(path: &Path, open: &mut OpenFile) -> Result<Reconstruction, Error> {
     let file = path.to_string_lossy();
     if path.is_dir() {
@@ -212,23 +212,23 @@ pub fn is_matches(content: &[u8]) -> bool {
 pub enum Output {
     /// Bundler's `.out` file.
     Bundler,
-    /// A problem of *Bundle Adjustment in the Large*.
+    /// Problem file of *Bundle Adjustment in the Large*.
     Bal,
-    /// COLMAP's folder of text files.
+    /// COLMAP folder with text files.
     ColmapText,
-    /// COLMAP's folder of binary files.
+    /// COLMAP folder with binary files.
     ColmapBinary,
-    /// OpenSfM's JSON file, with its tracks in a separate file next to it.
+    /// JSON file of OpenSfM, with its tracks in a separate file next to it.
     OpenSfm,
-    /// PLY file of points.
+    /// PLY file that contains points.
     Ply,
-    /// glTF file of cameras and points.
+    /// glTF file that contains cameras and points.
     Gltf,
 }
 
 impl Output {
-    /// Returns the output format for a path, from its extension. A path without an extension is a
-    /// folder.
+    /// Returns the output format for a path, based on its extension. A path without an extension
+    /// denotes a folder.
     pub fn of(path: &Path, binary: bool) -> Result<Self, Error> {
         Ok(match path.extension().and_then(|end| end.to_str()) {
             None if binary => Output::ColmapBinary,
@@ -251,7 +251,7 @@ impl Output {
         matches!(self, Output::ColmapText | Output::ColmapBinary)
     }
 
-    /// Returns the paths of the files, in the order of [`Output::write`].
+    /// Returns the paths of the output files, in the order of [`Output::write`].
     pub fn files(self, path: &Path) -> Vec<PathBuf> {
         let table = |end: &str| ["cameras", "images", "points3D"].map(|name| path.join(format!("{name}.{end}"))).into();
         match self {
@@ -269,7 +269,7 @@ impl Output {
         }
     }
 
-    /// Returns the contents of the files.
+    /// Returns the contents of the output files.
     pub fn write(self, reconstruction: &Reconstruction) -> Result<Vec<Vec<u8>>, Error> {
         Ok(match self {
             Output::Bundler => vec![bundler::write(reconstruction)?],
@@ -284,8 +284,9 @@ impl Output {
 }
 
 impl Reconstruction {
-    /// Sets the name and the size of a photograph that was read from a format without them. Its
-    /// pixels are then relative to the upper left corner instead of the image centre.
+    /// Sets the name and the size of a photograph that was read from a format without names and
+    /// sizes. Pixels of the photograph are then relative to the upper left corner instead of the
+    /// image centre.
     pub fn set_image(&mut self, view: usize, name: &str, size: [u32; 2]) {
         self.views[view].name = name.to_string();
         let lens = self.views[view].lens;

@@ -1,4 +1,4 @@
-//! OpenSfM's `reconstruction.json` and `tracks.csv`.
+//! Reads and writes OpenSfM's `reconstruction.json` and `tracks.csv`.
 //!
 //! Source: OpenSfM documentation, "Reconstruction file format", "Tracks" and "Geometric Models".
 
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Camera of OpenSfM's JSON: a lens, shared by its shots.
+/// Camera in OpenSfM's JSON, which is a lens shared by several shots.
 #[derive(Serialize, Deserialize)]
 struct Camera {
     projection_type: String,
@@ -23,7 +23,7 @@ struct Camera {
     k2: f64,
 }
 
-/// Photograph of OpenSfM's JSON: a pose and the name of its camera.
+/// Photograph in OpenSfM's JSON, with a pose and the name of its camera.
 #[derive(Serialize, Deserialize)]
 struct Shot {
     rotation: [f64; 3],
@@ -31,7 +31,7 @@ struct Shot {
     camera: String,
 }
 
-/// Point of OpenSfM's JSON.
+/// Scene point in OpenSfM's JSON.
 #[derive(Serialize, Deserialize)]
 struct JsonPoint {
     color: [f64; 3],
@@ -46,8 +46,8 @@ struct JsonReconstruction {
     points: BTreeMap<String, JsonPoint>,
 }
 
-/// Reads a reconstruction and its tracks, if any. If the file contains several reconstructions, the
-/// one with the most shots is used.
+/// Reads a reconstruction, and its tracks if they are given. If the file contains several
+/// reconstructions, the one with the most shots is used.
 pub fn read(file: &str, json: &[u8], tracks: Option<(&str, &[u8])>) -> Result<Reconstruction, Error> {
     let parts: Vec<JsonReconstruction> = serde_json::from_slice(json)
         .map_err(|error| Error::at(file, (error.line(), error.column()), format!("OpenSfM's JSON: {error}")))?;
@@ -89,8 +89,8 @@ pub fn read(file: &str, json: &[u8], tracks: Option<(&str, &[u8])>) -> Result<Re
     Ok(reconstruction)
 }
 
-/// Adds the observations from `tracks.csv`. Skips rows with unknown photographs or points, since
-/// some tracks have no point.
+/// Adds the observations from `tracks.csv`. Rows with unknown photographs or points are skipped,
+/// since some tracks have no point.
 fn read_tracks(
     file: &str,
     bytes: &[u8],
@@ -105,7 +105,7 @@ fn read_tracks(
     }
     words.rest_of_line();
     while !words.is_at_end() {
-        // Names may contain spaces; fields are separated by tabs.
+        // Fields are separated by tabs, since names can contain spaces.
         let error = words.error("this row should be: photograph, track, feature, x, y, ..., between tabs");
         let fields: Vec<&str> = words.rest_of_line().split('\t').collect();
         let number = |i: usize| fields.get(i)?.trim().parse::<f64>().ok().filter(|value| value.is_finite());
@@ -147,7 +147,7 @@ pub fn write(reconstruction: &Reconstruction) -> Result<[String; 2], Error> {
             let lens = reconstruction.lenses[view.lens];
             let p = (observation.pixel - Vector2::from(lens.principal_point)) / lens.longer_side();
             let [r, g, b] = point.color;
-            // The feature's size is unknown; 0.001 is OpenSfM's default.
+            // The size of the feature is unknown, so use OpenSfM's default of 0.001.
             let row = (&view.name, i, observation.feature, p.x, p.y);
             let _ =
                 writeln!(tracks, "{}\t{}\t{}\t{}\t{}\t0.001\t{r}\t{g}\t{b}\t-1\t-1", row.0, row.1, row.2, row.3, row.4);

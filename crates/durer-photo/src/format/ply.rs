@@ -1,8 +1,9 @@
-//! PLY point clouds with colours. Writes binary little-endian files, and also reads text and
-//! big-endian files.
+//! PLY point clouds with colours. Binary little-endian files are written. Text files and big-endian
+//! files can also be read.
 //!
-//! Camera positions are written as red points, for programs that show points. A comment states how
-//! many of the last points are cameras, so that they are not read as points of the scene.
+//! Camera positions are written as red points, so that programs that show points also show the
+//! cameras. A comment states how many of the last points are cameras, so that they are not read as
+//! points of the scene.
 //!
 //! Source: Turk, *The PLY Polygon File Format*, 1994.
 
@@ -14,7 +15,7 @@ use nalgebra::Vector3;
 /// Text of the header comment that precedes the number of cameras.
 const CAMERA_COMMENT: &str = "cameras at the end:";
 
-/// Number types of PLY: the old and the new name, and the size in bytes.
+/// Number types of PLY, each with its old name, its new name, and its size in bytes.
 const NUMBER_TYPES: [(&str, &str, usize); 8] = [
     ("char", "int8", 1),
     ("uchar", "uint8", 1),
@@ -26,7 +27,7 @@ const NUMBER_TYPES: [(&str, &str, usize); 8] = [
     ("double", "float64", 8),
 ];
 
-/// Encoding of a PLY file's vertex rows.
+/// Encoding of the vertex rows in a PLY file.
 #[derive(Clone, Copy, PartialEq)]
 enum Encoding {
     Text,
@@ -34,7 +35,7 @@ enum Encoding {
     Big,
 }
 
-/// Header of a PLY file, as far as it is needed to read the points.
+/// Those parts of a PLY file's header that are needed to read the points.
 struct Header {
     encoding: Encoding,
     /// Number of points.
@@ -42,12 +43,12 @@ struct Header {
     count_position: (usize, usize),
     /// Number of points at the end of the file that are camera positions.
     cameras: usize,
-    /// Name and type (index into [`NUMBER_TYPES`]) of each property.
+    /// Name and type of each property. The type is an index into [`NUMBER_TYPES`].
     properties: Vec<(String, usize)>,
 }
 
-/// Reads the points of a PLY file. They are grey if the file has no colours. The format contains no
-/// observations.
+/// Reads the points of a PLY file. Points are grey if the file has no colours. The format contains
+/// no observations.
 pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let is_end = |line: &&[u8]| line.trim_ascii_end() == b"end_header";
     let lines = bytes.split_inclusive(|byte| *byte == b'\n').filter(|_| bytes.starts_with(b"ply"));
@@ -57,7 +58,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let head = head(file, &bytes[..length])?;
     let (size, rest) =
         (head.properties.iter().map(|(_, kind)| NUMBER_TYPES[*kind].2).sum::<usize>(), bytes.len() - length);
-    // In text, a number takes at least two bytes, including the separator.
+    // In text files, a number takes at least two bytes including the separator.
     let row = if head.encoding == Encoding::Text { 2 * head.properties.len() } else { size };
     if head.count > rest / row + 1 {
         let why = format!("the file is too short for {} points: {rest} bytes follow the header", head.count);
@@ -165,7 +166,7 @@ fn head(file: &str, text: &[u8]) -> Result<Header, Error> {
     Ok(head)
 }
 
-/// Decodes a number. `kind` is the index of its type in [`NUMBER_TYPES`].
+/// Decodes a number. `kind` is the index of the number's type in [`NUMBER_TYPES`].
 fn number(kind: usize, bytes: &[u8], encoding: Encoding) -> f64 {
     let mut all = [0; 8];
     all[..bytes.len()].copy_from_slice(bytes);

@@ -1,4 +1,4 @@
-//! Cameras in Dürer's scene language.
+//! Writes cameras in Dürer's scene language.
 
 use crate::{Lens, Pose};
 use nalgebra::Matrix3;

@@ -1,24 +1,25 @@
-//! Tokenizer for text files, which tracks lines and columns.
+//! Tokenizer for text files that tracks lines and columns.
 
 use crate::Error;
 use std::fmt::Display;
 use std::str::FromStr;
 
-/// Reader of the whitespace-separated words of a text file, with line and column for errors.
+/// Reader of the whitespace-separated words of a text file, which tracks the line and column for
+/// error messages.
 pub struct TokenReader<'t> {
     file: &'t str,
     text: &'t str,
     /// Byte offset at which the search for the next word begins.
     at: usize,
     line: usize,
-    /// Byte offset of the current line.
+    /// Byte offset at which the current line begins.
     start: usize,
-    /// True if each line is a row.
+    /// True if each line of the file is a row.
     rows: bool,
 }
 
 impl<'t> TokenReader<'t> {
-    /// Creates a reader of a file's words.
+    /// Creates a reader of the words of a file.
     pub fn new(file: &'t str, bytes: &'t [u8]) -> Result<Self, Error> {
         let text = std::str::from_utf8(bytes).map_err(|error| {
             let before = &bytes[..error.valid_up_to()];
@@ -29,8 +30,8 @@ impl<'t> TokenReader<'t> {
         Ok(TokenReader { file, text, at: 0, line: 1, start: 0, rows: false })
     }
 
-    /// Creates a reader of a file in which each line is a row. A word missing from a row is an
-    /// error, and is not taken from the next line.
+    /// Creates a reader of a file in which each line is a row. If a word is missing from a row,
+    /// this is an error, and the word is not taken from the next line.
     pub fn in_rows(file: &'t str, bytes: &'t [u8]) -> Result<Self, Error> {
         Ok(TokenReader { rows: true, ..TokenReader::new(file, bytes)? })
     }
@@ -45,12 +46,13 @@ impl<'t> TokenReader<'t> {
         self.position()
     }
 
-    /// Creates an error at the next word.
+    /// Creates an error at the position of the next word.
     pub fn error(&self, message: impl Into<String>) -> Error {
         Error::at(self.file, self.position(), message)
     }
 
-    /// Skips to the next word, across lines if `over_lines`. Returns false if there is none.
+    /// Skips to the next word, and continues on following lines if `over_lines` is true. Returns
+    /// false if there is no next word.
     fn advance(&mut self, over_lines: bool) -> bool {
         for byte in self.text.as_bytes()[self.at..].iter() {
             match byte {
@@ -72,19 +74,19 @@ impl<'t> TokenReader<'t> {
         !self.advance(true)
     }
 
-    /// Returns true if no words are left in this line.
+    /// Returns true if no words are left in the current line.
     pub fn is_at_end_of_line(&mut self) -> bool {
         !self.advance(false)
     }
 
-    /// Returns the rest of this line, without surrounding spaces.
+    /// Returns the rest of the current line without surrounding spaces.
     pub fn rest_of_line(&mut self) -> &'t str {
         let rest = self.text[self.at..].split('\n').next().unwrap_or_default();
         self.at += rest.len();
         rest.trim()
     }
 
-    /// Skips the end of this line, if all its words were read.
+    /// Skips the end of the current line if all its words have been read.
     pub fn skip_line_end(&mut self) {
         if !self.advance(false) && self.text[self.at..].starts_with('\n') {
             self.at += 1;
@@ -93,7 +95,8 @@ impl<'t> TokenReader<'t> {
         }
     }
 
-    /// Skips to the next line that is neither empty nor a comment. Comments begin with `comment`.
+    /// Skips to the next line that is neither empty nor a comment. Comments begin with the
+    /// character `comment`.
     pub fn next_line(&mut self, comment: char) -> bool {
         while self.advance(true) {
             if !self.text[self.at..].starts_with(comment) {
@@ -129,7 +132,7 @@ impl<'t> TokenReader<'t> {
         number.ok_or_else(|| Error::at(self.file, place, format!("expected {what}, found `{word}`")))
     }
 
-    /// Parses `N` finite numbers.
+    /// Parses the next `N` words as finite numbers.
     pub fn numbers<const N: usize>(&mut self, what: &str) -> Result<[f64; N], Error> {
         let mut numbers = [0.0; N];
         for number in &mut numbers {
@@ -138,8 +141,9 @@ impl<'t> TokenReader<'t> {
         Ok(numbers)
     }
 
-    /// Parses a number of entries, each of which takes at least `bytes` bytes of text. Rejects
-    /// numbers that the rest of the file cannot contain, before memory is allocated.
+    /// Parses the number of entries in a list, where each entry takes at least `bytes` bytes of
+    /// text. A number is rejected before memory is allocated if the rest of the file cannot contain
+    /// that many entries.
     pub fn count(&mut self, what: &str, bytes: usize) -> Result<usize, Error> {
         let (word, place) = self.word(what)?;
         let fail = |why: String| Error::at(self.file, place, why);
@@ -159,7 +163,7 @@ impl<'t> TokenReader<'t> {
         })
     }
 
-    /// Returns an error if words are left in this row.
+    /// Returns an error if any words are left in the current row.
     pub fn end_of_row(&mut self, row: &str) -> Result<(), Error> {
         match self.is_at_end_of_line() {
             true => Ok(()),
@@ -167,7 +171,7 @@ impl<'t> TokenReader<'t> {
         }
     }
 
-    /// Returns an error if words are left.
+    /// Returns an error if any words are left in the file.
     pub fn end(&mut self) -> Result<(), Error> {
         if self.is_at_end() { Ok(()) } else { Err(self.error("the file should end here")) }
     }

@@ -1,12 +1,12 @@
-//! Input files that users write by hand, with points, lines, or control points: one row per line,
-//! and comments after `#`.
+//! Input files that users write by hand to list points, lines, or control points. Each line is a
+//! row, and comments begin with `#`.
 
 use super::TokenReader;
 use crate::known::{Axis, ControlPoint, PointPixelPair, VanishingLines};
 use crate::{Error, Observation};
 use nalgebra::{Vector2, Vector3};
 
-/// Reads world points and their pixels from rows `X Y Z u v`.
+/// Reads world points and their pixels from rows of the form `X Y Z u v`.
 pub fn read_points(file: &str, bytes: &[u8]) -> Result<Vec<PointPixelPair>, Error> {
     let mut words = TokenReader::in_rows(file, bytes)?;
     let mut pairs = Vec::new();
@@ -18,9 +18,9 @@ pub fn read_points(file: &str, bytes: &[u8]) -> Result<Vec<PointPixelPair>, Erro
     Ok(pairs)
 }
 
-/// Reads vanishing lines from rows `x u1 v1 u2 v2`, where `x`, `-y`, and so on is the world axis
-/// that points to the vanishing point, and from one row `origin u v`. The file must contain two
-/// axes with at least two lines each.
+/// Reads vanishing lines from rows of the form `x u1 v1 u2 v2`, and the origin from one row `origin
+/// u v`. The first word of a row, such as `x` or `-y`, is the world axis that points to the
+/// vanishing point. The file must contain two axes with at least two lines each.
 pub fn read_lines(file: &str, bytes: &[u8], size: [u32; 2]) -> Result<VanishingLines, Error> {
     let mut words = TokenReader::in_rows(file, bytes)?;
     let center = Vector2::from(size.map(|side| f64::from(side) / 2.0));
@@ -48,8 +48,8 @@ pub fn read_lines(file: &str, bytes: &[u8], size: [u32; 2]) -> Result<VanishingL
     Ok(VanishingLines { size, center, origin, axes: [one.0, two.0], lines: [one.1, two.1] })
 }
 
-/// Reads control points from rows `X Y Z photograph u v photograph u v ...`. Names of photographs
-/// must not contain spaces.
+/// Reads control points from rows of the form `X Y Z photograph u v photograph u v ...`. Names of
+/// photographs must not contain spaces.
 pub fn read_control(file: &str, bytes: &[u8], names: &[&str]) -> Result<Vec<ControlPoint>, Error> {
     let mut words = TokenReader::in_rows(file, bytes)?;
     let mut points = Vec::new();

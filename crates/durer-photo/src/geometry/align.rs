@@ -36,8 +36,8 @@ impl Similarity {
     }
 }
 
-/// Returns the means of both point sets, the rotation from the singular vectors of their
-/// covariance, and the sum of the singular values; `None` if the points are on a line.
+/// Returns the means of both point sets, the rotation computed from the singular vectors of their
+/// covariance, and the sum of the singular values. Returns `None` if the points are on a line.
 fn fit_rotation(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<([Vector3<f64>; 2], Matrix3<f64>, f64)> {
     let count = from.len().min(to.len()) as f64;
     let mean = |points: &[Vector3<f64>]| points.iter().sum::<Vector3<f64>>() / count;
@@ -53,8 +53,8 @@ fn fit_rotation(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<([Vector3<
     Some((means, u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v, d[0] + d[1] + sign * d[2]))
 }
 
-/// Computes the similarity that best maps the points `from` to `to`; `None` for fewer than three
-/// points, or points on a line.
+/// Computes the similarity that best maps the points `from` to the points `to`. Returns `None` for
+/// fewer than three points, or for points on a line.
 pub fn align_points(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<Similarity> {
     if from.len() < 3 || from.len() != to.len() {
         return None;
@@ -65,9 +65,10 @@ pub fn align_points(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<Simila
     Some(Similarity { scale, rotation, translation: means[1] - scale * (rotation * means[0]) })
 }
 
-/// Computes the similarity that best maps the cameras `from` to `to`: the mean of the relative
-/// rotations, and the scale and translation that align the centres. Rotations are used because
-/// centres near a line would leave the rotation about that line uncertain.
+/// Computes the similarity that best maps the cameras `from` to the cameras `to`. It consists of
+/// the mean of the relative rotations, and the scale and translation that align the centres.
+/// Rotations are used because camera centres near a line would leave the rotation about that line
+/// uncertain.
 pub fn align_cameras(from: &[Pose], to: &[Pose]) -> Option<Similarity> {
     let count = from.len() as f64;
     if from.len() < 2 || from.len() != to.len() {
@@ -98,8 +99,8 @@ pub fn rigid(world: &[Vector3<f64>], camera: &[Vector3<f64>]) -> Option<Pose> {
 ///
 /// # Errors
 ///
-/// If fewer than three control points are observed by two photographs with a known pose, or if they
-/// lie on a line.
+/// Returns an error if fewer than three control points are observed by two photographs with a known
+/// pose, or if these points lie on a line.
 pub fn align_to_control_points(
     reconstruction: &Reconstruction,
     control: &[crate::known::ControlPoint],

@@ -1,8 +1,8 @@
-//! Direct linear transform (DLT): computes a camera from world points and their pixels. The lens
-//! need not be known.
+//! Direct linear transform (DLT), which computes a camera from world points and their pixels. The
+//! lens need not be known.
 //!
-//! x ~ P X with a 3x4 matrix P. Each point gives two equations that are linear in P. In P = K [R |
-//! t], K is upper triangular.
+//! The equation is x ~ P X with a 3x4 matrix P. Each point gives two equations that are linear in
+//! P. In P = K [R | t], K is upper triangular.
 //!
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! sections 7.1 and 6.2.4.
@@ -10,13 +10,14 @@
 use super::{normalization, null_vector};
 use nalgebra::{DMatrix, Matrix3, Matrix3x4, Matrix4, Vector2, Vector3};
 
-/// Result of the direct linear transform: a 3x4 projection matrix and the singular values of its
-/// equations.
+/// Result of the direct linear transform, with the 3x4 projection matrix and the singular values of
+/// the equations.
 pub struct DltSolution {
-    /// Matrix P, up to scale.
+    /// Projection matrix P, up to scale.
     pub matrix: Matrix3x4<f64>,
     /// Singular values of the equations in Hartley's normalised coordinates, in decreasing order.
-    /// The last one is the residual. If the second to last is zero, the matrix is not unique.
+    /// The last singular value is the residual. If the second to last singular value is zero, the
+    /// matrix is not unique.
     pub singular_values: Vec<f64>,
 }
 
@@ -30,7 +31,7 @@ pub fn principal_deviations(points: &[Vector3<f64>]) -> [f64; 3] {
     values
 }
 
-/// Computes the least-squares projection matrix of six or more points.
+/// Computes the least-squares projection matrix for six or more points.
 pub fn solve_dlt(points: &[Vector3<f64>], pixels: &[Vector2<f64>]) -> Option<DltSolution> {
     if points.len() < 6 || points.len() != pixels.len() {
         return None;
@@ -59,13 +60,13 @@ pub fn solve_dlt(points: &[Vector3<f64>], pixels: &[Vector2<f64>]) -> Option<Dlt
     matrix.iter().all(|c| c.is_finite()).then_some(DltSolution { matrix, singular_values })
 }
 
-/// Decomposes P into K, R, and t. The last element of K is 1, and signs are chosen so that depths
-/// are positive.
+/// Decomposes P into K, R, and t. The last element of K is 1, and the signs are chosen so that
+/// depths are positive.
 pub fn decompose(p: &Matrix3x4<f64>) -> Option<(Matrix3<f64>, Matrix3<f64>, Vector3<f64>)> {
     let left = p.fixed_columns::<3>(0).into_owned();
     let p = if left.determinant() < 0.0 { -p } else { *p };
     let row = |i: usize| Vector3::new(p[(i, 0)], p[(i, 1)], p[(i, 2)]);
-    // Gram-Schmidt orthogonalisation of the rows, from the last to the first.
+    // Apply Gram-Schmidt orthogonalisation to the rows, from the last to the first.
     let forward = row(2).try_normalize(1e-300)?;
     let down = (row(1) - row(1).dot(&forward) * forward).try_normalize(1e-300)?;
     let right = down.cross(&forward);

@@ -1,10 +1,11 @@
-//! Essential matrix of two photographs with known lenses, from five correspondences (up to ten
-//! solutions).
+//! Essential matrix of two photographs with known lenses, computed from five correspondences. There
+//! are up to ten solutions.
 //!
-//! q'ᵀ E q = 0 for the directions q and q' in which two cameras see a point, where E = \[t\]× R and
-//! (R, t) is the pose of the second camera in the frame of the first. E lies in the null space of
-//! five equations, E = x X + y Y + z Z + W. The conditions 2 E Eᵀ E = tr(E Eᵀ) E and det E = 0 are
-//! ten cubics in x, y, z. Elimination leaves a polynomial of degree ten in z.
+//! The equation q'ᵀ E q = 0 holds for the directions q and q' in which two cameras see a point.
+//! Here, E = \[t\]× R, where (R, t) is the pose of the second camera in the frame of the first. E
+//! lies in the null space of five equations, E = x X + y Y + z Z + W. The conditions 2 E Eᵀ E =
+//! tr(E Eᵀ) E and det E = 0 are ten cubics in x, y, z. Elimination leaves a polynomial of degree
+//! ten in z.
 //!
 //! Source: Nistér, *An Efficient Solution to the Five-Point Relative Pose Problem*, PAMI 26(6),
 //! 2004.
@@ -17,7 +18,7 @@ use crate::Pose;
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 /// Exponents of x, y, z in the monomials of a cubic, in Nistér's order. Elimination leaves only the
-/// last ten, and combinations of the form x zⁿ, y zⁿ, and zⁿ.
+/// last ten monomials, and combinations of the form x zⁿ, y zⁿ, and zⁿ.
 const MONOMIALS: [[usize; 3]; 20] = [
     [3, 0, 0],
     [0, 3, 0],
@@ -49,14 +50,14 @@ fn monomial_index(exponents: [usize; 3]) -> usize {
     MONOMIALS.iter().position(|m| *m == exponents).unwrap_or(usize::MAX)
 }
 
-/// Returns the index of the product of each pair of monomials; [`usize::MAX`] if its degree exceeds
-/// three.
+/// Returns the index of the product of each pair of monomials, or [`usize::MAX`] if the degree of
+/// the product exceeds three.
 fn products() -> [[usize; 20]; 20] {
     let product = |a: usize, b: usize| monomial_index([0, 1, 2].map(|i| MONOMIALS[a][i] + MONOMIALS[b][i]));
     std::array::from_fn(|a| std::array::from_fn(|b| product(a, b)))
 }
 
-/// Multiplication of cubic polynomials, using a table of the products of monomials.
+/// Multiplies cubic polynomials, based on a table of the products of monomials.
 struct Algebra([[usize; 20]; 20]);
 
 impl Algebra {
@@ -70,7 +71,7 @@ impl Algebra {
         product
     }
 
-    /// Returns the sum of three products.
+    /// Returns the sum of three products of polynomials.
     fn dot(&self, pairs: [(&Cubic, &Cubic); 3]) -> Cubic {
         pairs.iter().fold([0.0; 20], |sum, (a, b)| plus(&sum, &self.multiply(a, b), 1.0))
     }
@@ -80,7 +81,7 @@ fn plus(a: &Cubic, b: &Cubic, factor: f64) -> Cubic {
     std::array::from_fn(|i| a[i] + factor * b[i])
 }
 
-/// Computes up to ten essential matrices from five pairs of directions (x, y, 1).
+/// Computes up to ten essential matrices from five pairs of directions of the form (x, y, 1).
 pub fn five_point(pairs: &[Correspondence; 5]) -> Vec<Matrix3<f64>> {
     solutions(pairs).unwrap_or_default()
 }
@@ -108,7 +109,7 @@ fn solutions(pairs: &[Correspondence; 5]) -> Option<Vec<Matrix3<f64>>> {
         (&e[0][1], &minor(&e[1][2], &e[2][0], &e[1][0], &e[2][2])),
         (&e[0][2], &minor(&e[1][0], &e[2][1], &e[1][1], &e[2][0])),
     ]);
-    // L = E Eᵀ - tr(E Eᵀ) / 2, and L E = 0.
+    // Define L = E Eᵀ - tr(E Eᵀ) / 2, so that L E = 0.
     let mut l: [[Cubic; 3]; 3] =
         std::array::from_fn(|i| std::array::from_fn(|j| algebra.dot([0, 1, 2].map(|k| (&e[i][k], &e[j][k])))));
     let trace = plus(&plus(&l[0][0], &l[1][1], 1.0), &l[2][2], 1.0);
@@ -121,12 +122,12 @@ fn solutions(pairs: &[Correspondence; 5]) -> Option<Vec<Matrix3<f64>>> {
     (0..10).for_each(|row| all.row_mut(row).copy_from_slice(&entry(row)));
     let left = all.fixed_columns::<10>(0).into_owned();
     let right = left.lu().solve(&all.fixed_columns::<10>(10).into_owned())?;
-    // Pairs of rows: (x²z, x²), (y²z, y²), (xyz, xy). The first minus z times the second contains
-    // only x, y, and powers of z.
+    // The pairs of rows are (x²z, x²), (y²z, y²), (xyz, xy). The first row of a pair minus z times
+    // the second contains only x, y, and powers of z.
     let polynomials = [4, 6, 8].map(|row| {
         let (a, b) = (right.row(row), right.row(row + 1));
         let part = |at: usize, degree: usize| {
-            // Coefficients of zⁿ, from the constant upwards.
+            // Coefficients of zⁿ, starting with the constant term.
             let mut p = [0.0; 5];
             for n in 0..=degree {
                 p[n] += a[at + degree - n];
@@ -153,8 +154,8 @@ fn solutions(pairs: &[Correspondence; 5]) -> Option<Vec<Matrix3<f64>>> {
     let mut solutions = Vec::new();
     for z in real_roots(&whole) {
         let m = Matrix3::from_fn(|i, j| at(&polynomials[i][j], z));
-        // (x, y, 1) is orthogonal to all rows. The largest cross product of two rows is the most
-        // accurate.
+        // The vector (x, y, 1) is orthogonal to all rows. The largest cross product of two rows is
+        // the most accurate.
         let crosses = [(0, 1), (0, 2), (1, 2)].map(|(i, j)| m.row(i).transpose().cross(&m.row(j).transpose()));
         let best = crosses.into_iter().fold(Vector3::zeros(), |a, b| if b.norm() > a.norm() { b } else { a });
         let (x, y) = (best.x / best.z, best.y / best.z);
@@ -170,7 +171,7 @@ fn solutions(pairs: &[Correspondence; 5]) -> Option<Vec<Matrix3<f64>>> {
 pub fn poses(e: &Matrix3<f64>) -> Option<[Pose; 4]> {
     let svd = e.svd(true, true);
     let (mut u, mut v) = (svd.u?, svd.v_t?);
-    // The smallest singular value is the last and nearly 0. Both matrices must be rotations.
+    // The smallest singular value is the last one and is nearly 0. Both matrices must be rotations.
     if u.determinant() < 0.0 {
         u.column_mut(2).neg_mut();
     }
@@ -183,7 +184,8 @@ pub fn poses(e: &Matrix3<f64>) -> Option<[Pose; 4]> {
     Some([pose(a, t), pose(a, -t), pose(b, t), pose(b, -t)])
 }
 
-/// Returns the pose that puts the most points in front of both cameras, and their number.
+/// Returns the pose for which the most points are in front of both cameras, and the number of these
+/// points.
 pub fn pose_in_front(e: &Matrix3<f64>, pairs: &[Correspondence]) -> Option<(Pose, usize)> {
     let before = |pose: &Pose| {
         let in_front = |pair: &&Correspondence| {
@@ -196,8 +198,8 @@ pub fn pose_in_front(e: &Matrix3<f64>, pairs: &[Correspondence]) -> Option<(Pose
     counted.reduce(|best, next| if next.1 > best.1 { next } else { best })
 }
 
-/// RANSAC problem of the essential matrix: corresponding directions (x, y, 1) in two photographs,
-/// including outliers.
+/// RANSAC problem of finding the essential matrix from corresponding directions (x, y, 1) in two
+/// photographs, which include outliers.
 pub struct EssentialProblem<'p>(pub &'p [Correspondence]);
 
 impl RansacProblem<5> for EssentialProblem<'_> {
@@ -214,7 +216,7 @@ impl RansacProblem<5> for EssentialProblem<'_> {
     fn refine(&self, inliers: &[usize], _: &Matrix3<f64>) -> Option<Matrix3<f64>> {
         let e = eight_point(&inliers.iter().map(|i| self.0[*i]).collect::<Vec<_>>())?;
         let svd = e.svd(true, true);
-        // Project onto the essential matrices, whose singular values are 1, 1, 0.
+        // Project onto the set of essential matrices, whose singular values are 1, 1, 0.
         let mut values = Vector3::new(1.0, 1.0, 1.0);
         values[svd.singular_values.imin()] = 0.0;
         Some(svd.u? * Matrix3::from_diagonal(&values) * svd.v_t?)

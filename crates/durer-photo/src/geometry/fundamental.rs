@@ -1,7 +1,8 @@
-//! Fundamental matrix of two photographs, from seven correspondences (one to three solutions) or at
-//! least eight (one solution).
+//! Fundamental matrix of two photographs, computed from seven correspondences (one to three
+//! solutions) or from eight or more (one solution).
 //!
-//! x'ᵀ F x = 0 for pixels x and x' of the same point in the first and the second photograph.
+//! The equation x'ᵀ F x = 0 holds for pixels x and x' of the same point in the first and the second
+//! photograph.
 //!
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! sections 11.1 to 11.4.
@@ -11,15 +12,15 @@ use super::ransac::RansacProblem;
 use super::{normalization, null_vector};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};
 
-/// Correspondence: the positions of a scene point in two photographs.
+/// Correspondence, which consists of the positions of a scene point in two photographs.
 pub type Correspondence = (Vector2<f64>, Vector2<f64>);
 
 fn homogeneous(p: &Vector2<f64>) -> Vector3<f64> {
     Vector3::new(p.x, p.y, 1.0)
 }
 
-/// Returns the squared Sampson distance: to first order, the squared distance that the two
-/// positions must move to satisfy the epipolar equation.
+/// Returns the squared Sampson distance. To first order, it is the squared distance by which the
+/// two positions must move to satisfy the epipolar equation.
 pub fn sampson(f: &Matrix3<f64>, (a, b): &Correspondence) -> f64 {
     let (a, b) = (homogeneous(a), homogeneous(b));
     let (fa, fb) = (f * a, f.transpose() * b);
@@ -27,7 +28,7 @@ pub fn sampson(f: &Matrix3<f64>, (a, b): &Correspondence) -> f64 {
     product * product / (fa.xy().norm_squared() + fb.xy().norm_squared())
 }
 
-/// Returns the linear equations for F, one row per pair. Positions are normalised by the
+/// Returns the linear equations for F, with one row per pair. Positions are normalised by the
 /// `(scale, mean)` of each photograph.
 fn equations(pairs: &[Correspondence], [one, two]: [(f64, Vector2<f64>); 2]) -> DMatrix<f64> {
     DMatrix::from_fn(pairs.len(), 9, |row, column| {
@@ -52,7 +53,7 @@ fn denormalized(f: Matrix3<f64>, [one, two]: [(f64, Vector2<f64>); 2]) -> Matrix
     f / f.norm()
 }
 
-/// Estimates F from eight or more pairs with the normalised eight-point algorithm (Hartley).
+/// Estimates F from eight or more pairs with Hartley's normalised eight-point algorithm.
 pub fn eight_point(pairs: &[Correspondence]) -> Option<Matrix3<f64>> {
     if pairs.len() < 8 {
         return None;
@@ -67,15 +68,15 @@ pub fn eight_point(pairs: &[Correspondence]) -> Option<Matrix3<f64>> {
     Some(denormalized(f, normal)).filter(|f| f.iter().all(|c| c.is_finite()))
 }
 
-/// Computes the one to three fundamental matrices of seven pairs.
+/// Computes the one to three fundamental matrices that fit seven pairs.
 pub fn seven_point(pairs: &[Correspondence; 7]) -> Vec<Matrix3<f64>> {
     let normal = normalizations(pairs);
     let svd = super::padded(&equations(pairs, normal)).svd(false, true);
     let Some(v) = svd.v_t else { return Vec::new() };
     let row = |i: usize| matrix_of(&v.row(i).transpose());
-    // Singular values are in decreasing order, so the last two rows span the null space.
+    // The singular values are in decreasing order, so the last two rows span the null space.
     let (a, b) = (row(7), row(8));
-    // det(a + x b) is a cubic; four values determine its coefficients.
+    // The determinant det(a + x b) is a cubic, so four values determine its coefficients.
     let at = |x: f64| (a + x * b).determinant();
     let (c0, c3, plus, minus) = (at(0.0), b.determinant(), at(1.0), at(-1.0));
     let c2 = (plus + minus) / 2.0 - c0;
@@ -83,8 +84,8 @@ pub fn seven_point(pairs: &[Correspondence; 7]) -> Vec<Matrix3<f64>> {
     real_roots(&[c0, c1, c2, c3]).into_iter().map(|x| denormalized(a + x * b, normal)).collect()
 }
 
-/// RANSAC problem of the fundamental matrix: corresponding pixels in two photographs, including
-/// outliers.
+/// RANSAC problem of finding the fundamental matrix from corresponding pixels in two photographs,
+/// which include outliers.
 pub struct FundamentalProblem<'p>(pub &'p [Correspondence]);
 
 impl RansacProblem<7> for FundamentalProblem<'_> {

@@ -1,5 +1,5 @@
-//! Homography between two photographs: maps pixels from one to the other if the scene is planar or
-//! the camera only rotated.
+//! Homography between two photographs, which maps pixels from one to the other if the scene is
+//! planar or the camera only rotated.
 //!
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! section 4.1.
@@ -9,13 +9,13 @@ use super::ransac::RansacProblem;
 use super::{normalization, null_vector};
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 
-/// Maps a pixel by a homography.
+/// Maps a pixel with a homography.
 pub fn map_pixel(h: &Matrix3<f64>, p: &Vector2<f64>) -> Vector2<f64> {
     let q = h * Vector3::new(p.x, p.y, 1.0);
     Vector2::new(q.x / q.z, q.y / q.z)
 }
 
-/// Estimates the homography from four or more pairs by the direct linear transform.
+/// Estimates the homography from four or more pairs with the direct linear transform.
 pub fn homography(pairs: &[Correspondence]) -> Option<Matrix3<f64>> {
     if pairs.len() < 4 {
         return None;
@@ -39,8 +39,8 @@ pub fn homography(pairs: &[Correspondence]) -> Option<Matrix3<f64>> {
     h.iter().all(|c| c.is_finite()).then_some(h)
 }
 
-/// RANSAC problem of a homography: corresponding pixels in two photographs, including outliers from
-/// other planes.
+/// RANSAC problem of finding a homography from corresponding pixels in two photographs, which
+/// include outliers from other planes.
 pub struct HomographyProblem<'p>(pub &'p [Correspondence]);
 
 impl RansacProblem<4> for HomographyProblem<'_> {

@@ -1,5 +1,5 @@
-//! Multiple-view geometry: minimal and least-squares solvers for camera matrices and poses, and
-//! RANSAC.
+//! Multiple-view geometry, with minimal and least-squares solvers for camera matrices and poses,
+//! and RANSAC.
 
 pub mod align;
 pub mod camera;
@@ -16,7 +16,8 @@ use nalgebra::{DMatrix, DVector, Vector2};
 /// Returns the unit vector v that minimises |A v|, and the singular values of A in decreasing
 /// order.
 pub fn null_vector(matrix: &DMatrix<f64>) -> (DVector<f64>, Vec<f64>) {
-    // A QR step makes the matrix small. The eigenvectors of AᵀA would lose half of the digits.
+    // A QR decomposition reduces the size of the matrix. The eigenvectors of AᵀA would lose half of
+    // the digits.
     let square = if matrix.nrows() > matrix.ncols() { matrix.clone().qr().r() } else { padded(matrix) };
     let svd = square.svd(false, true);
     let mut order: Vec<usize> = (0..svd.singular_values.len()).collect();
@@ -26,15 +27,15 @@ pub fn null_vector(matrix: &DMatrix<f64>) -> (DVector<f64>, Vec<f64>) {
     (vector, order.into_iter().map(|i| svd.singular_values[i]).collect())
 }
 
-/// Appends rows of zeros until the matrix is square.
+/// Appends rows of zeros to a matrix until it is square.
 fn padded(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let side = matrix.ncols().max(matrix.nrows());
     matrix.clone().resize(side, matrix.ncols(), 0.0)
 }
 
-/// Returns the scale and the mean of Hartley's normalisation, which gives points mean 0 and a mean
-/// distance of √2 from it. Source: Hartley, *In Defense of the Eight-Point Algorithm*, PAMI 19(6),
-/// 1997.
+/// Returns the scale and the mean of Hartley's normalisation, which moves the mean of the points to
+/// 0 and gives them a mean distance of √2 from it. Source: Hartley, *In Defense of the Eight-Point
+/// Algorithm*, PAMI 19(6), 1997.
 pub fn normalization(points: impl Iterator<Item = Vector2<f64>> + Clone) -> (f64, Vector2<f64>) {
     let count = points.clone().count().max(1) as f64;
     let mean = points.clone().sum::<Vector2<f64>>() / count;

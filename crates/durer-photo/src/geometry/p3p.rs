@@ -1,6 +1,7 @@
-//! Pose of a camera from three world points and their directions (P3P): up to four solutions.
+//! Pose of a camera computed from three world points and their directions (P3P). There are up to
+//! four solutions.
 //!
-//! With the angles α, β, γ between the directions and the sides a, b, c of the triangle, the
+//! Let α, β, γ be the angles between the directions, and a, b, c the sides of the triangle. The
 //! distances s₁, s₂ = u s₁, s₃ = v s₁ satisfy the law of cosines in three triangles. Eliminating u
 //! leaves a quartic in v.
 //!

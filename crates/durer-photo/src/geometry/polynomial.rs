@@ -1,13 +1,13 @@
-//! Real roots of polynomials.
+//! Computes the real roots of polynomials.
 
-/// Evaluates a polynomial. Coefficients start with the constant.
+/// Evaluates a polynomial. The coefficients start with the constant term.
 fn value(coefficients: &[f64], x: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
 }
 
-/// Returns the real roots in increasing order. Between two extrema (the roots of the derivative)
-/// there is at most one root, which is found by bisection. An extremum where the polynomial is zero
-/// up to rounding counts as a double root.
+/// Returns the real roots in increasing order. Between two neighbouring extrema (the roots of the
+/// derivative), there is at most one root, which is found by bisection. An extremum at which the
+/// polynomial is zero, apart from rounding errors, counts as a double root.
 pub fn real_roots(coefficients: &[f64]) -> Vec<f64> {
     let largest = coefficients.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
     let degree = coefficients.iter().rposition(|c| c.abs() > 1e-14 * largest).unwrap_or(0);
@@ -19,7 +19,7 @@ pub fn real_roots(coefficients: &[f64]) -> Vec<f64> {
         return vec![-p[0] / p[1]];
     }
     let derivative: Vec<f64> = (1..=degree).map(|i| i as f64 * p[i]).collect();
-    // Cauchy's bound on the roots.
+    // Use Cauchy's bound on the roots.
     let bound = 1.0 + p[..degree].iter().fold(0.0_f64, |m, c| m.max((c / p[degree]).abs()));
     let ends = [-bound].into_iter().chain(real_roots(&derivative)).chain([bound]).collect::<Vec<_>>();
     let mut roots: Vec<f64> = Vec::new();
@@ -27,7 +27,8 @@ pub fn real_roots(coefficients: &[f64]) -> Vec<f64> {
         let ([mut low, mut high], mut at_low) = ([ends[0], ends[1]], value(p, ends[0]));
         let at_high = value(p, high);
         let size = p.iter().rev().fold(0.0, |sum, c| sum * high.abs() + c.abs());
-        // An extremum that is a root is the only root on both sides of it.
+        // If an extremum is a root, there is no other root on either side of it up to the next
+        // extremum.
         if at_high.abs() < 1e-13 * size && high != bound {
             roots.push(high);
             continue;

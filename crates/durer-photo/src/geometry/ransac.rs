@@ -1,8 +1,8 @@
 //! RANSAC with local optimisation, for data with outliers.
 //!
 //! Models are computed from random minimal samples and compared by their sum of truncated squared
-//! errors (MSAC). The best one is fitted again to all its inliers. The search ends when a better
-//! sample has become unlikely.
+//! errors (MSAC). The best model is fitted again to all its inliers. The search ends when it has
+//! become unlikely that a better sample will be found.
 //!
 //! Sources: Fischler, Bolles, *Random Sample Consensus*, CACM 24(6), 1981; Torr, Zisserman,
 //! *MLESAC*, CVIU 78, 2000; Chum, Matas, Kittler, *Locally Optimized RANSAC*, DAGM 2003.
@@ -12,15 +12,15 @@ use crate::random::Random;
 /// Estimation problem that [`ransac`] solves, such as finding a fundamental matrix from pairs of
 /// pixels. `N` is the size of a minimal sample.
 pub trait RansacProblem<const N: usize> {
-    /// Model to estimate, for example a matrix or a pose.
+    /// Type of the model to estimate, for example a matrix or a pose.
     type Model: Clone;
-    /// Returns the number of data.
+    /// Returns the number of data items.
     fn count(&self) -> usize;
-    /// Returns all models that fit a minimal sample, given by indices.
+    /// Returns all models that fit a minimal sample, which is given by indices.
     fn solve_minimal(&self, sample: &[usize; N]) -> Vec<Self::Model>;
-    /// Returns the model fitted to all inliers. `model` is the initial estimate.
+    /// Returns the model that best fits all inliers. `model` is the initial estimate.
     fn refine(&self, inliers: &[usize], model: &Self::Model) -> Option<Self::Model>;
-    /// Returns the squared error of a datum.
+    /// Returns the squared error of a data item.
     fn error(&self, model: &Self::Model, index: usize) -> f64;
 }
 
@@ -35,8 +35,8 @@ pub struct RansacOptions {
     pub seed: u64,
 }
 
-/// Returns the best model and the indices of its inliers; `None` if no model has more inliers than
-/// its sample.
+/// Returns the best model and the indices of its inliers, or `None` if no model has more inliers
+/// than its sample.
 pub fn ransac<const N: usize, E: RansacProblem<N>>(
     problem: &E,
     search: &RansacOptions,
@@ -65,8 +65,8 @@ pub fn ransac<const N: usize, E: RansacProblem<N>>(
     (inliers.len() > N).then_some((model, inliers))
 }
 
-/// Returns the number of samples of which, with probability 0.9999, at least one is without
-/// outliers.
+/// Returns the number of samples that are needed so that, with probability 0.9999, at least one of
+/// them contains no outliers.
 fn samples_for<const N: usize>(share: f64, most: usize) -> usize {
     let good = (0..N).map(|_| share).product::<f64>();
     if good <= 1e-12 {
@@ -75,11 +75,11 @@ fn samples_for<const N: usize>(share: f64, most: usize) -> usize {
     if good >= 1.0 { 1 } else { (libm::log(1e-4) / libm::log1p(-good)).ceil().max(8.0).min(most as f64) as usize }
 }
 
-/// Returns the sum of truncated squared errors; `None` if it reaches `bound`.
+/// Returns the sum of truncated squared errors, or `None` if the sum reaches `bound`.
 fn loss<const N: usize, E: RansacProblem<N>>(problem: &E, model: &E::Model, limit: f64, bound: f64) -> Option<f64> {
     let mut sum = 0.0;
     for index in 0..problem.count() {
-        // NaN counts as an outlier.
+        // An error that is NaN counts as an outlier.
         let error = problem.error(model, index);
         sum += if error < limit { error } else { limit };
         if sum >= bound {

@@ -1,4 +1,4 @@
-//! Triangulation of points from rays.
+//! Triangulates points from rays.
 //!
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! chapter 12.
@@ -7,8 +7,8 @@ use super::fundamental::Correspondence;
 use crate::Pose;
 use nalgebra::{Matrix3, Vector3};
 
-/// Returns the point with the smallest sum of squared distances to rays (origin and unit
-/// direction); `None` if the rays are parallel.
+/// Returns the point with the smallest sum of squared distances to rays, which are given by their
+/// origins and unit directions. Returns `None` if the rays are parallel.
 pub fn nearest_to_rays(rays: &[(Vector3<f64>, Vector3<f64>)]) -> Option<Vector3<f64>> {
     let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
     for (origin, direction) in rays {
@@ -20,8 +20,8 @@ pub fn nearest_to_rays(rays: &[(Vector3<f64>, Vector3<f64>)]) -> Option<Vector3<
     point.iter().all(|c| c.is_finite()).then_some(point)
 }
 
-/// Returns the point that two cameras see in the directions (x, y, 1). The first camera is at the
-/// origin. NaN if the rays are parallel.
+/// Returns the point that two cameras see in the directions (x, y, 1), where the first camera is at
+/// the origin. The result is NaN if the rays are parallel.
 pub fn two_views(second: &Pose, (a, b): &Correspondence) -> Vector3<f64> {
     let ray =
         |pose: &Pose, x: f64, y: f64| (pose.center(), pose.direction_to_world(&Vector3::new(x, y, 1.0)).normalize());

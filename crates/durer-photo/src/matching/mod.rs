@@ -1,4 +1,4 @@
-//! Matches features between photographs, and joins the matches of each scene point to a track.
+//! Matches features between photographs, and joins the matches of each scene point into a track.
 
 mod pairs;
 mod tracks;
@@ -15,19 +15,20 @@ use serde::{Deserialize, Serialize};
 /// Options of feature detection and matching.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// Maximum number of features per photograph.
+    /// Maximum number of features in a photograph.
     pub features: usize,
-    /// Maximum length of a photograph's longer side in pixels; larger photographs are reduced.
+    /// Maximum length in pixels of the longer side of a photograph. Larger photographs are reduced.
     pub max_side: u32,
-    /// Maximum ratio of the descriptor distances to the nearest and the second nearest feature.
+    /// Maximum ratio of the distance to the nearest descriptor to the distance to the second
+    /// nearest.
     pub ratio: f64,
-    /// Maximum distance from the epipolar line, in pixels of the reduced photograph.
+    /// Maximum distance of a feature from its epipolar line, in pixels of the reduced photograph.
     pub threshold: f64,
     /// Minimum number of matches between two photographs that agree with one fundamental matrix.
     pub min_matches: usize,
     /// Horizontal field of view in degrees, used for photographs without EXIF data.
     pub field_of_view: f64,
-    /// True if focal lengths from EXIF data are ignored.
+    /// True if focal lengths in EXIF data are ignored.
     pub ignore_exif: bool,
     /// Seed of the random numbers.
     pub seed: u64,
@@ -49,7 +50,7 @@ impl Default for Options {
     }
 }
 
-/// Photograph in the output of matching: its name, size, initial focal length, and number of
+/// Photograph in the output of matching, with its name, size, initial focal length, and number of
 /// features.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MatchedPhoto {
@@ -59,10 +60,10 @@ pub struct MatchedPhoto {
     pub size: [u32; 2],
     /// Initial focal length in pixels.
     pub focal: f64,
-    /// Description of where the focal length comes from.
+    /// Description of the source of the focal length.
     #[serde(rename = "focal_from")]
     pub focal_source: String,
-    /// Index of the lens. Photographs with the same camera, size, and focal length share one.
+    /// Index of the lens. Photographs with the same camera, size, and focal length share a lens.
     pub lens: usize,
     /// Number of features.
     pub features: usize,
@@ -73,15 +74,15 @@ pub struct MatchedPhoto {
 pub struct PhotoPair {
     /// Indices of the two photographs.
     pub pictures: [usize; 2],
-    /// Number of feature pairs with similar descriptors.
+    /// Number of pairs of features with similar descriptors.
     #[serde(rename = "alike")]
     pub candidates: usize,
-    /// Number of these pairs that agree with one fundamental matrix.
+    /// Number of these pairs that are consistent with one fundamental matrix.
     pub matches: usize,
-    /// Share of the matches that a single homography explains.
+    /// Fraction of the matches that a single homography explains.
     #[serde(rename = "planar")]
     pub planar_fraction: f64,
-    /// Median distance between the positions in both photographs, in pixels.
+    /// Median distance in pixels between the positions of a feature in both photographs.
     #[serde(rename = "moved")]
     pub median_shift: f64,
 }
@@ -94,18 +95,18 @@ pub struct TrackObservation(pub usize, pub usize, pub f64, pub f64);
 /// Features in several photographs that show the same scene point, whose position is not yet known.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Track {
-    /// Mean colour.
+    /// Mean colour of the features.
     pub color: [u8; 3],
     /// Observations.
     #[serde(rename = "seen")]
     pub observations: Vec<TrackObservation>,
 }
 
-/// Result of matching, the input of [`solve`](crate::solve): photographs, pairs that match, and
-/// tracks.
+/// Result of matching, which is the input of [`solve`](crate::solve). It contains photographs,
+/// pairs of photographs that match, and tracks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Matches {
-    /// Format identifier of the file.
+    /// Identifier of the file format.
     pub format: String,
     /// Photographs.
     pub pictures: Vec<MatchedPhoto>,
@@ -115,7 +116,7 @@ pub struct Matches {
     pub tracks: Vec<Track>,
 }
 
-/// Prefix of [`MatchedPhoto::focal_source`] if the focal length is a guess.
+/// Prefix of [`MatchedPhoto::focal_source`] that marks a guessed focal length.
 pub const GUESS: &str = "a guess";
 
 /// Value of [`Matches::format`].
@@ -155,12 +156,13 @@ pub fn describe(photo: &Photo, options: &Options) -> ImageFeatures {
     }
 }
 
-/// Matches all pairs of photographs. `progress` receives the finished fraction, from 0 to 1.
+/// Matches all pairs of photographs. The function `progress` receives the finished fraction of the
+/// work, from 0 to 1.
 ///
 /// # Errors
 ///
-/// If there are fewer than two photographs, or if no two of them show the same scene from different
-/// positions.
+/// Returns an error if there are fewer than two photographs, or if no two of them show the same
+/// scene from different positions.
 pub fn match_all(
     mut photos: Vec<ImageFeatures>,
     options: &Options,
@@ -236,7 +238,7 @@ fn place(feature: &Feature) -> Vector2<f64> {
 }
 
 impl Matches {
-    /// Returns the initial lenses, from the focal lengths of the photographs.
+    /// Returns the initial lenses, based on the focal lengths of the photographs.
     pub fn lenses(&self) -> Vec<Lens> {
         let first = |lens: usize| self.pictures.iter().find(|picture| picture.lens == lens);
         (0..self.pictures.len()).map_while(first).map(|picture| Lens::new(picture.size, picture.focal)).collect()
@@ -271,7 +273,7 @@ impl Matches {
         Ok(matches)
     }
 
-    /// Writes the matches as JSON, one item per line.
+    /// Writes the matches as JSON, with one item per line.
     pub fn to_json(&self) -> String {
         let rows = |values: Vec<String>| values.join(",\n");
         let row = |value: Result<String, serde_json::Error>| value.unwrap_or_default();

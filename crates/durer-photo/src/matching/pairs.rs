@@ -1,5 +1,5 @@
-//! Matches the features of two photographs by their descriptors, and verifies the matches by
-//! geometry.
+//! Matches the features of two photographs by their descriptors, and verifies the matches
+//! geometrically.
 
 use crate::feature::DESCRIPTOR_LENGTH;
 use crate::geometry::fundamental::{Correspondence, FundamentalProblem};
@@ -7,8 +7,8 @@ use crate::geometry::homography::{HomographyProblem, map_pixel};
 use crate::geometry::ransac::{RansacOptions, ransac};
 use nalgebra::{Matrix3, Vector2};
 
-/// SIFT descriptors of all features of one photograph, as 16-bit integers with their squared
-/// lengths, for fast distance computation.
+/// SIFT descriptors of all features of one photograph. They are stored as 16-bit integers with
+/// their squared lengths, so that distances can be computed quickly.
 pub struct Descriptors {
     values: Vec<[i16; DESCRIPTOR_LENGTH]>,
     squares: Vec<i32>,
@@ -23,15 +23,15 @@ impl Descriptors {
     }
 }
 
-/// Returns the dot product of two descriptors. The sum of 128 products of bytes cannot overflow;
-/// wrapping arithmetic lets the compiler vectorise the loop. Integers give the same result on all
-/// processors.
+/// Returns the dot product of two descriptors. The sum of 128 products of bytes cannot overflow,
+/// and wrapping arithmetic lets the compiler vectorise the loop. Integer arithmetic gives the same
+/// result on all processors.
 fn dot(a: &[i16; DESCRIPTOR_LENGTH], b: &[i16; DESCRIPTOR_LENGTH]) -> i32 {
     a.iter().zip(b).fold(0, |sum, (a, b)| sum.wrapping_add(i32::from(*a).wrapping_mul(i32::from(*b))))
 }
 
-/// Returns pairs of features that are each other's nearest neighbours, and whose distance is less
-/// than `ratio` times the distance to the second nearest (Lowe, section 7.1).
+/// Returns pairs of features that are each other's nearest neighbours. The distance of each pair is
+/// less than `ratio` times the distance to the second nearest neighbour (Lowe, section 7.1).
 pub fn match_descriptors(a: &Descriptors, b: &Descriptors, ratio: f64) -> Vec<(usize, usize)> {
     let mut back = vec![(i32::MAX, usize::MAX); b.values.len()];
     let mut forth = Vec::with_capacity(a.values.len());
@@ -57,26 +57,26 @@ pub fn match_descriptors(a: &Descriptors, b: &Descriptors, ratio: f64) -> Vec<(u
     forth.into_iter().enumerate().filter(|(_, row)| row.2 != usize::MAX).filter_map(clear).collect()
 }
 
-/// Result of verifying the matches of two photographs: the inliers of a fundamental matrix, and
+/// Result of verifying the matches of two photographs, with the inliers of a fundamental matrix and
 /// statistics about them.
 pub struct VerifiedMatches {
     /// Indices of the matches that agree with the fundamental matrix.
     pub inliers: Vec<usize>,
-    /// Share of these that a single homography explains. If it is near 1, the scene is flat or the
-    /// camera only rotated.
+    /// Fraction of the inliers that a single homography explains. If it is near 1, the scene is
+    /// flat or the camera only rotated.
     pub planar_fraction: f64,
-    /// Median distance in pixels between the positions in both photographs.
+    /// Median distance in pixels between the positions of a match in both photographs.
     pub median_shift: f64,
 }
 
-/// Returns true if `agree` of `all` matches can agree on a geometry by chance. A few percent of
-/// false matches always lie near their epipolar lines.
+/// Returns true if `agree` out of `all` matches can be consistent with a geometry by chance. A few
+/// percent of false matches always lie near their epipolar lines.
 pub fn is_chance(agree: usize, all: usize) -> bool {
     agree * 5 < all
 }
 
-/// Finds the matches that agree with one fundamental matrix; `None` if there are fewer than
-/// `least`, or so few that they could agree by chance.
+/// Finds the matches that are consistent with one fundamental matrix. Returns `None` if there are
+/// fewer than `least`, or so few that they could be consistent by chance.
 pub fn verify_matches(places: &[Correspondence], threshold: f64, least: usize, seed: u64) -> Option<VerifiedMatches> {
     let search = RansacOptions { threshold, samples: 5000, seed };
     let (_, inliers) = ransac(&FundamentalProblem(places), &search)?;

@@ -1,4 +1,4 @@
-//! Selects the two photographs from which the reconstruction starts.
+//! Selects the two photographs with which the reconstruction starts.
 
 use super::Solver;
 use crate::geometry::essential::{EssentialProblem, pose_in_front};
@@ -9,12 +9,12 @@ use crate::{Error, Pose};
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
-/// Number of photograph pairs to try, in decreasing order of matches.
+/// Number of photograph pairs to try, in decreasing order of their number of matches.
 const MAX_PAIRS: usize = 30;
 
 impl Solver<'_> {
     /// Selects two photographs that share many points and were taken from clearly different
-    /// positions. Sets their poses and triangulates their points.
+    /// positions. Sets their poses, and triangulates the points that they share.
     pub(super) fn initial(&mut self, matches: &Matches) -> Result<[usize; 2], Error> {
         let mut links: Vec<&PhotoPair> = matches.links.iter().collect();
         links.sort_by(|a, b| b.matches.cmp(&a.matches).then(a.pictures.cmp(&b.pictures)));
@@ -28,8 +28,8 @@ impl Solver<'_> {
                 turned += 1;
                 continue;
             }
-            // Angles of ten degrees or more are equally good. Planar scenes do not determine the
-            // lens.
+            // All angles of ten degrees or more are equally good. Planar scenes do not determine
+            // the lens.
             let score = count as f64 * (angle.to_degrees() / 10.0).min(1.0) * (1.2 - link.planar_fraction);
             if best.as_ref().is_none_or(|best| score > best.0) {
                 best = Some((score, link.pictures, pose));
@@ -52,8 +52,8 @@ impl Solver<'_> {
         Ok([a, b])
     }
 
-    /// Returns the pose of the second photograph in the frame of the first, the number of points in
-    /// front of both, and the median angle between the rays.
+    /// Returns the pose of the second photograph in the frame of the first. Also returns the number
+    /// of points in front of both, and the median angle between the rays.
     fn relative(&self, [a, b]: [usize; 2]) -> Option<(Pose, usize, f64)> {
         let lenses = [a, b].map(|view| self.lenses[self.views[view].lens]);
         let mut pairs = Vec::new();

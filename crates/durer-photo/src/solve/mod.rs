@@ -1,8 +1,9 @@
-//! Incremental structure from motion: computes cameras and points from tracks.
+//! Incremental structure from motion, which computes cameras and points from tracks.
 //!
-//! Starts with two photographs (`initial`). Then, repeatedly, the photograph that observes the most
-//! known points is added (`register`), its new points are triangulated (`structure`), and bundle
-//! adjustment refines everything. Outliers are dropped along the way.
+//! The reconstruction starts with two photographs (`initial`). The following steps are then
+//! repeated: the photograph that observes the most known points is added (`register`), its new
+//! points are triangulated (`structure`), and bundle adjustment refines everything. Outliers are
+//! dropped along the way.
 //!
 //! Source: Snavely, Seitz, Szeliski, *Photo Tourism: Exploring Photo Collections in 3D*, SIGGRAPH
 //! 2006, section 4.2.
@@ -19,12 +20,12 @@ use crate::matching::{GUESS, Matches};
 use crate::{Error, Lens, Observation, Point, Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-/// Scale of the Cauchy loss in standard deviations. For normally distributed errors it is 95 %
-/// efficient (Holland, Welsch, *Robust Regression Using Iteratively Reweighted Least-Squares*,
-/// 1977). Errors of keypoints have much heavier tails: half of the coordinates are off by a tenth
-/// of a pixel or less, and some by two pixels.
+/// Scale of the Cauchy loss in standard deviations. At this scale, the loss is 95 % efficient for
+/// normally distributed errors (Holland, Welsch, *Robust Regression Using Iteratively Reweighted
+/// Least-Squares*, 1977). Errors of keypoints have much heavier tails. Half of the coordinates are
+/// off by a tenth of a pixel or less, and some by two pixels.
 const CAUCHY: f64 = 2.385;
-/// Minimum standard deviation of a keypoint's position in pixels.
+/// Minimum standard deviation in pixels of a keypoint's position.
 const MIN_NOISE: f64 = 0.02;
 
 /// Options of incremental reconstruction by [`solve`].
@@ -36,10 +37,10 @@ pub struct Options {
     pub no_distortion: bool,
     /// True if each photograph has a separate lens.
     pub own_lenses: bool,
-    /// Maximum residual of an observation in pixels, for photographs of up to 1600 pixels;
-    /// proportionally more for larger ones.
+    /// Maximum residual of an observation in pixels, for photographs of up to 1600 pixels. It
+    /// increases in proportion to the size of larger photographs.
     pub threshold: f64,
-    /// Minimum angle in degrees between the rays to a point.
+    /// Minimum angle in degrees between two rays to a point.
     pub min_angle: f64,
     /// Minimum number of known points that a photograph must observe to be registered.
     pub min_points: usize,
@@ -54,47 +55,48 @@ impl Default for Options {
     }
 }
 
-/// Track during reconstruction: its observations, and its position once it is triangulated.
+/// Track during reconstruction, with its observations, and with its position once it is
+/// triangulated.
 struct CandidateTrack {
     color: [u8; 3],
     observations: Vec<Observation>,
-    /// For each observation, true if its residual is within the threshold.
+    /// For each observation, true if the residual is within the threshold.
     fits: Vec<bool>,
     position: Option<Vector3<f64>>,
 }
 
-/// State of an incremental reconstruction: photographs, lenses, and tracks.
+/// State of an incremental reconstruction, with photographs, lenses, and tracks.
 struct Solver<'o> {
     options: &'o Options,
     views: Vec<View>,
     lenses: Vec<Lens>,
-    /// Initial lenses, which replace lenses that diverge.
+    /// Initial lenses, which replace any lenses that diverge.
     initial_lenses: Vec<Lens>,
     tracks: Vec<CandidateTrack>,
-    /// For each photograph, the tracks that it observes and the index of its observation in each.
+    /// Tracks that each photograph observes, with the index of its observation in each track.
     tracks_of_view: Vec<Vec<(usize, usize)>>,
 }
 
-/// Result of [`solve`]: the reconstruction, and notes for the user.
+/// Result of [`solve`], which contains the reconstruction and notes for the user.
 pub struct Solution {
-    /// Cameras and points.
+    /// Reconstructed cameras and points.
     pub reconstruction: Reconstruction,
-    /// Notes for the user: photographs that were left out, with the reason, and focal lengths that
-    /// differ much from EXIF.
+    /// Notes for the user. They list photographs that were left out, with the reason, and focal
+    /// lengths that differ much from EXIF.
     pub notes: Vec<String>,
 }
 
-/// Reconstructs cameras and points from matches. `progress` receives the number of registered
-/// photographs.
+/// Reconstructs cameras and points from matches. The function `progress` receives the number of
+/// registered photographs.
 ///
-/// If the initial focal length is wrong (for example, because the photographs were scaled down and
-/// EXIF was not updated), few photographs fit, or the focal length changes considerably. In that
-/// case, the function solves again from the resulting focal length or from a typical one, and
-/// returns the better result.
+/// If the initial focal length is wrong, few photographs fit, or the focal length changes
+/// considerably. This happens, for example, if the photographs were scaled down without updating
+/// the EXIF data. In that case, the function solves again, starting from the resulting focal length
+/// or from a typical one, and returns the better result.
 ///
 /// # Errors
 ///
-/// If no two photographs are suitable to start with.
+/// Returns an error if no two photographs are suitable to start with.
 pub fn solve(matches: &Matches, options: &Options, progress: &dyn Fn(usize)) -> Result<Solution, Error> {
     let first = solve_once(matches, matches, options, progress);
     let usual = |size: [u32; 2]| 1.2 * f64::from(size[0].max(size[1]));
@@ -137,8 +139,8 @@ impl Solution {
     }
 }
 
-/// Solves once from the focal lengths in `matches`. Notes compare the result with the focal lengths
-/// in `written`.
+/// Solves once, starting from the focal lengths in `matches`. The notes compare the result with the
+/// focal lengths in `written`.
 fn solve_once(
     matches: &Matches,
     written: &Matches,
@@ -156,12 +158,12 @@ fn solve_once(
             refused[view] = true;
             continue;
         }
-        // Photographs that were refused may fit now.
+        // Photographs that were refused earlier can fit now.
         refused.fill(false);
         solver.triangulate_tracks();
         let known = solver.registered();
         progress(known);
-        // Adjust only after the number of photographs has grown by a tenth.
+        // Run the adjustment only after the number of photographs has grown by a tenth.
         if known > last_adjusted + last_adjusted / 10 {
             solver.adjust(false);
             solver.drop_outliers();
@@ -264,8 +266,8 @@ impl<'o> Solver<'o> {
         self.drop_outliers();
     }
 
-    /// Runs bundle adjustment. If `thoroughly` is false, it stops at the accuracy that adding
-    /// another photograph requires.
+    /// Runs bundle adjustment. If `thoroughly` is false, the adjustment stops once it is accurate
+    /// enough to add another photograph.
     fn adjust(&mut self, thoroughly: bool) {
         let (mut all, tracks) = self.reconstruction(false);
         let known = self.registered();
@@ -302,9 +304,9 @@ impl<'o> Solver<'o> {
     }
 }
 
-/// Normalises the orientation, position, and scale of the world: the mean up direction of the
+/// Normalises the orientation, position, and scale of the world. The mean up direction of the
 /// photographs becomes y, the median of the points becomes the origin, and the mean distance of the
-/// cameras becomes 1.
+/// cameras from it becomes 1.
 fn normalize_world(reconstruction: &mut Reconstruction) {
     let poses: Vec<_> = reconstruction.views.iter().filter_map(|view| view.pose).collect();
     let up: Vector3<f64> = poses.iter().map(|pose| -pose.rotation.row(1).transpose()).sum();

@@ -1,4 +1,4 @@
-//! Registration: computes the pose of a photograph that observes known points.
+//! Registration, which computes the pose of a photograph that observes known points.
 
 use super::Solver;
 use crate::adjust::{Loss, Options, adjust};
@@ -7,8 +7,8 @@ use crate::geometry::ransac::{RansacOptions, RansacProblem, ransac};
 use crate::{Lens, Observation, Point, Pose, Reconstruction, View};
 use nalgebra::{Vector2, Vector3};
 
-/// RANSAC problem of a camera's pose: world points and their pixels, including outliers, with a
-/// known lens.
+/// RANSAC problem of finding a camera's pose with a known lens, from world points and their pixels,
+/// which include outliers.
 struct PoseProblem<'k> {
     lens: &'k Lens,
     pairs: &'k [(Vector3<f64>, Vector2<f64>)],
@@ -22,7 +22,8 @@ impl RansacProblem<4> for PoseProblem<'_> {
         self.pairs.len()
     }
 
-    /// Computes up to four poses from three points, and selects one by the fourth point.
+    /// Computes up to four poses from three points, and uses the fourth point to select one of
+    /// them.
     fn solve_minimal(&self, sample: &[usize; 4]) -> Vec<Pose> {
         let [Some(a), Some(b), Some(c), _] = sample.map(|i| self.directions[i]) else { return Vec::new() };
         let points = [0, 1, 2].map(|k| self.pairs[sample[k]].0);
@@ -43,7 +44,7 @@ impl RansacProblem<4> for PoseProblem<'_> {
     }
 }
 
-/// Adjusts the pose and lens of a single camera.
+/// Adjusts the pose and the lens of a single camera.
 pub fn refine_pose(
     pairs: &[(Vector3<f64>, Vector2<f64>)],
     lens: &Lens,
@@ -63,8 +64,8 @@ pub fn refine_pose(
     Some((one.views[0].pose?, one.lenses[0]))
 }
 
-/// Estimates the pose of a camera with a known lens. Also returns the indices of the inliers;
-/// `None` if there are at most four.
+/// Estimates the pose of a camera with a known lens. Also returns the indices of the inliers.
+/// Returns `None` if there are at most four inliers.
 pub fn estimate_pose(
     pairs: &[(Vector3<f64>, Vector2<f64>)],
     lens: &Lens,

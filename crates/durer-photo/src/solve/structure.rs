@@ -1,4 +1,4 @@
-//! Triangulation of points and selection of observations that fit.
+//! Triangulates points, and selects the observations that fit them.
 
 use super::{CandidateTrack, Solver};
 use crate::geometry::triangulate::nearest_to_rays;
@@ -9,8 +9,8 @@ use nalgebra::Vector3;
 const MAX_RAY_PAIRS: usize = 12;
 
 impl Solver<'_> {
-    /// Returns the residual of an observation in pixels; infinite behind the camera, `None` if the
-    /// photograph is not registered.
+    /// Returns the residual of an observation in pixels, which is infinite behind the camera.
+    /// Returns `None` if the photograph is not registered.
     fn residual(&self, position: &Vector3<f64>, observation: &Observation) -> Option<f64> {
         let view = &self.views[observation.view];
         let p = view.pose.as_ref()?.apply(position);
@@ -22,8 +22,8 @@ impl Solver<'_> {
         self.residual(position, observation).is_some_and(|length| length <= self.threshold(observation.view))
     }
 
-    /// Triangulates tracks without a point, and updates which observations fit. Returns the number
-    /// of new points.
+    /// Triangulates tracks that have no point, and updates which observations fit. Returns the
+    /// number of new points.
     pub(super) fn triangulate_tracks(&mut self) -> usize {
         let mut added = 0;
         for t in 0..self.tracks.len() {
@@ -45,7 +45,7 @@ impl Solver<'_> {
         added
     }
 
-    /// Returns the rays from the registered photographs to a track's point.
+    /// Returns the rays from the registered photographs to the point of a track.
     fn rays(&self, track: &CandidateTrack) -> Vec<(Vector3<f64>, Vector3<f64>)> {
         let ray = |observation: &Observation| {
             let view = &self.views[observation.view];
@@ -56,8 +56,8 @@ impl Solver<'_> {
         track.observations.iter().filter_map(ray).collect()
     }
 
-    /// Triangulates a track from the pair of rays, at a sufficient angle, whose point agrees with
-    /// the most observations.
+    /// Triangulates a track from the pair of rays whose point is consistent with the most
+    /// observations. The angle between the rays must be large enough.
     fn triangulate(&self, track: &CandidateTrack) -> Option<Vector3<f64>> {
         let rays = self.rays(track);
         let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
@@ -81,8 +81,9 @@ impl Solver<'_> {
         best.map(|best| best.1)
     }
 
-    /// Drops observations with large residuals, and points with fewer than two observations or a
-    /// small angle between their rays. Returns the number of dropped observations.
+    /// Drops observations with large residuals. Also drops points that have fewer than two
+    /// observations or a small angle between their rays. Returns the number of dropped
+    /// observations.
     pub(super) fn drop_outliers(&mut self) -> usize {
         let mut dropped = 0;
         let widest = libm::cos(self.options.min_angle.to_radians());

@@ -5,8 +5,8 @@ pub type QuirkSet = u64;
 
 macro_rules! quirks {
     ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal,)+) => {
-        /// A bug that Dürer can reproduce, of an official program unless stated otherwise. Off
-        /// unless selected by its dialect or by name.
+        /// Bug that Dürer can reproduce, found in an official program unless stated otherwise. A
+        /// quirk is off unless it is selected by its dialect or by name.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
         pub enum Quirk { $($(#[doc = $doc])+ $variant,)+ }
@@ -127,12 +127,12 @@ quirks! {
 }
 
 impl Quirk {
-    /// Returns the quirk's bit.
+    /// Returns the bit that represents this quirk in a [`QuirkSet`].
     pub const fn bit(self) -> QuirkSet {
         1 << self as u8
     }
 
-    /// Returns the quirk with a name.
+    /// Returns the quirk with this name.
     pub fn from_name(name: &str) -> Option<Quirk> {
         Quirk::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
     }

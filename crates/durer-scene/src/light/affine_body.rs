@@ -1,7 +1,8 @@
-//! Closed emitters: boxes, ellipsoids, cones, cylinders and rings under any affine map.
+//! Closed emitters: boxes, ellipsoids, cones, cylinders and rings, transformed by any affine map.
 //!
-//! Each is the image of a body of fixed size. A point is sampled on that body. The stretch of the
-//! surface under the map then converts the pdf to a pdf per area in world space.
+//! Each emitter is the image of a body of fixed size under an affine map. Points are sampled on
+//! that body. The pdf is then converted to a pdf per area in world space, based on how much the map
+//! stretches the surface.
 
 use super::emitter_point::{EmitterPoint, ON_SURFACE, one_minus_cosine};
 use crate::bsdf::{Frame, warp};
@@ -12,17 +13,18 @@ use std::f32::consts::{PI, TAU};
 /// Closed body of fixed size, whose image under an affine map is an area light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ClosedBody {
-    /// Cube from -1 to 1.
+    /// Cube that extends from -1 to 1 on each axis.
     Cube,
     /// Ball of radius 1.
     Ball,
-    /// Frustum from a disc of radius 1 at z = 0 to a disc of this radius, at most 1, at z = 1.
+    /// Frustum between a disc of radius 1 at z = 0 and a disc at z = 1 with this radius, which is
+    /// at most 1.
     Frustum(f32),
-    /// Solid torus: the points within this distance of the circle of radius 1 around z.
+    /// Solid torus of all points within this distance of the circle of radius 1 around the z axis.
     Ring(f32),
 }
 
-/// Area light that is the image of a closed [`ClosedBody`] under an affine map.
+/// Area light that is the image of a [`ClosedBody`] under an affine map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AffineBody {
     center: DVec3,
@@ -30,24 +32,24 @@ pub struct AffineBody {
     body: ClosedBody,
 }
 
-/// Number of points used for a mean over a surface.
+/// Number of points used to compute a mean over a surface.
 const POINTS: u16 = 64;
 
-/// Point `i` of a grid over the unit square.
+/// Position of point `i` in a regular grid on the unit square.
 fn spread(i: u16) -> Vec2 {
     Vec2::new(f32::from(i % 8) + 0.5, f32::from(i / 8) + 0.5) / 8.0
 }
 
 impl AffineBody {
-    /// Creates the image of a body. `axes` are the images of x, y and z; `None` if the image has no
-    /// volume.
+    /// Creates the image of a body under an affine map. `axes` are the images of the x, y and z
+    /// axes. Returns `None` if the image has no volume.
     pub fn new(body: ClosedBody, center: DVec3, axes: [Vec3; 3]) -> Option<AffineBody> {
         let body_image = AffineBody { center, axes, body };
         let most: f32 = axes.iter().map(|axis| axis.length()).product();
         (most.is_finite() && body_image.volume().abs() > 1e-6 * most && most > 0.0).then_some(body_image)
     }
 
-    /// True for an ellipsoid.
+    /// True if the body is an ellipsoid.
     pub fn is_ball(&self) -> bool {
         self.body == ClosedBody::Ball
     }
@@ -57,12 +59,12 @@ impl AffineBody {
         x.cross(y).dot(z)
     }
 
-    /// Image of a vector.
+    /// Image of a vector under the affine map.
     fn vector(&self, v: Vec3) -> Vec3 {
         v.x * self.axes[0] + v.y * self.axes[1] + v.z * self.axes[2]
     }
 
-    /// Image of a surface element, given as its normal times its area.
+    /// Image of a surface element, which is given as its normal times its area.
     fn area_vector(&self, n: Vec3) -> Vec3 {
         let [x, y, z] = self.axes;
         self.volume().signum() * (n.x * y.cross(z) + n.y * z.cross(x) + n.z * x.cross(y))
@@ -74,14 +76,14 @@ impl AffineBody {
         Vec3::new(y.cross(z).dot(v), z.cross(x).dot(v), x.cross(y).dot(v)) / self.volume()
     }
 
-    /// Point in body space whose image is `from`. Uses double precision, since the map of a
-    /// needle-shaped body shrinks one axis and stretches another.
+    /// Point in body space whose image is `from`. It is computed in double precision because the
+    /// map of a needle-shaped body shrinks one axis and stretches another.
     fn origin(&self, from: DVec3) -> Vec3 {
         let ([x, y, z], v) = (self.axes.map(|axis| axis.as_dvec3()), from - self.center);
         (DVec3::new(y.cross(z).dot(v), z.cross(x).dot(v), x.cross(y).dot(v)) / x.cross(y).dot(z)).as_vec3()
     }
 
-    /// Area in world space, accurate to a few percent.
+    /// Surface area in world space, accurate to a few percent.
     pub fn area(&self) -> f32 {
         let mean = |value: &dyn Fn(Vec2) -> f32| (0..POINTS).map(|i| value(spread(i))).sum::<f32>() / f32::from(POINTS);
         match self.body {
@@ -101,7 +103,7 @@ impl AffineBody {
         }
     }
 
-    /// Area of one face of a box across each axis.
+    /// Area in world space of the box face perpendicular to each axis.
     fn faces(&self) -> [f32; 3] {
         [Vec3::X, Vec3::Y, Vec3::Z].map(|n| 4.0 * self.area_vector(n).length())
     }
@@ -113,7 +115,7 @@ impl AffineBody {
         [cap, top * top * cap, PI * (1.0 + top) * side]
     }
 
-    /// Area element of a frustum's side, per angle, height and radius.
+    /// Area element of a frustum's side in world space, per unit of angle, height and radius.
     fn side_stretch(&self, (sin, cos): (f32, f32), top: f32) -> f32 {
         self.area_vector(Vec3::new(cos, sin, 1.0 - top)).length()
     }
@@ -131,7 +133,7 @@ impl AffineBody {
         }
     }
 
-    /// Samples a point as seen from `from`.
+    /// Samples a point on the surface as seen from the point `from`.
     pub fn sample(&self, from: DVec3, u: Vec2) -> Option<EmitterPoint> {
         let origin = self.origin(from);
         if self.body == ClosedBody::Ball && !is_within_ball(origin) {
@@ -142,7 +144,8 @@ impl AffineBody {
         let distance = to.length();
         let wi = to / distance;
         let cosine = -wi.dot(self.area_vector(n).normalize_or_zero());
-        // From outside, only the outside of a convex body is visible; from inside, only its inside.
+        // Only the outside of a convex body is visible from outside, and only its inside from
+        // inside.
         let hidden = match self.contains(origin) {
             Some(true) => cosine > 0.0,
             Some(false) => cosine < 0.0,
@@ -152,8 +155,8 @@ impl AffineBody {
         (!hidden && pdf.is_finite() && pdf > 0.0).then_some(EmitterPoint { wi, distance, cosine, pdf })
     }
 
-    /// Pdf per solid angle of [`AffineBody::sample`] for a direction that hits the surface at
-    /// `distance`.
+    /// Pdf per solid angle with which [`AffineBody::sample`] chooses a direction that hits the
+    /// surface at `distance`.
     pub fn pdf(&self, from: DVec3, wi: Vec3, distance: f32) -> f32 {
         let origin = self.origin(from);
         let direction = self.inverse(wi);
@@ -166,14 +169,14 @@ impl AffineBody {
         density * distance * distance / wi.dot(self.area_vector(n).normalize_or_zero()).abs()
     }
 
-    /// Samples a point of the full surface. Returns the point, its normal and the pdf per area.
+    /// Samples a point on the entire surface. Returns the point, its normal and the pdf per area.
     pub fn point(&self, u: Vec2) -> Option<(DVec3, Vec3, f32)> {
         let (point, n, density) = self.sample_body(u, None)?;
         let normal = self.area_vector(n).try_normalize()?;
         (density.is_finite() && density > 0.0).then(|| (self.center + self.vector(point).as_dvec3(), normal, density))
     }
 
-    /// Samples a point of an ellipsoid, uniformly by the solid angle of the ball in body space.
+    /// Samples a point on an ellipsoid, uniformly over the solid angle of the ball in body space.
     fn cone(&self, origin: Vec3, u: Vec2) -> Option<EmitterPoint> {
         let d2 = origin.length_squared();
         let d = d2.sqrt();
@@ -198,8 +201,9 @@ impl AffineBody {
         })
     }
 
-    /// True if a point of body space lies in the body or on its surface, from where only the inside
-    /// is visible. `None` for a ring, where that does not decide which side is visible.
+    /// True if a point in body space lies inside the body or on its surface, so that only the
+    /// inside is visible from it. `None` for a ring, for which this does not determine the visible
+    /// side.
     fn contains(&self, p: Vec3) -> Option<bool> {
         match self.body {
             ClosedBody::Cube => Some(is_within_cube(p)),
@@ -213,7 +217,8 @@ impl AffineBody {
         }
     }
 
-    /// Areas of the faces of a box visible from a point of body space, for each sign of each axis.
+    /// Areas of the faces of a box that are visible from a point in body space, for each sign of
+    /// each axis.
     fn visible(&self, from: Option<Vec3>) -> [[f32; 2]; 3] {
         let faces = self.faces();
         let from = from.filter(|p| !is_within_cube(*p));
@@ -225,8 +230,8 @@ impl AffineBody {
         })
     }
 
-    /// Samples a point of the body. Returns it with its normal and the pdf per area in world space.
-    /// A box samples only the faces visible `from` a point.
+    /// Samples a point on the body. Returns the point, its normal, and the pdf per area in world
+    /// space. On a box, only the faces visible from the point `from` are sampled.
     fn sample_body(&self, u: Vec2, from: Option<Vec3>) -> Option<(Vec3, Vec3, f32)> {
         match self.body {
             ClosedBody::Cube => {
@@ -264,7 +269,7 @@ impl AffineBody {
                 }
                 let share = ((rest - base - lid) / side).min(1.0);
                 let growth = top - 1.0;
-                // Sample heights in proportion to the radius at each height.
+                // Sample heights with a density proportional to the radius at each height.
                 let mean = 0.5 * (1.0 + top);
                 let height = 2.0 * share * mean / (1.0 + (1.0 + 2.0 * growth * share * mean).max(0.0).sqrt());
                 let (sin, cos) = fp::sin_cos_turn(u.y);
@@ -282,8 +287,8 @@ impl AffineBody {
         }
     }
 
-    /// Normal and pdf per area in world space for a point near the surface, as in
-    /// [`AffineBody::sample_body`].
+    /// Returns the normal and the sampling pdf per area in world space for a point near the
+    /// surface. Both match the values of [`AffineBody::sample_body`].
     fn density(&self, p: Vec3, from: Vec3) -> (Vec3, f32) {
         match self.body {
             ClosedBody::Cube => {
@@ -311,7 +316,8 @@ impl AffineBody {
             ClosedBody::Ring(minor) => {
                 let across = Vec2::new(p.x, p.y);
                 let (radius, d) = (across.length(), across.normalize_or(Vec2::X));
-                // In a ring without a hole, the far side may be the nearer one.
+                // In a ring without a hole, the far side of the ring can be closer to the point
+                // than the near side.
                 let off = |radius: f32| (Vec2::new(radius - 1.0, p.z).length() - minor).abs();
                 let (radius, d) = if off(radius) <= off(-radius) { (radius, d) } else { (-radius, -d) };
                 let to = Vec2::new(radius - 1.0, p.z).normalize_or(Vec2::X);
@@ -331,8 +337,8 @@ fn is_within_ball(p: Vec3) -> bool {
     p.length_squared() <= 1.0 + ON_SURFACE
 }
 
-/// Normal of a ring at two angles in turns, and the length of the circle through that point
-/// relative to the ring's middle circle.
+/// Returns the normal of a ring at two angles in turns, and the length of the circle through that
+/// point around the axis, relative to the middle circle of the ring.
 fn ring_normal(u: Vec2, minor: f32) -> (Vec3, f32) {
     let ((sin, cos), (up, out)) = (fp::sin_cos_turn(u.x), fp::sin_cos_turn(u.y));
     (Vec3::new(out * cos, out * sin, up), (1.0 + minor * out).abs())
@@ -372,7 +378,8 @@ mod tests {
                 for i in 0..200 {
                     let Some(seen) = body_image.sample(from, sampler::sample_2d(5, 0, 0, i, 0)) else { continue };
                     let again = body_image.pdf(from, seen.wi, seen.distance);
-                    // Edge on, the pdf is unbounded and rounding dominates.
+                    // The pdf is unbounded when the surface is seen edge on, so rounding errors
+                    // dominate.
                     let near = (again / seen.pdf - 1.0).abs() < 2e-3 / seen.cosine.abs().max(1e-3);
                     assert!(near, "{body_image:?} from {from}: {seen:?}, {again}");
                 }
@@ -384,8 +391,8 @@ mod tests {
     fn uniform_points_integrate_to_the_area() {
         const COUNT: u32 = 1 << 14;
         for body_image in bodies() {
-            // Integrals over the surface: of 1, and of the normal; the latter is 0 for a closed
-            // surface.
+            // Compute the integrals of 1 and of the normal over the surface. The integral of the
+            // normal is 0 for a closed surface.
             let (mut area, mut normals) = (0.0_f64, DVec3::ZERO);
             for i in 0..COUNT {
                 let Some((_, n, density)) = body_image.point(sampler::sample_2d(6, 0, 0, i, 0)) else { continue };

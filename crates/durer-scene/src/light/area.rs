@@ -1,4 +1,4 @@
-//! Area lights: emitting surfaces in world space, and the sampling of points on them.
+//! Area lights: emitting surfaces in world space, and methods to sample points on them.
 
 use super::affine_body::{AffineBody, ClosedBody};
 use super::emitter_point::{EmitterPoint, EmitterTransform, ON_SURFACE, one_minus_cosine};
@@ -7,34 +7,35 @@ use crate::math::{Aabb, Vec2, Vec3, fp};
 use glam::{DVec2, DVec3};
 use std::f32::consts::PI;
 
-/// Shape of an area light in world space, on which points can be sampled. Positions are in double
-/// precision, like ray hits.
+/// Shape of an area light in world space, on which points can be sampled. Positions have double
+/// precision, as ray hits do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EmitterShape {
-    /// Corner and two edges.
+    /// Triangle, given by a corner and two edges.
     Triangle(DVec3, [Vec3; 2]),
-    /// Corner and two edges.
+    /// Parallelogram, given by a corner and two edges.
     Parallelogram(DVec3, [Vec3; 2]),
-    /// Centre, two half axes at any angle, and the inner radius as a share of the outer one.
+    /// Ellipse, given by its centre, two half axes at any angle, and the inner radius as a fraction
+    /// of the outer radius.
     Ellipse(DVec3, [Vec3; 2], f32),
-    /// Centre and radius.
+    /// Sphere, given by its centre and radius.
     Sphere(DVec3, f32),
     /// Box, ellipsoid, cone, cylinder or ring.
     Closed(AffineBody),
 }
 
 impl EmitterShape {
-    /// Creates a triangle from corners in object space. Returns it with its unit normal in world
-    /// space.
+    /// Creates a triangle from its corners in object space. Returns it together with its unit
+    /// normal in world space.
     pub fn triangle([a, b, c]: [Vec3; 3], transform: &EmitterTransform) -> (EmitterShape, Vec3) {
         let n = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
         let edges = [transform.vector(b - a), transform.vector(c - a)];
         (EmitterShape::Triangle(transform.point(a), edges), transform.normal(n))
     }
 
-    /// Places a body in the world. `axes` are the images of x, y and z, in object space. The
-    /// returned normal is 0, since a body has normals in all directions. `None` if the image has no
-    /// volume.
+    /// Places a body in the world. `axes` are the images of the x, y and z axes in object space.
+    /// The returned normal is 0, since a body has normals in all directions. Returns `None` if the
+    /// image has no volume.
     pub fn body(
         transform: &EmitterTransform,
         body: ClosedBody,
@@ -45,9 +46,9 @@ impl EmitterShape {
         Some((EmitterShape::Closed(closed), Vec3::ZERO))
     }
 
-    /// Creates a cone or cylinder between two points, with a radius at each.
+    /// Creates a cone or cylinder between two points, with the given radius at each point.
     pub fn frustum(transform: &EmitterTransform, ends: [Vec3; 2], radii: [f32; 2]) -> Option<(EmitterShape, Vec3)> {
-        // The larger disc is the body's base.
+        // The larger disc is the base of the body.
         let ([base, top], [large, small]) = match radii[0] >= radii[1] {
             true => (ends, radii),
             false => ([ends[1], ends[0]], [radii[1], radii[0]]),
@@ -57,7 +58,7 @@ impl EmitterShape {
         EmitterShape::body(transform, ClosedBody::Frustum(small / large), base, axes)
     }
 
-    /// Area in world space.
+    /// Surface area in world space.
     pub fn area(&self) -> f32 {
         match self {
             EmitterShape::Triangle(_, [e, f]) => 0.5 * e.cross(*f).length(),
@@ -73,7 +74,7 @@ impl EmitterShape {
         matches!(self, EmitterShape::Sphere(..) | EmitterShape::Closed(..))
     }
 
-    /// True for a sphere or an ellipsoid, whose visible cap is sampled from the middle outwards.
+    /// True for a sphere or an ellipsoid. Their visible cap is sampled from its middle outwards.
     pub fn is_ball(&self) -> bool {
         matches!(self, EmitterShape::Sphere(..)) || matches!(self, EmitterShape::Closed(closed) if closed.is_ball())
     }
@@ -95,7 +96,7 @@ impl EmitterShape {
         }
     }
 
-    /// Samples a point as seen from `from`; `None` if no point is visible.
+    /// Samples a point as seen from the point `from`, or returns `None` if no point is visible.
     pub fn sample(&self, normal: Vec3, from: DVec3, u: Vec2) -> Option<EmitterPoint> {
         let to = match *self {
             EmitterShape::Triangle(p, [e, f]) => {
@@ -152,7 +153,8 @@ impl EmitterShape {
         }
     }
 
-    /// Samples a point uniformly by area. Returns the point, its normal and the pdf per area.
+    /// Samples a point on the surface uniformly by area. Returns the point, its normal and the pdf
+    /// per area.
     pub fn point(&self, normal: Vec3, u: Vec2) -> Option<(DVec3, Vec3, f32)> {
         let (point, normal) = match *self {
             EmitterShape::Triangle(p, [e, f]) => {
@@ -175,10 +177,10 @@ impl EmitterShape {
     }
 }
 
-/// Maps `u` uniformly by area to the ring between the radii `inner` and 1.
+/// Maps `u` to the ring between the radii `inner` and 1, uniformly by area.
 fn sample_ring(u: Vec2, inner: f32) -> Vec2 {
     let d = warp::disc(u);
-    // The area of a ring grows with the square of its radius.
+    // The area of a ring grows with the square of its outer radius.
     let square = inner * inner + (1.0 - inner * inner) * d.length_squared();
     if inner > 0.0 { d.normalize_or(Vec2::X) * square.sqrt() } else { d }
 }
@@ -188,33 +190,33 @@ fn offset(to: DVec3, from: DVec3) -> Vec3 {
     (to - from).as_vec3()
 }
 
-/// True if a point lies in or on a sphere, given its squared distance from the centre and the
-/// squared radius. For a point on the surface, rounding decides the side; from both sides, only the
-/// inside is visible.
+/// True if a point lies inside or on a sphere, given its squared distance from the centre and the
+/// squared radius. Rounding can move a point on the surface to either side. In both cases it counts
+/// as inside, from where only the inside of the sphere is visible.
 fn is_in_sphere(d2: f32, r2: f32) -> bool {
     d2 <= r2 * (1.0 + ON_SURFACE)
 }
 
-/// Cosine between a direction and the sphere's normal at the point it hits, seen from inside. `to`
-/// is the vector to the centre.
+/// Cosine between a direction and the normal of the sphere at the point that the direction hits
+/// from inside. `to` is the vector to the centre.
 fn sphere_cosine(to: Vec3, wi: Vec3, distance: f32, radius: f32) -> f32 {
     ((distance * wi - to) / radius).dot(wi).abs().max(1e-6)
 }
 
-/// Samples a point of a sphere uniformly by the solid angle in which it is visible.
+/// Samples a point on a sphere, uniformly over the solid angle in which the sphere is visible.
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 6.2.4.
 fn sample_sphere(to: Vec3, radius: f32, u: Vec2) -> Option<EmitterPoint> {
     let (d2, r2) = (to.length_squared(), radius * radius);
     let d = d2.sqrt();
     if is_in_sphere(d2, r2) {
-        // From inside, sample uniformly by area.
+        // Inside the sphere, sample its surface uniformly by area.
         let at = to + radius * warp::sphere(u);
         let distance = at.length();
         let wi = at / distance;
         let cosine = sphere_cosine(to, wi, distance, radius);
         let pdf = distance * distance / (4.0 * PI * r2 * cosine);
-        // From inside, the outside is never visible.
+        // The outside of the sphere is never visible from inside.
         return pdf.is_finite().then_some(EmitterPoint { wi, distance, cosine: -cosine, pdf });
     }
     let all = one_minus_cosine(r2 / d2);
@@ -224,14 +226,14 @@ fn sample_sphere(to: Vec3, radius: f32, u: Vec2) -> Option<EmitterPoint> {
     let (sin, cos) = fp::sin_cos_turn(u.y);
     let frame = Frame::around(to / d);
     let wi = frame.to_world(Vec3::new(sine2.sqrt() * cos, sine2.sqrt() * sin, cosine)).normalize();
-    // Find where that direction first hits the sphere.
+    // Find the first point at which the direction hits the sphere.
     let half = (r2 - d2 * sine2).max(0.0).sqrt();
     let distance = d * cosine - half;
     Some(EmitterPoint { wi, distance, cosine: half / radius, pdf: 1.0 / (2.0 * PI * all) })
 }
 
-/// Rectangles whose largest edge is smaller than this share of their distance are sampled uniformly
-/// by area. The pdf then deviates by less than a tenth, and sampling is much faster.
+/// Rectangles whose longest edge is shorter than this fraction of their distance are sampled
+/// uniformly by area. The pdf then deviates by less than a tenth, and sampling is much faster.
 const AREA_SAMPLING_LIMIT: f32 = 0.1;
 
 /// Rectangular light as seen from a shading point, for uniform sampling by solid angle.
@@ -249,8 +251,8 @@ struct SphericalRectangle {
 }
 
 impl SphericalRectangle {
-    /// Returns `None` for a parallelogram without right angles, or one that is seen so small or so
-    /// flat that sampling by area suffices.
+    /// Returns `None` for a parallelogram without right angles, or for one that appears so small or
+    /// so flat that sampling by area suffices.
     fn new(corner: Vec3, e: Vec3, f: Vec3) -> Option<SphericalRectangle> {
         let middle = corner + 0.5 * (e + f);
         if e.length_squared().max(f.length_squared())
@@ -274,7 +276,7 @@ impl SphericalRectangle {
         // Cosines of the angles between the normals of the four planes through the edges.
         let nz = |a: f64| a / (a * a + near.z * near.z).sqrt();
         let [n0, n1, n2, n3] = [-nz(near.y), nz(far.x), nz(far.y), -nz(near.x)];
-        // Angles as complex numbers: a product adds its angles, modulo full turns.
+        // Represent angles as complex numbers, so that a product adds the angles modulo full turns.
         let angle = |cosine: f64| DVec2::new(cosine, ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt());
         let [g0, g1, g2, g3] = [angle(-n0 * n1), angle(-n1 * n2), angle(-n2 * n3), angle(-n3 * n0)];
         let right = g2.rotate(g3);
@@ -282,13 +284,13 @@ impl SphericalRectangle {
         let turns = fp::atan2_turn_f64(all.y, all.x);
         let solid_angle = std::f64::consts::TAU * if turns < 0.0 { turns + 1.0 } else { turns };
         let k = DVec2::new(right.x, -right.y);
-        // `turns` has an error of 2e-9, which is too much for a small angle. A slightly negative
-        // result would also wrap to a full turn.
+        // `turns` has an error of 2e-9, which is too large for small angles. A slightly negative
+        // result would also wrap around to a full turn.
         let known = turns.abs() > 1e-4;
         known.then_some(SphericalRectangle { axes: [x, y, z], near, far, solid_angle, b: [n0, n2], k })
     }
 
-    /// Samples a point, relative to the viewpoint.
+    /// Samples a point on the rectangle, relative to the viewpoint.
     fn sample(&self, u: Vec2) -> Vec3 {
         let (near, far, [b0, b1]) = (self.near, self.far, self.b);
         let (sin, cos) = fp::sin_cos_f64(f64::from(u.x) * self.solid_angle);

@@ -1,4 +1,4 @@
-//! Placement of emitters, and points on them as seen from a receiver.
+//! Transforms of emitters, and points on emitters as seen from a receiver.
 
 use crate::math::{Affine, Vec3};
 use glam::DVec3;
@@ -18,7 +18,7 @@ impl EmitterTransform<'_> {
         self.0.map_or(v, |to_world| to_world.vector(v))
     }
 
-    /// Converts a unit normal to world space, by the inverse transpose.
+    /// Converts a unit normal to world space with the inverse transpose.
     pub fn normal(&self, n: Vec3) -> Vec3 {
         self.0.map_or(n, |to_world| to_world.normal(n))
     }
@@ -31,14 +31,15 @@ pub struct EmitterPoint {
     pub wi: Vec3,
     /// Distance from the receiver.
     pub distance: f32,
-    /// Cosine between the emitter's normal and the direction to the receiver; negative behind the
-    /// emitter.
+    /// Cosine between the emitter's normal and the direction to the receiver, negative if the
+    /// receiver is behind the emitter.
     pub cosine: f32,
-    /// Pdf per solid angle of this point.
+    /// Pdf per solid angle with which the point was sampled.
     pub pdf: f32,
 }
 
-/// Distance from the surface of a ball, relative to its radius, within which points count as on it.
+/// Distance from the surface of a ball, relative to its radius, within which a point counts as
+/// lying on the surface.
 pub(super) const ON_SURFACE: f32 = 1e-5;
 
 /// Computes 1 - cos of an angle from the square of its sine, without cancellation.

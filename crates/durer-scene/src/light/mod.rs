@@ -1,4 +1,4 @@
-//! Light sources. Each kind has its own file; [`Light`] lists them all.
+//! Light sources. Each kind has its own file, and [`Light`] lists all of them.
 
 mod affine_body;
 pub mod area;
@@ -77,7 +77,7 @@ described_list! {
 }
 
 impl Light {
-    /// Replaces the colour by the result of `change`.
+    /// Replaces the colour of the light with the result of `change`.
     pub fn recolor(&mut self, change: impl Fn(Color) -> Color) {
         *self.color_mut() = change(self.color());
     }
@@ -88,7 +88,7 @@ impl Light {
     }
 }
 
-/// Scales a colour to the luminance of white times `white`. Black stays black.
+/// Scales a colour to the luminance of a grey whose channels all equal `white`. Black stays black.
 fn with_luminance(color: Color, white: f32) -> Color {
     let luminance = color.dot(LUMINANCE);
     if luminance > 0.0 { color * (white / luminance) } else { Color::ZERO }
@@ -101,62 +101,65 @@ const TWO_UNITS: &str = "`candela` and `lumens` both set the strength of this li
 pub struct LightLiSample {
     /// Unit vector to the light, in world space.
     pub to_light: Vec3,
-    /// Distance to the light; infinite for directional lights.
+    /// Distance to the light, which is infinite for directional lights.
     pub distance: f32,
-    /// Arriving light: the radiance that a white diffuse surface facing the light shows.
+    /// Arriving light, given as the radiance of a white diffuse surface that faces the light.
     pub color: Color,
 }
 
-/// Operations that every light source implements. No method has a default, so the compiler lists
-/// the methods that a new light lacks.
+/// Operations that every light source implements. No method has a default implementation, so the
+/// compiler lists the methods that a new light source lacks.
 pub trait Illuminate {
     /// Light that arrives at a point, ignoring occlusion.
     fn illuminate(&self, point: DVec3) -> LightLiSample;
 
-    /// Colour, as written.
+    /// Colour as written in the scene.
     fn color(&self) -> Color;
 
-    /// Mutable access to the colour.
+    /// Returns a mutable reference to the colour.
     fn color_mut(&mut self) -> &mut Color;
 
     /// File or name of the measured spectrum.
     fn spectrum(&self) -> Option<&FileName>;
 
-    /// Light with its strength in its colour, converted from candela, lumens or lux if it has such
-    /// a unit.
+    /// Returns the light with its strength included in its colour, converted from candela, lumens
+    /// or lux if it is given in one of these units.
     fn with_unit_color(&self) -> Self;
 
-    /// Checks combinations of fields. The constraints in the description check each field
-    /// separately.
+    /// Checks combinations of fields. Individual fields are checked separately by the constraints
+    /// in the description.
     ///
     /// # Errors
     ///
-    /// A sentence that names the contradictory fields.
+    /// Returns a sentence that names the contradictory fields.
     fn validate(&self) -> Result<(), String>;
 
-    /// Position, as written; `None` for a light at infinity.
+    /// Position as written in the scene; `None` for a light at infinity.
     fn position(&self) -> Option<Vec3>;
 
-    /// Direction in which the light travels, or the axis of its beam, as written and of any length;
-    /// `None` for a light that is equally strong in all directions.
+    /// Direction in which the light travels, or the axis of its beam. It is returned as written in
+    /// the scene and can have any length. `None` for a light that is equally strong in all
+    /// directions.
     fn direction(&self) -> Option<Vec3>;
 
-    /// Angle in degrees from [`Illuminate::direction`] to the edge of the beam; `None` without a
-    /// beam.
+    /// Angle in degrees from [`Illuminate::direction`] to the edge of the beam; `None` for a light
+    /// without a beam.
     fn cone(&self) -> Option<f32>;
 
-    /// Position, and the light that arrives at distance 1 in the strongest direction; `None` for a
-    /// light at infinity, or with a falloff other than the inverse square.
+    /// Position of the light, and the light that arrives at distance 1 in the strongest direction.
+    /// `None` for a light at infinity, or for a light whose falloff is not the inverse square.
     fn inverse_square(&self) -> Option<(Vec3, Color)>;
 
-    /// Angular radius in degrees, equal from every point; 0 for a light without extent.
+    /// Angular radius of the light, which is the same from every point; 0 for a light without
+    /// extent.
     fn angular_radius(&self) -> f32;
 
-    /// File with the intensity in each direction.
+    /// File that lists the intensity in each direction.
     fn profile(&self) -> Option<&FileName>;
 
-    /// Converts a direction from the light to the coordinates of the profile: x points to
-    /// horizontal angle 0, z out of the lower side. Only useful for a light with a profile.
+    /// Converts a direction from the light to the coordinate system of its profile, where x points
+    /// to horizontal angle 0 and z out of the lower side. It is only useful for a light with a
+    /// profile.
     fn to_profile(&self, dir: Vec3) -> Vec3;
 }
 

@@ -45,11 +45,13 @@ impl PhotometricLight {
 }
 
 impl Illuminate for PhotometricLight {
-    /// Light for an intensity of 1 candela in all directions, to be multiplied by the profile.
+    /// Returns the light for an intensity of 1 candela in all directions. The caller multiplies it
+    /// by the profile.
     fn illuminate(&self, point: DVec3) -> LightLiSample {
         let offset = (self.position.as_dvec3() - point).as_vec3();
         let distance = offset.length();
-        // The colour of a light is the radiance of a white diffuse surface: illuminance over pi.
+        // The colour of a light is the radiance of a white diffuse surface, which is the
+        // illuminance divided by pi.
         let faded = distance + self.focal_length;
         let color = self.color / (PI * faded * faded);
         LightLiSample { to_light: offset.normalize_or(Vec3::Y), distance, color }
@@ -67,7 +69,7 @@ impl Illuminate for PhotometricLight {
         self.spectrum.as_ref()
     }
 
-    /// Converting `lumens` needs the file; see [`PhotometricLight::with_flux`].
+    /// Converting `lumens` requires the photometric file; see [`PhotometricLight::with_flux`].
     fn with_unit_color(&self) -> Self {
         self.clone()
     }
@@ -99,7 +101,7 @@ impl Illuminate for PhotometricLight {
         Some(self.direction)
     }
 
-    /// 90 degrees: most luminaires light the hemisphere below them.
+    /// Use 90 degrees, since most luminaires light the hemisphere below them.
     fn cone(&self) -> Option<f32> {
         Some(90.0)
     }
@@ -112,30 +114,31 @@ impl Illuminate for PhotometricLight {
 /// Measured intensity of a luminaire in each direction, from an IES or EULUMDAT file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhotometricProfile {
-    /// Meaning of the angles.
+    /// Coordinate system of the angles.
     pub kind: ProfileKind,
-    /// Vertical angles in degrees, ascending.
+    /// Vertical angles in degrees, in ascending order.
     pub vertical: Vec<f32>,
-    /// Horizontal angles in degrees, ascending.
+    /// Horizontal angles in degrees, in ascending order.
     pub horizontal: Vec<f32>,
-    /// Intensity in candela: every vertical angle for the first horizontal angle, then for the
-    /// next.
+    /// Intensities in candela, with the vertical angle varying fastest.
     pub candela: Vec<f32>,
 }
 
 /// Coordinate system of a photometric measurement: type A, B or C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProfileKind {
-    /// C: vertical angles from straight down, horizontal angles about that axis.
+    /// Type C: vertical angles are measured from straight down, and horizontal angles around that
+    /// axis.
     C,
-    /// B: planes turned about the horizontal axis across the front of the luminaire.
+    /// Type B: planes are rotated about the horizontal axis that runs across the front of the
+    /// luminaire.
     B,
-    /// A: planes turned about the vertical axis.
+    /// Type A: planes are rotated about the vertical axis.
     A,
 }
 
 impl PhotometricProfile {
-    /// Hash of the whole profile.
+    /// Hash of the entire profile.
     pub fn digest(&self) -> Digest {
         let mut hasher = Digest::hasher();
         hasher.add_u64(self.kind as u64);
@@ -151,19 +154,20 @@ impl PhotometricProfile {
         self.candela.iter().copied().fold(0.0, f32::max)
     }
 
-    /// Intensity in candela in a direction, interpolated linearly between angles; 0 beyond the
-    /// vertical angles. In `dir`, x points to horizontal angle 0 and z points down.
+    /// Intensity in candela in a direction, interpolated linearly between angles. It is 0 outside
+    /// the range of vertical angles. In `dir`, x points to horizontal angle 0 and z points down.
     pub fn at(&self, dir: Vec3) -> f32 {
         let degrees = |y: f32, x: f32| fp::atan2(y, x).to_degrees();
         let across = |a: f32, b: f32| (a * a + b * b).sqrt();
         let (vertical, horizontal) = match self.kind {
             ProfileKind::C => (degrees(across(dir.x, dir.y), dir.z), degrees(dir.y, dir.x)),
-            // The luminaire faces z, which is down as mounted. Angles increase towards y and x.
+            // The luminaire faces z, which points down when it is mounted. Angles increase towards
+            // y and x.
             ProfileKind::B => (degrees(dir.x, across(dir.y, dir.z)), degrees(dir.y, dir.z)),
             ProfileKind::A => (degrees(dir.y, across(dir.x, dir.z)), degrees(dir.x, dir.z)),
         };
         let horizontal = self.apply_symmetry(horizontal);
-        // If the file has only one half, mirror it.
+        // If the file contains only one half of the distribution, mirror it.
         let vertical = if self.vertical[0] >= 0.0 { vertical.abs() } else { vertical };
         let (Some((i, a)), Some((j, b))) = (place(&self.vertical, vertical), place(&self.horizontal, horizontal))
         else {
@@ -192,15 +196,15 @@ impl PhotometricProfile {
         match (first, last) {
             (0.0, 90.0) => half.min(180.0 - half),
             (0.0, 180.0) => half,
-            // Symmetric across the plane from 90 to 270 degrees.
+            // The distribution is symmetric about the plane through 90 and 270 degrees.
             (90.0, 270.0) if angle < 90.0 => 180.0 - angle,
             (90.0, 270.0) if angle > 270.0 => 540.0 - angle,
             _ => angle,
         }
     }
 
-    /// Luminous flux in lumens. Exact for a profile that is linear between the angles, up to the
-    /// sine factor.
+    /// Luminous flux in lumens. Apart from the sine factor, the result is exact for a profile that
+    /// is linear between the angles.
     pub fn flux(&self) -> f64 {
         let (rows, columns) = (720_u32, 360_u32);
         let mut sum = 0.0;
@@ -215,8 +219,8 @@ impl PhotometricProfile {
     }
 }
 
-/// Index of the last angle at or before `wanted`, and the fraction towards the next angle; `None`
-/// outside the range.
+/// Index of the last angle at or before `wanted`, and the position between that angle and the next
+/// as a fraction. `None` if `wanted` is out of range.
 fn place(angles: &[f32], wanted: f32) -> Option<(usize, f32)> {
     const SLACK: f32 = 1e-3;
     let (first, last) = (angles[0], angles[angles.len() - 1]);

@@ -61,7 +61,8 @@ impl Illuminate for PointLight {
 
     fn with_unit_color(&self) -> Self {
         let Some(candela) = self.candela.or(self.lumens.map(|lumens| lumens / (4.0 * PI))) else { return self.clone() };
-        // The colour of a light is the radiance of a white diffuse surface: illuminance over pi.
+        // The colour of a light is the radiance of a white diffuse surface, which is the
+        // illuminance divided by pi.
         let color = with_luminance(self.color, candela / PI);
         PointLight { color, attenuation: Some(Vec3::Z), falloff: None, candela: None, lumens: None, ..self.clone() }
     }

@@ -41,15 +41,15 @@ described! {
 }
 
 impl SpotLight {
-    /// Cosines of the edge of the cone and of the start of the fade.
+    /// Cosines of the angles at which the cone ends and the fade starts.
     fn cosines(&self) -> [f32; 2] {
         [self.angle, self.inner_angle.min(self.angle)].map(|degrees| fp::sin_cos_degrees(f64::from(degrees)).1 as f32)
     }
 
-    /// Solid angle of a uniform cone that has the same flux and the same intensity on the axis.
+    /// Solid angle of a uniform cone with the same flux and the same intensity on its axis.
     fn effective_solid_angle(&self) -> f32 {
         let [outer, inner] = self.cosines();
-        // Means of s^2, s^2 (3 - 2 s) and s^4 over the fade.
+        // Mean values of s^2, s^2 (3 - 2 s) and s^4 over the fade.
         let fading = match self.fade {
             Fade::Squared => 1.0 / 3.0,
             Fade::Smooth => 0.5,
@@ -99,7 +99,8 @@ impl Illuminate for SpotLight {
         let Some(candela) = self.candela.or(self.lumens.map(|lumens| lumens / self.effective_solid_angle())) else {
             return self.clone();
         };
-        // The colour of a light is the radiance of a white diffuse surface: illuminance over pi.
+        // The colour of a light is the radiance of a white diffuse surface, which is the
+        // illuminance divided by pi.
         SpotLight { color: with_luminance(self.color, candela / PI), candela: None, lumens: None, ..self.clone() }
     }
 

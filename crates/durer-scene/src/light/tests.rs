@@ -1,4 +1,4 @@
-//! Tests of the light that arrives from light sources.
+//! Tests for the light that arrives at a point from light sources.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! Checkerboard: unit cubes of two alternating materials.
+//! Checkerboard pattern of unit cubes with two alternating materials.
 
 use super::Pattern;
 use crate::describe::{Constraint, described};
@@ -18,8 +18,8 @@ described! {
 impl Pattern for Checkerboard {
     fn weight(&self, q: Vec3) -> f32 {
         let floor = q.floor();
-        // Sums and remainders of whole `f32` numbers are exact if the coordinates are small enough
-        // to distinguish cells.
+        // Sums and remainders of integers in `f32` are exact as long as the coordinates are small
+        // enough to distinguish cells.
         let even = floor.rem_euclid(Vec3::splat(2.0)).element_sum().rem_euclid(2.0) == 0.0;
         if even { 1.0 } else { 0.0 }
     }

@@ -1,5 +1,5 @@
-//! Marble: veins, in which the first material has the share (sin(frequency x + amplitude N) + 1) /
-//! 2.
+//! Marble pattern of veins, in which the share of the first material is (sin(frequency x +
+//! amplitude N) + 1) / 2. N is noise.
 
 use super::{MAX_OCTAVES, Pattern};
 use crate::describe::{Constraint, described};

@@ -1,5 +1,5 @@
 //! Materials, which describe how surfaces scatter light. Each has its own file: [`PhongMaterial`],
-//! [`PrincipledMaterial`], [`HairMaterial`], and the patterns that [`PatternMaterial`] lists.
+//! [`PrincipledMaterial`], [`HairMaterial`], and the patterns listed by [`PatternMaterial`].
 
 pub mod checkerboard;
 pub mod hair;
@@ -34,7 +34,7 @@ macro_rules! delegate {
 }
 
 described_list! {
-    /// Material that mixes two earlier materials by a pattern in space.
+    /// Material that mixes two previously defined materials by a pattern in space.
     PatternMaterial: Pattern => delegate {
         Checkerboard(checkerboard::Checkerboard),
         Noise(solid_noise::SolidNoise),
@@ -46,8 +46,8 @@ described_list! {
 }
 
 impl PatternMaterial {
-    /// Share of the first material at a point of pattern space, from 0 to 1. With `conic_rings`,
-    /// wood has the rings of the program of 2004: cones with a grain stretched along the axis.
+    /// Share of the first material at a point in pattern space, from 0 to 1. With `conic_rings`,
+    /// wood has the rings of the 2004 program, which are cones with grain stretched along the axis.
     pub fn share(&self, q: Vec3, conic_rings: bool) -> f32 {
         match self {
             PatternMaterial::Wood(wood) if conic_rings => wood.conic(q),
@@ -56,9 +56,9 @@ impl PatternMaterial {
     }
 }
 
-/// Pattern in space that decides the shares of the two materials of a [`PatternMaterial`].
+/// Pattern in space that determines the shares of the two materials of a [`PatternMaterial`].
 pub trait Pattern {
-    /// Share of the first material at a point of pattern space, from 0 to 1. For a two-sided
+    /// Share of the first material at a point in pattern space, from 0 to 1. For a two-sided
     /// material, it is the share on the front.
     fn weight(&self, q: Vec3) -> f32;
 
@@ -66,7 +66,7 @@ pub trait Pattern {
     fn materials(&self) -> [u32; 2];
 }
 
-/// Maximum number of noise octaves; finer ones are below the precision of `f32`.
+/// Maximum number of noise octaves. Finer octaves are below the precision of `f32`.
 pub const MAX_OCTAVES: u32 = 32;
 
 /// True if the value of a field is the index of another material.

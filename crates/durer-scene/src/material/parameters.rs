@@ -1,4 +1,4 @@
-//! Parameters of a layered material at one point, and the textures that change them.
+//! Parameters of a layered material at one surface point, and the textures that change them.
 
 use super::principled::{PrincipledMaterial, Switch, Walls};
 use crate::describe::FileName;
@@ -6,14 +6,15 @@ use crate::math::Vec3;
 
 macro_rules! parameters {
     ($($field:ident: $type:ty,)+) => {
-        /// Parameters of a [`PrincipledMaterial`] at one surface point, after textures. They decide
-        /// the scattering there, and have the same names.
+        /// Parameters of a [`PrincipledMaterial`] at one surface point, after textures are applied.
+        /// They determine the scattering at that point, and have the same names as the fields of
+        /// the material.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Parameters {
             $(#[doc = concat!("[`PrincipledMaterial::", stringify!($field), "`] at the point.")] pub $field: $type,)+
             /// Factor that scales the reflection of an opaque base or a metal, at all angles.
             pub reflection: f32,
-            /// Factor that scales the light entering a scattering interior.
+            /// Factor that scales light when it enters a scattering interior.
             pub entry_tint: Vec3,
             /// True if the material has a scattering interior, even if its share is 0 at this
             /// point.
@@ -21,8 +22,8 @@ macro_rules! parameters {
         }
 
         impl Parameters {
-            /// Returns the parameters as written, without textures. `base_color` includes
-            /// `base_weight`.
+            /// Returns the parameters as written in the material, without textures. `base_color`
+            /// includes `base_weight`.
             pub fn of(m: &PrincipledMaterial) -> Self {
                 let has_body = m.has_subsurface();
                 let written = Parameters { $($field: m.$field,)+ reflection: 1.0, entry_tint: Vec3::ONE, has_body };
@@ -64,8 +65,8 @@ parameters! {
 }
 
 impl Parameters {
-    /// Returns the parameters with shares clamped to [0, 1] and colours to at least 0. Textures can
-    /// exceed these bounds.
+    /// Returns the parameters with weights clamped to [0, 1] and colours clamped to at least 0.
+    /// Textures can exceed these bounds.
     pub fn clamped(mut self) -> Self {
         let shares = [
             &mut self.base_diffuse_roughness,
@@ -110,9 +111,9 @@ impl PrincipledMaterial {
 /// Function by which a texture changes the parameters of a principled material.
 #[derive(Clone, Copy, Debug)]
 pub enum TextureEffect {
-    /// Change by one channel of the texture.
+    /// Function that applies one channel of the texture.
     Number(fn(&mut Parameters, f32)),
-    /// Change by the colour of the texture.
+    /// Function that applies the colour of the texture.
     Color(fn(&mut Parameters, Vec3)),
 }
 
@@ -123,13 +124,13 @@ pub struct TextureField {
     pub field: &'static str,
     /// Returns the texture file of a material.
     pub texture_file: fn(&PrincipledMaterial) -> Option<&FileName>,
-    /// Effect of the texture.
+    /// Effect of the texture on the parameters.
     pub change: TextureEffect,
 }
 
 macro_rules! textured {
     ($($field:ident $kind:ident $change:expr;)+) => {
-        /// Every texture that changes a parameter. Textures of emission, opacity and normals are
+        /// All textures that change a parameter. Textures for emission, opacity and normals are
         /// handled elsewhere.
         pub const TEXTURE_FIELDS: &[TextureField] =
             &[$(TextureField {

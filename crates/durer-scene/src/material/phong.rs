@@ -1,5 +1,5 @@
-//! Material of the course: a diffuse colour, a highlight, and weights for reflected and refracted
-//! rays.
+//! Material used in the course, with a diffuse colour, a highlight, and weights for reflected and
+//! refracted rays.
 
 use super::MAX_OCTAVES;
 use crate::describe::{Constraint, FileName, described};

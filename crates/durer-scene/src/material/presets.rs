@@ -1,14 +1,15 @@
-//! Presets of real materials, by name.
+//! Presets of real materials, selected by name.
 //!
-//! The values are those of OpenPBR's own examples (Academy Software Foundation, *OpenPBR*, 2024),
-//! with colours converted from ACEScg to Rec.709 and clamped to [0, 1]. Lengths are in the
-//! examples' units; set `subsurfaceRadius` or `transmissionDepth` to suit the size of an object.
+//! The values are taken from OpenPBR's own examples (Academy Software Foundation, *OpenPBR*, 2024).
+//! Their colours are converted from ACEScg to Rec.709 and clamped to [0, 1]. Lengths use the same
+//! units as the examples. Set `subsurfaceRadius` or `transmissionDepth` to suit the size of an
+//! object.
 
 use super::PrincipledMaterial;
 use crate::describe::{Describe, Value};
 use crate::math::Vec3;
 
-/// Returns the preset with a name; `None` if it is unknown.
+/// Returns the preset with this name, or `None` if the name is unknown.
 pub fn preset(name: &str) -> Option<PrincipledMaterial> {
     let (_, values) = PRESETS.iter().find(|row| row.0 == name)?;
     let mut material = PrincipledMaterial::default();
@@ -26,10 +27,11 @@ pub fn preset(name: &str) -> Option<PrincipledMaterial> {
     Some(material)
 }
 
-/// Preset of a principled material: its name, and the fields that differ from their defaults.
+/// Preset of a principled material, given by its name and the fields that differ from their
+/// defaults.
 type Preset = (&'static str, &'static [(&'static str, &'static [f32])]);
 
-/// Presets by name.
+/// All presets, listed by name.
 #[rustfmt::skip]
 pub const PRESETS: &[Preset] = &[
     ("aluminum-brushed", &[

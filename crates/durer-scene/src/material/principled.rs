@@ -248,8 +248,8 @@ impl PrincipledMaterial {
 
     /// Index of refraction at a wavelength in nanometres, or `specular_ior` for `None`.
     ///
-    /// Source: Cauchy's formula through the indices at the lines C, d and F, which define the Abbe
-    /// number; OpenPBR.
+    /// Source: Cauchy's formula, fitted to the indices at the spectral lines C, d and F, which
+    /// define the Abbe number; OpenPBR.
     pub fn ior_at(&self, nm: Option<f32>) -> f32 {
         const LINES: [f32; 3] = [656.3, 587.6, 486.1];
         let Some(nm) = nm.filter(|_| self.disperses()) else { return self.specular_ior };

@@ -1,4 +1,4 @@
-//! Two materials mixed by noise: the first has the share N + 1/2, clamped to [0, 1].
+//! Two materials mixed by noise. The share of the first material is N + 1/2, clamped to [0, 1].
 
 use super::{MAX_OCTAVES, Pattern};
 use crate::describe::{Constraint, described};

@@ -1,4 +1,4 @@
-//! Tests of the patterns in space against their formulas.
+//! Tests that compare patterns in space with their formulas.
 
 use super::*;
 use crate::math::noise::{perlin, turbulence};
@@ -17,7 +17,7 @@ fn checkerboard_cubes_alternate_across_every_face() {
             }
         }
     }
-    // A corner belongs to the cube above it.
+    // A point at a corner belongs to the cube above it.
     assert_eq!((board.weight(Vec3::ZERO), board.weight(Vec3::NEG_X)), (1.0, 0.0));
 }
 
@@ -35,8 +35,8 @@ fn marble_wood_and_noise_follow_their_formulas() {
         let radius = libm::hypot(f64::from(q.x), f64::from(q.z));
         let marble = marble::Marble { octaves, frequency, amplitude, ..Default::default() };
         let wood = wood::Wood { octaves, frequency, amplitude, ..Default::default() };
-        // Phases up to 100 have rounding errors up to 4e-6 in two steps, which carry over to the
-        // sine.
+        // For phases up to 100, two steps have rounding errors of up to 4e-6, which carry over to
+        // the sine.
         assert!((f64::from(marble.weight(q)) - sine(f64::from(q.x))).abs() < 1e-5);
         assert!((f64::from(wood.weight(q)) - sine(radius)).abs() < 1e-5);
         let noise = solid_noise::SolidNoise { octaves, ..Default::default() };
@@ -69,7 +69,7 @@ fn noise_stays_in_its_range_and_fills_it() {
     assert!(values.iter().all(|v| v.abs() <= 1.04), "noise exceeds the published bound of improved noise");
     assert!(values.iter().any(|v| *v > 0.7) && values.iter().any(|v| *v < -0.7));
     let mean = values.iter().sum::<f32>() / values.len() as f32;
-    // The standard deviation is about 0.25. Allow 5 standard errors of the mean of independent
+    // The standard deviation is about 0.25. Allow 5 standard errors of the mean, as for independent
     // values.
     assert!(mean.abs() < 5.0 * 0.25 / 316.0, "{mean}");
 }

@@ -1,4 +1,4 @@
-//! Two-sided material: one material on the front, another on the back.
+//! Two-sided material, with one material on the front and another on the back.
 
 use super::Pattern;
 use crate::describe::{Constraint, described};

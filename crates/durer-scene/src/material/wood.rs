@@ -1,8 +1,8 @@
-//! Wood: rings around the y axis. The first material has the share (sin(frequency r + amplitude N)
-//! + 1) / 2, where r is the distance from the axis.
+//! Wood pattern of rings around the y axis. The share of the first material is (sin(frequency r +
+//! amplitude N) + 1) / 2, where r is the distance from the axis and N is noise.
 //!
-//! The course does not define the profile of the rings. [`Wood::conic`] uses that of the official
-//! program.
+//! The course does not define the profile of the rings. [`Wood::conic`] uses the profile of the
+//! official program.
 
 use super::{MAX_OCTAVES, Pattern};
 use crate::describe::{Constraint, described};
@@ -26,9 +26,9 @@ described! {
 }
 
 impl Wood {
-    /// Share of the first material under the quirk `conic-rings`. The rings are those of a trunk:
-    /// they narrow by a twentieth of their height, with bands of full colour and edges that rise
-    /// quadratically.
+    /// Share of the first material with the quirk `conic-rings`. The rings resemble those of a
+    /// trunk, since their radius decreases by a twentieth of the height. They have bands of full
+    /// colour with edges that rise quadratically.
     pub fn conic(&self, q: Vec3) -> f32 {
         let radius = (q.x * q.x + q.z * q.z).sqrt() + 0.05 * q.y;
         let grain = noise::turbulence(Vec3::new(q.x, 0.2 * q.y, q.z), self.octaves);

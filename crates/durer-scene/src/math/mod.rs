@@ -1,4 +1,4 @@
-//! Vectors, rays, boxes and transforms of `durer-bvh`, and further mathematics that all modules
+//! Vectors, rays, boxes and transforms from `durer-bvh`, and further mathematics that all modules
 //! use.
 
 pub mod noise;

@@ -1,10 +1,10 @@
 //! Gradient noise.
 //!
-//! Source: Ken Perlin, *Improving Noise*, SIGGRAPH 2002, with its published permutation.
+//! Source: Ken Perlin, *Improving Noise*, SIGGRAPH 2002, including its published permutation.
 
 use super::{Vec3, fp};
 
-/// The published permutation of 0..=255.
+/// Published permutation of the integers from 0 to 255.
 #[rustfmt::skip]
 const PERMUTATION: [u8; 256] = [
     151,160,137,91,90,15,131,13,201,95,96,53,194,233,7,225,140,36,103,30,69,142,8,99,37,240,21,10,23,
@@ -23,16 +23,16 @@ fn permute(i: i32) -> i32 {
     i32::from(PERMUTATION[(i & 255) as usize])
 }
 
-/// Perlin's improved noise: smooth, zero at integer points, within about (-1, 1).
+/// Perlin's improved noise, which is smooth, zero at integer points, and within about (-1, 1).
 pub fn perlin(p: Vec3) -> f32 {
     let floor = p.floor();
-    // The lattice repeats every 256 cells, since the permutation does.
+    // The lattice repeats every 256 cells because the permutation does.
     let cell = floor.rem_euclid(Vec3::splat(256.0));
     let (x, y, z) = (cell.x as i32, cell.y as i32, cell.z as i32);
     let f = p - floor;
     let fade = |t: f32| t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
     let (u, v, w) = (fade(f.x), fade(f.y), fade(f.z));
-    // Dot product of the gradient at a corner of the cell with the offset from it.
+    // Dot product of the gradient at a corner of the cell with the offset from that corner.
     let corner = |dx: i32, dy: i32, dz: i32| {
         let hash = permute(permute(permute(x + dx) + y + dy) + z + dz);
         gradient(hash, f - Vec3::new(dx as f32, dy as f32, dz as f32))
@@ -42,7 +42,8 @@ pub fn perlin(p: Vec3) -> f32 {
     lerp(w, face(0), face(1))
 }
 
-/// Noise summed over octaves: the i-th has frequency 2^i and weight 2^-i. Zero octaves give 0.
+/// Sum of noise octaves, where octave i has frequency 2^i and weight 2^-i. The sum is 0 without
+/// octaves.
 pub fn turbulence(p: Vec3, octaves: u32) -> f32 {
     let mut sum = 0.0;
     let mut frequency = 1.0;
@@ -64,7 +65,7 @@ fn lerp(t: f32, a: f32, b: f32) -> f32 {
     a + t * (b - a)
 }
 
-/// Dot product with one of the twelve directions to the edges of a cube.
+/// Dot product with one of the twelve vectors from the centre of a cube to its edges.
 fn gradient(hash: i32, p: Vec3) -> f32 {
     let h = hash & 15;
     let u = if h < 8 { p.x } else { p.y };

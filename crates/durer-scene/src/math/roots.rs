@@ -1,7 +1,7 @@
 //! Real roots of polynomials, in double precision.
 
-/// Roots of a t^2 + 2 b t + c at which the sign changes, in ascending order: two or none. A double
-/// root does not count.
+/// Two roots of a t^2 + 2 b t + c at which the sign changes, in ascending order; `None` if there
+/// are no such roots. A double root does not count.
 ///
 /// `a` must not be 0. Computing one root as c / q avoids cancellation. Source: Press et al.,
 /// *Numerical Recipes*, section 5.6.
@@ -15,13 +15,13 @@ pub fn quadratic(a: f64, b: f64, c: f64) -> Option<(f64, f64)> {
     Some(if x < y { (x, y) } else { (y, x) })
 }
 
-/// Roots in (`low`, `high`) where a polynomial of degree 4 changes its sign, in ascending order,
-/// and their number.
+/// Roots between `low` and `high` at which a polynomial of degree 4 changes its sign, in ascending
+/// order, and the number of these roots.
 ///
-/// Coefficients start with the constant. Between the roots of its derivative a polynomial is
-/// monotonic, so each interval with a change of sign has one root, found by bisection accelerated
-/// by Newton's method. The roots of the derivatives are found in the same way. A polynomial with
-/// the same sign at both ends has an even number of roots.
+/// Coefficients start with the constant term. A polynomial is monotonic between the roots of its
+/// derivative. Each of these intervals in which the sign changes therefore has one root, which is
+/// found by bisection accelerated by Newton's method. The roots of the derivatives are found in the
+/// same way. A polynomial with the same sign at both ends has an even number of roots.
 pub fn quartic(c: [f64; 5], low: f64, high: f64) -> ([f64; 4], usize) {
     let second = [2.0 * c[2], 6.0 * c[3], 12.0 * c[4]];
     let first = [c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4]];
@@ -38,7 +38,8 @@ pub fn quartic(c: [f64; 5], low: f64, high: f64) -> ([f64; 4], usize) {
     roots_between(&c, &turns[..count], low, high)
 }
 
-/// Finds the roots at which a polynomial changes its sign. It must be monotonic between the `cuts`.
+/// Finds the roots at which a polynomial changes its sign. The polynomial must be monotonic between
+/// the `cuts`.
 fn roots_between(c: &[f64], cuts: &[f64], low: f64, high: f64) -> ([f64; 4], usize) {
     let mut roots = [0.0; 4];
     let mut count = 0;
@@ -54,7 +55,7 @@ fn roots_between(c: &[f64], cuts: &[f64], low: f64, high: f64) -> ([f64; 4], usi
     (roots, count)
 }
 
-/// Value and derivative of a polynomial, by Horner's rule.
+/// Value and derivative of a polynomial, computed by Horner's rule.
 fn value(c: &[f64], t: f64) -> (f64, f64) {
     c.iter().rev().fold((0.0, 0.0), |(value, slope), &c| (value * t + c, slope * t + value))
 }
@@ -71,7 +72,7 @@ fn refine(c: &[f64], a: (f64, f64), b: (f64, f64)) -> f64 {
             high = t;
         }
         let newton = t - v / slope;
-        // Bisect if Newton's step leaves the bracket or is NaN.
+        // Use bisection if Newton's step leaves the bracket or is NaN.
         let held = newton > low.min(high) && newton < low.max(high);
         let next = if held { newton } else { 0.5 * (low + high) };
         if (next - t).abs() <= 1e-16 * t.abs() || next == t {
@@ -94,7 +95,7 @@ mod tests {
             let mut expected: [f64; 4] = std::array::from_fn(|_| f64::from(random.between(-1.0, 1.0)));
             expected.sort_by(f64::total_cmp);
             let scale = f64::from(random.between(0.1, 10.0));
-            // (t - a)(t - b)(t - c)(t - d), multiplied factor by factor.
+            // Multiply out (t - a)(t - b)(t - c)(t - d), factor by factor.
             let mut c = [scale, 0.0, 0.0, 0.0, 0.0];
             for root in expected {
                 for i in (0..5).rev() {
@@ -103,7 +104,7 @@ mod tests {
             }
             let (roots, count) = quartic(c, -1.5, 1.5);
             assert_eq!(count % 2, 0);
-            // Roots closer than 1e-3 are less accurate, or merge.
+            // Roots that are closer together than 1e-3 are less accurate, or merge into one.
             if expected.windows(2).any(|w| w[1] - w[0] < 1e-3) {
                 continue;
             }

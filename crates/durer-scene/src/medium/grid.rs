@@ -6,7 +6,7 @@ use crate::source::Digest;
 /// Densities of a participating medium, such as smoke or a cloud, on a regular grid in a box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DensityGrid {
-    /// Number of points along x, y and z; at least one each.
+    /// Number of grid points along x, y and z, at least one along each axis.
     counts: [u32; 3],
     /// Density values, with x varying fastest.
     values: Vec<f32>,
@@ -14,8 +14,8 @@ pub struct DensityGrid {
 }
 
 impl DensityGrid {
-    /// Creates a grid from values, with x varying fastest. `None` unless there is one value per
-    /// grid point, and all are finite and not negative.
+    /// Creates a grid from density values, with x varying fastest. Returns `None` unless there is
+    /// one value per grid point and all values are finite and not negative.
     pub fn new(counts: [u32; 3], values: Vec<f32>) -> Option<Self> {
         let wanted = counts.iter().try_fold(1_usize, |product, &count| product.checked_mul(count as usize))?;
         if wanted == 0 || wanted != values.len() || values.iter().any(|x| !x.is_finite() || *x < 0.0) {
@@ -25,7 +25,7 @@ impl DensityGrid {
         Some(DensityGrid { counts, values, max_density })
     }
 
-    /// Number of points along x, y and z.
+    /// Number of grid points along x, y and z.
     pub fn counts(&self) -> [u32; 3] {
         self.counts
     }
@@ -35,7 +35,7 @@ impl DensityGrid {
         &self.values
     }
 
-    /// Hash of the whole grid.
+    /// Hash of the entire grid.
     pub fn digest(&self) -> Digest {
         let mut hasher = Digest::hasher();
         self.counts.iter().for_each(|count| hasher.add_u32(*count));
@@ -53,8 +53,7 @@ impl DensityGrid {
         self.values.len() * size_of::<f32>()
     }
 
-    /// Density at a point in the space of the box, interpolated trilinearly between the centres of
-    /// cells.
+    /// Density at a point in the space of the box, interpolated trilinearly between cell centres.
     pub fn at(&self, bounds: &Aabb, point: Vec3) -> f32 {
         let counts = Vec3::from_array(self.counts.map(|n| n as f32));
         let place = (point - bounds.min) / (bounds.max - bounds.min) * counts - 0.5;

@@ -17,13 +17,13 @@ use std::sync::Arc;
 /// Participating medium, such as fog or smoke, inside a body or around the camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Medium {
-    /// Extinction coefficient per unit of length, by colour, for density 1.
+    /// Extinction coefficient per unit of length at density 1, for each colour channel.
     pub extinction: Color,
     /// Scattering albedo.
     pub albedo: Color,
     /// Phase function.
     pub phase: HenyeyGreenstein,
-    /// Region and density; `None` for an infinite homogeneous medium.
+    /// Region and density of the medium; `None` for an infinite homogeneous medium.
     pub region: Option<MediumRegion>,
 }
 
@@ -39,7 +39,7 @@ pub struct MediumRegion {
 }
 
 impl MediumRegion {
-    /// Density at a point in world space.
+    /// Density of a grid at a point in world space.
     fn density(&self, grid: &DensityGrid, point: Vec3) -> f32 {
         let own = self.to_world.as_ref().map_or(point, |placed| placed.inverse_point(point));
         grid.at(&self.bounds, own)
@@ -49,22 +49,22 @@ impl MediumRegion {
 /// Result of sampling the distance that light travels in a medium before it is scattered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DistanceSample {
-    /// The light passed through the segment, with this throughput factor.
+    /// The light passed through the segment, and is multiplied by this throughput factor.
     Passed(Spectrum),
-    /// The light was scattered at this distance, with this throughput factor.
+    /// The light was scattered at this distance, and is multiplied by this throughput factor.
     Scattered(f32, Spectrum),
 }
 
 /// Straight ray segment along which a medium is sampled.
 #[derive(Clone, Copy, Debug)]
 pub struct Segment {
-    /// Origin of the distances.
+    /// Point from which distances are measured.
     pub origin: DVec3,
     /// Unit direction.
     pub dir: Vec3,
-    /// Distance from the origin to the start.
+    /// Distance from the origin to the start of the segment.
     pub from: f32,
-    /// Distance from the origin to the end, which may be infinite.
+    /// Distance from the origin to the end of the segment, which can be infinite.
     pub to: f32,
 }
 
@@ -74,7 +74,7 @@ impl Segment {
     }
 }
 
-/// Maximum number of steps through a grid. Strongly varying densities need many steps.
+/// Maximum number of steps through a grid. Grids with strongly varying density need many steps.
 const MAX_STEPS: u32 = 1 << 16;
 
 impl Medium {
@@ -109,9 +109,9 @@ impl Medium {
         lanes.coefficient(self.extinction) * lanes.reflectance(self.albedo) * density
     }
 
-    /// Transmittance of a segment.
+    /// Transmittance along a segment.
     ///
-    /// Source of ratio tracking: Novák, Selle and Jarosz, *Residual Ratio Tracking*, 2014.
+    /// Ratio tracking is described by Novák, Selle and Jarosz, *Residual Ratio Tracking*, 2014.
     pub fn transmittance(&self, segment: &Segment, lanes: &Lanes, random: &mut dyn FnMut() -> f32) -> Spectrum {
         let Some((from, to)) = self.clip(segment) else { return Spectrum::ONE };
         let extinction = lanes.coefficient(self.extinction);
@@ -122,7 +122,7 @@ impl Medium {
             let Some(next) = collision(at, to, majorant, random) else { break };
             at = next;
             throughput *= Spectrum::ONE - extinction * (place.density(grid, segment.point(at)) / majorant);
-            // Russian roulette for small weights.
+            // Apply Russian roulette to small weights.
             if throughput.max_element() < 0.1 {
                 if random() < 0.5 {
                     return Spectrum::ZERO;
@@ -133,8 +133,8 @@ impl Medium {
         throughput
     }
 
-    /// Samples the distance at which light with these weights is scattered, if it does not pass
-    /// through the segment. The returned weight is divided by the probability of the event.
+    /// Samples the distance at which light with these weights is scattered, unless it passes
+    /// through the segment. The returned weight is already divided by the probability of the event.
     pub fn sample_distance(
         &self,
         segment: &Segment,
@@ -150,9 +150,9 @@ impl Medium {
         let albedo = lanes.reflectance(self.albedo);
         match self.grid() {
             Some((grid, place)) => {
-                // Null collisions fill the grid up to its majorant. Lanes are weighted by their
-                // current contribution. Sources: Woodcock and others, 1965; Kutz and others,
-                // *Spectral and Decomposition Tracking*, 2017.
+                // Null collisions raise the density of the grid to its majorant everywhere. Lanes
+                // are weighted by their current contribution. Sources: Woodcock and others, 1965;
+                // Kutz and others, *Spectral and Decomposition Tracking*, 2017.
                 let majorant = extinction.max_element() * grid.max_density();
                 let (mut at, mut throughput) = (from, Spectrum::ONE);
                 for _ in 0..MAX_STEPS {
@@ -168,8 +168,8 @@ impl Medium {
                 DistanceSample::Passed(throughput)
             }
             None => {
-                // One lane samples the distance; the weight combines the densities of all lanes
-                // (one-sample MIS).
+                // The distance is sampled for one lane, and the weight combines the pdfs of all
+                // lanes (one-sample MIS).
                 let weights = normalized(weights);
                 let mut choice = random();
                 let lane = (0..3).find(|&lane| {
@@ -190,8 +190,8 @@ impl Medium {
     }
 }
 
-/// Distance of the next tentative collision in a medium of constant extinction `majorant`; `None`
-/// beyond `to`.
+/// Distance of the next tentative collision in a medium with the constant extinction `majorant`, or
+/// `None` if it is beyond `to`.
 fn collision(at: f32, to: f32, majorant: f32, random: &mut dyn FnMut() -> f32) -> Option<f32> {
     let next = at - fp::ln(1.0 - random()) / majorant;
     (next < to).then_some(next)
@@ -204,7 +204,7 @@ fn normalized(weights: Spectrum) -> Spectrum {
     if sum > 0.0 { weights / sum } else { Spectrum::splat(0.25) }
 }
 
-/// Transmittance over a distance, by Beer's law.
+/// Transmittance over a distance, computed by Beer's law.
 fn beer_transmittance(extinction: Spectrum, distance: f32) -> Spectrum {
     (-extinction * distance.min(f32::MAX)).map(fp::exp)
 }

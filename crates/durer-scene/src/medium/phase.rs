@@ -8,13 +8,13 @@ use std::f32::consts::{PI, TAU};
 /// Source: Henyey and Greenstein, *Diffuse radiation in the Galaxy*, 1941.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HenyeyGreenstein {
-    /// Mean cosine between the directions before and after scattering: from -1 (backward) through 0
-    /// (isotropic) to 1 (forward).
+    /// Mean cosine of the angle between the directions before and after scattering, from -1
+    /// (backward) through 0 (isotropic) to 1 (forward).
     pub anisotropy: f32,
 }
 
 impl HenyeyGreenstein {
-    /// Phase function for two unit directions, per solid angle. It is also the pdf of
+    /// Value of the phase function for two unit directions, per solid angle. It is also the pdf of
     /// [`HenyeyGreenstein::sample`].
     pub fn value(&self, before: Vec3, after: Vec3) -> f32 {
         let g = self.anisotropy;
@@ -22,7 +22,7 @@ impl HenyeyGreenstein {
         (1.0 - g * g) / (4.0 * PI * below * below.max(0.0).sqrt()).max(1e-12)
     }
 
-    /// Samples the unit direction after scattering, from two numbers in [0, 1].
+    /// Samples the unit direction after scattering, using two random numbers in [0, 1].
     pub fn sample(&self, before: Vec3, u: Vec2) -> Vec3 {
         let g = self.anisotropy;
         let cosine = if g.abs() < 1e-3 {

@@ -38,11 +38,13 @@ fn flight_agrees_with_beers_law_and_albedo() {
 
 #[test]
 fn grid_transmittance_agrees_with_the_integral() {
-    // Two cells, 1 and 3. Linear between their centres, the mean along x is 2.
+    // The two cells have the densities 1 and 3. Interpolated linearly between their centres, the
+    // mean density along x is 2.
     let grid = DensityGrid::new([2, 1, 1], vec![1.0, 3.0]).unwrap();
     let bounds = Aabb { min: Vec3::new(1.0, -1.0, -1.0), max: Vec3::new(3.0, 1.0, 1.0) };
     let place = MediumRegion { bounds, to_world: None, density: Some(Arc::new(grid)) };
-    // The same box from its opposite corner, with the unit cube's axes along -x, z and y.
+    // The same box is given by its opposite corner, with the axes of the unit cube along -x, z and
+    // y.
     let edges = DMat3::from_cols(-2.0 * DVec3::X, 2.0 * DVec3::Z, 2.0 * DVec3::Y);
     let to_world = Affine::new(DAffine3::from_mat3_translation(edges, DVec3::new(3.0, -1.0, -1.0)));
     let unit = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
@@ -52,7 +54,7 @@ fn grid_transmittance_agrees_with_the_integral() {
     assert!(DensityGrid::new([2, 2, 1], vec![0.0; 3]).is_none() && DensityGrid::new([1, 1, 1], vec![-1.0]).is_none());
 }
 
-/// Tests the transmittance through a box with a mean density of 2 on a length of 2.
+/// Tests the transmittance through a box with a mean density of 2 over a length of 2.
 fn lets_through(smoke: &Medium) {
     let mut random = Random(9);
     let (mut ratio, mut passed) = (Spectrum::ZERO, Spectrum::ZERO);
@@ -85,14 +87,14 @@ fn phase_function_integrates_to_one_and_agrees_with_samples() {
         let sums =
             cosines.fold([0.0; 2], |sum, c| [sum[0] + value(c) * step * TAU, sum[1] + c * value(c) * step * TAU]);
         assert!((sums[0] - 1.0).abs() < 2e-3 && (sums[1] - g).abs() < 2e-3, "{g}: {sums:?}");
-        // Chi-squared test over 20 bins of the cosine with equal probability.
+        // Perform a chi-squared test over 20 bins of the cosine with equal probability.
         let (mut bins, samples) = ([0_u32; 20], 100_000);
         let mut random = Random(3);
         let before = Vec3::new(0.6, 0.0, 0.8);
         for _ in 0..samples {
             let after = phase.sample(before, Vec2::new(random.between(0.0, 1.0), random.between(0.0, 1.0)));
             assert!((after.length() - 1.0).abs() < 1e-5);
-            // Cumulative distribution function of the cosine.
+            // Compute the cumulative distribution function of the cosine.
             let c = before.dot(after).clamp(-1.0, 1.0);
             let root = (1.0 + g * g - 2.0 * g * c).sqrt();
             let below =
@@ -101,7 +103,7 @@ fn phase_function_integrates_to_one_and_agrees_with_samples() {
         }
         let wanted = f64::from(samples) / 20.0;
         let chi2: f64 = bins.iter().map(|&n| (f64::from(n) - wanted) * (f64::from(n) - wanted) / wanted).sum();
-        // 19 degrees of freedom: more than 43.8 has a probability of 0.001.
+        // With 19 degrees of freedom, a value above 43.8 has a probability of 0.001.
         assert!(chi2 < 43.8, "{g}: {chi2}");
     }
 }

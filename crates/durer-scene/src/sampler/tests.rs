@@ -1,7 +1,8 @@
 use super::testing::{chi_squared, chi_squared_quantile};
 use super::*;
 
-/// Two-sided significance 2e-4: rejects uneven points and points too even to be independent.
+/// Tests uniformity with a two-sided significance of 2e-4. Rejects uneven points, and also points
+/// that are too even to be independent.
 fn assert_uniform(what: &str, points: impl Iterator<Item = Vec2>) {
     let mut cells = [0_u32; 256];
     for p in points {
@@ -18,7 +19,7 @@ const N: u32 = 1 << 16;
 
 #[test]
 fn positions_are_uniform() {
-    // Independent numbers: over samples, over pixels, over seeds.
+    // The numbers must be independent across samples, pixels and seeds.
     assert_uniform("samples", (0..N).map(|s| Sampler::Random.pixel_position(7, 3, 4, s, N)));
     for sampler in [Sampler::Random, Sampler::Sobol] {
         for sample in [0, 1, 5, 1023] {
@@ -31,7 +32,8 @@ fn positions_are_uniform() {
         }
     }
     assert_uniform("dimensions", (0..N).map(|d| sample_2d(1, 2, 3, 4, d)));
-    // On a grid: uniform within each cell; the next test checks the cells.
+    // On a grid, positions must be uniform within each cell. The next test checks the cells
+    // themselves.
     let cells = (0..N).map(|i| (Sampler::Jittered.pixel_position(1, i, 5, i % 9, 9) * 3.0).fract());
     assert_uniform("jittered", cells);
 }
@@ -41,14 +43,14 @@ fn pairs_are_independent_across_pixels_and_dimensions() {
     let first = |i| sample_2d(3, i, 0, 2, 0);
     assert_uniform("neighbours", (0..N).map(|i| Vec2::new(first(i).x, first(i + 1).x)));
     assert_uniform("dimensions", (0..N).map(|i| Vec2::new(first(i).y, sample_2d(3, i, 0, 2, 1).y)));
-    // Within one pixel the shuffle decorrelates the dimensions: check correlation, not only
+    // Shuffling decorrelates the dimensions within one pixel, so check the correlation as well as
     // uniformity.
     let n = 1024_u32;
     let mut sum = 0.0;
     for s in 0..n {
         sum += (sample_2d(5, 8, 8, s, 0).x - 0.5) * (sample_2d(5, 8, 8, s, 1).x - 0.5);
     }
-    // Standard deviation for independent pairs: 1 / (12 sqrt(n)).
+    // For independent pairs, the standard deviation is 1 / (12 sqrt(n)).
     assert!((sum / n as f32).abs() < 4.0 / (12.0 * (n as f32).sqrt()), "{sum}");
 }
 
@@ -76,7 +78,7 @@ fn power_of_two_prefixes_are_stratified_in_elementary_intervals() {
     for (x, dimension) in (0..20).flat_map(|x| [(x, 0), (x, 3)]) {
         for k in 0..=10_u32 {
             let n = 1_u32 << k;
-            // The prefix and the third aligned block.
+            // Check the prefix and the third aligned block.
             for start in [0, 2 * n] {
                 for columns_log in 0..=k {
                     let (columns, rows) = (1_u32 << columns_log, 1_u32 << (k - columns_log));
@@ -92,7 +94,8 @@ fn power_of_two_prefixes_are_stratified_in_elementary_intervals() {
     }
 }
 
-/// Greatest difference between area and fraction of points over all boxes at the origin.
+/// Greatest difference, over all boxes with a corner at the origin, between the area of the box and
+/// the fraction of points inside it.
 fn star_discrepancy(points: &[Vec2]) -> f64 {
     let n = points.len() as f64;
     let ends = |axis: usize| points.iter().map(move |p| p[axis]).chain([1.0]);
@@ -129,14 +132,17 @@ fn discrepancies_match_theory() {
     for side in [4_u32, 8, 12] {
         let n = side * side;
         let of = |sampler| mean(sampler, n);
-        // Centres of n cells: a box that ends just before a row of centres misses half a row.
+        // For the centres of n cells, a box that ends just before a row of centres misses half a
+        // row.
         let regular = of(Sampler::Uniform);
         let step = 1.0 / f64::from(side);
         assert!((0.5 * step..1.01 * step).contains(&regular), "{n}: {regular}");
-        // One point in each cell is between independent points and a (0,2)-sequence.
+        // The discrepancy of one point per cell is between those of independent points and of a
+        // (0,2)-sequence.
         let (random, jittered, sobol) = (of(Sampler::Random), of(Sampler::Jittered), of(Sampler::Sobol));
         assert!(sobol < jittered && jittered < random, "{n}: {sobol} {jittered} {random}");
-        // Independent points: of the order of sqrt(1 / n). Source: Doerr, Gnewuch, Wahlström, 2008.
+        // The discrepancy of independent points is of the order of sqrt(1 / n). Source: Doerr,
+        // Gnewuch, Wahlström, 2008.
         let root = f64::from(n).sqrt();
         assert!((0.5..2.0).contains(&(random * root)), "{n}: {random}");
     }
@@ -144,7 +150,7 @@ fn discrepancies_match_theory() {
 
 #[test]
 fn fast_second_coordinate_matches_sobol() {
-    // Direction numbers of the polynomial x + 1: v[i] = v[i-1] ^ v[i-1] / 2.
+    // The direction numbers of the polynomial x + 1 are v[i] = v[i-1] ^ v[i-1] / 2.
     let slow = |index: u32| {
         let directions = std::iter::successors(Some(1_u32 << 31), |v| Some(v ^ v >> 1));
         directions.take(32).enumerate().fold(0, |sum, (i, v)| if index >> i & 1 == 1 { sum ^ v } else { sum })
@@ -154,14 +160,14 @@ fn fast_second_coordinate_matches_sobol() {
 
 #[test]
 fn numbers_are_reproducible_bit_for_bit() {
-    // Pinned: a change of these numbers changes every picture.
+    // These numbers are pinned, because changing them would change every picture.
     let bits = |p: Vec2| (p.x.to_bits(), p.y.to_bits());
     for (_, sampler) in Sampler::NAMES {
         let at = |seed| bits(sampler.pixel_position(seed, 5, 6, 7, 16));
         assert_eq!(at(1), at(1));
         assert_eq!(at(1) == at(2), sampler == Sampler::Uniform);
     }
-    // The first number is published: SplitMix64 seeded with 0.
+    // The first number is the published output of SplitMix64 for the seed 0.
     assert_eq!((mix(0), hash(1, 2, 3, 4, 5)), (0xe220_a839_7b1d_cdaf, 0x7364_eb2c_5b1b_50d3));
     assert_eq!(unit(u32::MAX), BELOW_ONE);
     assert!(Sampler::NAMES.iter().all(|&(name, sampler)| Sampler::from_name(name) == Some(sampler)));

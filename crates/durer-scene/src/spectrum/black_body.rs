@@ -2,8 +2,8 @@
 
 use crate::math::fp;
 
-/// First radiation constant for radiance, 2 h c², for a result in W/(m² sr nm) from wavelengths in
-/// micrometres. Source: CODATA 2018 (exact h and c).
+/// First radiation constant for radiance, 2 h c², scaled so that wavelengths in micrometres give a
+/// result in W/(m² sr nm). Source: CODATA 2018 (exact h and c).
 const C1: f32 = 1.191_043e5;
 
 /// Second radiation constant, h c / k, in nm K. Source: CODATA 2018, 1.438776877e-2 m K (exact).
@@ -17,7 +17,7 @@ pub fn planck(nm: f32, kelvin: f32) -> f32 {
     if value.is_finite() { value } else { 0.0 }
 }
 
-/// Radiance of a black body relative to its radiance at 560 nm; 0 if it is too small for a ratio.
+/// Radiance of a black body relative to its radiance at 560 nm; 0 if the ratio is not finite.
 pub fn planck_ratio(nm: f32, kelvin: f32) -> f32 {
     let ratio = planck(nm, kelvin) / planck(560.0, kelvin);
     if ratio.is_finite() { ratio } else { 0.0 }
@@ -29,13 +29,14 @@ mod tests {
 
     #[test]
     fn planck_agrees_with_wien_and_stefan_boltzmann() {
-        // Wien's displacement law: 2.897771955e-3 m K.
+        // Wien's displacement law uses the constant 2.897771955e-3 m K.
         for kelvin in [3_000.0, 5_000.0, 7_000.0] {
             let peak = 2.897_772e6 / kelvin;
             assert!(planck(peak, kelvin) > planck(peak - 20.0, kelvin));
             assert!(planck(peak, kelvin) > planck(peak + 20.0, kelvin));
         }
-        // The spectrum up to 40 um sums to sigma T^4 / pi, with sigma = 5.670374419e-8 W/(m² K^4).
+        // The integral of the spectrum up to 40 um is sigma T^4 / pi, with sigma = 5.670374419e-8
+        // W/(m² K^4).
         let kelvin = 5_000.0_f32;
         let sum: f64 = (0..40_000).map(|nm| f64::from(planck(nm as f32 + 0.5, kelvin))).sum();
         let expected = 5.670_374_4e-8 * f64::from(kelvin * kelvin) * f64::from(kelvin * kelvin) / std::f64::consts::PI;

@@ -1,4 +1,4 @@
-//! Standard illuminants, by name.
+//! Standard illuminants, selected by name.
 //!
 //! Sources: CIE 015:2018, *Colorimetry*: section 4.1 (A, D), table 6 (components of daylight),
 //! table 10 (fluorescent illuminants).
@@ -6,15 +6,16 @@
 use super::black_body::{C2, planck_ratio};
 use super::curve::Curve;
 
-/// Temperature of illuminant A, about 2855.5 K. CIE 015 gives it as 2848 K with a second radiation
-/// constant of 1.435e7 nm K.
+/// Temperature of illuminant A, about 2855.5 K. CIE 015 gives this temperature as 2848 K, based on
+/// a second radiation constant of 1.435e7 nm K.
 const A_KELVIN: f32 = 2_848.0 * (C2 / 1.435e7);
 
-/// Names of illuminants, for messages. A name such as `2700K` is a black body.
+/// Names of illuminants, for use in messages. A name such as `2700K` denotes a black body.
 pub const NAMES: &str = "A, D50, D55, D65, D75, E, F2, F7, F11";
 
-/// Returns the spectrum of an illuminant, scaled to luminance 1: A (incandescent bulb), D and
-/// temperature (daylight), E (equal energy), F (fluorescent), or a black body from 1000K to 20000K.
+/// Returns the spectrum of an illuminant, scaled to luminance 1. The name is A (incandescent bulb),
+/// D followed by a temperature (daylight), E (equal energy), F followed by a number (fluorescent),
+/// or a black body from 1000K to 20000K.
 pub fn illuminant(name: &str) -> Option<Curve> {
     let rows = match name {
         "A" => formula(|nm| planck_ratio(nm, A_KELVIN)),
@@ -45,8 +46,8 @@ fn tube(values: &[f32; 81]) -> Vec<[f32; 2]> {
     values.iter().enumerate().map(|(i, value)| [380.0 + 5.0 * i as f32, *value]).collect()
 }
 
-/// Daylight at a correlated colour temperature from 4000 to 25000 K: a mean and two components,
-/// weighted by the chromaticity.
+/// Daylight spectrum for a correlated colour temperature from 4000 to 25000 K. It is the sum of a
+/// mean spectrum and two components, which are weighted according to the chromaticity.
 fn daylight(kelvin: f32) -> Vec<[f32; 2]> {
     let t = 1_000.0 / f64::from(kelvin);
     let x = match kelvin <= 7_000.0 {
@@ -64,7 +65,7 @@ fn daylight(kelvin: f32) -> Vec<[f32; 2]> {
     PARTS_OF_DAYLIGHT.iter().enumerate().map(row).collect()
 }
 
-/// Mean and two components of daylight, every 10 nm from 360 nm.
+/// Mean spectrum and two components of daylight, every 10 nm starting at 360 nm.
 #[rustfmt::skip]
 const PARTS_OF_DAYLIGHT: [[f32; 3]; 48] = [
     [61.5, 38.0, 5.3], [68.8, 42.4, 6.1], [63.4, 38.5, 3.0], [65.8, 35.0, 1.2],
@@ -81,7 +82,7 @@ const PARTS_OF_DAYLIGHT: [[f32; 3]; 48] = [
     [61.0, -9.7, 6.4], [53.3, -8.3, 5.5], [58.9, -9.3, 6.1], [61.9, -9.8, 6.5],
 ];
 
-/// Cool white fluorescent tube, every 5 nm from 380 nm.
+/// Spectrum of a cool white fluorescent tube, every 5 nm starting at 380 nm.
 #[rustfmt::skip]
 const F2: [f32; 81] = [
     1.18, 1.48, 1.84, 2.15, 3.44, 15.69, 3.85, 3.74, 4.19, 4.62, 5.06, 34.98,
@@ -93,7 +94,7 @@ const F2: [f32; 81] = [
     0.51, 0.47, 0.47, 0.43, 0.46, 0.47, 0.4, 0.33, 0.27,
 ];
 
-/// Broad-band fluorescent tube similar to daylight, every 5 nm from 380 nm.
+/// Spectrum of a broad-band fluorescent tube similar to daylight, every 5 nm starting at 380 nm.
 #[rustfmt::skip]
 const F7: [f32; 81] = [
     2.56, 3.18, 3.84, 4.53, 6.15, 19.37, 7.37, 7.05, 7.71, 8.41, 9.15, 44.14,
@@ -105,7 +106,7 @@ const F7: [f32; 81] = [
     1.9, 1.75, 1.62, 1.54, 1.45, 1.32, 1.17, 0.99, 0.81,
 ];
 
-/// Fluorescent tube with three narrow bands, every 5 nm from 380 nm.
+/// Spectrum of a fluorescent tube with three narrow bands, every 5 nm starting at 380 nm.
 #[rustfmt::skip]
 const F11: [f32; 81] = [
     0.91, 0.63, 0.46, 0.37, 1.29, 12.68, 1.59, 1.79, 2.46, 3.33, 4.49, 33.94,

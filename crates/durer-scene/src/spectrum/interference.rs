@@ -9,15 +9,16 @@ use std::sync::LazyLock;
 /// Step between the entries of the table, in nanometres.
 const STEP: f32 = 5.0;
 
-/// Number of entries. Beyond 16 micrometres the colours vanish.
+/// Number of entries in the table. The colours vanish at path differences above 16 micrometres.
 const ENTRIES: usize = 3_200;
 
-/// Mean of exp(2 pi i s / wavelength) over daylight, for the standard observer's red, green and
-/// blue and a path difference `s` in nanometres: 1 for no difference, near 0 for large ones.
+/// Mean of exp(2 pi i s / wavelength) over daylight for a path difference `s` in nanometres,
+/// computed for the standard observer's red, green and blue. It is 1 for no path difference, and
+/// near 0 for large path differences.
 ///
-/// Source of this sum by orders: Belcour and Barla, *A Practical Extension to Microfacet Theory for
-/// the Modeling of Varying Iridescence*, SIGGRAPH 2017. They fit Gaussians to the observer; this
-/// function uses a table.
+/// Source: the sum over interference orders is taken from Belcour and Barla, *A Practical Extension
+/// to Microfacet Theory for the Modeling of Varying Iridescence*, SIGGRAPH 2017. They fit Gaussians
+/// to the observer, whereas this function uses a table.
 pub fn interference(shift: f32) -> [Vec2; 3] {
     static TABLE: LazyLock<Vec<[Vec2; 3]>> = LazyLock::new(|| (0..ENTRIES).map(|i| mean(STEP * i as f32)).collect());
     let place = shift.max(0.0) / STEP;

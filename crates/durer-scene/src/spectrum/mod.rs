@@ -1,11 +1,11 @@
 //! Spectra in light transport, represented by four lanes.
 //!
-//! Along a path, the lanes are red, green, blue and green again (so the fourth adds no new value),
-//! or the radiance at four wavelengths. [`Lanes::reflectance`] and [`Lanes::light`] convert colours
-//! to lanes, and [`Lanes::color`] converts back.
+//! Along a path, the lanes hold either red, green, blue and green again, where the fourth lane adds
+//! no new value, or the radiance at four wavelengths. [`Lanes::reflectance`] and [`Lanes::light`]
+//! convert colours to lanes, and [`Lanes::color`] converts lanes back to colours.
 //!
-//! Source of four wavelengths on one path: Wilkie and others, *Hero Wavelength Spectral Sampling*,
-//! EGSR 2014.
+//! Tracing four wavelengths on one path is described by Wilkie and others, *Hero Wavelength
+//! Spectral Sampling*, EGSR 2014.
 
 pub mod black_body;
 pub mod curve;
@@ -28,7 +28,7 @@ use space::SRGB_FROM_XYZ;
 use std::sync::LazyLock;
 use tables::{FIRST, LAST, OBSERVER_AND_DAYLIGHT, STEP};
 
-/// Radiance, or a factor that scales it, in four lanes.
+/// Radiance in four lanes, or a factor that scales it.
 pub type Spectrum = glam::Vec4;
 
 /// Representation of colour in light transport, RGB or spectral, selected by `--color`.
@@ -38,15 +38,15 @@ pub enum ColorMode {
     /// Red, green and blue.
     #[default]
     Rgb,
-    /// Wavelengths, four on each path.
+    /// Four wavelengths on each path.
     Spectral,
 }
 
 impl ColorMode {
-    /// Names on the command line.
+    /// Names of the colour modes on the command line.
     pub const NAMES: [&'static str; 2] = ["rgb", "spectral"];
 
-    /// Returns the mode with this name; `None` if it is unknown.
+    /// Returns the mode with this name, or `None` if the name is unknown.
     pub fn from_name(name: &str) -> Option<Self> {
         [ColorMode::Rgb, ColorMode::Spectral].into_iter().find(|mode| mode.name() == name)
     }
@@ -70,11 +70,11 @@ impl FieldType for ColorMode {
     }
 }
 
-/// Meaning of the four lanes of a [`Spectrum`] along a path: RGB, or four wavelengths.
+/// Meaning of the four lanes of a [`Spectrum`] along a path: either RGB or four wavelengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Lanes {
-    /// Red, green, blue, green.
+    /// Red, green, blue, and green again.
     #[default]
     Rgb,
     /// Light at four wavelengths.
@@ -84,9 +84,9 @@ pub enum Lanes {
 /// Four wavelengths of a path, with the tabulated spectra at these wavelengths.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Wavelengths {
-    /// Wavelengths in nanometres. The first is the hero wavelength.
+    /// Wavelengths in nanometres. The first of them is the hero wavelength.
     pub nm: Spectrum,
-    /// Spectrum of the light with colour 1 1 1: D65.
+    /// Spectrum of D65, which is the light with the colour 1 1 1.
     #[serde(skip)]
     white: Spectrum,
     /// Weights of red, green and blue at each wavelength, divided by 4 times its sampling pdf.
@@ -114,21 +114,22 @@ impl Lanes {
         }
     }
 
-    /// Emission spectrum of a colour of any strength: a smooth spectrum times daylight.
+    /// Emission spectrum of a colour of any strength. It is a smooth spectrum multiplied by
+    /// daylight.
     pub fn light(&self, color: Color) -> Spectrum {
         match self {
             Lanes::Rgb => color.extend(color.y),
             Lanes::Wavelengths(waves) if color.x == color.y && color.y == color.z => color.x * waves.white,
             Lanes::Wavelengths(waves) => {
-                // At half the maximum reflectance, spectra are smoother.
+                // Spectra are smoother at half the maximum reflectance.
                 let most = 2.0 * color.max_element();
                 most * waves.white * upsample::reflectance(color / most, waves.nm)
             }
         }
     }
 
-    /// Emission spectrum of a colour, from its measured spectrum if there is one. Calls `measured`
-    /// in spectral mode only.
+    /// Emission spectrum of a colour, based on its measured spectrum if there is one. `measured` is
+    /// called in spectral mode only.
     pub fn light_of<'c>(&self, color: Color, measured: impl FnOnce() -> Option<&'c Curve>) -> Spectrum {
         match self {
             Lanes::Rgb => self.light(color),
@@ -136,8 +137,8 @@ impl Lanes {
         }
     }
 
-    /// Spectrum of an unbounded value such as an absorption coefficient: smooth, and constant for
-    /// grey.
+    /// Spectrum of an unbounded value such as an absorption coefficient. The spectrum is smooth,
+    /// and constant for grey.
     pub fn coefficient(&self, color: Color) -> Spectrum {
         match self {
             Lanes::Rgb => color.extend(color.y),
@@ -148,7 +149,7 @@ impl Lanes {
         }
     }
 
-    /// Colour of light at the end of a path, as added to the pixel.
+    /// Colour that the light at the end of a path adds to the pixel.
     pub fn color(&self, light: Spectrum) -> Color {
         match self {
             Lanes::Rgb => light.truncate(),
@@ -176,8 +177,8 @@ impl Wavelengths {
         &self.observer
     }
 
-    /// Samples four wavelengths in proportion to the eye's sensitivity. The four numbers are
-    /// equidistant.
+    /// Samples four wavelengths in proportion to the eye's sensitivity, using four equidistant
+    /// random numbers.
     fn new(u: f32) -> Self {
         let nm = Spectrum::from_array([0.0, 0.25, 0.5, 0.75].map(|step| sample_wavelength((u + step).fract())));
         let at = |column: usize| nm.map(|nm| observer_and_daylight(nm)[column]);
@@ -190,22 +191,24 @@ impl Wavelengths {
 
 /// Maps a random number in [0, 1) to a wavelength in nanometres.
 ///
-/// Source: *Physically Based Rendering*, 4th edition, section 4.5.4, also for [`wavelength_pdf`].
+/// Source: *Physically Based Rendering*, 4th edition, section 4.5.4, which also describes
+/// [`wavelength_pdf`].
 fn sample_wavelength(u: f32) -> f32 {
     let x = 0.856_910_6 - 1.827_502 * u;
-    // The inverse hyperbolic tangent.
+    // Compute the inverse hyperbolic tangent.
     let atanh = 0.5 * fp::ln((1.0 + x) / (1.0 - x));
     (538.0 - 138.888_89 * atanh).clamp(FIRST, LAST)
 }
 
-/// Sampling pdf of a wavelength, per nanometre.
+/// Pdf with which a wavelength is sampled, per nanometre.
 fn wavelength_pdf(nm: f32) -> f32 {
     let x = fp::exp(0.0072 * (nm - 538.0));
     let cosh = 0.5 * (x + 1.0 / x);
     0.003_939_804 / (cosh * cosh)
 }
 
-/// CIE 1931 standard observer (x, y, z) and illuminant D65, at a wavelength in nanometres.
+/// Values of the CIE 1931 standard observer (x, y, z) and of illuminant D65, at a wavelength in
+/// nanometres.
 pub fn observer_and_daylight(nm: f32) -> [f32; 4] {
     let place = ((nm - FIRST) / STEP).clamp(0.0, (OBSERVER_AND_DAYLIGHT.len() - 1) as f32);
     let i = (place as usize).min(OBSERVER_AND_DAYLIGHT.len() - 2);
@@ -213,18 +216,20 @@ pub fn observer_and_daylight(nm: f32) -> [f32; 4] {
     std::array::from_fn(|c| a[c] + (b[c] - a[c]) * (place - i as f32))
 }
 
-/// Conversion from XYZ of the CIE standard observer to linear sRGB, such that daylight is white.
+/// Conversion from XYZ of the CIE standard observer to linear sRGB, scaled so that daylight is
+/// white.
 struct Observer {
-    /// From x, y, z to red, green and blue.
+    /// Matrix from x, y, z to red, green and blue.
     to_rgb: [[f32; 3]; 3],
-    /// Factor for the tabulated daylight.
+    /// Factor that scales the tabulated daylight.
     daylight: f32,
 }
 
 static OBSERVER: LazyLock<Observer> = LazyLock::new(Observer::new);
 
-/// Integral over wavelengths of a function of nanometres and the observer's row, by Simpson's rule
-/// between rows. Exact for products of two tabulated values.
+/// Integrates a function over wavelengths, using Simpson's rule between table rows. The function
+/// receives a wavelength in nanometres and the observer's values there. The result is exact for
+/// products of two tabulated values.
 fn integral(value: impl Fn(f32, [f64; 4]) -> f64) -> f64 {
     let at = |nm: f32| value(nm, observer_and_daylight(nm).map(f64::from));
     let starts = (0..OBSERVER_AND_DAYLIGHT.len() - 1).map(|i| FIRST + STEP * i as f32);

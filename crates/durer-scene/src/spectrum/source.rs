@@ -1,5 +1,5 @@
-//! Spectra from files, and their colours as surfaces under daylight (D65), as lights, and as
-//! coefficients.
+//! Spectra from scene files, and their colours when used as reflectances under daylight (D65), as
+//! lights, or as coefficients.
 
 use super::black_body::planck_ratio;
 use super::observer_and_daylight;
@@ -12,11 +12,11 @@ use glam::DVec3;
 pub enum SpectrumSource {
     /// Linear sRGB colour.
     Rgb(Color),
-    /// Ascending wavelengths in nanometres, with their values.
+    /// Values at ascending wavelengths in nanometres.
     Curve(Vec<[f32; 2]>),
-    /// Black body, by its temperature in kelvin.
+    /// Black body, given by its temperature in kelvin.
     Blackbody(f32),
-    /// Colour of a light of luminance 1.
+    /// Colour of a light with luminance 1.
     Illuminant(Color),
 }
 
@@ -29,7 +29,7 @@ impl SpectrumSource {
         }
     }
 
-    /// Linear sRGB of an unbounded value, such as a coefficient of a medium.
+    /// Linear sRGB colour of an unbounded value, such as a coefficient of a medium.
     pub fn coefficient(&self) -> Color {
         match self {
             SpectrumSource::Rgb(color) => color.max(Vec3::ZERO),
@@ -37,8 +37,8 @@ impl SpectrumSource {
         }
     }
 
-    /// Colour of a light. Spectra are scaled to luminance 1, as in pbrt-v4. Colours are returned
-    /// unchanged.
+    /// Colour of a light. Spectra are scaled to luminance 1, as in pbrt-v4. RGB colours are
+    /// returned unchanged.
     pub fn light(&self) -> Color {
         match self {
             SpectrumSource::Rgb(color) | SpectrumSource::Illuminant(color) => *color,
@@ -50,8 +50,9 @@ impl SpectrumSource {
         }
     }
 
-    /// Linear sRGB as pbrt-v3 computes it for lights, reflectances and indices: a spectrum of 1 has
-    /// luminance 1. A curve is constant beyond its ends. A black body is 1 at its peak.
+    /// Linear sRGB colour as pbrt-v3 computes it for lights, reflectances and indices. A spectrum
+    /// that is 1 everywhere has luminance 1. A curve is constant beyond its ends. A black body has
+    /// the value 1 at its peak.
     pub fn pbrt_v3_color(&self) -> Color {
         match self {
             SpectrumSource::Rgb(color) | SpectrumSource::Illuminant(color) => *color,
@@ -67,8 +68,8 @@ impl SpectrumSource {
         }
     }
 
-    /// Value at a wavelength in nanometres. A colour counts as blue below 490 nm, green up to 580
-    /// nm, and red above.
+    /// Value at a wavelength in nanometres. For an RGB colour, this is the blue channel below 490
+    /// nm, the green channel up to 580 nm, and the red channel above.
     pub fn at(&self, nm: f32) -> f32 {
         match self {
             SpectrumSource::Rgb(c) | SpectrumSource::Illuminant(c) => match nm {
@@ -89,20 +90,20 @@ impl SpectrumSource {
         }
     }
 
-    /// Index of refraction: the value at the yellow helium line, 587.6 nm.
+    /// Index of refraction, which is the value at the yellow helium line, 587.6 nm.
     pub fn index(&self) -> f32 {
         self.at(587.6)
     }
 }
 
-/// First wavelength and step in nanometres.
+/// First wavelength in nanometres, and the step between wavelengths.
 const FIRST: f32 = 380.0;
 const STEP: f32 = 10.0;
 
 /// Number of wavelengths.
 const ROWS: u16 = 41;
 
-/// XYZ of a spectrum, at an arbitrary scale.
+/// XYZ value of a spectrum, at an arbitrary scale.
 pub fn xyz_sum(light: impl Fn(f32) -> f64) -> DVec3 {
     let row = |i| {
         let nm = FIRST + STEP * f32::from(i);
@@ -112,7 +113,7 @@ pub fn xyz_sum(light: impl Fn(f32) -> f64) -> DVec3 {
     (0..ROWS).map(row).sum()
 }
 
-/// D65 at a wavelength, at an arbitrary scale.
+/// Value of illuminant D65 at a wavelength, at an arbitrary scale.
 fn daylight(nm: f32) -> f32 {
     observer_and_daylight(nm)[3]
 }
@@ -123,8 +124,8 @@ pub fn under_daylight(share: impl Fn(f32) -> f32) -> Color {
     (lit(&share) / lit(&|_| 1.0)).as_vec3()
 }
 
-/// Colour of a light by its radiance at each wavelength in nanometres. A radiance of 1 has
-/// luminance 1.
+/// Colour of a light, given its radiance at each wavelength in nanometres. A constant radiance of 1
+/// has luminance 1.
 pub fn radiance(light: impl Fn(f32) -> f32) -> Color {
     let color = SRGB_FROM_XYZ * xyz_sum(|nm| f64::from(light(nm))) / xyz_sum(|_| 1.0).y;
     if color.is_finite() { color.as_vec3().max(Vec3::ZERO) } else { Vec3::ZERO }

@@ -3,7 +3,7 @@
 use crate::math::{Color, Vec3};
 use glam::{DMat3, DVec3};
 
-/// Matrix from XYZ to linear sRGB, column-major. Source: IEC 61966-2-1.
+/// Column-major matrix that converts XYZ to linear sRGB. Source: IEC 61966-2-1.
 pub const SRGB_FROM_XYZ: DMat3 = DMat3::from_cols_array(&[
     3.240_454_2,
     -0.969_266,
@@ -28,7 +28,7 @@ impl Default for RgbSpace {
     }
 }
 
-/// Names of the colour spaces, with the chromaticities of red, green, blue and white.
+/// Names of the colour spaces, with the chromaticities of their red, green, blue and white.
 const SPACES: [(&str, [[f64; 2]; 4]); 4] = [
     ("srgb", [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]]),
     ("dci-p3", [[0.68, 0.32], [0.265, 0.69], [0.15, 0.06], [0.3127, 0.329]]),
@@ -36,7 +36,7 @@ const SPACES: [(&str, [[f64; 2]; 4]); 4] = [
     ("aces2065-1", [[0.7347, 0.2653], [0.0, 1.0], [0.0001, -0.077], [0.32168, 0.33767]]),
 ];
 
-/// XYZ of a chromaticity, at luminance 1.
+/// XYZ value of a chromaticity at luminance 1.
 fn xyz([x, y]: [f64; 2]) -> DVec3 {
     DVec3::new(x / y, 1.0, (1.0 - x - y) / y)
 }
@@ -52,7 +52,7 @@ pub fn color_of_chromaticity(xy: [f64; 2]) -> Color {
 }
 
 impl RgbSpace {
-    /// Returns the space with this name; `None` if it is unknown.
+    /// Returns the colour space with this name, or `None` if the name is unknown.
     pub fn named(name: &str) -> Option<RgbSpace> {
         let (name, [r, g, b, white]) = SPACES.iter().find(|row| row.0 == name)?;
         if *name == "srgb" {
@@ -63,12 +63,12 @@ impl RgbSpace {
         Some(RgbSpace { to_srgb: SRGB_FROM_XYZ * (columns * DMat3::from_diagonal(strengths)) })
     }
 
-    /// Names of all spaces.
+    /// Names of all colour spaces.
     pub fn names() -> impl Iterator<Item = &'static str> {
         SPACES.iter().map(|row| row.0)
     }
 
-    /// Converts a colour of this space to linear sRGB. White stays white.
+    /// Converts a colour in this space to linear sRGB. White stays white.
     pub fn color(&self, rgb: Vec3) -> Color {
         if *self == RgbSpace::default() {
             return rgb;

@@ -1,4 +1,4 @@
-//! Tables of the standard observer and of daylight, by wavelength.
+//! Tables of the standard observer and of daylight as functions of the wavelength.
 
 /// Wavelength of the first row, in nanometres.
 pub const FIRST: f32 = 360.0;
@@ -12,7 +12,7 @@ pub const STEP: f32 = 5.0;
 /// Colour matching functions x, y, z of the CIE 1931 standard observer (2 degrees), and the
 /// illuminant D65.
 ///
-/// Source: CIE 015:2018, tables 1 and 6, every 5 nm.
+/// Source: CIE 015:2018, tables 1 and 6, with values every 5 nm.
 #[rustfmt::skip]
 pub const OBSERVER_AND_DAYLIGHT: [[f32; 4]; 95] = [
     [0.0001299, 3.917e-06, 0.0006061, 46.6383],

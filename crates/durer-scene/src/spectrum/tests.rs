@@ -2,7 +2,7 @@ use super::space::RgbSpace;
 use super::*;
 use crate::math::Vec3;
 
-/// Colours over the whole range, including those near its edges.
+/// Colours that cover the entire range, including values near its edges.
 fn colors() -> Vec<Color> {
     let steps = [0.0, 0.03, 0.2, 0.5, 0.8, 1.0];
     let rows = steps.into_iter().flat_map(|r| steps.into_iter().map(move |g| (r, g)));
@@ -11,7 +11,7 @@ fn colors() -> Vec<Color> {
 
 #[test]
 fn wavelength_samples_average_to_the_colour() {
-    // The mean over evenly spaced numbers is the integral.
+    // The mean over evenly spaced random numbers approximates the integral.
     let n = 4096;
     let mean = |light: &dyn Fn(&Lanes) -> Spectrum| {
         let lanes = (0..n).map(|i| Lanes::new(ColorMode::Spectral, (i as f32 + 0.5) / n as f32));
@@ -32,7 +32,7 @@ fn wavelength_samples_average_to_the_colour() {
 
 #[test]
 fn wavelength_samples_agree_with_pdf() {
-    // Between two quantiles, the pdf integrates to the step of the random number.
+    // The integral of the pdf between two quantiles equals the step of the random number.
     for i in 0..100 {
         let (a, b) = (sample_wavelength((i as f32 + 1.0) / 100.0), sample_wavelength(i as f32 / 100.0));
         let (low, high) = (a.min(b), a.max(b));
@@ -67,7 +67,7 @@ fn grey_is_constant_over_wavelengths_and_rgb_lanes_keep_colours() {
     assert!(ColorMode::NAMES.iter().all(|name| ColorMode::from_name(name).unwrap().name() == *name));
 }
 
-/// Chromaticity by a sum over every 5 nm, as the CIE defines it.
+/// Chromaticity computed from a sum over every 5 nm, as the CIE defines it.
 fn chromaticity(curve: &Curve) -> [f64; 2] {
     let rows = || (0..95).map(|i| FIRST + STEP * i as f32);
     let here = |nm: f32, i: usize| f64::from(observer_and_daylight(nm)[i] * curve.at(nm));
@@ -78,7 +78,7 @@ fn chromaticity(curve: &Curve) -> [f64; 2] {
 
 #[test]
 fn illuminants_have_their_published_chromaticities() {
-    // CIE 015:2018, tables 3 and 10.3, for the observer of 1931.
+    // Values from CIE 015:2018, tables 3 and 10.3, for the observer of 1931.
     for (name, x, y) in [
         ("A", 0.44758, 0.40745),
         ("D50", 0.34567, 0.35851),
@@ -95,16 +95,19 @@ fn illuminants_have_their_published_chromaticities() {
         assert!((a - x).abs() < 3e-4 && (b - y).abs() < 3e-4, "{name}: {a} {b}, not {x} {y}");
         assert!((curve.color().dot(Color::new(0.2126, 0.7152, 0.0722)) - 1.0).abs() < 1e-3, "{name}");
     }
-    // D65 computed by the daylight formula agrees with the table that defines white.
+    // The spectrum of D65 computed by the daylight formula agrees with the table that defines
+    // white.
     let d65 = illuminants::illuminant("D65").unwrap();
     assert!((d65.color() - Color::ONE).abs().max_element() < 2e-3, "{}", d65.color());
-    // 2856 K with the current radiation constant matches the definition of A.
+    // A black body of 2856 K with the current radiation constant matches the definition of
+    // illuminant A.
     let [a, b] = chromaticity(&illuminants::illuminant("2856K").unwrap());
     assert!((a - 0.44758).abs() < 3e-4 && (b - 0.40745).abs() < 3e-4, "{a} {b}");
     assert!(["D", "F99", "100K", "K", "warm"].iter().all(|name| illuminants::illuminant(name).is_none()));
 }
 
-/// The visible part is negligible. Scaling it to luminance 1 would overflow the rest.
+/// The visible part of the spectrum is negligible. Scaling it to luminance 1 would overflow the
+/// other values.
 #[test]
 fn light_with_negligible_visible_part_is_none() {
     assert_eq!(Curve::light(vec![[791.0, 0.0], [1e36, 2.0]]), None);
@@ -115,8 +118,8 @@ fn light_with_negligible_visible_part_is_none() {
 
 #[test]
 fn measured_spectra_multiply_by_wavelength() {
-    // A filter that transmits only above 560 nm, under a bulb. The visible colour is the integral
-    // of the product, which a product of colours cannot give.
+    // The filter transmits only light above 560 nm, and is lit by an incandescent bulb. Its visible
+    // colour is the integral of the product of the spectra, which a product of colours cannot give.
     let steep = Curve::reflectance(vec![[400.0, 0.05], [550.0, 0.05], [570.0, 0.9], [700.0, 0.9]]).unwrap();
     let bulb = illuminants::illuminant("A").unwrap();
     let exact = Color::from(OBSERVER.to_rgb.map(|row| {
@@ -137,12 +140,12 @@ fn measured_spectra_multiply_by_wavelength() {
 
 #[test]
 fn spectra_from_files_convert_to_colours() {
-    // All three sums are equal: the equal-energy white, to the accuracy of 10 nm steps.
+    // All three sums are equal for the equal-energy white, within the accuracy of 10 nm steps.
     let white = xyz_sum(|_| 1.0);
     assert!((white.x - white.y).abs() < 0.002 * white.y && (white.z - white.y).abs() < 0.002 * white.y, "{white}");
     let even = SpectrumSource::Curve(vec![[300.0, 0.4], [900.0, 0.4]]);
     assert!((even.albedo() - Vec3::splat(0.4)).length() < 1e-5);
-    // Lights have luminance 1.
+    // Lights must have luminance 1.
     let luminance = Vec3::new(0.2126729, 0.7151522, 0.072175);
     for light in [SpectrumSource::Blackbody(2856.0), SpectrumSource::Blackbody(6504.0), even.clone()] {
         assert!((light.light().dot(luminance) - 1.0).abs() < 1e-3, "{:?}", light.light());
@@ -156,6 +159,6 @@ fn white_is_white_in_every_space() {
         assert!((space.color(Vec3::ONE) - Vec3::ONE).abs().max_element() < 1e-5, "{name}");
     }
     assert_eq!(RgbSpace::named("adobe"), None);
-    // The red of a wider space lies outside sRGB.
+    // The red primary of a wider space lies outside sRGB.
     assert!(RgbSpace::named("rec2020").unwrap().color(Vec3::X).x > 1.5);
 }

@@ -1,7 +1,7 @@
-//! Spectral upsampling: smooth spectra for colours.
+//! Spectral upsampling, which finds smooth spectra for colours.
 //!
 //! Source: Jakob and Hanika, *A Low-Dimensional Function Space for Efficient Spectral Upsampling*,
-//! Computer Graphics Forum 38(2), 2019: a spectrum is a sigmoid of a quadratic function of the
+//! Computer Graphics Forum 38(2), 2019. Each spectrum is a sigmoid of a quadratic function of the
 //! wavelength. Its three coefficients are fitted on a grid of colours and interpolated between grid
 //! points.
 
@@ -17,12 +17,12 @@ use std::sync::LazyLock;
 struct SigmoidSpectrum([f32; 3]);
 
 impl SigmoidSpectrum {
-    /// Values at four wavelengths in nanometres.
+    /// Values of the spectrum at four wavelengths in nanometres.
     fn at(&self, nm: Spectrum) -> Spectrum {
         let [a, b, c] = self.0;
         let place = (nm - FIRST) / (LAST - FIRST);
         let x = (a * place + b) * place + c;
-        // This is 0.5 + x / (2 sqrt(1 + x^2)), without cancellation for large negative x.
+        // Compute 0.5 + x / (2 sqrt(1 + x^2)) without cancellation for large negative x.
         x.map(|x| {
             let root = (1.0 + x * x).sqrt();
             if x < 0.0 { 0.5 / (root * (root - x)) } else { 0.5 + 0.5 * x / root }
@@ -36,8 +36,8 @@ const SIDE: usize = 24;
 /// Number of grid points along the axis of the largest channel.
 const STRENGTHS: usize = 10;
 
-/// Table for spectral upsampling: coefficients by the largest channel of a colour, its value, and
-/// the ratios of the other two channels to it.
+/// Table of coefficients for spectral upsampling. Its indices are the largest channel of a colour,
+/// the value of that channel, and the ratios of the other two channels to it.
 struct Table(Vec<[f32; 3]>);
 
 static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
@@ -49,13 +49,14 @@ pub(super) fn reflectance(color: Color, nm: Spectrum) -> Spectrum {
     scale * TABLE.lookup(color / scale).at(nm)
 }
 
-/// Grid values from 0.5 to 1. They are denser near white, where the coefficients change most.
+/// Returns grid value `k`, from 0.5 to 1. Grid values are denser near white, where the coefficients
+/// change most.
 fn strength(k: usize) -> f64 {
     let rest = 1.0 - k as f64 / (STRENGTHS - 1) as f64;
     1.0 - 0.5 * rest * rest
 }
 
-/// Largest channel value of the fit. At 1 the coefficients are unbounded.
+/// Largest channel value that is fitted. At 1, the coefficients would be unbounded.
 const NEARLY_WHITE: f64 = 1.0 - 1e-4;
 
 impl Table {
@@ -64,12 +65,12 @@ impl Table {
         let mut all = vec![[0.0; 3]; 3 * STRENGTHS * SIDE * SIDE];
         for greatest in 0..3 {
             for (j, i) in (0..SIDE * SIDE).map(|n| (n / SIDE, n % SIDE)) {
-                // Place more points near pure colours.
+                // Place more grid points near pure colours.
                 let share = |n: usize| {
                     let step = n as f64 / (SIDE - 1) as f64;
                     step * step
                 };
-                // Start each fit from its neighbour's result.
+                // Start each fit from the result for the neighbouring grid point.
                 let mut numbers = [0.0; 3];
                 for k in 0..STRENGTHS {
                     let most = strength(k).min(NEARLY_WHITE);
@@ -104,7 +105,7 @@ impl Table {
         let (low, high) = (strength(k) as f32, strength(k + 1) as f32);
         let (x, y) = (share(1), share(2));
         let (i, j) = ((x as usize).min(SIDE - 2), (y as usize).min(SIDE - 2));
-        // Interpolate linearly in the ratio itself.
+        // Interpolate linearly in the ratio itself, not in its square root.
         let part = |x: f32, i: usize| {
             let i = i as f32;
             ((x * x - i * i) / (2.0 * i + 1.0)).clamp(0.0, 1.0)
@@ -122,7 +123,8 @@ impl Table {
     }
 }
 
-/// Forward model for fitting a smooth spectrum to a colour: the spectrum's colour under daylight.
+/// Forward model for fitting a smooth spectrum to a colour. It computes the spectrum's colour under
+/// daylight.
 struct Fit {
     /// Normalized wavelengths in [0, 1], with their weights for red, green and blue.
     rows: Vec<(f64, [f64; 3])>,

@@ -13,23 +13,23 @@ use crate::math::{Vec3, fp};
 pub struct Moment {
     /// Year, month and day.
     pub date: [i32; 3],
-    /// Hours since midnight.
+    /// Number of hours since midnight.
     pub hours: f64,
-    /// Offset of the clock from UTC, in hours; positive if ahead.
+    /// Offset of the clock from UTC in hours, positive if the clock is ahead of UTC.
     pub zone: f64,
 }
 
 impl Moment {
-    /// True if the date exists.
+    /// True if the date exists in the calendar.
     pub fn exists(&self) -> bool {
         let [year, month, day] = self.date;
         (1..=12).contains(&month) && (1..=days_of(year, month)).contains(&day)
     }
 
-    /// Days since noon of 1 January 2000, in UTC.
+    /// Number of days since noon of 1 January 2000, in UTC.
     fn days(&self) -> f64 {
         let [year, month, day] = self.date;
-        // Start the year in March, so that the leap day is its last.
+        // Start the year in March, so that the leap day is the last day of the year.
         let (y, m) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
         let before = 365 * y + y.div_euclid(4) - y.div_euclid(100) + y.div_euclid(400) + (153 * m + 2) / 5 + day;
         // The day number of 1 January 2000 is 730426.
@@ -46,17 +46,17 @@ fn days_of(year: i32, month: i32) -> i32 {
     }
 }
 
-/// Returns the sun's altitude above the horizon and its azimuth from north through east, in
-/// degrees, at a place given in degrees north and east.
+/// Returns the sun's altitude above the horizon, and its azimuth from north through east, both in
+/// degrees. The place is given in degrees north and degrees east.
 pub fn sun([latitude, longitude]: [f64; 2], moment: &Moment) -> [f64; 2] {
     let n = moment.days();
     let sin = |degrees: f64| fp::sin_cos_degrees(degrees).0;
     let mean = (280.460 + 0.985_647_4 * n).rem_euclid(360.0);
     let anomaly = (357.528 + 0.985_600_3 * n).rem_euclid(360.0);
-    // Ecliptic longitude, and the obliquity of the ecliptic.
+    // Compute the ecliptic longitude and the obliquity of the ecliptic.
     let (along_sin, along_cos) = fp::sin_cos_degrees(mean + 1.915 * sin(anomaly) + 0.020 * sin(2.0 * anomaly));
     let (lean_sin, lean_cos) = fp::sin_cos_degrees(23.439 - 0.000_000_4 * n);
-    // Unit vector in equatorial coordinates: x to the vernal equinox, z north.
+    // Unit vector in equatorial coordinates, with x towards the vernal equinox and z north.
     let (x, y, z) = (along_cos, lean_cos * along_sin, lean_sin * along_sin);
     let sidereal = 15.0 * (6.697_375 + 0.065_709_824_2 * n + (moment.hours - moment.zone)).rem_euclid(24.0) + longitude;
     let (turn_sin, turn_cos) = fp::sin_cos_degrees(sidereal.rem_euclid(360.0));
@@ -67,7 +67,7 @@ pub fn sun([latitude, longitude]: [f64; 2], moment: &Moment) -> [f64; 2] {
     [degrees(up, (north * north + east * east).sqrt()), degrees(east, north).rem_euclid(360.0)]
 }
 
-/// Unit vector for an altitude and an azimuth in degrees: y is up, -z north, x east.
+/// Unit vector for an altitude and an azimuth in degrees, where y is up, -z is north and x is east.
 pub fn direction([altitude, azimuth]: [f64; 2]) -> Vec3 {
     let ((sin, cos), (s, c)) = (fp::sin_cos_degrees(altitude), fp::sin_cos_degrees(azimuth));
     Vec3::new((cos * s) as f32, sin as f32, (-cos * c) as f32)
@@ -85,16 +85,16 @@ mod tests {
 
     #[test]
     fn sun_position_agrees_with_published_values() {
-        // Reda and Andreas, *Solar position algorithm*, NREL, 2003, table A5.1: zenith angle 50.111
-        // with and 50.128 without refraction; azimuth 194.340.
+        // Reda and Andreas, *Solar position algorithm*, NREL, 2003, table A5.1, gives a zenith
+        // angle of 50.111 with refraction and 50.128 without, and an azimuth of 194.340.
         let [altitude, azimuth] = at([39.742476, -105.1786], [2003, 10, 17], [12.0, 30.0, 30.0], -7.0);
         assert!((altitude - 39.872).abs() < 0.01 && (azimuth - 194.340).abs() < 0.01, "{altitude} {azimuth}");
-        // Meeus, *Astronomical Algorithms*, example 25.a: declination -7.78507 on 1992 October 13.
-        // It equals the altitude seen from the pole.
+        // Meeus, *Astronomical Algorithms*, example 25.a, gives a declination of -7.78507 on 1992
+        // October 13. It equals the altitude seen from the pole.
         let [altitude, _] = at([90.0, 0.0], [1992, 10, 13], [0.0; 3], 0.0);
         assert!((altitude + 7.785).abs() < 0.01, "{altitude}");
-        // Almanac data: the solstice of 21 June 2026 at 8:25, and the equinox of 20 March 2026 at
-        // 14:46.
+        // The almanac lists the solstice of 21 June 2026 at 8:25, and the equinox of 20 March 2026
+        // at 14:46.
         let [altitude, _] = at([90.0, 0.0], [2026, 6, 21], [8.0, 25.0, 0.0], 0.0);
         assert!((altitude - 23.436).abs() < 0.01, "{altitude}");
         let [altitude, _] = at([90.0, 0.0], [2026, 3, 20], [14.0, 46.0, 0.0], 0.0);
@@ -103,7 +103,8 @@ mod tests {
 
     #[test]
     fn sun_position_agrees_across_time_zones() {
-        // One moment in other time zones, in one of which it is already the next day.
+        // The same moment is given in several time zones, in one of which it is already the next
+        // day.
         let [date, next] = [[2024, 2, 28], [2024, 2, 29]];
         let place = [-33.9, 151.2];
         let here = at(place, date, [20.0, 0.0, 0.0], 0.0);
@@ -135,7 +136,7 @@ mod tests {
         ] {
             assert_eq!(day(date).exists(), exists, "{date:?}");
         }
-        // Each day number is one more than that of the day before.
+        // Each day number must be one more than that of the day before.
         let mut last = day([1999, 12, 31]).days();
         assert_eq!(last, -1.5);
         for year in 2000..2101 {

@@ -6,8 +6,8 @@
 use crate::math::{Color, Vec3, fp};
 use std::f32::consts::PI;
 
-/// Coefficients of types 1 to 15: a, b (gradation from horizon to zenith) and c, d, e (indicatrix
-/// around the sun).
+/// Coefficients of the sky types 1 to 15: a, b (gradation from horizon to zenith) and c, d, e
+/// (indicatrix around the sun).
 const TYPES: [[f32; 5]; 15] = [
     [4.0, -0.70, 0.0, -1.0, 0.0],
     [4.0, -0.70, 2.0, -1.5, 0.15],
@@ -26,28 +26,28 @@ const TYPES: [[f32; 5]; 15] = [
     [-1.0, -0.15, 24.0, -2.8, 0.15],
 ];
 
-/// Type number of the traditional overcast sky, three times as bright at the zenith as at the
-/// horizon.
+/// Type number of the traditional overcast sky, which is three times as bright at the zenith as at
+/// the horizon.
 pub const OVERCAST: u32 = 16;
 
-/// CIE standard sky: the luminance of an overcast, partly cloudy or clear sky by direction. It is
-/// white.
+/// CIE standard sky, which gives the luminance of an overcast, partly cloudy or clear sky in each
+/// direction. Its colour is white.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CieSky {
-    /// Coefficients of types 1 to 15; `None` for type 16.
+    /// Coefficients of a sky of type 1 to 15; `None` for type 16.
     coefficients: Option<[f32; 5]>,
-    /// Unit vector to the sun. Its direct light is not included.
+    /// Unit vector to the sun. The direct light of the sun is not included.
     sun: Vec3,
-    /// Factor from relative luminance to cd/m^2.
+    /// Factor that converts relative luminance to cd/m^2.
     scale: f32,
-    /// Luminance below the horizon, in cd/m^2.
+    /// Luminance of the directions below the horizon, in cd/m^2.
     ground: f32,
 }
 
 impl CieSky {
     /// Creates a sky of type `number`, from 1 to 16. `sun` points to the sun, with y up. `zenith`
-    /// is the luminance at the zenith in cd/m^2. The ground reflects the share `ground_reflectance`
-    /// of its illuminance.
+    /// is the luminance at the zenith in cd/m^2. The ground reflects the fraction
+    /// `ground_reflectance` of its illuminance.
     pub fn new(number: u32, sun: Vec3, zenith: f32, ground_reflectance: f32) -> Self {
         let coefficients = TYPES.get((number as usize).wrapping_sub(1)).copied();
         let sun = Vec3::new(sun.x, sun.y.max(0.0), sun.z).normalize_or(Vec3::Y);
@@ -70,21 +70,21 @@ impl CieSky {
         zenith * (1.0 + c * (fp::exp(d * to_sun) - fp::exp(d * 0.5 * PI)) + e * cosine * cosine)
     }
 
-    /// Luminance from a unit direction, in cd/m^2.
+    /// Luminance that arrives from a unit direction, in cd/m^2.
     pub fn luminance(&self, dir: Vec3) -> f32 {
         if dir.y < 0.0 { self.ground } else { self.scale * self.relative_luminance(dir) }
     }
 
-    /// Radiance from a unit direction.
+    /// Radiance that arrives from a unit direction.
     pub fn at(&self, dir: Vec3) -> Color {
         Vec3::splat(self.luminance(dir))
     }
 
-    /// Illuminance of unobstructed ground, in lux.
+    /// Illuminance on unobstructed ground, in lux.
     pub fn illuminance(&self) -> f32 {
         const STEPS: u32 = 256;
         let cell = |i: u32| {
-            // Each ring of the projected hemisphere has cells of equal area.
+            // Each ring of the projected hemisphere is divided into cells of equal area.
             let radius = ((i / STEPS) as f32 + 0.5) / STEPS as f32;
             let (sin, cos) = fp::sin_cos_degrees(360.0 * (f64::from(i % STEPS) + 0.5) / f64::from(STEPS));
             let dir = Vec3::new(radius * cos as f32, (1.0 - radius * radius).sqrt(), radius * sin as f32);
@@ -101,13 +101,13 @@ mod tests {
 
     #[test]
     fn illuminance_agrees_with_formulas() {
-        // The overcast sky has an illuminance of 7 pi L / 9 (Moon and Spencer, 1942). The uniform
-        // sky has pi L.
+        // An overcast sky with the zenith luminance L has an illuminance of 7 pi L / 9 (Moon and
+        // Spencer, 1942). A uniform sky has an illuminance of pi L.
         let overcast = CieSky::new(OVERCAST, Vec3::Y, 9_000.0, 0.0);
         assert!((overcast.illuminance() / (7_000.0 * PI) - 1.0).abs() < 1e-4, "{}", overcast.illuminance());
         let even = CieSky::new(5, Vec3::Y, 9_000.0, 0.2);
         assert!((even.illuminance() / (9_000.0 * PI) - 1.0).abs() < 1e-4);
-        // Under a uniform sky the ground is a diffuse surface with its reflectance.
+        // Under a uniform sky, the ground looks like a diffuse surface with the given reflectance.
         assert!((even.luminance(Vec3::NEG_Y) - 1_800.0).abs() < 1.0);
     }
 
@@ -120,11 +120,11 @@ mod tests {
             let (there, away) = (sky.luminance(sun), sky.luminance(Vec3::new(-sun.x, sun.y, 0.0)));
             assert_eq!(there > away, CieSky::depends_on_sun(number), "{number}: {there} {away}");
         }
-        // Type 12, the standard clear sky, at the horizon below the sun, computed by hand from the
-        // formula.
+        // The expected value is computed by hand from the formula for type 12, the standard clear
+        // sky, at the horizon below the sun.
         let sky = CieSky::new(12, sun, 1.0, 0.0);
-        // exp(-3 pi / 4) - exp(-3 pi / 2) = 0.09478 - 0.00898. At the zenith the angle to the sun
-        // is also 45 degrees.
+        // The difference exp(-3 pi / 4) - exp(-3 pi / 2) is 0.09478 - 0.00898. At the zenith, the
+        // angle to the sun is also 45 degrees.
         let (ring, zenith) = (1.0 + 10.0 * (0.09478 - 0.00898) + 0.45 * 0.5, 1.0 - 0.72615);
         let at_horizon = ring / (ring * zenith);
         assert!((sky.luminance(Vec3::X) / at_horizon - 1.0).abs() < 1e-3, "{} {at_horizon}", sky.luminance(Vec3::X));

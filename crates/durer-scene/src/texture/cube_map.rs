@@ -1,4 +1,4 @@
-//! Cube maps: six images around the scene.
+//! Cube maps, which consist of six images around the scene.
 
 use super::Texture;
 use crate::math::{Color, Vec2, Vec3};
@@ -13,14 +13,15 @@ pub struct CubeMap {
 }
 
 impl CubeMap {
-    /// File names of the faces, without extension: -x, +x, +y, -y, +z, -z.
+    /// File names of the faces without extension, in the order -x, +x, +y, -y, +z, -z.
     pub const FACES: [&'static str; 6] = ["left", "right", "up", "down", "front", "back"];
 
-    /// Colour in a direction, in world space. The largest component selects the face; ties go to x,
-    /// then y.
+    /// Colour in a direction in world space. The component with the largest absolute value selects
+    /// the face. If components are equal, x takes precedence over y, and y over z.
     ///
-    /// Seen from inside, every face is upright and not mirrored. The four sides have y up, `up` has
-    /// z up, and `down` has -z up, so that all six meet without a seam.
+    /// Seen from inside, every face is upright and not mirrored. The upward direction of the image
+    /// is y on the four sides, z on `up` and -z on `down`, so that all six faces meet without a
+    /// seam.
     pub fn at(&self, direction: Vec3) -> Color {
         let Vec3 { x, y, z } = direction;
         let d = direction.abs();

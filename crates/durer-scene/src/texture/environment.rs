@@ -1,33 +1,33 @@
 //! Environment maps with importance sampling.
 //!
-//! Directions are sampled in proportion to the radiance above the mean. Multiple importance
-//! sampling combines light samples with BSDF samples. Since BSDF sampling handles nearly uniform
-//! parts well, light samples are best spent on the brighter parts. Source: Karlík, Šik, Vévoda,
-//! Skřivan, Křivánek, *MIS Compensation: Optimizing Sampling Techniques in Multiple Importance
-//! Sampling*, SIGGRAPH Asia 2019.
+//! Directions are sampled in proportion to the part of the radiance that exceeds the mean. Multiple
+//! importance sampling combines light samples with BSDF samples. Since BSDF sampling handles nearly
+//! uniform parts well, light samples are best spent on the brighter parts. Source: Karlík, Šik,
+//! Vévoda, Skřivan, Křivánek, *MIS Compensation: Optimizing Sampling Techniques in Multiple
+//! Importance Sampling*, SIGGRAPH Asia 2019.
 
 use crate::math::{Color, Vec2, Vec3, fp};
 use glam::Vec4;
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-/// Position of a direction in an environment map, in texels.
+/// Position in an environment map that corresponds to a direction, in texels.
 #[derive(Clone, Copy, Debug)]
 pub struct TexelPosition {
     x: f32,
     y: f32,
-    /// Sine of the direction's angle to the y axis.
+    /// Sine of the angle between the direction and the y axis.
     sine: f32,
 }
 
 /// Environment map, which lights the scene from infinity and is importance-sampled. Its centre is
-/// in direction -z and its upper edge at +y, as in `EquirectangularCamera`.
+/// in the direction -z and its upper edge at +y, as in `EquirectangularCamera`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Environment {
     width: usize,
     height: usize,
-    /// Colours; w is the cumulative weight of the row up to this texel. Storing both together saves
-    /// cache misses.
+    /// Colours of the texels, where w is the cumulative weight of the row up to the texel. Storing
+    /// both together avoids cache misses.
     texels: Arc<[Vec4]>,
     /// Rotation about y, as a fraction of a turn from 0 to 1.
     turn: f32,
@@ -35,10 +35,10 @@ pub struct Environment {
     /// Mean brightness over all directions, before scaling.
     mean: f32,
     rows: Arc<[Row]>,
-    /// Start indices for the search in a row's cumulative weights, one per step of the searched
-    /// fraction.
+    /// Indices at which the search in the cumulative weights of a row starts, one for each step of
+    /// the searched fraction.
     hints: Arc<[u32]>,
-    /// Cumulative weights of the rows, from the top.
+    /// Cumulative weights of the rows, starting at the top.
     row_sums: Arc<[f32]>,
     row_hints: Arc<[u32]>,
 }
@@ -48,21 +48,21 @@ pub struct Environment {
 struct Row {
     /// Sum of the weights of the row's texels.
     sum: f32,
-    /// Fraction of the sum over all rows.
+    /// Fraction of the sum over all rows that this row contributes.
     share: f32,
 }
 
-/// Minimum weight of a direction, as a fraction of its brightness. Some light is only found by
-/// light sampling, for example behind panes at which paths end.
+/// Minimum weight of a direction, as a fraction of its brightness. Some light is found only by
+/// light sampling, for example light behind panes at which paths end.
 const MIN_WEIGHT: f32 = 0.05;
 
 /// Number of table entries per start index.
 const STEP: usize = 4;
 
-/// Number of entries that the search compares at once.
+/// Number of entries that the search compares at a time.
 const SEARCH_WIDTH: usize = 8;
 
-/// Returns, for each step of the fraction from 0 to 1, the index of the entry that reaches it.
+/// Returns the index of the first entry that exceeds each step of the fraction from 0 to 1.
 fn hints(sums: &[f32]) -> impl Iterator<Item = u32> {
     let steps = sums.len().div_ceil(STEP);
     let mut i = 0;
@@ -75,8 +75,8 @@ fn hints(sums: &[f32]) -> impl Iterator<Item = u32> {
 }
 
 impl Environment {
-    /// Creates a map from linear colours, top row first. `None` if the number of colours is not
-    /// width times height, or if the map is black.
+    /// Creates a map from linear colours, starting with the top row. Returns `None` if the number
+    /// of colours is not width times height, or if the map is black.
     pub fn new(width: u32, height: u32, texels: Vec<Color>, degrees: f32, scale: Color) -> Option<Self> {
         let (width, height) = (width as usize, height as usize);
         if width == 0 || height == 0 || texels.len() != width * height {
@@ -85,14 +85,15 @@ impl Environment {
         let texels: Vec<Color> =
             texels.into_iter().map(|c| if c.is_finite() { c.max(Vec3::ZERO) } else { Vec3::ZERO }).collect();
         let brightness = |x: usize, y: usize| texels[y * width + x].dot(Vec3::splat(1.0 / 3.0));
-        // Rows near the poles cover less of the sphere.
+        // Rows near the poles cover a smaller part of the sphere.
         let sines: Vec<f32> = (0..height).map(|y| fp::sin(PI * (y as f32 + 0.5) / height as f32)).collect();
         let mut sums = Vec::with_capacity(width * height);
         let mut whole = 0.0_f64;
         for (y, sine) in sines.iter().enumerate() {
             let mut row = 0.0_f64;
             for x in 0..width {
-                // Colours are interpolated between texel centres, so compute the mean over a texel.
+                // Colours are interpolated between texel centres, so compute the mean over each
+                // texel.
                 let mean = |[before, here, after]: [f32; 3]| 0.125 * (before + after) + 0.75 * here;
                 let column = |x: usize| {
                     let x = x % width;
@@ -142,18 +143,19 @@ impl Environment {
 
     /// Approximate mean of the sampling weights, which is the radiance above [`Environment::mean`].
     pub fn mean_above(&self) -> Color {
-        // Weights are means over texels, times the sine of the row.
+        // Weights are means over texels, multiplied by the sine of the row.
         self.scale * (self.row_sums[self.height - 1] * PI / 2.0 / (self.width * self.height) as f32)
     }
 
-    /// Approximate maximum of radiance over pdf. It is reached in the directions with the lowest
-    /// pdf relative to their brightness.
+    /// Approximate maximum of the ratio of radiance to pdf. It is reached in the directions with
+    /// the lowest pdf relative to their brightness.
     pub fn max_weight(&self) -> Color {
         4.0 * PI * self.mean_above() / MIN_WEIGHT
     }
 
-    /// Temporary memory of [`Environment::new`] in bytes per texel, in addition to the given
-    /// texels: the texels with their sums, the sums alone, and the hints while they grow.
+    /// Temporary memory that [`Environment::new`] needs in addition to the given texels, in bytes
+    /// per texel. It holds the texels with their sums, the sums alone, and the hints while their
+    /// list grows.
     pub const BUILD_BYTES_PER_TEXEL: usize = size_of::<Vec4>() + size_of::<[f32; 2]>();
 
     /// Size in memory in bytes.
@@ -171,7 +173,7 @@ impl Environment {
 
     /// Radiance at a position, interpolated bilinearly.
     pub fn light(&self, place: &TexelPosition) -> Color {
-        // Integer coordinates, from 0, of the texel after the position.
+        // Integer coordinates, counted from 0, of the texel after the position.
         let (x, y) = (place.x + 0.5, place.y + 0.5);
         let (right, below) = (x as usize, y as usize);
         let part = Vec2::new(x - right as f32, y - below as f32);
@@ -182,13 +184,13 @@ impl Environment {
         self.scale * row(below.saturating_sub(1).min(last)).lerp(row(below.min(last)), part.y).truncate()
     }
 
-    /// Pdf of a position, per solid angle.
+    /// Pdf of a position in the map, per solid angle.
     fn density(&self, place: &TexelPosition) -> f32 {
         let (x, y) = ((place.x as usize).min(self.width - 1), (place.y as usize).min(self.height - 1));
         self.density_in((x, y), place.sine)
     }
 
-    /// Pdf per solid angle of a texel; `sine` is the sine of the angle to the y axis.
+    /// Pdf per solid angle within a texel, where `sine` is the sine of the angle to the y axis.
     fn density_in(&self, (x, y): (usize, usize), sine: f32) -> f32 {
         let (Row { sum, share }, row) = (self.rows[y], self.row(y));
         if sum <= 0.0 {
@@ -203,31 +205,31 @@ impl Environment {
         &self.texels[y * self.width..(y + 1) * self.width]
     }
 
-    /// Radiance from a direction of any length, in world space.
+    /// Radiance that arrives from a direction in world space, which can have any length.
     pub fn at(&self, dir: Vec3) -> Color {
         self.light(&self.place(dir))
     }
 
-    /// Pdf of a direction, per solid angle.
+    /// Pdf with which a direction is sampled, per solid angle.
     pub fn pdf(&self, dir: Vec3) -> f32 {
         self.density(&self.place(dir))
     }
 
-    /// Radiance from a direction, and its pdf per solid angle.
+    /// Radiance that arrives from a direction, and the pdf of the direction per solid angle.
     pub fn at_with_pdf(&self, dir: Vec3) -> (Color, f32) {
         let place = self.place(dir);
         (self.light(&place), self.density(&place))
     }
 
-    /// Samples a direction from two numbers in [0, 1). Returns it with its radiance and its pdf per
-    /// solid angle.
+    /// Samples a direction from two numbers in [0, 1). Returns the direction together with its
+    /// radiance and its pdf per solid angle.
     pub fn sample(&self, u: Vec2) -> Option<(Vec3, Color, f32)> {
         let (dir, place, pdf) = self.direction(u)?;
         Some((dir, self.light(&place), pdf))
     }
 
-    /// Samples a direction from two numbers in [0, 1). Returns it with its position in the map and
-    /// its pdf per solid angle.
+    /// Samples a direction from two numbers in [0, 1). Returns the direction together with its
+    /// position in the map and its pdf per solid angle.
     pub fn direction(&self, u: Vec2) -> Option<(Vec3, TexelPosition, f32)> {
         let steps = self.width.div_ceil(STEP);
         let (y, v) = find_entry(&self.row_sums, |sum| *sum, self.row_sums[self.height - 1], &self.row_hints, u.y);
@@ -242,13 +244,13 @@ impl Environment {
     }
 }
 
-/// Returns the index of the entry at which the fraction `u` of the sum is reached, and the position
-/// within it.
+/// Returns the index of the entry at which the cumulative sum reaches the fraction `u` of the
+/// total, and the position within that entry.
 fn find_entry<T>(entries: &[T], sum: impl Fn(&T) -> f32, whole: f32, hints: &[u32], u: f32) -> (usize, f32) {
     let last = entries.len() - 1;
     let target = u * whole;
     let mut i = hints[((u * hints.len() as f32) as usize).min(hints.len() - 1)] as usize;
-    // Rounding can put the start index too far.
+    // Rounding errors can make the start index too large.
     while i > 0 && sum(&entries[i - 1]) > target {
         i -= 1;
     }
@@ -311,7 +313,7 @@ mod tests {
     #[test]
     fn centre_is_at_minus_z_and_rotation_turns_the_map() {
         let mut texels = vec![Vec3::ZERO; 8 * 4];
-        // Texel in the column right of the centre, in the upper half.
+        // Set a texel in the column to the right of the centre, in the upper half.
         texels[8 + 4] = Vec3::ONE;
         let at =
             |degrees: f32, dir: Vec3| Environment::new(8, 4, texels.clone(), degrees, Vec3::ONE).unwrap().at(dir).x;

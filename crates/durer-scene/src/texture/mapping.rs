@@ -1,4 +1,4 @@
-//! Mapping of a texture onto a surface, as in glTF: wrapping, filtering, and a coordinate
+//! Mapping of a texture onto a surface, as in glTF, with wrapping, filtering and a coordinate
 //! transform.
 
 use crate::describe::{FieldType, Value};
@@ -19,12 +19,12 @@ described_words! {
 }
 
 impl Channel {
-    /// Parses the letter or word after the colon of `file.png:g`.
+    /// Parses the letter or word after the colon in a name such as `file.png:g`.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::from_value(Value::Word(word.into()))
     }
 
-    /// Value of the channel.
+    /// Value of this channel in a texel.
     pub fn of(self, [r, g, b, a]: [f32; 4]) -> f32 {
         match self {
             Channel::Red => r,
@@ -39,24 +39,26 @@ impl Channel {
 /// Mapping of a texture onto a surface: wrap modes, filters, coordinate transform and value range.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mapping {
-    /// Wrap mode horizontally and vertically.
+    /// Wrap modes in the horizontal and vertical directions.
     pub wrap: [Wrap; 2],
-    /// True for the nearest texel, false for bilinear filtering.
+    /// True to use the nearest texel, false to filter bilinearly.
     pub nearest: bool,
     /// True to use mipmaps for samples that cover many texels.
     pub mipmaps: bool,
     /// True to use the second set of texture coordinates.
     pub second: bool,
-    /// Transform from surface coordinates to texture coordinates, both with v down from the upper
-    /// border: two rows of a matrix.
+    /// Transform from surface coordinates to texture coordinates, stored as two rows of a matrix.
+    /// In both, v is measured downwards from the upper border.
     pub transform: [[f32; 3]; 2],
-    /// Alpha cutoff: opacity is 1 at or above it, 0 below; with `None`, opacity is alpha.
+    /// Alpha cutoff. Opacity is 1 if alpha is at or above it, and 0 below. With `None`, opacity
+    /// equals alpha.
     pub cutoff: Option<f32>,
-    /// Factor that scales the slopes in a normal map; 1 keeps the stored slopes.
+    /// Factor that scales the slopes in a normal map. A factor of 1 keeps the stored slopes.
     pub strength: f32,
-    /// Channel to read as a number; `None` for red, or for alpha in opacity textures with alpha.
+    /// Channel that is read as a number; `None` for red, or for alpha in opacity textures that have
+    /// alpha.
     pub channel: Option<Channel>,
-    /// Parameter values that 0 and 1 in the texture stand for.
+    /// Parameter values that correspond to 0 and 1 in the texture.
     pub range: [f32; 2],
 }
 
@@ -77,15 +79,15 @@ impl Default for Mapping {
 }
 
 impl Mapping {
-    /// Position in the texture, in widths from the left and heights from the top, for surface
-    /// coordinates with v up.
+    /// Position in the texture for surface coordinates with v up. It is measured in texture widths
+    /// from the left and texture heights from the top.
     pub fn texture_position(&self, uv: Vec2) -> Vec2 {
         let (u, v) = (uv.x, 1.0 - uv.y);
         let [x, y] = self.transform.map(|[a, b, c]| a * u + b * v + c);
         Vec2::new(x, y)
     }
 
-    /// Maps a channel value to the range.
+    /// Maps a channel value from [0, 1] to the range of parameter values.
     pub fn map_to_range(&self, x: f32) -> f32 {
         let [low, high] = self.range;
         if [low, high] == [0.0, 1.0] { x } else { low + x * (high - low) }
@@ -101,8 +103,8 @@ impl Mapping {
         [r, g, b, alpha]
     }
 
-    /// Converts directions of increasing surface coordinates to directions of increasing texture
-    /// coordinates, with v up in both.
+    /// Converts the directions in which the surface coordinates increase to the directions in which
+    /// the texture coordinates increase, with v up in both.
     pub fn directions<V>(&self, [u, v]: [V; 2]) -> [V; 2]
     where
         V: Copy + std::ops::Mul<f32, Output = V> + std::ops::Add<Output = V>,
@@ -115,7 +117,8 @@ impl Mapping {
 }
 
 impl Wrap {
-    /// Index of the texel for index `i` in a row of `count` texels; `i` may be outside the row.
+    /// Index of the texel that is used for index `i` in a row of `count` texels. `i` can be outside
+    /// the row.
     pub fn index(self, i: i64, count: u32) -> u32 {
         let count = i64::from(count);
         let folded = match self {

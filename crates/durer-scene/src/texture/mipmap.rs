@@ -1,4 +1,4 @@
-//! Mipmaps: smaller versions of a texture, for samples that cover many texels.
+//! Mipmaps, which are smaller versions of a texture for samples that cover many texels.
 //!
 //! Source: Williams, *Pyramidal Parametrics*, SIGGRAPH 1983.
 
@@ -8,7 +8,8 @@ use std::iter::successors;
 use std::sync::Arc;
 
 impl Texture {
-    /// Adds mipmap levels, each half as wide and high as the one before, down to one texel.
+    /// Adds mipmap levels down to one texel. Each level is half as wide and half as high as the
+    /// previous one.
     pub fn with_levels(self) -> Self {
         let first = Texture { mapping: None, levels: Arc::default(), ..self.clone() };
         let levels = successors(Some(first), |level| (level.count() > 1).then(|| level.halved())).skip(1).collect();
@@ -58,8 +59,8 @@ impl Texture {
     }
 }
 
-/// Texels in a row of `large` that texel `i` of a row of `small` covers, with their shares of it:
-/// two or three texels.
+/// Returns the two or three texels in a row of `large` texels that texel `i` in a row of `small`
+/// texels covers. Each is returned with the fraction that it contributes.
 fn covered(i: u32, small: u32, large: u32) -> impl Iterator<Item = (usize, f32)> {
     let size = f64::from(large) / f64::from(small);
     let (from, to) = (f64::from(i) * size, (f64::from(i + 1) * size).min(f64::from(large)));
@@ -97,7 +98,8 @@ mod tests {
     fn levels_average_linear_values_and_round_to_eight_bits() {
         let texture = Texture::new(2, 1, vec![[0, 10, 255], [255, 12, 255]]).unwrap();
         let square = texture.with_decoding(|x| (f32::from(x) / 255.0) * (f32::from(x) / 255.0)).with_levels();
-        // The mean of the decoded 10 and 12 is nearly the decoded 11: (11 / 255)^2.
+        // The mean of the decoded codes 10 and 12 is nearly the decoded code 11, which is (11 /
+        // 255)^2.
         let [r, g, b] = square.levels[0].color(0);
         assert!((r - 0.5).abs() < 0.004 && (g - 0.00186).abs() < 1e-4 && b == 1.0, "{r} {g} {b}");
         let clear = Texture::new(2, 1, vec![[9; 3]; 2]).unwrap().with_alpha(Some(vec![0, 255])).with_levels();
@@ -112,7 +114,7 @@ mod tests {
         assert_eq!(at(0.0), 0.0);
         assert_eq!(at(1.0), 0.0);
         assert_eq!(at(2.0), 0.5);
-        // Halfway between two levels on a logarithmic scale.
+        // This width is halfway between two levels on a logarithmic scale.
         assert!((at(2.0_f32.sqrt()) - 0.25).abs() < 1e-6, "{}", at(2.0_f32.sqrt()));
         assert_eq!(at(1e30), 0.5);
         assert_eq!(at(f32::NAN), 0.0);

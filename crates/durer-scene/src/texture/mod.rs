@@ -18,7 +18,8 @@ pub use sky::Sky;
 use std::sync::Arc;
 pub use taps::Tap;
 
-/// Decoded image that is mapped onto surfaces, by the course's rules or by a [`Mapping`].
+/// Decoded image that is mapped onto surfaces, either by the rules of the course or by a
+/// [`Mapping`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     width: u32,
@@ -31,16 +32,16 @@ pub struct Texture {
     levels: Arc<[Texture]>,
 }
 
-/// Texels of a texture in red, green and blue, top row first.
+/// Texels of a texture in red, green and blue, starting with the top row.
 #[derive(Clone, Debug, PartialEq)]
 enum Texels {
-    /// 8 bits per channel, and the decoded value of each of the 256 codes.
+    /// Texels with 8 bits per channel, and the decoded value of each of the 256 codes.
     Eight(Arc<[[u8; 3]]>, Box<[f32; 256]>),
     /// Linear values.
     Float(Arc<[Color]>),
 }
 
-/// Opacity of each texel of a texture, top row first.
+/// Opacity of each texel of a texture, starting with the top row.
 #[derive(Clone, Debug, PartialEq)]
 enum Opacity {
     /// Opacity in units of 1/255.
@@ -50,14 +51,14 @@ enum Opacity {
 }
 
 impl Texture {
-    /// Creates a texture from 8-bit texels, top row first. `None` unless their number is width
-    /// times height and at least one.
+    /// Creates a texture from 8-bit texels, starting with the top row. Returns `None` unless the
+    /// number of texels equals width times height and is at least one.
     pub fn new(width: u32, height: u32, texels: Vec<[u8; 3]>) -> Option<Self> {
         let values = Box::new(std::array::from_fn(|i| i as f32 / 255.0));
         Texture::of(width, height, texels.len(), || Texels::Eight(texels.into(), values))
     }
 
-    /// Creates a texture from linear `f32` texels, top row first.
+    /// Creates a texture from linear `f32` texels, starting with the top row.
     pub fn from_floats(width: u32, height: u32, texels: Vec<Color>) -> Option<Self> {
         Texture::of(width, height, texels.len(), || Texels::Float(texels.into()))
     }
@@ -67,7 +68,7 @@ impl Texture {
         fits.then(|| Texture { width, height, texels: texels(), alpha: None, mapping: None, levels: Arc::default() })
     }
 
-    /// Replaces the decoded values of 8-bit codes. Has no effect on `f32` texels.
+    /// Replaces the decoded values of 8-bit codes. This has no effect on `f32` texels.
     pub fn with_decoding(self, decode: impl Fn(u8) -> f32) -> Self {
         let texels = match self.texels {
             Texels::Eight(texels, _) => Texels::Eight(texels, Box::new(std::array::from_fn(|i| decode(i as u8)))),
@@ -80,7 +81,7 @@ impl Texture {
         self.width as usize * self.height as usize
     }
 
-    /// Colour of the texel at an index.
+    /// Returns the colour of the texel at an index.
     fn color(&self, at: usize) -> [f32; 3] {
         match &self.texels {
             Texels::Eight(texels, values) => texels[at].map(|c| values[usize::from(c)]),
@@ -88,7 +89,7 @@ impl Texture {
         }
     }
 
-    /// Opacity of the texel at an index.
+    /// Returns the opacity of the texel at an index.
     fn opacity(&self, at: usize) -> f32 {
         match &self.alpha {
             None => 1.0,
@@ -97,7 +98,7 @@ impl Texture {
         }
     }
 
-    /// True if some texel is not opaque.
+    /// True if at least one texel is not opaque.
     pub fn has_alpha(&self) -> bool {
         self.alpha.is_some()
     }
@@ -142,14 +143,15 @@ impl Texture {
         Texture { mapping: Some(mapping), ..self.clone() }
     }
 
-    /// Mapping onto surfaces; `None` for the course's rules.
+    /// Mapping onto surfaces; `None` if the rules of the course apply.
     pub fn mapping(&self) -> Option<&Mapping> {
         self.mapping.as_ref()
     }
 
-    /// Colour and opacity at (u, v), with v up, by a mapping. Bilinear filtering uses linear
-    /// values. `width` is the width of the sample, in texels of the full-size image. With mipmap
-    /// levels, interpolates between the two levels whose texels are about that wide.
+    /// Colour and opacity at the coordinates (u, v), with v up, according to a mapping. Bilinear
+    /// filtering uses linear values. `width` is the width of the sample, in texels of the full-size
+    /// image. If the texture has mipmap levels, the result is interpolated between the two levels
+    /// whose texels are about that wide.
     pub fn texel(&self, mapping: &Mapping, uv: Vec2, width: f32) -> [f32; 4] {
         let place = mapping.texture_position(uv);
         if width <= 1.0 || width.is_nan() || self.levels.is_empty() {
@@ -167,7 +169,7 @@ impl Texture {
         mapping.apply_cutoff(std::array::from_fn(|c| larger[c] + part * (smaller[c] - larger[c])))
     }
 
-    /// Converts a length in texture coordinates to texels.
+    /// Converts a length in texture coordinates to a number of texels.
     pub fn texels_in(&self, mapping: &Mapping, length: f32) -> f32 {
         let [[a, b, _], [c, d, _]] = mapping.transform;
         let area = (a * d - b * c).abs() * self.width as f32 * self.height as f32;
@@ -177,7 +179,7 @@ impl Texture {
     /// Gradient of the red channel with respect to u and v.
     pub fn slope(&self, mapping: &Mapping, uv: Vec2) -> Vec2 {
         let place = mapping.texture_position(uv);
-        // Step by one texel. A smaller step would only show the texel grid.
+        // Use a step of one texel. A smaller step would only reveal the texel grid.
         let step = Vec2::new(1.0 / self.width as f32, 1.0 / self.height as f32);
         let along = |way: Vec2| {
             let [after, before] = [place + 0.5 * way, place - 0.5 * way].map(|at| self.texel_at(mapping, at)[0]);
@@ -185,12 +187,12 @@ impl Texture {
         };
         let (x, y) = (along(Vec2::new(step.x, 0.0)) / step.x, along(Vec2::new(0.0, step.y)) / step.y);
         let [[a, b, _], [c, d, _]] = mapping.transform;
-        // The surface's v points up, the texture's down.
+        // The coordinate v points up on the surface, but down in the texture.
         Vec2::new(a * x + c * y, -(b * x + d * y))
     }
 
-    /// Colour and opacity at a position in the texture, in widths from the left and heights from
-    /// the top, before the alpha cutoff.
+    /// Colour and opacity at a position in the texture, before the alpha cutoff. The position is
+    /// measured in texture widths from the left and texture heights from the top.
     fn texel_at(&self, mapping: &Mapping, place: Vec2) -> [f32; 4] {
         let (x, y) = (f64::from(place.x) * f64::from(self.width), f64::from(place.y) * f64::from(self.height));
         let texel = |i: i64, j: i64| {
@@ -214,15 +216,15 @@ impl Texture {
         })
     }
 
-    /// Colour at (u, v), with v up: by the mapping if there is one, otherwise bilinear without a
-    /// half-texel shift and clamped at the border.
+    /// Colour at the coordinates (u, v), with v up. The mapping is used if there is one. Otherwise,
+    /// the colour is interpolated bilinearly without a half-texel shift, and clamped at the border.
     pub fn at(&self, uv: Vec2) -> Color {
         if let Some(mapping) = &self.mapping {
             let [r, g, b, _] = self.texel(mapping, uv, 0.0);
             return Color::new(r, g, b);
         }
         let (width, height) = (self.width as f32, self.height as f32);
-        // `max` before `min` maps NaN to 0.
+        // Applying `max` before `min` maps NaN to 0.
         let x = (uv.x * width).max(0.0).min(width);
         let y = ((1.0 - uv.y) * height).max(0.0).min(height);
         let (left, top) = (x.trunc(), y.trunc());

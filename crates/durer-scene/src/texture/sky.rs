@@ -1,5 +1,5 @@
-//! Daylight model: a clear sky and the sun, by the position of the sun and the turbidity of the
-//! air.
+//! Daylight model of a clear sky and the sun, based on the position of the sun and the turbidity of
+//! the air.
 //!
 //! Source: Preetham, Shirley and Smits, *A Practical Analytic Model for Daylight*, SIGGRAPH 1999.
 //! Luminances are in cd/m^2.
@@ -14,12 +14,12 @@ const SUN_OUTSIDE: f32 = 128_000.0;
 /// Angular radius of the sun in degrees.
 pub const SUN_RADIUS: f32 = 0.2665;
 
-/// Clear sky and sun for a position of the sun and a turbidity of the air.
+/// Clear sky and sun for a given position of the sun and a given turbidity of the air.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sky {
     /// Unit vector to the sun.
     sun: Vec3,
-    /// Turbidity, from 2 (clear) to 10 (hazy).
+    /// Turbidity of the air, from 2 (clear) to 10 (hazy).
     turbidity: f32,
     /// Luminance and chromaticity (x, y) at the zenith.
     zenith: Vec3,
@@ -27,13 +27,13 @@ pub struct Sky {
     perez: [[f32; 5]; 3],
     /// Value of Perez's function at the zenith.
     perez_zenith: Vec3,
-    /// Radiance from below the horizon.
+    /// Radiance that arrives from below the horizon.
     ground: Color,
 }
 
 impl Sky {
-    /// Creates a sky. `sun` points to the sun, and y is up. A sun below the horizon is moved to the
-    /// horizon.
+    /// Creates a sky. `sun` points to the sun, where y is up. A sun below the horizon is moved to
+    /// the horizon.
     pub fn new(sun: Vec3, turbidity: f32) -> Self {
         let sun = Vec3::new(sun.x, sun.y.max(0.0), sun.z).normalize_or(Vec3::Y);
         let t = turbidity.clamp(1.7, 10.0);
@@ -64,23 +64,24 @@ impl Sky {
         ];
         let perez_zenith = Vec3::from(perez.map(|p| shape(&p, 1.0, theta, sun.y)));
         let zenith = Vec3::new(bright.max(0.0), x, y);
-        // The ground has a fifth of the zenith luminance.
+        // The ground has a fifth of the luminance of the zenith.
         Sky { sun, turbidity: t, zenith, perez, perez_zenith, ground: Vec3::splat(0.2 * zenith.x) }
     }
 
-    /// Returns the sky above a diffuse ground that reflects a share of the light of sun and sky.
+    /// Returns the sky above a diffuse ground that reflects this fraction of the light from the sky
+    /// and the sun.
     pub fn with_ground(self, reflectance: f32) -> Self {
         let ground = reflectance * (self.mean_on_horizontal() + self.sun() * self.sun.y / PI);
         Sky { ground, ..self }
     }
 
-    /// Cosine-weighted mean radiance of the sky, without the sun: the illuminance of horizontal
-    /// ground over pi.
+    /// Cosine-weighted mean radiance of the sky without the sun. It equals the illuminance on
+    /// horizontal ground divided by pi.
     pub fn mean_on_horizontal(&self) -> Color {
         const ROWS: u32 = 64;
         let mut sky = Color::ZERO;
         for row in 0..ROWS {
-            // Rings of equal projected area.
+            // Use rings of equal projected area.
             let sine = ((row as f32 + 0.5) / ROWS as f32).sqrt();
             for column in 0..ROWS {
                 let (s, c) = fp::sin_cos_degrees((f64::from(column) + 0.5) * 360.0 / f64::from(ROWS));
@@ -91,7 +92,8 @@ impl Sky {
         sky
     }
 
-    /// Radiance from a unit direction. Below the horizon it is that of the ground.
+    /// Radiance that arrives from a unit direction. Below the horizon, it is the radiance of the
+    /// ground.
     pub fn at(&self, dir: Vec3) -> Color {
         if dir.y < 0.0 {
             return self.ground;
@@ -102,13 +104,13 @@ impl Sky {
         rgb_from_yxy(bright.max(0.0), x, y)
     }
 
-    /// Illuminance from the sun, in lux by colour channel, on a surface that faces it.
+    /// Illuminance from the sun in lux, per colour channel, on a surface that faces the sun.
     ///
     /// The light is attenuated by Rayleigh scattering and aerosols, at the wavelengths of red,
     /// green and blue.
     pub fn sun(&self) -> Color {
         let degrees = angle(self.sun.y).to_degrees();
-        // Relative air mass, after Kasten and Young, 1989.
+        // Compute the relative air mass after Kasten and Young, 1989.
         let mass = 1.0 / (self.sun.y + 0.50572 * fp::pow(96.07995 - degrees, -1.6364));
         let beta = 0.04608 * self.turbidity - 0.04586;
         let through = |wavelength: f32| {
@@ -133,7 +135,7 @@ fn angle(cosine: f32) -> f32 {
     fp::atan2((1.0 - cosine * cosine).max(0.0).sqrt(), cosine)
 }
 
-/// Perez's function of the cosine to the zenith and the angle to the sun.
+/// Perez's function of the cosine of the zenith angle and the angle to the sun.
 fn shape(&[a, b, c, d, e]: &[f32; 5], cos_zenith: f32, to_sun: f32, cos_sun: f32) -> f32 {
     (1.0 + a * fp::exp(b / cos_zenith)) * (1.0 + c * fp::exp(d * to_sun) + e * cos_sun * cos_sun)
 }
@@ -161,7 +163,7 @@ mod tests {
     #[test]
     fn ground_reflects_its_share_of_sun_and_sky() {
         let sky = Sky::new(Vec3::new(0.3, 0.6, -0.5), 3.0).with_ground(0.5);
-        // Integrate by equal solid angles instead of equal projected areas.
+        // Integrate over equal solid angles instead of equal projected areas.
         let (mut light, steps) = (Color::ZERO, 400);
         for row in 0..steps {
             let up = (row as f32 + 0.5) / steps as f32;
@@ -178,9 +180,9 @@ mod tests {
 
     #[test]
     fn zenith_has_the_published_luminance_and_is_blue() {
-        // Computed by hand from the paper's formulas, at turbidity 3 with the sun at 45 degrees:
-        // chi = (4/9 - 3/120) (pi - pi/2) = 0.6589, Yz = 7.1649 tan chi - 0.6465 + 2.4192 = 7.319
-        // kcd/m^2.
+        // The values are computed by hand from the paper's formulas, at turbidity 3 with the sun at
+        // 45 degrees: chi = (4/9 - 3/120) (pi - pi/2) = 0.6589, Yz = 7.1649 tan chi - 0.6465 +
+        // 2.4192 = 7.319 kcd/m^2.
         let sky = sky(45.0, 3.0);
         assert!((brightness(sky.at(Vec3::Y)) / 7_319.0 - 1.0).abs() < 0.005, "{}", brightness(sky.at(Vec3::Y)));
         let zenith = sky.at(Vec3::Y);
@@ -190,8 +192,8 @@ mod tests {
     #[test]
     fn daylight_illuminance_agrees_with_the_paper() {
         // The paper's formulas, integrated over the sky by an independent program, give 31.53 klx
-        // on the ground. That is twice the IES value for a clear sky at this altitude of the sun
-        // (0.8 + 15.5 sqrt(sin h)). A high sun gives 60 to 110 klx.
+        // on the ground. This is twice the IES value for a clear sky at this altitude h of the sun,
+        // which is 0.8 + 15.5 sqrt(sin h). When the sun is high, the formulas give 60 to 110 klx.
         let sky = sky(60.0, 3.0);
         let n = 200;
         let mut horizontal = 0.0;

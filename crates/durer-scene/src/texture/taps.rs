@@ -1,28 +1,28 @@
-//! Texels that a texture lookup uses, for explanations.
+//! Texels that contribute to a texture lookup, used for explanations.
 
 use super::{Texels, Texture};
 use crate::math::{Color, Vec2};
 
-/// Texel that a texture lookup uses, with its weight, for explanations.
+/// Texel that contributes to a texture lookup, with its weight. It is used for explanations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tap {
-    /// Column and row, from the upper left corner.
+    /// Column and row of the texel, counted from the upper left corner.
     pub texel: (u32, u32),
-    /// Weight in the lookup.
+    /// Weight of the texel in the lookup.
     pub weight: f32,
-    /// The file's three bytes, if it has 8 bits per channel.
+    /// Three bytes as stored in the file, if it has 8 bits per channel.
     pub bytes: Option<[u8; 3]>,
     /// Colour.
     pub color: Color,
 }
 
 impl Texture {
-    /// Returns the texels that [`Texture::at`] uses, with their weights; texels of weight 0 are
-    /// omitted. Their weighted sum is the value of the lookup before the mapping's factors.
+    /// Returns the texels that [`Texture::at`] uses, with their weights. Texels of weight 0 are
+    /// omitted. The weighted sum of the texels is the value of the lookup before the factors of the
+    /// mapping are applied.
     pub fn taps(&self, uv: Vec2) -> Vec<Tap> {
         let (width, height) = (f64::from(self.width), f64::from(self.height));
-        // Position of the first texel's corner, the fraction between texels, and the texel at a
-        // column and row.
+        // Position in the texture in texels, and whether the nearest texel is used.
         let (x, y, nearest) = match &self.mapping {
             Some(mapping) => {
                 let texel = mapping.texture_position(uv);

@@ -1,9 +1,9 @@
-//! Tests of lookups in small textures with known results.
+//! Tests for lookups in small textures with known results.
 
 use super::*;
 use crate::math::Vec3;
 
-/// Two by two texels: red and green above, blue and white below.
+/// Texture of two by two texels, with red and green above and blue and white below.
 fn four() -> Texture {
     Texture::new(2, 2, vec![[255, 0, 0], [0, 255, 0], [0, 0, 255], [255; 3]]).unwrap()
 }
@@ -11,7 +11,7 @@ fn four() -> Texture {
 #[test]
 fn texels_are_exact_at_their_corners_and_interpolated_between() {
     let at = |u: f32, v: f32| four().at(Vec2::new(u, v));
-    // The first row is on top, at v = 1. Texel (i, j) is at (i / 2, 1 - j / 2), without a
+    // The first row is at the top, where v = 1. Texel (i, j) is at (i / 2, 1 - j / 2), without a
     // half-texel shift.
     assert_eq!(at(0.0, 1.0), Vec3::X);
     assert_eq!(at(0.5, 1.0), Vec3::Y);
@@ -20,7 +20,7 @@ fn texels_are_exact_at_their_corners_and_interpolated_between() {
     assert_eq!(at(0.25, 1.0), Vec3::new(0.5, 0.5, 0.0));
     assert_eq!(at(0.0, 0.75), Vec3::new(0.5, 0.0, 0.5));
     assert_eq!(at(0.25, 0.75), Vec3::splat(0.5));
-    // Clamped at the last texel.
+    // Coordinates are clamped at the last texel.
     assert_eq!(at(0.75, 0.25), Vec3::ONE);
 }
 
@@ -48,7 +48,7 @@ fn texture_needs_width_times_height_texels() {
 
 #[test]
 fn cube_map_directions_select_their_face() {
-    // One colour for each face, in the order of the names.
+    // Use one colour for each face, in the order of the face names.
     let face = |i: u8| Texture::new(1, 1, vec![[i * 10; 3]]).unwrap();
     let map = CubeMap { faces: std::array::from_fn(|i| face(i as u8)), mirrored_back: false };
     let faces = |d: Vec3| CubeMap::FACES[(map.at(d).x * 25.5).round() as usize];
@@ -68,7 +68,7 @@ fn cube_map_directions_select_their_face() {
     assert!(map.at(Vec3::ZERO).is_finite() && map.at(Vec3::NAN).is_finite());
 }
 
-/// Letter on each face, in the order of the faces' names. None of them is symmetric.
+/// Letter on each face, in the order of the face names. None of the letters is symmetric.
 const LETTERS: [[&str; 5]; 6] = [
     ["###  ", "#  # ", "###  ", "# #  ", "#  ##"],
     ["#    ", "#    ", "#    ", "#    ", "#### "],
@@ -78,9 +78,9 @@ const LETTERS: [[&str; 5]; 6] = [
     ["  ###", "   # ", "   # ", "#  # ", " ##  "],
 ];
 
-/// Faces seen from the centre of the cube. The course's images of a church match at their edges
-/// this way. Its programs mirror `back`, as more than half of the pixels in their renderings of the
-/// rabbit in the church show.
+/// The faces are seen from the centre of the cube. The course's images of a church match at their
+/// edges this way. Its programs mirror `back`, as shown by more than half of the pixels in their
+/// renderings of the rabbit in the church.
 #[test]
 fn faces_are_upright_and_the_course_mirrors_two() {
     let face = |rows: &[&str; 5]| {
@@ -96,7 +96,7 @@ fn faces_are_upright_and_the_course_mirrors_two() {
         let side = forward.cross(up);
         let faces = |map: &CubeMap, mirror: bool, flip: bool| -> Vec<String> {
             let cell = |i: usize| (2.0 * i as f32 + 1.0) / 5.0 - 1.0;
-            // Texels are exact at their corners, so look each up just inside its corner.
+            // Texels are exact at their corners, so look up each texel just inside its corner.
             let shift = |turned: bool| if turned { 0.999 / 5.0 } else { -0.999 / 5.0 };
             let pixel = |row: usize, column: usize| {
                 let (u, v) = (cell(column) + shift(mirror), -cell(row) - shift(flip));
@@ -119,7 +119,7 @@ fn float_texels_keep_their_values() {
     let texture = Texture::from_floats(2, 1, texels.clone()).unwrap().with_opacity(vec![0.25, 1.0]);
     let mapping = Mapping { nearest: true, ..Mapping::default() };
     assert_eq!(texture.texel(&mapping, Vec2::new(0.25, 0.5), 0.0), [2.0, 0.1, -1.0, 0.25]);
-    // Float texels have no decoding curve, and take 16 bytes each with their opacity.
+    // Texels stored as floats have no decoding curve. With their opacity, they take 16 bytes each.
     assert_eq!(texture.clone().with_decoding(|_| 0.5), texture);
     assert!(texture.bytes() == 32 && texture.has_alpha() && !texture.is_flat());
     assert!(Texture::from_floats(1, 1, texels).is_none());
