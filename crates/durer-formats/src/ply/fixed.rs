@@ -10,7 +10,7 @@ use super::values::ValueReader;
 use durer_scene::math::{Vec2, Vec3};
 use rayon::prelude::*;
 
-/// Number of rows that one parallel task reads. So many rows fit into a core's cache while their
+/// Number of rows that one parallel task reads. This many rows fit into a core's cache while their
 /// columns are read one after another.
 const BLOCK: usize = 1 << 11;
 
