@@ -4,19 +4,20 @@ use super::stage::{LessonScene, percent};
 use durer_image::{Image, Layer, LayerKind, Transfer};
 use durer_scene::math::Vec3;
 
-/// Largest difference in a channel, in 255ths, that counts as rounding.
+/// Largest difference in a channel, in 255ths, that is attributed to rounding.
 const ROUNDING: i32 = 1;
-/// Minimum share of the pixels that must change for the change to count as visible.
+/// Minimum fraction of the pixels that must change for the change to count as visible.
 const MIN_SHARE: f64 = 0.001;
 
 /// Difference between the pictures before and after a lesson step, with the number of changed
 /// pixels.
 #[derive(Clone, Debug)]
 pub struct Change {
-    /// Difference picture: grey where nothing changes, lighter where the picture gets lighter,
-    /// darker where it gets darker. Shows half the difference of the eight-bit values.
+    /// Difference picture. It is grey where nothing changes, lighter where the picture gets
+    /// lighter, and darker where the picture gets darker. It shows half the difference of the
+    /// eight-bit values.
     pub picture: Layer,
-    /// Number of all pixels.
+    /// Total number of pixels.
     pub pixels: usize,
     /// Number of pixels that change.
     pub changed: usize,
