@@ -15,7 +15,8 @@ use durer_scene::scene::Material as ParsedMaterial;
 
 /// Radiance below which a surface is black in an eight-bit picture.
 const BLACK: f32 = 0.001;
-/// Minimum fraction of black surface samples, in tenths, for the picture to count as black.
+/// Minimum number of tenths of the surface samples that must be black for the picture to count as
+/// black.
 const MIN_BLACK_TENTHS: usize = 9;
 /// Minimum number of surface samples needed for a conclusion.
 const MIN_SAMPLES: usize = 20;

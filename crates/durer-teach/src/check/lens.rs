@@ -22,8 +22,8 @@ const USUAL_MAX_APERTURE: f32 = 0.12;
 /// Eye separation above which the two images do not fuse, as a fraction of the distance.
 const MAX_SEPARATION: f32 = 0.5;
 
-/// Returns the depth of each visible point and the diameter of its blur disc. The diameter comes
-/// first and is a fraction of the picture's larger side.
+/// Returns the diameter of the blur disc of each visible point, as a fraction of the picture's
+/// larger side, followed by the depth of the point.
 fn blurs(scene_probe: &SceneProbe, camera: &ThinLensCamera) -> Vec<(f32, f32)> {
     let forward = scene_probe.world().camera_frame().forward;
     let depth = |(probe, hit): (&Probe, &ProbeHit)| hit.t * probe.ray.dir.dot(forward);

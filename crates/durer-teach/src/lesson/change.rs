@@ -23,13 +23,13 @@ pub struct Change {
     pub changed: usize,
     /// Number of pixels that get lighter.
     pub lighter: usize,
-    /// Pixel that changes most, and its change in a channel in 255ths.
+    /// Pixel that changes most, and its change in one channel in 255ths.
     pub most: ((u32, u32), i32),
     light: bool,
 }
 
 impl Change {
-    /// Compares two layers after the transfer curve, which applies only to colour layers.
+    /// Compares two layers after applying the transfer curve, which affects only colour layers.
     pub(super) fn new(before: &Layer, after: &Layer, transfer: Transfer) -> Self {
         let light = after.kind == LayerKind::Color;
         let transfer = if light { transfer } else { Transfer::Linear };
@@ -59,7 +59,7 @@ impl Change {
         self.changed as f64 >= MIN_SHARE * self.pixels as f64 && self.changed > 0
     }
 
-    /// Describes the change in a sentence.
+    /// Describes the change in one sentence.
     pub(super) fn words(&self, stage: &LessonScene) -> String {
         let (share, ((x, y), by)) = (percent(self.changed, self.pixels), self.most);
         let [lighter, darker] = [self.lighter, self.changed - self.lighter].map(|n| percent(n, self.pixels));
