@@ -439,8 +439,8 @@ mod tests {
         }
     }
 
-    /// The scene as one mesh, with the instance number, triangle number, and corners of each
-    /// triangle.
+    /// Returns the scene as one mesh, with the instance number, triangle number, and corners of
+    /// each triangle.
     fn flattened(scene: &InstanceBvh, meshes: &[crate::triangles::tests::Mesh]) -> Vec<(u32, u32, [Vec3; 3])> {
         let corners = |(i, instance): (usize, &Instance)| {
             let (vertices, triangles) = meshes[i % meshes.len()].clone();

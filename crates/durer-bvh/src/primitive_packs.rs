@@ -41,7 +41,7 @@ struct Pack<const N: usize> {
 }
 
 impl<const N: usize> Pack<N> {
-    /// Number of lanes in use.
+    /// Returns the range of the lanes in use.
     #[inline(always)]
     fn indices(&self) -> std::ops::Range<usize> {
         let mut end = WIDTH;

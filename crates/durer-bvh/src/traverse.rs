@@ -137,7 +137,7 @@ pub(super) trait Visitor {
 
     fn counter(&mut self) -> &mut Self::TraversalCounter;
 
-    /// Called at each visited node with the node's offset.
+    /// Handles a visited node, given the node's offset.
     #[inline(always)]
     fn enter(&mut self, _: usize) {}
 

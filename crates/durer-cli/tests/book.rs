@@ -39,8 +39,8 @@ fn commands(page: &str) -> Vec<String> {
         .collect()
 }
 
-/// Creates files that pages refer to but do not create. `scene.txt` and `model.glb` are generated
-/// from a scene.
+/// Files that pages refer to but do not create. `scene.txt` and `model.glb` are generated from a
+/// scene.
 const STAND_INS: [(&str, &str); 4] = [
     (
         "scene.xml",

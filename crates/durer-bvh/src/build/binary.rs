@@ -56,19 +56,19 @@ impl BinaryNode {
         self.min.w.to_bits() >> 28 == LEAF
     }
 
-    /// Number of references in the subtree.
+    /// Returns the number of references in the subtree.
     #[inline]
     pub fn count(&self) -> usize {
         decode_lane(self.min.w) as usize
     }
 
-    /// Position of a leaf's first reference.
+    /// Returns the position of the first reference of a leaf.
     #[inline]
     pub fn first(&self) -> usize {
         decode_lane(self.max.w) as usize
     }
 
-    /// Distance from the node to its right child, in nodes.
+    /// Returns the distance from the node to its right child, in nodes.
     #[inline]
     pub fn right(&self) -> usize {
         2 * decode_lane(self.max.w) as usize
@@ -128,7 +128,7 @@ pub fn build(
 }
 
 impl BuildRange<'_> {
-    /// Start of the right child's range, given the number of references in each child.
+    /// Returns the start of the right child's range, given the number of references in each child.
     ///
     /// Space for splits is shared in proportion to the number of references. A child with too few
     /// references to be split gets none.

@@ -8,7 +8,7 @@ use glam::Vec4;
 /// Number of references above which they are processed in parallel.
 pub const MIN_PARALLEL: usize = 1 << 15;
 
-/// Half the surface area of a scaled box.
+/// Returns half the surface area of a scaled box.
 #[inline]
 pub fn half_area(min: Vec4, max: Vec4, scale: f32) -> f32 {
     let d = ((max - min) * scale).max(Vec4::ZERO);

@@ -52,7 +52,7 @@ pub struct BuildSettings {
 }
 
 impl BuildSettings {
-    /// Returns settings for primitives whose test costs as much as the tests of several nodes.
+    /// Settings for primitives whose test costs as much as the tests of several nodes.
     pub const PRIMITIVES: BuildSettings = BuildSettings {
         leaf_cost: |count| 2.0 * count as f32,
         // For 100,000 small primitives, these settings need 0.64 times the memory, 1.01 times the

@@ -4,8 +4,10 @@
 //! The cost C(n, i) of a subtree n as a forest of at most i roots follows from its children l and
 //! r:
 //!
-//!   C(n, 1) = leaf(n), or A(n) + M + min over k of C(l, k) + C(r, 8 - k), if less without M,
+//!   C(n, 1) = leaf(n) or A(n) + M + min over k of C(l, k) + C(r, 8 - k),
 //!   C(n, i) = min(C(n, i - 1), min over k of C(l, k) + C(r, i - k)).
+//!
+//! C(n, 1) has the second value if that value without M is less than leaf(n).
 //!
 //! Source: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed
 //! Wide BVHs*, HPG 2017.

@@ -66,7 +66,7 @@ pub fn atan2_turn(y: f32, x: f32) -> f32 {
     atan2_turn_f64(y.into(), x.into()) as f32
 }
 
-/// Double-precision version of [`atan2_turn`], with a relative error of at most 2e-8 and an
+/// Computes [`atan2_turn`] in double precision, with a relative error of at most 2e-8 and an
 /// absolute error of at most 2e-9 turns.
 #[inline]
 pub fn atan2_turn_f64(y: f64, x: f64) -> f64 {
@@ -235,7 +235,7 @@ pub fn exp(x: f32) -> f32 {
     libm::expf(x)
 }
 
-/// Natural logarithm.
+/// Returns the natural logarithm of a number.
 #[inline]
 pub fn ln(x: f32) -> f32 {
     libm::logf(x)

@@ -52,9 +52,9 @@ impl Ray {
 /// of a nearby wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray64 {
-    /// Returns the ray with its origin rounded to single precision.
+    /// The ray with its origin rounded to single precision.
     pub rounded: Ray,
-    /// Returns the part of the origin that rounding removed.
+    /// The part of the origin that rounding removed.
     pub origin_error: Vec3,
     /// Primitive that the ray leaves, and the side of it on which the ray starts.
     pub side: StartSide,

@@ -48,12 +48,12 @@ impl HeightGrid {
         }
     }
 
-    /// The x coordinates of the lines along z.
+    /// Returns the x coordinates of the lines along z.
     pub fn xs(&self) -> &[f32] {
         &self.xs
     }
 
-    /// The z coordinates of the lines along x.
+    /// Returns the z coordinates of the lines along x.
     pub fn zs(&self) -> &[f32] {
         &self.zs
     }

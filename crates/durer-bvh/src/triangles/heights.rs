@@ -82,8 +82,8 @@ impl TriangleBvh {
         TriangleBvh { heights: Some(grid), ..bvh }
     }
 
-    /// Item number of the first block. Blocks are numbered after all items whose rows are in
-    /// memory.
+    /// Returns the item number of the first block. Blocks are numbered after all items whose rows
+    /// are in memory.
     pub(super) fn first_block(&self) -> usize {
         self.items() + 1
     }

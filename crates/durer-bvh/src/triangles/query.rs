@@ -148,7 +148,7 @@ impl<F: HitCollector> HitCollector for Filtered<'_, F> {
 }
 
 impl RayInTree<'_> {
-    /// Corners of a triangle with permuted axes, and the number of the triangle.
+    /// Returns the corners of a triangle with permuted axes, and the number of the triangle.
     #[inline(always)]
     fn triangle(&self, (rows, count): (&Rows, usize), lane: usize) -> ([Vec3A; 3], u32) {
         (CornerColumns::new(self.sheared.axes(), count).triangle(rows, lane), number(rows, count, lane))

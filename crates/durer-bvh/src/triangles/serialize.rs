@@ -190,8 +190,8 @@ fn check_leaf(rows: &[f32], size: usize, count: usize) -> Result<(), &'static st
     }
 }
 
-/// Checksum that detects damage but not forgery. It is FNV-1a by Fowler, Noll, and Vo, modified to
-/// use eight-byte words, a rotation in each step, and the length at the end.
+/// Computes a checksum that detects damage but not forgery. It is FNV-1a by Fowler, Noll, and Vo,
+/// modified to use eight-byte words, a rotation in each step, and the length at the end.
 fn checksum(bytes: &[u8]) -> u64 {
     let step = |sum: u64, word: u64| (sum ^ word).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(23);
     let (words, rest) = bytes.as_chunks::<8>();

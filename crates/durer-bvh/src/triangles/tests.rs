@@ -14,7 +14,7 @@ mod reference;
 /// A test mesh: its vertices, and the vertex indices of its triangles.
 pub type Mesh = (Vec<Vec3>, Vec<[u32; 3]>);
 
-/// A torus in which neighbouring triangles share corners with the same bits.
+/// Returns a torus in which neighbouring triangles share corners with the same bits.
 pub fn torus(columns: u32, rows: u32) -> Mesh {
     let turn = |i: u32, count: u32| crate::math::fp::sin_cos_degrees(360.0 * f64::from(i) / f64::from(count));
     let mut mesh: Mesh = Default::default();
@@ -30,7 +30,8 @@ pub fn torus(columns: u32, rows: u32) -> Mesh {
     mesh
 }
 
-/// A cube with `cuts`^2 squares on each face. Axis-parallel rays can lie in its faces and edges.
+/// Returns a cube with `cuts`^2 squares on each face. Axis-parallel rays can lie in its faces and
+/// edges.
 fn cube(cuts: u32) -> Mesh {
     let mut mesh: Mesh = Default::default();
     for face in 0..6 {
@@ -258,8 +259,8 @@ fn largest_offsets_lead_to_triangles() {
     }
 }
 
-/// A bundle of neighbouring rays, either parallel or through one point, aimed at corners, edges,
-/// and faces. It often spans several octants, and some rays have special values.
+/// Returns a bundle of neighbouring rays, either parallel or through one point, aimed at corners,
+/// edges, and faces. It often spans several octants, and some rays have special values.
 fn bundle(mesh: &Mesh, random: &mut Random, scale: f32, offset: Vec3) -> Vec<Ray> {
     let middle = ray(mesh, random, scale, offset);
     let count = 1 + random.below(150);

@@ -259,8 +259,8 @@ pub(crate) fn axis_order(dir: Vec3A) -> &'static AxisOrder {
     &TURNED[longest as usize & 7][dir.is_negative_bitmask() as usize & 7]
 }
 
-/// Returns axis orders, given a mask of the longest components of the direction (the last one
-/// counts) and a mask of the negative ones.
+/// Axis orders, indexed by a mask of the longest components of the direction (the last one counts)
+/// and a mask of the negative ones.
 static TURNED: [[AxisOrder; 8]; 8] = {
     let mut table = [[[0, 1, 2, 0]; 8]; 8];
     let mut at = 8;

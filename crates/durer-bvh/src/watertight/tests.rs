@@ -7,8 +7,8 @@ use crate::math::random::Random;
 /// The triangles of a mesh, given by their corners.
 type Triangles = Vec<[Vec3; 3]>;
 
-/// A surface with `columns` by `rows` squares. `point` maps grid points to corners, so neighbouring
-/// triangles share corners with the same bits.
+/// Returns a surface with `columns` by `rows` squares. `point` maps grid points to corners, so
+/// neighbouring triangles share corners with the same bits.
 fn sheet(columns: usize, rows: usize, point: impl Fn(usize, usize) -> Vec3) -> Triangles {
     let mut triangles = Vec::new();
     for i in 0..columns {
@@ -45,7 +45,7 @@ fn meshes() -> Vec<(Triangles, bool, Vec3)> {
     vec![(ball, true, Vec3::ZERO), (cube.collect(), true, Vec3::ZERO), (torus, false, Vec3::new(0.7, 0.0, 0.0))]
 }
 
-/// A vertex, the midpoint of an edge, a point on an edge, or the centre of a face.
+/// Returns a vertex, the midpoint of an edge, a point on an edge, or the centre of a face.
 fn target(mesh: &Triangles, random: &mut Random) -> Vec3 {
     let [a, b, c] = mesh[random.below(mesh.len())];
     match random.below(4) {

@@ -96,7 +96,7 @@ fn piped(program: &str, arguments: &[&str], input: &Path) -> Option<Vec<u8>> {
 /// Separator between scripts. It does not occur in any script.
 const END: char = '\0';
 
-/// Runs shell scripts with a stub `durer` that prints its arguments.
+/// Start of a shell script that replaces `durer` by a stub, which prints its arguments.
 const STUB: &str = r#"mkdir() { :; }; durer() { printf '%s\0' "$@"; printf '\1\0'; }
     SLURM_ARRAY_TASK_ID=2 JOB_COMPLETION_INDEX=1
     while IFS= read -r -d '' script; do (eval "$script"); printf '\2\0'; done"#;
@@ -149,7 +149,8 @@ fn made_plain(template: &str) -> String {
     job_file(&args(template, "a.txt", "a.exr", &["--camera", "b"])).unwrap_or_else(|_| panic!("{template}"))
 }
 
-/// Reads YAML documents, each terminated by a zero byte, and prints the shell scripts in them.
+/// Python program that reads YAML documents, each terminated by a zero byte, and prints the shell
+/// scripts in them.
 const YAML: &str = "
 import sys, yaml
 loader = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
@@ -182,8 +183,8 @@ fn scene_names_are_quoted_for_yaml() {
     }
 }
 
-/// Reads Python programs, each terminated by a zero byte, and prints the names in their string
-/// literals.
+/// Python program that reads Python programs, each terminated by a zero byte, and prints the names
+/// in their string literals.
 const PYTHON: &str = "
 import ast, sys
 for text in sys.stdin.buffer.read().decode().split('\\0')[:-1]:

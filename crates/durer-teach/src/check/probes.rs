@@ -181,8 +181,8 @@ impl<'a> ProbeGrid<'a> {
         SceneNames { files: self.input.files, scene: self.input.scene, world: self.input.world }
     }
 
-    /// An object is named by its keyword and line. An object of a model is named by its own name
-    /// and position.
+    /// Names an object by its keyword and line. An object of a model is named by its own name and
+    /// position.
     pub(super) fn object(&self, number: u32) -> String {
         let span = self.object_span(number);
         let (line, column) = self.input.files.position(span).unwrap_or_default();

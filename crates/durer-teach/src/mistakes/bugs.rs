@@ -56,7 +56,7 @@ pub enum SphereNormal {
     /// The normal is norm(p - center), which is correct.
     #[default]
     Correct,
-    /// norm(p).
+    /// The normal is norm(p).
     Position,
     /// The normal is p - center.
     Long,
@@ -68,7 +68,7 @@ pub enum Normals {
     /// The matrix is the inverse transpose, and the result is normalised, which is correct.
     #[default]
     Correct,
-    /// No transform.
+    /// The normals are not transformed.
     Local,
     /// The matrix is the inverse transpose, but the result is not normalised.
     Long,
@@ -94,7 +94,7 @@ pub enum Cosine {
     /// The factor is max(0, N·L), which is correct.
     #[default]
     Clamped,
-    /// |N·L|.
+    /// The factor is |N·L|.
     TwoSided,
     /// The factor is N·L without clamping.
     Signed,
@@ -102,7 +102,7 @@ pub enum Cosine {
     One,
     /// There is no diffuse term.
     None,
-    /// max(0, N·L)².
+    /// The factor is max(0, N·L)².
     Squared,
     /// The factor is (N·L + 1) / 2.
     Half,
@@ -110,7 +110,7 @@ pub enum Cosine {
     Step,
     /// The factor is max(0, N·L) / π.
     OverPi,
-    /// max(0, N·V).
+    /// The factor is max(0, N·V).
     View,
 }
 

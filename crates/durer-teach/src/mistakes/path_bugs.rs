@@ -6,9 +6,9 @@ pub enum CosinePower {
     /// The power is 1, which is correct.
     #[default]
     Correct,
-    /// No cosine.
+    /// The power is 0, so there is no cosine.
     None,
-    /// cos².
+    /// The power is 2.
     Twice,
 }
 
