@@ -87,14 +87,14 @@ impl Default for PrimitivePacks {
 }
 
 impl PrimitivePacks {
-    /// Adds the plane normal · p = offset.
+    /// Adds the plane with the equation normal · p = offset.
     pub fn push_plane(&mut self, number: u32, normal: Vec3, offset: f32) {
         let n = normal.as_dvec3();
         push(&mut self.planes, number, [n.x, n.y, n.z, f64::from(offset)]);
         self.count += 1;
     }
 
-    /// Adds the sphere |p - center| = radius.
+    /// Adds the sphere with the equation |p - center| = radius.
     pub fn push_sphere(&mut self, number: u32, center: Vec3, radius: f32) {
         let c = center.as_dvec3();
         push(&mut self.spheres, number, [c.x, c.y, c.z, f64::from(radius) * f64::from(radius)]);

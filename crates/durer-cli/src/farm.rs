@@ -46,7 +46,7 @@ pub struct FarmArgs {
     pub options: Vec<String>,
 }
 
-/// Runs `durer farm`: prints the job file.
+/// Runs `durer farm` and prints the job file.
 pub fn run(args: &FarmArgs) -> Result<(), Failure> {
     check_options(&args.options)?;
     print_line(job_file(args)?.trim_end());

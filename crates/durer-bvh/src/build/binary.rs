@@ -13,7 +13,7 @@ use glam::Vec4;
 /// Number of references above which subtrees are built in parallel.
 const PARALLEL: u32 = 4096;
 
-/// Node of a binary BVH during construction, before it is collapsed to nodes with eight children.
+/// Node of a binary BVH during construction, before it is collapsed into nodes with eight children.
 /// Nodes are stored in depth-first order: the left child follows its parent, and the right child
 /// follows the left subtree. There may be unused nodes between subtrees that were built in
 /// parallel.

@@ -24,7 +24,7 @@ pub struct Builder<'a> {
     pub whole: usize,
     /// Returns the maximum number of bins for a number of references.
     pub bins: fn(usize) -> usize,
-    /// Corners of the triangles that may be split; empty for other primitives.
+    /// Corners of the triangles that may be split. The slice is empty for other primitives.
     pub corners: &'a [[Vec3; 3]],
 }
 

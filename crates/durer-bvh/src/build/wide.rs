@@ -1,8 +1,8 @@
 //! Collapses a binary tree into nodes with eight children, with minimal cost by the surface area
 //! heuristic.
 //!
-//! The cost C(n, i) of a subtree n as a forest of at most i roots follows from its children l and
-//! r:
+//! The cost C(n, i) of turning a subtree n into a forest of at most i roots is computed from the
+//! costs of its children l and r:
 //!
 //!   C(n, 1) = leaf(n) or A(n) + M + min over k of C(l, k) + C(r, 8 - k),
 //!   C(n, i) = min(C(n, i - 1), min over k of C(l, k) + C(r, i - k)).
@@ -222,7 +222,7 @@ impl NodeWriter<'_> {
         subtree
     }
 
-    /// Fills in a wide node from a binary one, and adds all nodes below it. Subtrees are taken from
+    /// Fills in the wide node for a binary node, and adds all nodes below it. Subtrees are taken from
     /// `ready` until it is empty.
     fn fill(&self, all: &mut SubtreeNodes, number: usize, i: usize, ready: &mut std::slice::Iter<SubtreeNodes>) {
         if self.node(i).count() <= PARALLEL

@@ -1,4 +1,4 @@
-//! Pairs the pictures in two files or folders.
+//! Forms pairs of the pictures in two files or folders.
 
 use crate::failure::{Failure, invalid_input};
 use durer::image::format_for;

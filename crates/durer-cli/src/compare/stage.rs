@@ -199,7 +199,7 @@ impl ReferenceScene {
     }
 }
 
-/// Returns the path of the scene of a pair. In a folder, this is the file with the same name as the
+/// Returns the path of the scene for a pair of pictures. In a folder, this is the file with the same name as the
 /// picture.
 fn path(scene: &Path, pair: &Pair) -> Result<PathBuf, Failure> {
     if !scene.is_dir() {

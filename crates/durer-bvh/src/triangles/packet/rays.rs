@@ -23,7 +23,7 @@ pub struct PacketRays {
     /// Origins moved outwards by the padding of the boxes.
     pub near_from: [PerRay; 3],
     pub far_from: [PerRay; 3],
-    /// Padded origins times the inverse of the direction, negated.
+    /// Padded origins multiplied by the negated inverse of the direction.
     pub near_origin: [PerRay; 3],
     pub far_origin: [PerRay; 3],
     pub shear: [PerRay; 2],

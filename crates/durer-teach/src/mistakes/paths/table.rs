@@ -1,4 +1,4 @@
-//! The table of mistakes of path tracers.
+//! The table of the mistakes that path tracers can make.
 
 use crate::mistakes::path_bugs::{CosinePower, DirectionSampling, EnvironmentBug, MissingFactor, PixelMean};
 use crate::mistakes::table::{Mistake, Values, row};
