@@ -1,4 +1,6 @@
-//! Computes distances from points to a mesh: `cargo run --release --example closest_point`.
+//! Computes distances from points to a mesh.
+//!
+//! Run it with `cargo run --release --example closest_point`.
 
 use durer_bvh::math::{Ray, Vec3};
 use durer_bvh::{BuildQuality, TriangleBvh};

@@ -1,5 +1,6 @@
-//! Builds a tree over custom primitives, here balls: `cargo run --release --example
-//! custom_primitive`.
+//! Builds a tree over custom primitives, which are balls here.
+//!
+//! Run it with `cargo run --release --example custom_primitive`.
 
 use durer_bvh::Bvh;
 use durer_bvh::TraversalStats;

@@ -1,4 +1,6 @@
-//! Places one mesh in many moving instances: `cargo run --release --example instances`.
+//! Places one mesh in many moving instances.
+//!
+//! Run it with `cargo run --release --example instances`.
 
 use durer_bvh::glam::{DAffine3, DQuat, DVec3};
 use durer_bvh::math::{Affine, Ray, Vec3};

@@ -1,5 +1,6 @@
-//! Traces rays against a mesh, one by one and in batches: `cargo run --release --example
-//! ray_query`.
+//! Traces rays against a mesh, one by one and in batches.
+//!
+//! Run it with `cargo run --release --example ray_query`.
 
 use durer_bvh::math::{Ray, Vec3};
 use durer_bvh::{BuildError, BuildQuality, Facing, TriangleBvh};

@@ -222,8 +222,8 @@ impl NodeWriter<'_> {
         subtree
     }
 
-    /// Fills in the wide node for a binary node, and adds all nodes below it. Subtrees are taken from
-    /// `ready` until it is empty.
+    /// Fills in the wide node for a binary node, and adds all nodes below it. Subtrees are taken
+    /// from `ready` until it is empty.
     fn fill(&self, all: &mut SubtreeNodes, number: usize, i: usize, ready: &mut std::slice::Iter<SubtreeNodes>) {
         if self.node(i).count() <= PARALLEL
             && let Some(subtree) = ready.next()
