@@ -199,8 +199,8 @@ impl ReferenceScene {
     }
 }
 
-/// Returns the path of the scene for a pair of pictures. In a folder, this is the file with the same
-/// name as the picture.
+/// Returns the path of the scene for a pair of pictures. In a folder, this is the file with the
+/// same name as the picture.
 fn path(scene: &Path, pair: &Pair) -> Result<PathBuf, Failure> {
     if !scene.is_dir() {
         return Ok(scene.into());
